@@ -1,0 +1,101 @@
+//! Routes pairwise, quantity by quantity, against the one table of tolerances.
+//!
+//! Nothing is compared with itself, nothing that did not run is compared at all, and what is not a number disagrees.
+
+use nalgebra::Vector2;
+
+use crate::corner::map::{CornerMap, Eigenvalue, Route};
+use crate::tolerance::{Bound, Comparison, agreement_bound};
+
+/// One quantity by two routes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Agreement {
+    /// The two routes.
+    pub routes: [String; 2],
+    /// What was compared.
+    pub quantity: String,
+    /// Largest absolute difference of any entry.
+    pub max_abs_diff: f64,
+    /// Largest difference of any entry, over that entry.
+    pub max_rel_diff: f64,
+    /// Most that `max_abs_diff` may be, and why.
+    pub bound: Bound,
+    /// Whether it is less.
+    pub agrees: bool,
+}
+
+/// Compares the entries of one quantity.
+pub fn compare(routes: [&str; 2], quantity: &str, [left, right]: [&[f64]; 2], comparison: Comparison) -> Agreement {
+    let scale = left.iter().chain(right).fold(0.0_f64, |scale, entry| scale.max(entry.abs()));
+    let bound = agreement_bound(comparison, scale);
+    let mut max_abs_diff = if left.len() == right.len() { 0.0 } else { f64::NAN };
+    let mut max_rel_diff = max_abs_diff;
+    for (a, b) in left.iter().zip(right) {
+        let diff = (a - b).abs();
+        let size = a.abs().max(b.abs());
+        // A NaN must not be lost to a comparison: it takes over and stays.
+        max_abs_diff = if diff <= max_abs_diff { max_abs_diff } else { diff };
+        let relative = if diff == 0.0 { 0.0 } else { diff / size };
+        max_rel_diff = if relative <= max_rel_diff { max_rel_diff } else { relative };
+    }
+    Agreement {
+        routes: routes.map(String::from),
+        quantity: quantity.into(),
+        max_abs_diff,
+        max_rel_diff,
+        agrees: max_abs_diff < bound.value || max_abs_diff == 0.0,
+        bound,
+    }
+}
+
+/// The quantities of a map that routes are compared in: name and entries, rows first.
+pub fn quantities(map: &CornerMap) -> Vec<(&'static str, Vec<f64>)> {
+    let rows = |matrix: nalgebra::Matrix2<f64>| matrix.transpose().as_slice().to_vec();
+    let flat = |pair: [Eigenvalue; 2]| pair.iter().flat_map(|value| [value.re, value.im]).collect();
+    vec![
+        ("A_minus", rows(map.minus.a)),
+        ("A_plus", rows(map.plus.a)),
+        ("B_minus", map.minus.b.as_slice().to_vec()),
+        ("B_plus", map.plus.b.as_slice().to_vec()),
+        ("C", map.c().as_slice().to_vec()),
+        ("D", vec![map.d()]),
+        ("eigenvalues_minus", flat(map.minus.eigenvalues())),
+        ("eigenvalues_plus", flat(map.plus.eigenvalues())),
+    ]
+}
+
+/// Every pair of routes to the map, in every quantity.
+pub fn compare_routes(routes: &[Route]) -> Vec<Agreement> {
+    let known: Vec<_> = routes.iter().map(|route| (route.name, quantities(&route.map))).collect();
+    pairs(&known)
+        .flat_map(|((left, these), (right, those))| {
+            these.iter().zip(those).map(|((quantity, a), (_, b))| compare([*left, *right], quantity, [a, b], Comparison::Routes))
+        })
+        .collect()
+}
+
+/// An orbit by one route: name, x* and T*.
+pub type NamedOrbit = (&'static str, Vector2<f64>, f64);
+
+/// Every pair of routes to the orbit.
+pub fn compare_orbits(orbits: &[NamedOrbit]) -> Vec<Agreement> {
+    pairs(orbits)
+        .flat_map(|((left, x, t), (right, y, u))| {
+            [
+                compare([*left, *right], "T_star", [&[*t], &[*u]], Comparison::Orbit),
+                compare([*left, *right], "x_star", [x.as_slice(), y.as_slice()], Comparison::Orbit),
+            ]
+        })
+        .collect()
+}
+
+fn pairs<T>(items: &[T]) -> impl Iterator<Item = (&T, &T)> {
+    items.iter().enumerate().flat_map(|(index, left)| items[index + 1..].iter().map(move |right| (left, right)))
+}
+
+/// How many decimals two numbers share whose difference is `diff`: they differ by less than half a unit in that place.
+///
+/// `None` when they are equal to the last digit; at least 0.
+pub fn shared_decimals(diff: f64) -> Option<u32> {
+    (diff != 0.0).then(|| if diff.is_finite() { (-(2.0 * diff).log10()).floor().max(0.0) as u32 } else { 0 })
+}

@@ -1,0 +1,133 @@
+//! Feigin's classification of a border collision in a continuous piecewise-linear map.
+//!
+//! With the numbers of real eigenvalues above 1 and below -1 on each side: the fixed point persists where the total above 1
+//! is even, and two fixed points meet and vanish (nonsmooth fold) where it is odd; an orbit of period two is born where the
+//! total below -1 is odd (nonsmooth flip). Where each side's fixed point exists is computed on its own, from the border.
+
+use nalgebra::{Matrix2, RowVector2, Vector2};
+
+use super::Degenerate;
+use crate::corner::map::{CornerMap, Eigenvalue, SideMap};
+use crate::tolerance;
+
+/// What happens to the fixed point at the border.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scenario {
+    /// It crosses to the other side.
+    Persistence,
+    /// It meets the other side's fixed point, and both vanish.
+    NonsmoothFold,
+    /// It crosses, and an orbit of period two is born.
+    NonsmoothFlip,
+    /// Both counts are odd: two fixed points vanish and an orbit of period two is born.
+    NonsmoothFoldAndFlip,
+}
+
+impl Scenario {
+    /// Its name in documents.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Persistence => "persistence",
+            Self::NonsmoothFold => "nonsmooth-fold",
+            Self::NonsmoothFlip => "nonsmooth-flip",
+            Self::NonsmoothFoldAndFlip => "nonsmooth-fold-and-flip",
+        }
+    }
+}
+
+/// On which side of the corner-impact speed a fixed point exists.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Speeds {
+    /// Above omega*: dT < 0.
+    Faster,
+    /// Below omega*: dT > 0.
+    Slower,
+}
+
+impl Speeds {
+    /// Its name in documents.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Faster => "faster",
+            Self::Slower => "slower",
+        }
+    }
+}
+
+/// What one side contributes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SideCounts {
+    /// Real eigenvalues above 1.
+    pub above_one: usize,
+    /// Real eigenvalues below -1.
+    pub below_minus_one: usize,
+    /// Whether both eigenvalues lie inside the unit circle.
+    pub stable: bool,
+    /// `(I - A)^{-1} B`, the fixed point for dT = 1 s: m, m/s.
+    pub fixed_point: Vector2<f64>,
+    /// `det(I - A)`.
+    pub determinant: f64,
+    /// Where the fixed point lies on its own side of the border.
+    pub exists_for: Speeds,
+}
+
+/// Feigin's verdict with what it rests on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Classification {
+    /// The verdict.
+    pub scenario: Scenario,
+    /// Impacts before the corner.
+    pub minus: SideCounts,
+    /// Impacts after the corner.
+    pub plus: SideCounts,
+}
+
+/// Classifies the border collision of `map`.
+///
+/// `border` is `(e, f)` with the minus side where `e dx + f dT < 0`. The paper takes `(C, D)` for it, which is right only
+/// where both have the same sign.
+pub fn classify(map: &CornerMap, border: (RowVector2<f64>, f64)) -> Result<Classification, Degenerate> {
+    let minus = side_counts("minus", &map.minus, border, -1.0)?;
+    let plus = side_counts("plus", &map.plus, border, 1.0)?;
+    let fold = (minus.above_one + plus.above_one) % 2 == 1;
+    let flip = (minus.below_minus_one + plus.below_minus_one) % 2 == 1;
+    let scenario = match (fold, flip) {
+        (false, false) => Scenario::Persistence,
+        (true, false) => Scenario::NonsmoothFold,
+        (false, true) => Scenario::NonsmoothFlip,
+        (true, true) => Scenario::NonsmoothFoldAndFlip,
+    };
+    Ok(Classification { scenario, minus, plus })
+}
+
+/// `sign` is that of `e x + f dT` on this side.
+fn side_counts(name: &'static str, side: &SideMap, (e, f): (RowVector2<f64>, f64), sign: f64) -> Result<SideCounts, Degenerate> {
+    let eigenvalues = side.eigenvalues();
+    for Eigenvalue { re, im } in eigenvalues {
+        for boundary in [1.0, -1.0] {
+            if !((re - boundary).hypot(im) > tolerance::UNIT_EIGENVALUE.value) {
+                return Err(Degenerate::EigenvalueOnBoundary { side: name, value: re, boundary });
+            }
+        }
+    }
+    let real = |test: fn(f64) -> bool| eigenvalues.iter().filter(|value| value.im == 0.0 && test(value.re)).count();
+    // x = A x + B dT
+    let whole = Matrix2::identity() - side.a;
+    let fixed_point = whole.try_inverse().map(|inverse| inverse * side.b);
+    let Some(fixed_point) = fixed_point else {
+        return Err(Degenerate::Vanishes { what: "the determinant of I - A", value: whole.determinant() });
+    };
+    let along = (e * fixed_point)[0];
+    let distance = along + f;
+    if !(distance.abs() > tolerance::DEGENERATE.value * (along.abs() + f.abs())) {
+        return Err(Degenerate::Vanishes { what: "the fixed point's distance from the border", value: distance });
+    }
+    Ok(SideCounts {
+        above_one: real(|value| value > 1.0),
+        below_minus_one: real(|value| value < -1.0),
+        stable: eigenvalues.iter().all(|value| value.re.hypot(value.im) < 1.0),
+        fixed_point,
+        determinant: whole.determinant(),
+        exists_for: if distance * sign > 0.0 { Speeds::Slower } else { Speeds::Faster },
+    })
+}

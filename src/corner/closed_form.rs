@@ -1,0 +1,124 @@
+//! The closed forms of the paper, each under its label, for every damping.
+//!
+//! Nothing of the simulator is used: the propagator is transcribed from the paper, not taken from [`crate::flight`].
+//! Where the paper misprints a formula, the repaired form stands here and the repair is named.
+
+use std::f64::consts::TAU;
+
+use nalgebra::{Matrix2, RowVector2, Vector2};
+
+use super::locate::CornerImpact;
+use super::map::{CornerMap, Route, SideMap};
+use crate::cam::{Lift, Side};
+use crate::model::{Follower, Model};
+use crate::tolerance;
+
+/// The map by eq:Px and eq:PT.
+pub fn route(model: &Model, at: &CornerImpact) -> Route {
+    let side = |side| {
+        let lift = match side {
+            Side::Minus => &at.corner.minus,
+            Side::Plus => &at.corner.plus,
+        };
+        Ok::<_, std::convert::Infallible>(side_map(&model.follower, at.period, at.velocity_before, lift))
+    };
+    let Ok(map) = CornerMap::try_from_sides(side);
+    Route { name: "closed_form", map, uncertainty: None }
+}
+
+/// `A` and `B` for one side's lift at the corner; `v` is the velocity before the impact.
+fn side_map(follower: &Follower, period: f64, v: f64, lift: &Lift) -> SideMap {
+    let zeta = follower.damping / (2.0 * follower.mass);
+    let omega0_squared = follower.stiffness / follower.mass;
+    let r = follower.restitution;
+    let omega = TAU / period;
+    let (c1, c2) = (omega * lift.slope, omega * omega * lift.curvature);
+    // a(q, v) = -2 zeta v - w0^2 (q - rest) - g, at the corner's position
+    let spring = omega0_squared * (lift.value - follower.rest_position) + follower.gravity;
+    let acceleration = |v: f64| -2.0 * zeta * v - spring;
+    let f = propagator(zeta, omega0_squared, 0.5 * period);
+    // S = 2 zeta c' + c'' + w0^2 q, the cam's acceleration less the follower's own at the cam's velocity
+    let s = c2 - acceleration(c1);
+
+    // eq:Px   A = F [[-r, 0], [alpha, -r]] F,  alpha = -(1 + r) S/(v - c')
+    let alpha = -(1.0 + r) * s / (v - c1);
+    let a = f * Matrix2::new(-r, 0.0, alpha, -r) * f;
+
+    // eq:PT   B = 1/2 F' (q, v+) + 1/2 F (v, -r a - 2 (1+r) c'/T) - 1/2 F (1+r) v/(v - c') (v - c', S)
+    // In print F and F' change places in the first two terms and the last sign is +. F' (q, v+) = F (v+, a(q, v+)).
+    let v_plus = (1.0 + r) * c1 - r * v;
+    let leaving = Vector2::new(v_plus, acceleration(v_plus));
+    let arriving = Vector2::new(v, -r * acceleration(v) - 2.0 * (1.0 + r) * c1 / period);
+    let shift = Vector2::new(v - c1, s) * ((1.0 + r) * v / (v - c1));
+    let b = f * (leaving + arriving - shift) * 0.5;
+    SideMap { a, b }
+}
+
+/// Free flight's side of the corner: the impact comes before the corner where `e dx + f dT < 0`.
+///
+/// `h (phi_{T/2} x - y_0)` is the gap that a flight without impact would have when the corner passes: negative means that
+/// the impact has been. Its derivatives are `e = h F` and `f = h F' x*/2 = v/2`.
+pub fn border(model: &Model, at: &CornerImpact) -> (RowVector2<f64>, f64) {
+    let Follower { mass, damping, stiffness, .. } = model.follower;
+    let f = propagator(damping / (2.0 * mass), stiffness / mass, 0.5 * at.period);
+    (RowVector2::new(f[(0, 0)], f[(0, 1)]), 0.5 * at.velocity_before)
+}
+
+/// eq:fixedp, repaired: `x* = -[I - phi_T - F R F]^{-1} F R y_0`, `R = [[0, 0], [0, -(1+r)]]`, with the sign before `F R F`
+/// that the print has as +; `T*` from `h (F x* - y_0) = 0` by secants from a period close by.
+///
+/// `None` for stiffness 0, where there is no equilibrium to measure from, and where the secants do not settle.
+pub fn orbit(model: &Model, at: &CornerImpact, nearby_period: f64) -> Option<(Vector2<f64>, f64)> {
+    let follower = &model.follower;
+    if follower.stiffness <= 0.0 {
+        return None;
+    }
+    let zeta = follower.damping / (2.0 * follower.mass);
+    let omega0_squared = follower.stiffness / follower.mass;
+    let equilibrium = follower.rest_position - follower.gravity / omega0_squared;
+    let restitution = Matrix2::new(0.0, 0.0, 0.0, -(1.0 + follower.restitution));
+    let fixed_point = |period: f64| {
+        let f = propagator(zeta, omega0_squared, 0.5 * period);
+        let y0 = Vector2::new(at.corner.minus.value - equilibrium, TAU / period * at.corner.minus.slope);
+        let whole = Matrix2::identity() - propagator(zeta, omega0_squared, period) - f * restitution * f;
+        let x = -(whole.try_inverse()? * (f * (restitution * y0)));
+        Some((x, (f * x - y0)[0]))
+    };
+    let mut before = (nearby_period, fixed_point(nearby_period)?.1);
+    let mut period = nearby_period * (1.0 + 1e-6);
+    // Each secant step gains half as many digits again; from 1e-6 rounding is reached after a handful.
+    for _ in 0..20 {
+        let (x, miss) = fixed_point(period)?;
+        if miss == before.1 {
+            return (miss == 0.0).then_some((x, period));
+        }
+        let next = period - miss * (period - before.0) / (miss - before.1);
+        if (next - period).abs() <= tolerance::ROOT_WIDTH.value * period {
+            return Some((fixed_point(next)?.0, next));
+        }
+        before = (period, miss);
+        period = next;
+    }
+    None
+}
+
+/// eq:gff: `phi_t = e^{-zeta t} (I cos(ws t) + A sin(ws t))`, `ws = sqrt(w0^2 - zeta^2)`, with its limits for critical and
+/// over-damping, where the cosine and sine become hyperbolic.
+fn propagator(zeta: f64, omega0_squared: f64, t: f64) -> Matrix2<f64> {
+    let square = omega0_squared - zeta * zeta;
+    let omega = square.abs().sqrt();
+    // cos = e^{-zeta t} cos(ws t), sin = e^{-zeta t} sin(ws t)/ws
+    let decay = (-zeta * t).exp();
+    let x = omega * t;
+    let (cos, sin) = if square > 0.0 {
+        (decay * x.cos(), decay * x.sin() / omega)
+    } else if x < 1.0 {
+        let ratio = if x == 0.0 { 1.0 } else { x.sinh() / x };
+        (decay * x.cosh(), decay * t * ratio)
+    } else {
+        // e^{-zeta t} and cosh one by one would under- and overflow.
+        let (slow, fast) = ((-omega0_squared / (zeta + omega) * t).exp(), (-(zeta + omega) * t).exp());
+        (0.5 * (slow + fast), (slow - fast) / (2.0 * omega))
+    };
+    Matrix2::new(cos + zeta * sin, sin, -omega0_squared * sin, cos - zeta * sin)
+}

@@ -1,0 +1,313 @@
+//! Where a one-impact, one-revolution orbit hits a corner of the cam: (x*, T*), from the model alone.
+//!
+//! The orbit leaves the corner (position c, velocity v+) and is back after T (velocity v-), so with the follower's responses
+//! s(T), p(T) and the force f at c
+//!
+//! ```text
+//! 0  = v+ s + f p            v- = v+ s' + f s            v+ = (1 + r) c' - r v-,   c' = (2 pi/T) dc/dtheta
+//! ```
+//!
+//! v+ and v- leave the equation `-f p (1 + r s') + r f s^2 - (1 + r) c' s = 0` for T alone. Each of its roots is simulated for
+//! one revolution on the cam as it is: only an orbit with this one impact, on this corner, that returns to its start counts.
+
+use std::f64::consts::{PI, TAU};
+use std::fmt;
+
+use nalgebra::Vector2;
+
+use crate::cam::{Cam, Corner};
+use crate::flight::{Flight, State};
+use crate::model::{Follower, Model, ModelError, Study};
+use crate::section::StroboscopicMap;
+use crate::simulate::Machine;
+use crate::tolerance;
+
+/// A periodic orbit with one impact a revolution, on a corner of the cam.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CornerImpact {
+    /// The corner that it hits.
+    pub corner: Corner,
+    /// T*, s.
+    pub period: f64,
+    /// The two neighbouring doubles, or nearly, that T* was bracketed by.
+    pub bracket: [f64; 2],
+    /// Left side of the equation for T*, over the sum of its terms' sizes.
+    pub residual: f64,
+    /// v-, m/s.
+    pub velocity_before: f64,
+    /// v+, m/s.
+    pub velocity_after: f64,
+    /// c', m/s.
+    pub cam_velocity: f64,
+    /// The state half a revolution from the corner, in the cam's coordinates.
+    pub state: State,
+    /// Where the paper's x is measured from, m: the spring's equilibrium, or where the spring is slack if it has no stiffness.
+    pub origin: f64,
+    /// How far one simulated revolution ends from its start, over the orbit's size.
+    pub closure: f64,
+}
+
+impl CornerImpact {
+    /// omega*, rpm.
+    pub fn speed_rpm(&self) -> f64 {
+        60.0 / self.period
+    }
+
+    /// The stroboscopic section, rad: half a revolution from the corner, so that the impact is at t = 0 in [-T/2, T/2].
+    pub fn section_angle(&self) -> f64 {
+        (self.corner.angle + PI) % TAU
+    }
+
+    /// The paper's x*: position from the equilibrium, and velocity, on the section.
+    pub fn x_star(&self) -> Vector2<f64> {
+        Vector2::new(self.state.position - self.origin, self.state.velocity)
+    }
+
+    /// The stroboscopic map over `cam` at `period`, s.
+    pub fn map(&self, model: &Model, cam: Cam, period: f64) -> StroboscopicMap {
+        stroboscopic_map(&model.follower, cam, &self.corner, period)
+    }
+}
+
+fn stroboscopic_map(follower: &Follower, cam: Cam, corner: &Corner, period: f64) -> StroboscopicMap {
+    let machine = Machine {
+        cam,
+        flight: Flight::new(follower),
+        restitution: follower.restitution,
+        angular_velocity: TAU / period,
+    };
+    StroboscopicMap { machine, cam_angle: (corner.angle + PI) % TAU }
+}
+
+/// A root of the equation for T at some corner that is no orbit, and why not.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rejected {
+    /// Cam angle of the corner, rad.
+    pub cam_angle: f64,
+    /// Speed, rpm.
+    pub speed_rpm: f64,
+    /// What is wrong with it.
+    pub why: String,
+}
+
+/// Why there is no corner impact to study.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum LocateError {
+    /// The model says nothing about where to look, or something impossible.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// Nothing in range.
+    #[error("{}", .0)]
+    NotFound(Box<NotFound>),
+    /// The only candidate touches the corner without relative velocity.
+    #[error(
+        "{file}: grazing impact at {speed_rpm:.6} rpm: the follower touches the corner at {:.6} deg with v = c' = {velocity} m/s; \
+         there the map has no linear part, so there is no A and B to check",
+        cam_angle.to_degrees()
+    )]
+    Grazing {
+        /// Model file.
+        file: String,
+        /// Cam angle of the corner, rad.
+        cam_angle: f64,
+        /// Speed, rpm.
+        speed_rpm: f64,
+        /// v = c', m/s.
+        velocity: f64,
+    },
+}
+
+/// The complaint that `[study]` holds no corner impact.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NotFound {
+    study: ModelError,
+    corners: Vec<f64>,
+    rejected: Vec<Rejected>,
+}
+
+impl fmt::Display for NotFound {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}; ", self.study)?;
+        if self.corners.is_empty() {
+            return write!(f, "the cam has no corner where its acceleration jumps");
+        }
+        let degrees: Vec<_> = self.corners.iter().map(|angle| format!("{:.4}", angle.to_degrees())).collect();
+        write!(f, "looked at the corners at {} deg; ", degrees.join(", "))?;
+        if self.rejected.is_empty() {
+            return write!(f, "no flight of one period starts and ends on any of them");
+        }
+        write!(f, "found instead:")?;
+        for Rejected { cam_angle, speed_rpm, why } in &self.rejected {
+            write!(f, "\n  {speed_rpm:.6} rpm at {:.4} deg: {why}", cam_angle.to_degrees())?;
+        }
+        Ok(())
+    }
+}
+
+/// The corner impacts in `[study]`, slowest first; at least one.
+pub fn locate(model: &Model, cam: &Cam) -> Result<Vec<CornerImpact>, LocateError> {
+    let study = model.study()?;
+    let flight = Flight::new(&model.follower);
+    let corners: Vec<Corner> = cam.corners().into_iter().filter(|corner| corner.jump_order == 2).collect();
+    let (mut found, mut rejected, mut grazing) = (Vec::new(), Vec::new(), None);
+    for corner in &corners {
+        let equation = PeriodEquation { flight: &flight, corner, restitution: model.follower.restitution };
+        for root in equation.roots(study) {
+            match equation.orbit(model, cam, root) {
+                Verdict::Orbit(orbit) => found.push(*orbit),
+                Verdict::Grazing(velocity) => {
+                    grazing.get_or_insert(LocateError::Grazing {
+                        file: model.file().into(),
+                        cam_angle: corner.angle,
+                        speed_rpm: 60.0 / root.period,
+                        velocity,
+                    });
+                }
+                Verdict::Rejected(why) => rejected.push(Rejected { cam_angle: corner.angle, speed_rpm: 60.0 / root.period, why }),
+            }
+        }
+    }
+    found.sort_by(|a, b| b.period.total_cmp(&a.period));
+    if !found.is_empty() {
+        return Ok(found);
+    }
+    Err(grazing.unwrap_or_else(|| {
+        let words = format!("no corner impact of a one-impact, one-revolution orbit up to study.rpm_max = {}", study.rpm_max);
+        let corners = corners.iter().map(|corner| corner.angle).collect();
+        LocateError::NotFound(Box::new(NotFound { study: model.reject("study.rpm_min", words), corners, rejected }))
+    }))
+}
+
+/// The equation for T at one corner.
+struct PeriodEquation<'a> {
+    flight: &'a Flight,
+    corner: &'a Corner,
+    restitution: f64,
+}
+
+#[derive(Clone, Copy)]
+struct Root {
+    period: f64,
+    bracket: [f64; 2],
+    residual: f64,
+}
+
+enum Verdict {
+    Orbit(Box<CornerImpact>),
+    Grazing(f64),
+    Rejected(String),
+}
+
+impl PeriodEquation<'_> {
+    /// Samples in `[study]`: more than a hundred for each radian that any follower met so far oscillates through.
+    const SAMPLES: usize = 4096;
+
+    fn force(&self) -> f64 {
+        self.flight.force(self.corner.plus.value)
+    }
+
+    fn cam_velocity(&self, period: f64) -> f64 {
+        TAU / period * self.corner.plus.slope
+    }
+
+    /// `-f p (1 + r s') + r f s^2 - (1 + r) c' s`, and the sum of the sizes of its terms.
+    fn evaluate(&self, period: f64) -> (f64, f64) {
+        let response = self.flight.response(period);
+        let (p, s, s1) = (response.step, response.impulse, response.impulse_rate);
+        let (r, f) = (self.restitution, self.force());
+        let terms = [-f * p, -f * p * r * s1, r * f * s * s, -(1.0 + r) * self.cam_velocity(period) * s];
+        (terms.iter().sum(), terms.iter().map(|term| term.abs()).sum())
+    }
+
+    /// Every sign change over `[study]`, closed by bisection; one root at the slow end if the equation holds at all speeds.
+    fn roots(&self, study: Study) -> Vec<Root> {
+        let (first, last) = (60.0 / study.rpm_max, 60.0 / study.rpm_min);
+        let at = |index: usize| first + (last - first) * index as f64 / Self::SAMPLES as f64;
+        if self.force() == 0.0 && self.corner.plus.slope == 0.0 {
+            return vec![Root { period: last, bracket: [last, last], residual: 0.0 }];
+        }
+        let mut roots = Vec::new();
+        let (mut low, mut at_low) = (first, self.evaluate(first).0);
+        for index in 1..=Self::SAMPLES {
+            let high = at(index);
+            let at_high = self.evaluate(high).0;
+            if (at_low < 0.0) != (at_high < 0.0) {
+                roots.push(self.close([low, high], at_low < 0.0));
+            }
+            (low, at_low) = (high, at_high);
+        }
+        roots
+    }
+
+    /// Bisection down to neighbouring doubles.
+    fn close(&self, mut bracket: [f64; 2], negative_at_low: bool) -> Root {
+        while bracket[1] - bracket[0] > tolerance::ROOT_WIDTH.value * bracket[1] {
+            let middle = 0.5 * (bracket[0] + bracket[1]);
+            let negative = self.evaluate(middle).0 < 0.0;
+            bracket[usize::from(negative != negative_at_low)] = middle;
+        }
+        let period = 0.5 * (bracket[0] + bracket[1]);
+        let (value, size) = self.evaluate(period);
+        Root { period, bracket, residual: value.abs() / size }
+    }
+
+    /// Whether a root is an orbit of the cam as it is.
+    fn orbit(&self, model: &Model, cam: &Cam, root: Root) -> Verdict {
+        let Root { period, bracket, residual } = root;
+        let response = self.flight.response(period);
+        let cam_velocity = self.cam_velocity(period);
+        let force = self.force();
+        // A flight that returns to its start whatever its velocity (s = p = 0, or at rest) fixes no v+: only v+ = v- = c'.
+        let free = force == 0.0 && cam_velocity == 0.0
+            || response.impulse.abs() <= tolerance::GRAZING.value * period * response.impulse_rate.abs()
+                && response.step.abs() <= tolerance::GRAZING.value * period * period;
+        let velocity_after = if free { cam_velocity } else { -force * response.step / response.impulse };
+        let velocity_before = if free { cam_velocity } else { velocity_after * response.impulse_rate + force * response.impulse };
+        let approach = cam_velocity - velocity_before;
+        if approach.abs() <= tolerance::GRAZING.value * (cam_velocity.abs() + velocity_before.abs()) {
+            return Verdict::Grazing(cam_velocity);
+        }
+        if approach < 0.0 {
+            return Verdict::Rejected("the flight would come out of the cam at the corner".into());
+        }
+        let position = self.corner.plus.value;
+        let state = self.flight.fly(State { position, velocity: velocity_after }, 0.5 * period).1;
+        let map = stroboscopic_map(&model.follower, cam.clone(), self.corner, period);
+        let back = match map.apply(state) {
+            Ok(back) => back,
+            Err(error) => return Verdict::Rejected(error.to_string()),
+        };
+        let elsewhere = back.impacts.iter().find(|impact| (impact.turned - PI).abs() > tolerance::CORNER_ANGLE.value);
+        if let Some(impact) = elsewhere {
+            let angle = impact.cam_angle.to_degrees();
+            return Verdict::Rejected(format!("the flight meets the cam at {angle:.4} deg before it is back at the corner"));
+        }
+        let size = (state.position - position).abs() + period * approach;
+        let closure = ((back.state.position - state.position).abs() + period * (back.state.velocity - state.velocity).abs()) / size;
+        if back.impacts.len() != 1 || closure > tolerance::ORBIT_CLOSURE.value {
+            let impacts = back.impacts.len();
+            return Verdict::Rejected(format!("one revolution has {impacts} impacts and ends {closure:e} of the orbit's size from its start"));
+        }
+        Verdict::Orbit(Box::new(CornerImpact {
+            corner: *self.corner,
+            period,
+            bracket,
+            residual,
+            velocity_before,
+            velocity_after,
+            cam_velocity,
+            state,
+            origin: origin(&model.follower),
+            closure,
+        }))
+    }
+}
+
+/// Where the paper's x is measured from: the equilibrium `rest - g/w0^2`, or the slack spring without stiffness, m.
+fn origin(follower: &Follower) -> f64 {
+    if follower.stiffness > 0.0 {
+        follower.rest_position - follower.mass * follower.gravity / follower.stiffness
+    } else {
+        follower.rest_position
+    }
+}

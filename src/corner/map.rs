@@ -1,0 +1,92 @@
+//! The piecewise-linear map at a corner impact, and what a route says of it.
+
+use nalgebra::{Matrix2, RowVector2, Vector2};
+
+use crate::cam::Side;
+
+/// One side of the map: `dx' = A dx + B dT`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SideMap {
+    /// A, 2x2; rows and columns are position (m) and velocity (m/s).
+    pub a: Matrix2<f64>,
+    /// B, m/s and m/s^2.
+    pub b: Vector2<f64>,
+}
+
+/// An eigenvalue, real and imaginary part.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Eigenvalue {
+    /// Real part.
+    pub re: f64,
+    /// Imaginary part; exactly 0 for a real one.
+    pub im: f64,
+}
+
+impl SideMap {
+    /// Both eigenvalues of A, the one with the larger real part first, of a pair the one with positive imaginary part.
+    ///
+    /// Not a number where A is not finite.
+    pub fn eigenvalues(&self) -> [Eigenvalue; 2] {
+        let a = faer::Mat::from_fn(2, 2, |row, column| self.a[(row, column)]);
+        let unknown = Eigenvalue { re: f64::NAN, im: f64::NAN };
+        let finite = self.a.iter().all(|entry| entry.is_finite());
+        let Some(values) = finite.then(|| a.eigenvalues().ok()).flatten() else {
+            return [unknown; 2];
+        };
+        let mut pair = [values[0], values[1]].map(|value| Eigenvalue { re: value.re, im: value.im });
+        pair.sort_by(|x, y| y.re.total_cmp(&x.re).then(y.im.total_cmp(&x.im)));
+        pair
+    }
+}
+
+/// Both sides of the map. `minus` holds for impacts before the corner, `plus` for impacts after it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CornerMap {
+    /// With c'' before the corner.
+    pub minus: SideMap,
+    /// With c'' after the corner.
+    pub plus: SideMap,
+}
+
+impl CornerMap {
+    /// Both sides from one function of the side.
+    pub fn try_from_sides<E>(mut side: impl FnMut(Side) -> Result<SideMap, E>) -> Result<Self, E> {
+        Ok(Self { minus: side(Side::Minus)?, plus: side(Side::Plus)? })
+    }
+
+    /// `C = h (A+ - A-)`, h = [1 0].
+    pub fn c(&self) -> RowVector2<f64> {
+        let jump = self.plus.a - self.minus.a;
+        RowVector2::new(jump[(0, 0)], jump[(0, 1)])
+    }
+
+    /// `D = h (B+ - B-)`, m/s.
+    pub fn d(&self) -> f64 {
+        self.plus.b[0] - self.minus.b[0]
+    }
+}
+
+/// A way to the map, and what it found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Route {
+    /// Its name in documents.
+    pub name: &'static str,
+    /// The map.
+    pub map: CornerMap,
+    /// How well each entry is known, in the map's own shape: a standard error or an error estimate.
+    pub uncertainty: Option<Uncertainty>,
+}
+
+/// How well a numerical route knows its entries.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Uncertainty {
+    /// Of a fit: a standard error for each entry, and the condition number of the scaled design (both sides' larger one).
+    StandardError {
+        /// For each entry.
+        error: CornerMap,
+        /// Largest over smallest singular value.
+        condition_number: f64,
+    },
+    /// Of an extrapolation: the last correction to each entry.
+    LastCorrection(CornerMap),
+}

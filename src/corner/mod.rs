@@ -1,0 +1,24 @@
+//! The corner impact: where it happens, and its local map {A-, A+, B-, B+, C, D} by several routes.
+//!
+//! Near a periodic orbit whose impact falls on a corner of the cam, one revolution maps a deviation of the state `dx` and of
+//! the period `dT` to `A dx + B dT`, with matrices that depend on the side of the corner the impact falls on. [`locate`]
+//! finds the orbit; each route then computes the matrices by means of its own:
+//!
+//! | module | shares with the simulator |
+//! |---|---|
+//! | [`closed_form`] | nothing: the paper's formulas, with their own propagator |
+//! | [`finite_difference`] | is built on it: differences of simulated revolutions |
+//! | [`least_squares`] | is built on it: a polynomial fitted to simulated revolutions |
+//!
+//! States here are the paper's x: position from the spring's equilibrium, and velocity.
+
+pub mod closed_form;
+pub mod finite_difference;
+pub mod least_squares;
+pub mod locate;
+pub mod map;
+pub mod one_sided;
+pub mod simulated_orbit;
+
+pub use locate::{CornerImpact, LocateError, locate};
+pub use map::{CornerMap, Route, SideMap};

@@ -1,0 +1,210 @@
+//! TOML as a flat list of fields with their lines, so that every complaint can point into the file.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// A complaint about a model file: where, what was found, what would be allowed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub struct ModelError {
+    /// The file as the user named it.
+    pub file: String,
+    /// Line in the file, from 1; of the table where a field is missing.
+    pub line: Option<usize>,
+    /// Dotted path of the field.
+    pub field: Option<String>,
+    /// The value as written.
+    pub value: Option<String>,
+    /// What is wrong and what is allowed.
+    pub allowed: String,
+}
+
+impl ModelError {
+    pub(super) fn file(file: &str, allowed: String) -> Self {
+        Self { file: file.into(), line: None, field: None, value: None, allowed }
+    }
+}
+
+impl fmt::Display for ModelError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.file)?;
+        if let Some(line) = self.line {
+            write!(f, ":{line}")?;
+        }
+        match (&self.field, &self.value) {
+            (Some(field), Some(value)) => write!(f, ": {field} = {value}: {}", self.allowed),
+            (Some(field), None) => write!(f, ": {field} {}", self.allowed),
+            _ => write!(f, ": {}", self.allowed),
+        }
+    }
+}
+
+/// A range of finite numbers.
+#[derive(Clone, Copy)]
+pub(super) struct Allowed {
+    low: f64,
+    low_is_allowed: bool,
+    high: f64,
+}
+
+impl Allowed {
+    pub(super) const POSITIVE: Self = Self { low: 0.0, low_is_allowed: false, high: f64::INFINITY };
+    pub(super) const NOT_NEGATIVE: Self = Self { low: 0.0, low_is_allowed: true, high: f64::INFINITY };
+    pub(super) const FINITE: Self = Self { low: f64::NEG_INFINITY, low_is_allowed: false, high: f64::INFINITY };
+
+    pub(super) const fn between(low: f64, high: f64) -> Self {
+        Self { low, low_is_allowed: true, high }
+    }
+
+    fn contains(self, number: f64) -> bool {
+        let above = if self.low_is_allowed { number >= self.low } else { number > self.low };
+        number.is_finite() && above && number <= self.high
+    }
+}
+
+impl fmt::Display for Allowed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "must be a finite number")?;
+        match (self.low.is_finite(), self.low_is_allowed, self.high.is_finite()) {
+            (true, _, true) => write!(f, " from {} to {}", self.low, self.high),
+            (true, true, false) => write!(f, ", {} or more", self.low),
+            (true, false, false) => write!(f, " above {}", self.low),
+            _ => Ok(()),
+        }
+    }
+}
+
+#[derive(Clone, Debug)]
+enum Value {
+    Table,
+    Text(String),
+    Number(f64),
+    Other,
+}
+
+#[derive(Clone, Debug)]
+struct Field {
+    line: usize,
+    written: String,
+    value: Value,
+}
+
+/// The fields of a model file by dotted path, and which of them have been asked for.
+#[derive(Clone, Debug)]
+pub(super) struct Fields {
+    file: String,
+    fields: BTreeMap<String, Field>,
+    known: BTreeSet<String>,
+}
+
+impl Fields {
+    pub(super) fn parse(file: &str, text: &str) -> Result<Self, ModelError> {
+        let line_of = |offset: usize| 1 + text.bytes().take(offset).filter(|byte| *byte == b'\n').count();
+        let root = DeTable::parse(text).map_err(|error| ModelError {
+            file: file.into(),
+            line: error.span().map(|span| line_of(span.start)),
+            field: None,
+            value: None,
+            allowed: format!("not valid TOML: {}", error.message()),
+        })?;
+        let mut fields = Self { file: file.into(), fields: BTreeMap::new(), known: BTreeSet::new() };
+        let place = |span: Range<usize>| (line_of(span.start), text.get(span).unwrap_or_default().to_owned());
+        fields.add_table("", root.get_ref(), &place);
+        Ok(fields)
+    }
+
+    fn add_table(&mut self, prefix: &str, table: &DeTable<'_>, place: &dyn Fn(Range<usize>) -> (usize, String)) {
+        for (key, value) in table {
+            let path = format!("{prefix}{}", key.get_ref());
+            // A table's own span is not its header's; the key's is.
+            let (line, _) = place(key.span());
+            self.add(&path, line, value, place);
+        }
+    }
+
+    fn add(&mut self, path: &str, line: usize, spanned: &Spanned<DeValue<'_>>, place: &dyn Fn(Range<usize>) -> (usize, String)) {
+        let (_, written) = place(spanned.span());
+        let value = match spanned.get_ref() {
+            DeValue::Table(table) => {
+                self.add_table(&format!("{path}."), table, place);
+                Value::Table
+            }
+            DeValue::String(text) => Value::Text(text.to_string()),
+            DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix())
+                .map_or(Value::Other, |integer| Value::Number(integer as f64)),
+            DeValue::Float(float) => float.as_str().parse().map_or(Value::Other, Value::Number),
+            _ => Value::Other,
+        };
+        self.fields.insert(path.into(), Field { line, written, value });
+    }
+
+    pub(super) fn file(&self) -> &str {
+        &self.file
+    }
+
+    pub(super) fn has(&self, path: &str) -> bool {
+        self.fields.contains_key(path)
+    }
+
+    /// A finite number within `allowed`.
+    pub(super) fn number(&mut self, path: &str, allowed: Allowed) -> Result<f64, ModelError> {
+        match self.take(path)?.value {
+            Value::Number(number) if allowed.contains(number) => Ok(number),
+            _ => Err(self.reject(path, allowed.to_string())),
+        }
+    }
+
+    pub(super) fn text(&mut self, path: &str) -> Result<String, ModelError> {
+        match self.take(path)?.value {
+            Value::Text(text) => Ok(text),
+            _ => Err(self.reject(path, "must be text in quotes")),
+        }
+    }
+
+    pub(super) fn text_or(&mut self, path: &str, default: &str) -> Result<String, ModelError> {
+        self.known.insert(path.into());
+        if self.has(path) { self.text(path) } else { Ok(default.into()) }
+    }
+
+    fn take(&mut self, path: &str) -> Result<Field, ModelError> {
+        self.known.insert(path.into());
+        self.fields.get(path).cloned().ok_or_else(|| self.reject(path, "is missing"))
+    }
+
+    /// The complaint about a field, present or not.
+    pub(super) fn reject(&self, path: &str, allowed: impl Into<String>) -> ModelError {
+        let field = self.fields.get(path);
+        let table = path.rsplit_once('.').and_then(|(table, _)| self.fields.get(table));
+        ModelError {
+            file: self.file.clone(),
+            line: field.or(table).map(|field| field.line),
+            field: Some(path.into()),
+            value: field.map(|field| field.written.clone()),
+            allowed: allowed.into(),
+        }
+    }
+
+    /// Complains about the first field in the file that nobody asked for.
+    pub(super) fn finish(&self) -> Result<(), ModelError> {
+        let table_of = |path: &str| path.rsplit_once('.').map_or("", |(table, _)| table).to_owned();
+        let tables: BTreeSet<String> = self.known.iter().map(|path| table_of(path)).collect();
+        let unknown = self.fields.iter().filter(|(path, field)| {
+            let expected_table = matches!(field.value, Value::Table) && tables.contains(*path);
+            !expected_table && !self.known.contains(*path)
+        });
+        let Some((path, field)) = unknown.min_by_key(|(_, field)| field.line) else {
+            return Ok(());
+        };
+        let table = table_of(path);
+        let siblings = self.known.iter().filter(|known| table_of(known) == table);
+        let tables = tables.iter().filter(|known| !known.is_empty() && table_of(known) == table);
+        let allowed: Vec<&str> = siblings.chain(tables).map(|known| known.rsplit('.').next().unwrap_or(known)).collect();
+        let place = if table.is_empty() { "at the top of the file".to_owned() } else { format!("in [{table}]") };
+        let words = format!("unknown field; allowed {place}: {}", allowed.join(", "));
+        let value = (!matches!(field.value, Value::Table)).then(|| field.written.clone());
+        Err(ModelError { file: self.file.clone(), line: Some(field.line), field: Some(path.clone()), value, allowed: words })
+    }
+}

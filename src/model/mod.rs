@@ -1,0 +1,163 @@
+//! What the user wrote, checked: follower, cam profile, and where to look.
+//!
+//! A [`Model`] holds numbers that have passed the checks a single field allows. What needs geometry
+//! (circles that cannot touch) is found in [`crate::cam`], which reports it through
+//! [`Model::reject`], so that every complaint about a file names file, line, field and value.
+
+mod fields;
+
+use std::path::Path;
+
+pub use fields::ModelError;
+use fields::{Allowed, Fields};
+
+/// The model whose numbers the paper prints, built in so that the binary needs no other file.
+pub const OSORIO_2008: &str = include_str!("../../models/osorio-2008.toml");
+
+/// A cam-follower system as described by a model file.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// Label for headings; never used to decide anything.
+    pub name: String,
+    /// Where each number comes from, in the author's words.
+    pub source: String,
+    /// The moving body and its spring.
+    pub follower: Follower,
+    /// The profile of the cam, as written.
+    pub cam: CamProfile,
+    /// Where to look for a corner impact.
+    pub study: Option<Study>,
+    fields: Fields,
+}
+
+/// `m q'' + b q' + k (q - rest_position) = -m g` while `q > c(theta)`, and Newton's restitution.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Follower {
+    /// m, kg, positive.
+    pub mass: f64,
+    /// b, N s/m, zero or more.
+    pub damping: f64,
+    /// k, N/m, zero or more; zero is a ballistic follower.
+    pub stiffness: f64,
+    /// g, m/s^2.
+    pub gravity: f64,
+    /// Where the spring is slack, m, in the cam's coordinates.
+    pub rest_position: f64,
+    /// r, 0 (plastic) to 1 (elastic).
+    pub restitution: f64,
+}
+
+/// The lift law of a `[cam]` table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum CamProfile {
+    /// Appendix A of the paper: base, flank and nose circles.
+    Arcs(ArcsProfile),
+}
+
+/// Base, flank and nose circles, mirrored about theta = pi. Centres and top radius follow from tangency.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ArcsProfile {
+    /// rho0, m.
+    pub base_radius: f64,
+    /// rho1, m.
+    pub flank_radius: f64,
+    /// rho2, m.
+    pub nose_radius: f64,
+    /// R = 90 - theta1, degrees from the middle of the base circle.
+    pub flank_start_deg: f64,
+    /// Q = 90 - theta3, degrees from the middle of the base circle.
+    pub nose_end_deg: f64,
+}
+
+/// The range of speeds in which the corner impact is looked for, rpm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Study {
+    /// Lowest speed, positive.
+    pub rpm_min: f64,
+    /// Highest speed, above `rpm_min`.
+    pub rpm_max: f64,
+}
+
+impl Model {
+    /// Reads and checks a model file.
+    pub fn read(path: &Path) -> Result<Self, ModelError> {
+        let file = path.display().to_string();
+        let text = std::fs::read_to_string(path)
+            .map_err(|error| ModelError::file(&file, format!("cannot be read: {error}")))?;
+        Self::parse(&file, &text)
+    }
+
+    /// Checks the text of a model file; `file` is the name that complaints carry.
+    pub fn parse(file: &str, text: &str) -> Result<Self, ModelError> {
+        let mut fields = Fields::parse(file, text)?;
+        let name = fields.text_or("name", "unnamed")?;
+        let source = fields.text_or("source", "")?;
+        let follower = Follower {
+            mass: fields.number("follower.mass", Allowed::POSITIVE)?,
+            damping: fields.number("follower.damping", Allowed::NOT_NEGATIVE)?,
+            stiffness: fields.number("follower.stiffness", Allowed::NOT_NEGATIVE)?,
+            gravity: fields.number("follower.gravity", Allowed::FINITE)?,
+            rest_position: fields.number("follower.rest_position", Allowed::FINITE)?,
+            restitution: fields.number("follower.restitution", Allowed::between(0.0, 1.0))?,
+        };
+        let cam = CAM_LAWS.read(&mut fields)?;
+        let study = if fields.has("study") {
+            let rpm_min = fields.number("study.rpm_min", Allowed::POSITIVE)?;
+            let rpm_max = fields.number("study.rpm_max", Allowed::POSITIVE)?;
+            if rpm_max <= rpm_min {
+                return Err(fields.reject("study.rpm_max", format!("must be above study.rpm_min = {rpm_min}")));
+            }
+            Some(Study { rpm_min, rpm_max })
+        } else {
+            None
+        };
+        fields.finish()?;
+        Ok(Self { name, source, follower, cam, study, fields })
+    }
+
+    /// The `[study]` range, or the complaint that it is missing.
+    pub fn study(&self) -> Result<Study, ModelError> {
+        self.study.ok_or_else(|| self.reject("study.rpm_min", "is needed here: [study] says where to look for the corner impact"))
+    }
+
+    /// A complaint about `field` found by a later stage; `allowed` says what would be accepted.
+    pub fn reject(&self, field: &str, allowed: impl Into<String>) -> ModelError {
+        self.fields.reject(field, allowed)
+    }
+
+    /// Name of the file that the model came from.
+    pub fn file(&self) -> &str {
+        self.fields.file()
+    }
+}
+
+/// Reads the fields of one lift law.
+type ReadProfile = fn(&mut Fields) -> Result<CamProfile, ModelError>;
+
+/// Every lift law, by the name that `law` gives it.
+struct CamLaws(&'static [(&'static str, ReadProfile)]);
+
+static CAM_LAWS: CamLaws = CamLaws(&[("arcs", read_arcs)]);
+
+impl CamLaws {
+    fn read(&self, fields: &mut Fields) -> Result<CamProfile, ModelError> {
+        let law = fields.text("cam.law")?;
+        match self.0.iter().find(|(name, _)| *name == law) {
+            Some((_, read)) => read(fields),
+            None => {
+                let known: Vec<_> = self.0.iter().map(|(name, _)| format!("\"{name}\"")).collect();
+                Err(fields.reject("cam.law", format!("must be one of: {}", known.join(", "))))
+            }
+        }
+    }
+}
+
+fn read_arcs(fields: &mut Fields) -> Result<CamProfile, ModelError> {
+    Ok(CamProfile::Arcs(ArcsProfile {
+        base_radius: fields.number("cam.base_radius", Allowed::POSITIVE)?,
+        flank_radius: fields.number("cam.flank_radius", Allowed::POSITIVE)?,
+        nose_radius: fields.number("cam.nose_radius", Allowed::POSITIVE)?,
+        flank_start_deg: fields.number("cam.flank_start_deg", Allowed::between(0.0, 180.0))?,
+        nose_end_deg: fields.number("cam.nose_end_deg", Allowed::between(0.0, 180.0))?,
+    }))
+}

@@ -1,0 +1,195 @@
+//! The only event loop: fly to the first contact, resolve it, go on.
+//!
+//! [`Machine::turn`] is `next_contact`, `fly`, `rebound`, repeated until the cam has turned far enough. Time runs from the
+//! last event, so that a short hop keeps its digits; the cam angle is kept in `[0, 2 pi)`.
+
+mod contact;
+
+use crate::cam::Cam;
+use crate::flight::{Flight, State};
+use crate::impact::rebound;
+use crate::tolerance;
+use contact::{Gap, Outcome, first_contact};
+
+/// A cam, a follower over it, and the speed at which the cam turns.
+#[derive(Clone, Debug)]
+pub struct Machine {
+    /// The lift profile.
+    pub cam: Cam,
+    /// The follower away from the cam.
+    pub flight: Flight,
+    /// r, 0 to 1.
+    pub restitution: f64,
+    /// omega, rad/s, positive.
+    pub angular_velocity: f64,
+}
+
+/// An impact of the follower on the cam.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Impact {
+    /// Cam angle turned since the start of the run, rad.
+    pub turned: f64,
+    /// Cam angle, rad, in `[0, 2 pi)`.
+    pub cam_angle: f64,
+    /// q = c, m.
+    pub position: f64,
+    /// v-, m/s.
+    pub velocity_before: f64,
+    /// v+, m/s.
+    pub velocity_after: f64,
+    /// c', m/s.
+    pub cam_velocity: f64,
+}
+
+/// Why a run could not go on.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum SimulateError {
+    /// The follower started inside the cam.
+    #[error("simulate: the follower starts {depth:e} m below the cam at cam angle {cam_angle} rad")]
+    BelowCam {
+        /// How far, m.
+        depth: f64,
+        /// Where, rad.
+        cam_angle: f64,
+    },
+    /// The follower rests on the cam: contact with no relative velocity and none to come.
+    #[error("simulate: the follower stays on the cam from cam angle {cam_angle} rad on; sticking is not simulated")]
+    Sticking {
+        /// Where, rad.
+        cam_angle: f64,
+    },
+    /// More impacts than a run may have.
+    #[error("simulate: {impacts} impacts and still at cam angle {cam_angle} rad: the impacts accumulate")]
+    Accumulating {
+        /// How many.
+        impacts: usize,
+        /// Where, rad.
+        cam_angle: f64,
+    },
+    /// A number that is not finite entered the run.
+    #[error("simulate: a state that is not finite near cam angle {cam_angle} rad")]
+    NotFinite {
+        /// Where, rad.
+        cam_angle: f64,
+    },
+}
+
+/// A stretch of flight within one segment of the cam: where it starts, seen from the flight's own start.
+struct Piece {
+    segment: usize,
+    angle: f64,
+    time: f64,
+    rise: f64,
+}
+
+/// A flight from its start to the next contact or to the end of the run.
+struct Landing {
+    contact: bool,
+    turned: f64,
+    segment: usize,
+    cam_angle: f64,
+    state: State,
+}
+
+impl Machine {
+    /// Impacts after which a run is given up: a bouncing follower makes tens in a revolution, an accumulating one no end.
+    const MOST_IMPACTS: usize = 100_000;
+
+    /// Turns the cam by `turn`, rad, from `cam_angle`, rad, in `[0, 2 pi)`, and returns the state there.
+    ///
+    /// `observe` sees every impact; one in the last instant is left to the run that goes on from there.
+    pub fn turn(&self, cam_angle: f64, start: State, turn: f64, mut observe: impl FnMut(&Impact)) -> Result<State, SimulateError> {
+        let segment = self.cam.segment_at(cam_angle);
+        let lift = self.cam.lift(cam_angle).value;
+        let mut gap = start.position - lift;
+        if gap.abs() <= tolerance::GAP_ROUNDING.value * (start.position.abs() + lift.abs()) {
+            gap = 0.0;
+        }
+        let mut now = Landing { contact: false, turned: 0.0, segment, cam_angle, state: start };
+        for _ in 0..Self::MOST_IMPACTS {
+            let landing = self.next_contact(&now, gap, turn - now.turned)?;
+            now = Landing { turned: now.turned + landing.turned, ..landing };
+            if !now.contact {
+                return Ok(now.state);
+            }
+            let lift = self.cam.segments()[now.segment].law.lift(now.cam_angle);
+            let cam_velocity = lift.slope * self.angular_velocity;
+            let velocity_before = now.state.velocity;
+            let velocity_after = rebound(self.restitution, velocity_before, cam_velocity);
+            now.state = State { position: lift.value, velocity: velocity_after };
+            gap = 0.0;
+            observe(&Impact {
+                turned: now.turned,
+                cam_angle: now.cam_angle,
+                position: lift.value,
+                velocity_before,
+                velocity_after,
+                cam_velocity,
+            });
+        }
+        Err(SimulateError::Accumulating { impacts: Self::MOST_IMPACTS, cam_angle: now.cam_angle })
+    }
+
+    /// The flight from `from`, `gap` above the cam, to its first contact within `turn`, rad, or to the end of that turn.
+    fn next_contact(&self, from: &Landing, gap: f64, turn: f64) -> Result<Landing, SimulateError> {
+        let segments = self.cam.segments();
+        let mut piece = Piece { segment: from.segment, angle: from.cam_angle, time: 0.0, rise: 0.0 };
+        let mut turned = 0.0;
+        loop {
+            let segment = &segments[piece.segment];
+            let left = turn - turned;
+            let within = segment.end - piece.angle;
+            let last = left < within;
+            let span = if last { left.max(0.0) } else { within };
+            let gap_at = |time: f64| self.gap(from.state, gap, &piece, time);
+            let land = |contact: bool, time: f64| {
+                let step = if contact { time * self.angular_velocity } else { span };
+                Landing {
+                    contact,
+                    turned: turned + step,
+                    segment: piece.segment,
+                    cam_angle: piece.angle + step,
+                    state: self.flight.fly(from.state, piece.time + time).1,
+                }
+            };
+            match first_contact(gap_at, span / self.angular_velocity) {
+                Outcome::None if last => return Ok(land(false, span / self.angular_velocity)),
+                Outcome::None => {
+                    let next = (piece.segment + 1) % segments.len();
+                    piece = Piece {
+                        segment: next,
+                        angle: segments[next].start,
+                        time: piece.time + span / self.angular_velocity,
+                        // A continued law leaves a step in the lift at its far end; it counts as rise.
+                        rise: piece.rise
+                            + segment.law.rise(piece.angle, span)
+                            + (segments[next].law.lift(segments[next].start).value - segment.law.lift(segment.end).value),
+                    };
+                    turned += span;
+                }
+                Outcome::Contact(time) => return Ok(land(true, time)),
+                Outcome::Resting => return Err(SimulateError::Sticking { cam_angle: piece.angle }),
+                Outcome::Below { depth, time } => {
+                    return Err(SimulateError::BelowCam { depth, cam_angle: piece.angle + time * self.angular_velocity });
+                }
+                Outcome::NotFinite => return Err(SimulateError::NotFinite { cam_angle: piece.angle }),
+            }
+        }
+    }
+
+    /// The gap `time` after the start of `piece`, for a flight that left `start` with `gap`.
+    fn gap(&self, start: State, gap: f64, piece: &Piece, time: f64) -> Gap {
+        let omega = self.angular_velocity;
+        let segment = &self.cam.segments()[piece.segment];
+        let (displacement, state) = self.flight.fly(start, piece.time + time);
+        let rise = piece.rise + segment.law.rise(piece.angle, omega * time);
+        let lift = segment.law.lift(piece.angle + omega * time);
+        Gap {
+            value: gap + displacement - rise,
+            rounding: tolerance::GAP_ROUNDING.value * (gap.abs() + displacement.abs() + rise.abs()),
+            rate: state.velocity - omega * lift.slope,
+            curvature: self.flight.acceleration(state) - omega * omega * lift.curvature,
+            third_bound: self.flight.jerk_bound(state) + omega.powi(3) * segment.third_bound,
+        }
+    }
+}

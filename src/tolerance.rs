@@ -1,0 +1,106 @@
+//! The one table of tolerances: every number that decides "equal", "zero" or "enough" stands here, with its reason.
+//!
+//! Two kinds: what the numerics may call resolved, and what two routes may differ by and still agree.
+
+/// One threshold and why it has this value.
+#[derive(Clone, Copy, Debug)]
+pub struct Tolerance {
+    /// What it decides.
+    pub name: &'static str,
+    /// The threshold; relative unless the reason says otherwise.
+    pub value: f64,
+    /// Why not smaller, why not larger.
+    pub reason: &'static str,
+}
+
+macro_rules! table {
+    ($($(#[$doc:meta])* $constant:ident = $value:expr, $reason:expr;)*) => {
+        $($(#[$doc])* pub const $constant: Tolerance = Tolerance { name: stringify!($constant), value: $value, reason: $reason };)*
+        /// Every row, in the order of the file.
+        pub const TABLE: &[Tolerance] = &[$($constant),*];
+    };
+}
+
+table! {
+    /// When one-sided derivatives of the lift differ enough to be a corner.
+    CAM_JUMP = 1e-9, "of the larger of the cam's size and its derivatives: a thousand times what rounding leaves between \
+        two arcs that meet smoothly, and far below any jump that a machined cam would have by design";
+    /// Rounding of the gap between follower and cam.
+    GAP_ROUNDING = 4.0 * f64::EPSILON, "of the distances that the gap is the difference of: a handful of roundings, so that \
+        a dip deeper than this is an impact";
+    /// Width at which a bracket around a root is closed.
+    ROOT_WIDTH = 4.0 * f64::EPSILON, "of the root: T* is asked for to 1e-14, and a bracket cannot close below two ulps";
+    /// When relative velocity at the impact counts as none.
+    GRAZING = 1e-9, "of the velocities it is the difference of: 1/(v - c') would amplify the rounding of a double to 1e-7, \
+        the last size at which five decimals mean anything";
+    /// How far the located orbit may miss its own start after one simulated revolution.
+    ORBIT_CLOSURE = 1e-9, "of the orbit's size: rounding grows with the multipliers, about 1e-13 for the paper's orbit; a \
+        wrong orbit misses by its amplitude";
+    /// How far from the corner the impact of a located orbit may be simulated, rad.
+    CORNER_ANGLE = 1e-9, "absolute, rad: twenty thousand times the rounding of an angle and far below any segment of a cam";
+    /// When an eigenvalue counts as on the boundary that Feigin's counts divide at.
+    UNIT_EIGENVALUE = 1e-9, "of one: counting an eigenvalue that rounding decides would be guessing; the paper's nearest is \
+        5e-3 away";
+    /// When a quantity that a change of coordinates divides by counts as zero.
+    DEGENERATE = 1e-10, "of the terms it is made of: the quotient would keep fewer than six digits";
+    /// When the shift of the border agrees with the jump of the maps.
+    BORDER = 1e-9, "of the larger vector: C, D and the free flight's border are proportional in exact arithmetic";
+}
+
+/// How closely two routes must agree on a quantity, and why.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bound {
+    /// Largest absolute difference of any entry.
+    pub value: f64,
+    /// Why.
+    pub reason: &'static str,
+}
+
+/// Which comparison a bound is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Comparison {
+    /// Two routes of this program.
+    Routes,
+    /// The located orbit against the same orbit found by simulation alone: period in s and state.
+    Orbit,
+    /// A number that the paper prints against the closed form; `decimals` are those printed.
+    Printed {
+        /// Digits after the decimal point in print.
+        decimals: u32,
+    },
+    /// An estimate that the paper prints, which it claims to five decimals.
+    PrintedEstimate,
+}
+
+/// Five decimals, half a unit in the sixth.
+const FIVE_DECIMALS: f64 = 5e-6;
+
+/// The bound for a quantity whose largest entry is `scale`.
+pub fn agreement_bound(comparison: Comparison, scale: f64) -> Bound {
+    match comparison {
+        Comparison::Routes => {
+            let (relative, ceiling) = (1e-8 * scale, FIVE_DECIMALS.max(5e-10 * scale));
+            if relative < ceiling {
+                Bound { value: relative, reason: "1e-8 of the largest entry: five decimals would be no test of entries this small" }
+            } else if ceiling > FIVE_DECIMALS {
+                Bound { value: ceiling, reason: "5e-10 of the largest entry: with entries this large five decimals are beyond a double's estimate" }
+            } else {
+                Bound { value: FIVE_DECIMALS, reason: "five decimals" }
+            }
+        }
+        Comparison::Orbit => Bound {
+            value: 1e-11 * scale,
+            reason: "1e-11 of the largest entry: Newton on the simulated map ends at its rounding, amplified by 1/(1 - multiplier)",
+        },
+        Comparison::Printed { decimals } => {
+            let half_unit = 0.5 * 10f64.powi(-(decimals.min(300) as i32));
+            let round_off = 2e-13 * scale.max(1.0);
+            if half_unit >= round_off {
+                Bound { value: half_unit, reason: "half a unit in the last printed place" }
+            } else {
+                Bound { value: round_off, reason: "2e-13: the last two of fourteen printed digits are round-off of the authors' computation" }
+            }
+        }
+        Comparison::PrintedEstimate => Bound { value: FIVE_DECIMALS, reason: "five decimals, as the paper claims for its estimates" },
+    }
+}
