@@ -1,9 +1,67 @@
-//! corner-impact
+//! corner-impact re-proves, on every run, what a paper derives by hand: the local map of a cam-follower system whose
+//! follower hits the cam at a corner, where the cam's acceleration jumps.
+//!
+//! ```text
+//!  model file (TOML)
+//!    │  model            what the user wrote, checked
+//!    ▼
+//!  cam · flight · impact the physical laws
+//!    ▼
+//!  simulate              the only event loop: fly, contact, impact
+//!    ▼
+//!  section               the stroboscopic map: one revolution of `simulate`
+//!    ▼
+//!  corner                where the corner impact is (x*, T*), and its map {A∓, B∓, C, D} by several routes
+//!    ▼
+//!  agreement             routes pairwise against the table of tolerances
+//!    ▼
+//!  border_collision      normal form, Feigin's classification
+//!    ▼
+//!  claims                what the paper prints, and what was found about it
+//!    ▼
+//!  verify                all of the above on one model
+//!    ▼
+//!  report                one document value; text and JSON
+//!    ▼
+//!  cli                   parse, one library call, exit code
+//! ```
+//!
+//! Data moves down; no stage uses one below it, and a test holds the code to that. `tolerance` stands above all: every
+//! threshold is a row of its one table.
+//!
+//! ```
+//! use corner_impact::{model::{Model, OSORIO_2008}, verify::verify};
+//!
+//! let model = Model::parse("osorio-2008.toml", OSORIO_2008)?;
+//! let findings = verify(&model)?;
+//! assert!(findings.agrees);
+//! assert!((findings.at.speed_rpm() - 673.234445).abs() < 1e-6);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+#![doc = include_str!("symbols.md")]
+
 pub mod tolerance;
+
 pub mod model;
+
 pub mod cam;
 pub mod flight;
 pub mod impact;
+
 pub mod simulate;
+
 pub mod section;
+
 pub mod corner;
+
+pub mod agreement;
+
+pub mod border_collision;
+
+pub mod claims;
+
+pub mod verify;
+
+pub mod report;
+
+pub mod cli;

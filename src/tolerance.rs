@@ -43,8 +43,6 @@ table! {
         5e-3 away";
     /// When a quantity that a change of coordinates divides by counts as zero.
     DEGENERATE = 1e-10, "of the terms it is made of: the quotient would keep fewer than six digits";
-    /// When the shift of the border agrees with the jump of the maps.
-    BORDER = 1e-9, "of the larger vector: C, D and the free flight's border are proportional in exact arithmetic";
 }
 
 /// How closely two routes must agree on a quantity, and why.

@@ -13,6 +13,14 @@ use crate::cam::{Lift, Side};
 use crate::model::{Follower, Model};
 use crate::tolerance;
 
+/// eq:fixedp has no solution, or none that the secants settle on.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("eq:fixedp and the contact condition settle on no period near {period} s")]
+pub struct NoFixedPoint {
+    /// Last period tried, s.
+    pub period: f64,
+}
+
 /// The map by eq:Px and eq:PT.
 pub fn route(model: &Model, at: &CornerImpact) -> Route {
     let side = |side| {
@@ -67,12 +75,9 @@ pub fn border(model: &Model, at: &CornerImpact) -> (RowVector2<f64>, f64) {
 /// eq:fixedp, repaired: `x* = -[I - phi_T - F R F]^{-1} F R y_0`, `R = [[0, 0], [0, -(1+r)]]`, with the sign before `F R F`
 /// that the print has as +; `T*` from `h (F x* - y_0) = 0` by secants from a period close by.
 ///
-/// `None` for stiffness 0, where there is no equilibrium to measure from, and where the secants do not settle.
-pub fn orbit(model: &Model, at: &CornerImpact, nearby_period: f64) -> Option<(Vector2<f64>, f64)> {
+/// Needs an equilibrium to measure from, so a stiffness above 0.
+pub fn orbit(model: &Model, at: &CornerImpact) -> Result<(Vector2<f64>, f64), NoFixedPoint> {
     let follower = &model.follower;
-    if follower.stiffness <= 0.0 {
-        return None;
-    }
     let zeta = follower.damping / (2.0 * follower.mass);
     let omega0_squared = follower.stiffness / follower.mass;
     let equilibrium = follower.rest_position - follower.gravity / omega0_squared;
@@ -84,22 +89,24 @@ pub fn orbit(model: &Model, at: &CornerImpact, nearby_period: f64) -> Option<(Ve
         let x = -(whole.try_inverse()? * (f * (restitution * y0)));
         Some((x, (f * x - y0)[0]))
     };
-    let mut before = (nearby_period, fixed_point(nearby_period)?.1);
-    let mut period = nearby_period * (1.0 + 1e-6);
-    // Each secant step gains half as many digits again; from 1e-6 rounding is reached after a handful.
+    let fixed_point = |period: f64| fixed_point(period).ok_or(NoFixedPoint { period });
+    // From a period that is off by a millionth and more, so that the root is found here and not taken over.
+    let mut period = at.period * (1.0 + 1e-6);
+    let mut before = (at.period * (1.0 - 2e-6), fixed_point(at.period * (1.0 - 2e-6))?.1);
+    // Each secant step gains half as many digits again; rounding is reached after a handful.
     for _ in 0..20 {
         let (x, miss) = fixed_point(period)?;
         if miss == before.1 {
-            return (miss == 0.0).then_some((x, period));
+            return if miss == 0.0 { Ok((x, period)) } else { Err(NoFixedPoint { period }) };
         }
         let next = period - miss * (period - before.0) / (miss - before.1);
         if (next - period).abs() <= tolerance::ROOT_WIDTH.value * period {
-            return Some((fixed_point(next)?.0, next));
+            return Ok((fixed_point(next)?.0, next));
         }
         before = (period, miss);
         period = next;
     }
-    None
+    Err(NoFixedPoint { period })
 }
 
 /// eq:gff: `phi_t = e^{-zeta t} (I cos(ws t) + A sin(ws t))`, `ws = sqrt(w0^2 - zeta^2)`, with its limits for critical and

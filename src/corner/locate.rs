@@ -144,8 +144,8 @@ impl fmt::Display for NotFound {
     }
 }
 
-/// The corner impacts in `[study]`, slowest first; at least one.
-pub fn locate(model: &Model, cam: &Cam) -> Result<Vec<CornerImpact>, LocateError> {
+/// The slowest corner impact in `[study]`, and the others by rising speed.
+pub fn locate(model: &Model, cam: &Cam) -> Result<(CornerImpact, Vec<CornerImpact>), LocateError> {
     let study = model.study()?;
     let flight = Flight::new(&model.follower);
     let corners: Vec<Corner> = cam.corners().into_iter().filter(|corner| corner.jump_order == 2).collect();
@@ -168,8 +168,9 @@ pub fn locate(model: &Model, cam: &Cam) -> Result<Vec<CornerImpact>, LocateError
         }
     }
     found.sort_by(|a, b| b.period.total_cmp(&a.period));
-    if !found.is_empty() {
-        return Ok(found);
+    let mut found = found.into_iter();
+    if let Some(first) = found.next() {
+        return Ok((first, found.collect()));
     }
     Err(grazing.unwrap_or_else(|| {
         let words = format!("no corner impact of a one-impact, one-revolution orbit up to study.rpm_max = {}", study.rpm_max);

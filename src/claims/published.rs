@@ -1,0 +1,213 @@
+//! The numbers that the paper prints, each with what was found about it.
+//!
+//! The digits stand in `golden/published`, as printed; the findings stand here. A number found wrong must stay wrong: if it
+//! ever agrees, that is as much of a surprise as a right one that does not, and both fail the verification.
+
+use serde::Deserialize;
+
+use crate::agreement::{Agreement, compare, quantities};
+use crate::border_collision::NormalForm;
+use crate::corner::{CornerImpact, CornerMap};
+use crate::model::{Model, ModelError, OSORIO_2008};
+use crate::tolerance::Comparison;
+
+/// The printed digits.
+const PRINTED: &str = include_str!("../../golden/published/osorio-2008.json");
+
+/// What was found about a printed number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// It is right.
+    Holds,
+    /// The digits are a slip; nothing was built on them.
+    Misprint,
+    /// What is said of it, or the formula it came from, is wrong.
+    Refuted,
+}
+
+impl Verdict {
+    /// Its name in documents.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Holds => "holds",
+            Self::Misprint => "misprint",
+            Self::Refuted => "refuted",
+        }
+    }
+}
+
+/// A printed number beside the computed one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PrintedNumber {
+    /// Where it stands in the paper.
+    pub place: String,
+    /// The digits as printed.
+    pub printed: Vec<String>,
+    /// The same entries, computed.
+    pub computed: Vec<f64>,
+    /// The comparison.
+    pub agreement: Agreement,
+    /// What was found before.
+    pub verdict: Verdict,
+    /// What is wrong, in words; empty where nothing is.
+    pub note: &'static str,
+    /// Whether the comparison came out as the finding says.
+    pub as_found: bool,
+}
+
+/// What was found about one quantity, and what it is compared as.
+struct Finding {
+    quantity: &'static str,
+    verdict: Verdict,
+    note: &'static str,
+}
+
+const fn holds(quantity: &'static str) -> Finding {
+    Finding { quantity, verdict: Verdict::Holds, note: "" }
+}
+
+static FINDINGS: [Finding; 20] = [
+    holds("T_star"),
+    holds("speed_rpm"),
+    holds("x_star"),
+    holds("A_minus"),
+    holds("B_minus"),
+    holds("A_plus"),
+    holds("B_plus"),
+    holds("C"),
+    holds("D"),
+    holds("A_hat_minus"),
+    Finding {
+        quantity: "B_hat_minus",
+        verdict: Verdict::Refuted,
+        note: "said to share at least 5 decimals with the analytic B-; it shares 3",
+    },
+    holds("A_hat_plus"),
+    Finding {
+        quantity: "B_hat_plus",
+        verdict: Verdict::Refuted,
+        note: "said to share at least 5 decimals with the analytic B+; it shares 3",
+    },
+    Finding {
+        quantity: "B_tilde",
+        verdict: Verdict::Refuted,
+        note: "the shift of coordinates was applied to the point but not to its image: B - (A - I) e1 D/c1 is right, B - A e1 D/c1 is printed",
+    },
+    holds("A_bar_minus"),
+    holds("A_bar_plus"),
+    Finding { quantity: "B_bar", verdict: Verdict::Refuted, note: "follows from the wrong B tilde; the right second entry is 0 because the paper's follower is undamped" },
+    holds("C_bar"),
+    Finding { quantity: "eigenvalues_minus", verdict: Verdict::Misprint, note: "1.00515 rounds to 1.0051, printed 1.0052" },
+    Finding { quantity: "eigenvalues_plus", verdict: Verdict::Misprint, note: "0.41207 rounds to 0.4121, printed 0.4120" },
+];
+
+#[derive(Deserialize)]
+struct Paper {
+    numbers: Vec<Number>,
+}
+
+#[derive(Deserialize)]
+struct Number {
+    quantity: String,
+    #[serde(rename = "where")]
+    place: String,
+    printed: Vec<String>,
+}
+
+/// Why the printed numbers were not compared.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PublishedError {
+    /// The model is another one.
+    #[error("the paper prints numbers for another follower or cam")]
+    OtherModel,
+    /// The built-in model does not read.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// The built-in digits do not read.
+    #[error("golden/published: {0}")]
+    Digits(String),
+    /// A printed quantity without a finding or a finding without a printed quantity.
+    #[error("golden/published: no finding or no computation for {0}")]
+    Unmatched(String),
+}
+
+/// Every printed number against the computed one; only for a model with the paper's follower and cam.
+pub fn compare_published(
+    model: &Model,
+    at: &CornerImpact,
+    map: &CornerMap,
+    normal_form: Option<&NormalForm>,
+) -> Result<Vec<PrintedNumber>, PublishedError> {
+    let paper = Model::parse("the built-in model", OSORIO_2008)?;
+    if model.follower != paper.follower || model.cam != paper.cam {
+        return Err(PublishedError::OtherModel);
+    }
+    let numbers: Paper = serde_json::from_str(PRINTED).map_err(|error| PublishedError::Digits(error.to_string()))?;
+    if let Some(finding) = FINDINGS.iter().find(|finding| numbers.numbers.iter().all(|number| number.quantity != finding.quantity)) {
+        return Err(PublishedError::Unmatched(finding.quantity.into()));
+    }
+    let computed = computed(at, map, normal_form);
+    numbers.numbers.into_iter().map(|number| hold_against(number, &computed)).collect()
+}
+
+fn hold_against(number: Number, computed: &[(&'static str, Vec<f64>)]) -> Result<PrintedNumber, PublishedError> {
+    let Number { quantity, place, printed } = number;
+    // An estimate is printed for a quantity of the map, under a hat.
+    let source = quantity.replace("_hat", "");
+    let finding = FINDINGS.iter().find(|finding| finding.quantity == quantity);
+    let value = computed.iter().find(|(name, _)| *name == source);
+    let (Some(finding), Some((_, value))) = (finding, value) else {
+        return Err(PublishedError::Unmatched(quantity));
+    };
+    let digits = printed.iter().map(|text| read_digits(text)).collect::<Result<Vec<_>, _>>()?;
+    let comparison = if source == quantity {
+        // Entries without a decimal point stand beside ones that have it, or are meant as exact.
+        let decimals = digits.iter().map(|(_, decimals)| *decimals).max().filter(|most| *most > 0);
+        Comparison::Printed { decimals: decimals.unwrap_or(u32::MAX) }
+    } else {
+        Comparison::PrintedEstimate
+    };
+    let entries: Vec<f64> = digits.iter().map(|(entry, _)| *entry).collect();
+    let agreement = compare(["closed_form", "published"], &quantity, [value, &entries], comparison);
+    Ok(PrintedNumber {
+        as_found: agreement.agrees == (finding.verdict == Verdict::Holds),
+        place,
+        printed,
+        computed: value.clone(),
+        agreement,
+        verdict: finding.verdict,
+        note: finding.note,
+    })
+}
+
+/// A printed number and how many decimals it has; one entry is printed with a decimal comma.
+fn read_digits(text: &str) -> Result<(f64, u32), PublishedError> {
+    let text = text.replace(',', ".");
+    let value = text.parse().map_err(|_| PublishedError::Digits(format!("not a number: {text}")))?;
+    let decimals = text.split_once('.').map_or(0, |(_, decimals)| decimals.len() as u32);
+    Ok((value, decimals))
+}
+
+/// Every quantity that the paper prints, as computed here.
+fn computed(at: &CornerImpact, map: &CornerMap, normal_form: Option<&NormalForm>) -> Vec<(&'static str, Vec<f64>)> {
+    let mut all = quantities(map);
+    for (name, entries) in &mut all {
+        match *name {
+            // The paper prints the real pair, and one of the complex pair as real and imaginary part.
+            "eigenvalues_minus" => *entries = vec![entries[0], entries[2]],
+            "eigenvalues_plus" => *entries = vec![entries[0], entries[1]],
+            _ => {}
+        }
+    }
+    all.push(("T_star", vec![at.period]));
+    all.push(("speed_rpm", vec![at.speed_rpm()]));
+    all.push(("x_star", at.x_star().as_slice().to_vec()));
+    if let Some(form) = normal_form {
+        all.push(("B_tilde", form.b_tilde.as_slice().to_vec()));
+        all.push(("A_bar_minus", form.a_bar_minus.transpose().as_slice().to_vec()));
+        all.push(("A_bar_plus", form.a_bar_plus.transpose().as_slice().to_vec()));
+        all.push(("B_bar", form.b_bar.as_slice().to_vec()));
+        all.push(("C_bar", form.c_bar.as_slice().to_vec()));
+    }
+    all
+}

@@ -1,0 +1,7 @@
+//! One document value, several renderers. No renderer computes anything but how many digits to show.
+
+pub mod document;
+pub mod json;
+pub mod text;
+
+pub use document::Verification;

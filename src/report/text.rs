@@ -1,0 +1,232 @@
+//! The document as one page of text for a terminal, at most 100 columns wide.
+
+use std::fmt::{self, Write};
+
+use super::document::{AgreementEntry, PublishedEntry, SideEntry, Sides, Verification};
+use crate::agreement::shared_decimals;
+
+const WIDTH: usize = 100;
+
+/// The verify page.
+pub fn render(document: &Verification) -> Result<String, fmt::Error> {
+    let mut page = String::new();
+    let out = &mut page;
+    orbit(out, document)?;
+    map(out, document)?;
+    agreement(out, document)?;
+    bifurcation(out, document)?;
+    published(out, document)?;
+    verdict(out, document)?;
+    Ok(page)
+}
+
+fn heading(out: &mut String, text: &str) -> fmt::Result {
+    writeln!(out, "\n{text}\n{}", "-".repeat(text.chars().count()))
+}
+
+fn orbit(out: &mut String, document: &Verification) -> fmt::Result {
+    let at = &document.corner_impact;
+    let title = format!("Corner impact of {}", document.model.name);
+    writeln!(out, "{title}\n{}", "=".repeat(title.chars().count()))?;
+    paragraph(out, &document.model.source)?;
+    heading(out, "The orbit, solved for from the model")?;
+    writeln!(out, "  period   T* = {} s   ({:.9} rpm)", significant(at.period_s, 14), at.speed_rpm)?;
+    writeln!(
+        out,
+        "  state    x* = ({}, {})   half a revolution from the impact; position from {} m",
+        significant(at.state[0], 13),
+        significant(at.state[1], 13),
+        significant(at.state_origin_m, 9)
+    )?;
+    let degrees = at.cam_angle_rad.to_degrees();
+    writeln!(out, "  impact   at cam angle {degrees:.6} deg, where c'' jumps from {:.4} to {:.4} m/s^2", at.cam_acceleration_m_s2.minus, at.cam_acceleration_m_s2.plus)?;
+    writeln!(
+        out,
+        "           q = {:.9} m, v = {:.6} before and {:.6} after, c' = {:.6} m/s",
+        at.position_m, at.velocity_before_m_s, at.velocity_after_m_s, at.cam_velocity_m_s
+    )?;
+    for other in &document.other_corner_impacts {
+        writeln!(out, "  also     {:.6} rpm at {:.6} deg: narrow [study] to verify that one", other.speed_rpm, other.cam_angle_rad.to_degrees())?;
+    }
+    Ok(())
+}
+
+fn map(out: &mut String, document: &Verification) -> fmt::Result {
+    heading(out, "Its local map:  dx' = A dx + B dT")?;
+    side(out, document, "minus", "impact before the corner")?;
+    side(out, document, "plus", "impact after the corner")?;
+    for (name, route) in &document.routes {
+        if let (Some(error), Some(condition)) = (&route.standard_error, route.condition_number) {
+            let (a, b) = largest(error);
+            writeln!(out, "  {}: standard errors up to {a:.1e} in A, {b:.1e} in B; condition number {condition:.1}", spoken(name))?;
+        }
+        if let Some(correction) = &route.last_correction {
+            let (a, b) = largest(correction);
+            writeln!(out, "  {}: last correction up to {a:.1e} in A, {b:.1e} in B", spoken(name))?;
+        }
+    }
+    Ok(())
+}
+
+fn side(out: &mut String, document: &Verification, name: &str, when: &str) -> fmt::Result {
+    let of = |sides: &Sides<SideEntry>| if name == "minus" { sides.minus } else { sides.plus };
+    write!(out, "  {name:<6}")?;
+    let routes: Vec<_> = document.routes.iter().map(|(route, entry)| {
+        (spoken(route), of(&Sides { minus: entry.map.minus, plus: entry.map.plus }))
+    }).collect();
+    for (route, _) in &routes {
+        write!(out, "{route:>18}")?;
+    }
+    let printed = |quantity: &str| document.published.iter().find(|entry| entry.quantity == format!("{quantity}_{name}"));
+    if printed("A").is_some() {
+        write!(out, "{:>21}", "printed")?;
+    }
+    writeln!(out, "   ({when})")?;
+    let entries = |side: &SideEntry| -> [f64; 6] {
+        let SideEntry { a: [[a11, a12], [a21, a22]], b: [b1, b2] } = *side;
+        [a11, a12, a21, a22, b1, b2]
+    };
+    for (index, label) in ["A11", "A12", "A21", "A22", "B1", "B2"].into_iter().enumerate() {
+        write!(out, "    {label:<4}")?;
+        let (quantity, entry) = if index < 4 { ("A", index) } else { ("B", index - 4) };
+        for (_, side) in &routes {
+            let values = entries(side);
+            let block = if index < 4 { &values[..4] } else { &values[4..] };
+            write!(out, "{:>18.*}", places(block), values[index])?;
+        }
+        if let Some(digits) = printed(quantity).and_then(|number| number.printed.get(entry)) {
+            write!(out, "{digits:>21}")?;
+        }
+        writeln!(out)?;
+    }
+    writeln!(out)
+}
+
+/// Decimals that show ten digits of the largest entry.
+fn places(entries: &[f64]) -> usize {
+    let largest = entries.iter().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
+    if largest > 0.0 && largest.is_finite() { (9.0 - largest.log10().floor()).clamp(0.0, 15.0) as usize } else { 9 }
+}
+
+fn largest(sides: &Sides<SideEntry>) -> (f64, f64) {
+    let both = [sides.minus, sides.plus];
+    let a = both.iter().flat_map(|side| side.a.iter().flatten()).fold(0.0_f64, |largest, entry| largest.max(*entry));
+    let b = both.iter().flat_map(|side| side.b.iter()).fold(0.0_f64, |largest, entry| largest.max(*entry));
+    (a, b)
+}
+
+fn agreement(out: &mut String, document: &Verification) -> fmt::Result {
+    heading(out, "Do the routes agree?")?;
+    writeln!(out, "  {:<20}{:<40}{:>12}{:>12}  shared", "quantity", "routes", "differ by", "allowed")?;
+    for AgreementEntry { routes: [left, right], quantity, max_abs_diff, tolerance, agrees, .. } in &document.agreement {
+        let pair = format!("{} - {}", spoken(left), spoken(right));
+        let shared = shared_decimals(*max_abs_diff).map_or("all digits".to_owned(), |decimals| format!("{decimals} decimals"));
+        let flag = if *agrees { "" } else { "   DISAGREE" };
+        writeln!(out, "  {quantity:<20}{pair:<40}{max_abs_diff:>12.1e}{tolerance:>12.1e}  {shared}{flag}")?;
+    }
+    Ok(())
+}
+
+fn bifurcation(out: &mut String, document: &Verification) -> fmt::Result {
+    heading(out, "What happens there")?;
+    let eigenvalues = |pair: &[super::document::EigenvalueEntry; 2]| {
+        let one = |re: f64, im: f64| if im == 0.0 { format!("{re:.9}") } else { format!("{re:.9} {} {:.9}i", if im < 0.0 { '-' } else { '+' }, im.abs()) };
+        format!("{},  {}", one(pair[0].re, pair[0].im), one(pair[1].re, pair[1].im))
+    };
+    writeln!(out, "  eigenvalues of A-   {}", eigenvalues(&document.eigenvalues.minus))?;
+    writeln!(out, "  eigenvalues of A+   {}", eigenvalues(&document.eigenvalues.plus))?;
+    if let Some(form) = &document.normal_form {
+        let matrix = |m: &[[f64; 2]; 2]| format!("[[{:.9}, {:.9}], [{:.9}, {:.9}]]", m[0][0], m[0][1], m[1][0], m[1][1]);
+        writeln!(out, "  normal form         A-bar {}", matrix(&form.a_bar_minus))?;
+        writeln!(out, "                      A+bar {}", matrix(&form.a_bar_plus))?;
+        writeln!(out, "                      B bar ({}, {}),  C bar ({:.0}, {:.0})", significant(form.b_bar[0], 9), significant(form.b_bar[1], 9), form.c_bar[0], form.c_bar[1])?;
+    }
+    if let Some(verdict) = &document.classification {
+        let above = &verdict.real_eigenvalues_above_one;
+        let below = &verdict.real_eigenvalues_below_minus_one;
+        writeln!(out, "  Feigin's counts     {} + {} real eigenvalues above 1, {} + {} below -1", above.minus, above.plus, below.minus, below.plus)?;
+        writeln!(out, "  verdict             {}", verdict.scenario)?;
+        let fate = |stable: bool, speeds: &str| format!("{} one at speeds {speeds} than omega*", if stable { "a stable" } else { "an unstable" });
+        writeln!(out, "  fixed points        minus: {}", fate(verdict.stable.minus, verdict.fixed_points_exist_for.minus))?;
+        writeln!(out, "                      plus:  {}", fate(verdict.stable.plus, verdict.fixed_points_exist_for.plus))?;
+    }
+    Ok(())
+}
+
+fn published(out: &mut String, document: &Verification) -> fmt::Result {
+    if document.published.is_empty() {
+        return Ok(());
+    }
+    heading(out, "The paper's printed numbers")?;
+    for entry in &document.published {
+        let PublishedEntry { quantity, place, max_abs_diff, verdict, as_found, .. } = entry;
+        let shared = shared_decimals(*max_abs_diff).map_or("all digits".to_owned(), |decimals| format!("{decimals} decimals"));
+        let flag = if *as_found { "" } else { "   UNEXPECTED" };
+        writeln!(out, "  {quantity:<20}{place:<20}differs by {max_abs_diff:.1e}, shares {shared:<14}{verdict}{flag}")?;
+    }
+    for entry in document.published.iter().filter(|entry| !entry.note.is_empty()) {
+        let computed: Vec<_> = entry.computed.iter().map(|value| significant(*value, 10)).collect();
+        let words = format!("{}, printed ({}), computed ({}): {}", entry.quantity, entry.printed.join(", "), computed.join(", "), entry.note);
+        writeln!(out)?;
+        paragraph(out, &words)?;
+    }
+    Ok(())
+}
+
+fn verdict(out: &mut String, document: &Verification) -> fmt::Result {
+    if !document.skipped.is_empty() {
+        heading(out, "NOT RUN")?;
+        for skipped in &document.skipped {
+            paragraph(out, &format!("{}: {}", skipped.route, skipped.why))?;
+        }
+    }
+    heading(out, "Verdict")?;
+    let failed = document.agreement.iter().filter(|entry| !entry.agrees).count();
+    let unexpected = document.published.iter().filter(|entry| !entry.as_found).count();
+    let wrong = document.published.iter().filter(|entry| entry.as_found && !entry.agrees).count();
+    let maps = document.agreement.iter().filter(|entry| ["A_minus", "A_plus", "B_minus", "B_plus"].contains(&entry.quantity.as_str()));
+    let fewest = maps.filter_map(|entry| shared_decimals(entry.max_abs_diff)).min();
+    let shared = fewest.map_or("all digits".to_owned(), |decimals| format!("{decimals} decimals or more"));
+    writeln!(out, "  {} of {} comparisons agree; every entry of A and B shares {shared}.", document.agreement.len() - failed, document.agreement.len())?;
+    if !document.published.is_empty() {
+        let right = document.published.len() - wrong - unexpected;
+        writeln!(out, "  Of the paper's {} printed numbers {right} hold and {wrong} are wrong, as found before; {unexpected} came out otherwise.", document.published.len())?;
+    }
+    writeln!(out, "  {}", if document.agrees { "AGREES" } else { "DISAGREES" })
+}
+
+/// `significant` digits, without trailing zeros.
+fn significant(value: f64, digits: usize) -> String {
+    if !value.is_finite() || value == 0.0 {
+        return format!("{value:.0}");
+    }
+    let places = (digits as f64 - 1.0 - value.abs().log10().floor()).clamp(0.0, digits as f64) as usize;
+    let text = format!("{value:.places$}");
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    if text.trim_matches(['-', '0', '.']).is_empty() { "0".into() } else { text.into() }
+}
+
+/// A route's name as words.
+fn spoken(name: &str) -> String {
+    name.replace('_', " ")
+}
+
+/// Text in lines that fit, indented by two.
+fn paragraph(out: &mut String, text: &str) -> fmt::Result {
+    let mut column = 0;
+    for word in text.split_whitespace() {
+        let length = word.chars().count();
+        if column > 0 && column + 1 + length > WIDTH {
+            writeln!(out)?;
+            column = 0;
+        }
+        if column == 0 {
+            write!(out, "  {word}")?;
+            column = 2 + length;
+        } else {
+            write!(out, " {word}")?;
+            column += 1 + length;
+        }
+    }
+    writeln!(out)
+}

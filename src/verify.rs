@@ -1,0 +1,128 @@
+//! One model through the whole pipeline: locate, every route, every comparison, the classification, the paper's numbers.
+
+use nalgebra::RowVector2;
+
+use crate::agreement::{self, Agreement, NamedOrbit, compare};
+use crate::border_collision::{Classification, NormalForm, classify, normal_form};
+use crate::cam::Cam;
+use crate::claims::published::{PrintedNumber, PublishedError, compare_published};
+use crate::corner::{self, CornerImpact, CornerMap, LocateError, Route};
+use crate::corner::{closed_form, finite_difference, least_squares, simulated_orbit};
+use crate::model::Model;
+use crate::tolerance::Comparison;
+
+/// What a verification found.
+#[derive(Clone, Debug)]
+pub struct Findings {
+    /// The orbit that was verified: the slowest in `[study]`.
+    pub at: CornerImpact,
+    /// Further corner impacts in `[study]`.
+    pub others: Vec<CornerImpact>,
+    /// The map by each route that ran, the closed form first.
+    pub routes: Vec<Route>,
+    /// Every comparison of two routes.
+    pub comparisons: Vec<Agreement>,
+    /// `(e, f)`: the impact comes before the corner where `e dx + f dT < 0`.
+    pub border: (RowVector2<f64>, f64),
+    /// Absent where the map is degenerate.
+    pub normal_form: Option<NormalForm>,
+    /// Absent where the map is degenerate.
+    pub classification: Option<Classification>,
+    /// The paper's numbers; empty for another model.
+    pub published: Vec<PrintedNumber>,
+    /// What did not run, and why.
+    pub skipped: Vec<Skipped>,
+    /// Whether every comparison agrees, every printed number is as found, and every route ran.
+    pub agrees: bool,
+}
+
+/// Something that did not run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Skipped {
+    /// The route, or the result that it would have given.
+    pub route: String,
+    /// Why.
+    pub why: String,
+}
+
+impl Findings {
+    /// The closed form's route.
+    pub fn closed_form(&self) -> &Route {
+        &self.routes[0]
+    }
+}
+
+/// Locates the corner impact of a model, computes its map by every route, and compares.
+///
+/// Fails only where there is nothing to compare; a route that fails is listed as skipped, and then the whole disagrees.
+pub fn verify(model: &Model) -> Result<Findings, LocateError> {
+    let cam = Cam::new(model)?;
+    let (at, others) = corner::locate(model, &cam)?;
+    let mut log = Log::default();
+
+    let closed = closed_form::route(model, &at);
+    let estimates = [
+        log.keep("finite_difference", finite_difference::route(model, &cam, &at)),
+        log.keep("least_squares", least_squares::route(model, &cam, &at)),
+    ];
+    let map = closed.map;
+    let routes: Vec<Route> = [closed].into_iter().chain(estimates.into_iter().flatten()).collect();
+    let mut comparisons = agreement::compare_routes(&routes);
+
+    let simulated = log.keep("x_star by simulation", simulated_orbit::orbit(model, &cam, &at));
+    let transcribed = if model.follower.stiffness > 0.0 {
+        log.keep("x_star by closed_form", closed_form::orbit(model, &at))
+    } else {
+        log.leave_out("x_star by closed_form", "without stiffness there is no equilibrium to measure the paper's x from".into());
+        None
+    };
+    let orbits: Vec<NamedOrbit> = [Some((at.x_star(), at.period)), transcribed, simulated]
+        .into_iter()
+        .zip(["located", "closed_form", "simulation"])
+        .filter_map(|(orbit, name)| orbit.map(|(x, period)| (name, x, period)))
+        .collect();
+    comparisons.extend(agreement::compare_orbits(&orbits));
+
+    let border = closed_form::border(model, &at);
+    comparisons.push(compare_borders(&map, border));
+    let normal_form = normal_form(&map).map_err(|error| log.leave_out("normal_form", error.to_string())).ok();
+    let classification = classify(&map, border).map_err(|error| log.leave_out("classification", error.to_string())).ok();
+    let published = match compare_published(model, &at, &map, normal_form.as_ref()) {
+        Err(error @ PublishedError::OtherModel) => {
+            log.leave_out("published", error.to_string());
+            Vec::new()
+        }
+        result => log.keep("published", result).unwrap_or_default(),
+    };
+
+    let agrees = !log.failed && comparisons.iter().all(|item| item.agrees) && published.iter().all(|number| number.as_found);
+    Ok(Findings { at, others, routes, comparisons, border, normal_form, classification, published, skipped: log.skipped, agrees })
+}
+
+/// The border of the maps, `C x + D dT = 0`, against that of the free flight, `e x + f dT = 0`: the same line.
+fn compare_borders(map: &CornerMap, (e, f): (RowVector2<f64>, f64)) -> Agreement {
+    let (c, d) = (map.c(), map.d());
+    compare(["closed_form", "free_flight"], "border", [(c / d).as_slice(), (e / f).as_slice()], Comparison::Routes)
+}
+
+/// What did not run: on purpose, or because it failed.
+#[derive(Default)]
+struct Log {
+    skipped: Vec<Skipped>,
+    failed: bool,
+}
+
+impl Log {
+    fn leave_out(&mut self, route: &str, why: String) {
+        self.skipped.push(Skipped { route: route.into(), why });
+    }
+
+    fn keep<T, E: std::fmt::Display>(&mut self, route: &str, result: Result<T, E>) -> Option<T> {
+        result
+            .map_err(|error| {
+                self.failed = true;
+                self.leave_out(route, error.to_string());
+            })
+            .ok()
+    }
+}
