@@ -101,7 +101,11 @@ impl Flight {
             let impulse = decay * sin / omega;
             // s' = e^{-zeta t} cos(w t) - zeta s
             let impulse_rate = decay * cos - zeta * impulse;
-            return Response { step: (1.0 - impulse_rate - 2.0 * zeta * impulse) / omega0_squared, impulse, impulse_rate };
+            return Response {
+                step: (1.0 - impulse_rate - 2.0 * zeta * impulse) / omega0_squared,
+                impulse,
+                impulse_rate,
+            };
         }
         // Overdamped, critical, and stiffness 0: rates l1 <= l2 of e^{-l1 t}, e^{-l2 t}, with l1 l2 = w0^2.
         let half_gap = (-omega_squared).sqrt();

@@ -1,8 +1,10 @@
 //! The stroboscopic map: the follower's state each time the cam passes one angle.
 
+use std::f64::consts::TAU;
+use std::ops::ControlFlow;
+
 use crate::flight::State;
 use crate::simulate::{Impact, Machine, SimulateError};
-use std::f64::consts::TAU;
 
 /// The map of one revolution, from the section at a cam angle back to it.
 #[derive(Clone, Debug)]
@@ -26,7 +28,10 @@ impl StroboscopicMap {
     /// One revolution from `state`.
     pub fn apply(&self, state: State) -> Result<Return, SimulateError> {
         let mut impacts = Vec::new();
-        let state = self.machine.turn(self.cam_angle, state, TAU, |impact| impacts.push(*impact))?;
+        let state = self.machine.turn(self.cam_angle, state, TAU, |impact| {
+            impacts.push(*impact);
+            ControlFlow::Continue(())
+        })?;
         Ok(Return { state, impacts })
     }
 }

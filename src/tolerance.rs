@@ -28,6 +28,9 @@ table! {
     /// Rounding of the gap between follower and cam.
     GAP_ROUNDING = 4.0 * f64::EPSILON, "of the distances that the gap is the difference of: a handful of roundings, so that \
         a dip deeper than this is an impact";
+    /// Relative velocity after an impact that is none.
+    RELATIVE_VELOCITY_ROUNDING = 4.0 * f64::EPSILON, "of the cam's velocity: below it the difference of the two velocities \
+        is rounding, and a chattering follower would go on bouncing in it";
     /// Width at which a bracket around a root is closed.
     ROOT_WIDTH = 4.0 * f64::EPSILON, "of the root: T* is asked for to 1e-14, and a bracket cannot close below two ulps";
     /// When relative velocity at the impact counts as none.
@@ -59,6 +62,8 @@ pub struct Bound {
 pub enum Comparison {
     /// Two routes of this program.
     Routes,
+    /// Eigenvalues by two routes of this program.
+    Eigenvalues,
     /// The located orbit against the same orbit found by simulation alone: period in s and state.
     Orbit,
     /// A number that the paper prints against the closed form; `decimals` are those printed.
@@ -73,19 +78,29 @@ pub enum Comparison {
 /// Five decimals, half a unit in the sixth.
 const FIVE_DECIMALS: f64 = 5e-6;
 
-/// The bound for a quantity whose largest entry is `scale`.
+/// The bound for a quantity of size `scale`: its largest entry, or that of the quantities it is a difference of.
 pub fn agreement_bound(comparison: Comparison, scale: f64) -> Bound {
     match comparison {
         Comparison::Routes => {
             let (relative, ceiling) = (1e-8 * scale, FIVE_DECIMALS.max(5e-10 * scale));
             if relative < ceiling {
-                Bound { value: relative, reason: "1e-8 of the largest entry: five decimals would be no test of entries this small" }
+                Bound {
+                    value: relative,
+                    reason: "1e-8 of the largest entry: five decimals would be no test of entries this small",
+                }
             } else if ceiling > FIVE_DECIMALS {
-                Bound { value: ceiling, reason: "5e-10 of the largest entry: with entries this large five decimals are beyond a double's estimate" }
+                Bound {
+                    value: ceiling,
+                    reason: "5e-10 of the largest entry: with entries this large five decimals are beyond a double's estimate",
+                }
             } else {
                 Bound { value: FIVE_DECIMALS, reason: "five decimals" }
             }
         }
+        Comparison::Eigenvalues => Bound {
+            value: FIVE_DECIMALS * scale.max(1.0),
+            reason: "five decimals: eigenvalues have no unit, and near a double one they keep half the digits of A",
+        },
         Comparison::Orbit => Bound {
             value: 1e-11 * scale,
             reason: "1e-11 of the largest entry: Newton on the simulated map ends at its rounding, amplified by 1/(1 - multiplier)",
@@ -96,9 +111,14 @@ pub fn agreement_bound(comparison: Comparison, scale: f64) -> Bound {
             if half_unit >= round_off {
                 Bound { value: half_unit, reason: "half a unit in the last printed place" }
             } else {
-                Bound { value: round_off, reason: "2e-13: the last two of fourteen printed digits are round-off of the authors' computation" }
+                Bound {
+                    value: round_off,
+                    reason: "2e-13: the last two of fourteen printed digits are round-off of the authors' computation",
+                }
             }
         }
-        Comparison::PrintedEstimate => Bound { value: FIVE_DECIMALS, reason: "five decimals, as the paper claims for its estimates" },
+        Comparison::PrintedEstimate => {
+            Bound { value: FIVE_DECIMALS, reason: "five decimals, as the paper claims for its estimates" }
+        }
     }
 }

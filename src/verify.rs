@@ -73,7 +73,10 @@ pub fn verify(model: &Model) -> Result<Findings, LocateError> {
     let transcribed = if model.follower.stiffness > 0.0 {
         log.keep("x_star by closed_form", closed_form::orbit(model, &at))
     } else {
-        log.leave_out("x_star by closed_form", "without stiffness there is no equilibrium to measure the paper's x from".into());
+        log.leave_out(
+            "x_star by closed_form",
+            "without stiffness there is no equilibrium to measure the paper's x from".into(),
+        );
         None
     };
     let orbits: Vec<NamedOrbit> = [Some((at.x_star(), at.period)), transcribed, simulated]
@@ -86,7 +89,8 @@ pub fn verify(model: &Model) -> Result<Findings, LocateError> {
     let border = closed_form::border(model, &at);
     comparisons.push(compare_borders(&map, border));
     let normal_form = normal_form(&map).map_err(|error| log.leave_out("normal_form", error.to_string())).ok();
-    let classification = classify(&map, border).map_err(|error| log.leave_out("classification", error.to_string())).ok();
+    let classification =
+        classify(&map, border).map_err(|error| log.leave_out("classification", error.to_string())).ok();
     let published = match compare_published(model, &at, &map, normal_form.as_ref()) {
         Err(error @ PublishedError::OtherModel) => {
             log.leave_out("published", error.to_string());
@@ -95,8 +99,20 @@ pub fn verify(model: &Model) -> Result<Findings, LocateError> {
         result => log.keep("published", result).unwrap_or_default(),
     };
 
-    let agrees = !log.failed && comparisons.iter().all(|item| item.agrees) && published.iter().all(|number| number.as_found);
-    Ok(Findings { at, others, routes, comparisons, border, normal_form, classification, published, skipped: log.skipped, agrees })
+    let agrees =
+        !log.failed && comparisons.iter().all(|item| item.agrees) && published.iter().all(|number| number.as_found);
+    Ok(Findings {
+        at,
+        others,
+        routes,
+        comparisons,
+        border,
+        normal_form,
+        classification,
+        published,
+        skipped: log.skipped,
+        agrees,
+    })
 }
 
 /// The border of the maps, `C x + D dT = 0`, against that of the free flight, `e x + f dT = 0`: the same line.

@@ -24,9 +24,23 @@ pub struct Agreement {
     pub agrees: bool,
 }
 
-/// Compares the entries of one quantity.
-pub fn compare(routes: [&str; 2], quantity: &str, [left, right]: [&[f64]; 2], comparison: Comparison) -> Agreement {
-    let scale = left.iter().chain(right).fold(0.0_f64, |scale, entry| scale.max(entry.abs()));
+/// Compares the entries of one quantity, on the scale of its largest entry.
+pub fn compare(routes: [&str; 2], quantity: &str, entries: [&[f64]; 2], comparison: Comparison) -> Agreement {
+    let scale = entries.iter().map(|entries| size(entries)).fold(0.0, f64::max);
+    compare_on_scale(routes, quantity, entries, comparison, scale)
+}
+
+fn size(entries: &[f64]) -> f64 {
+    entries.iter().fold(0.0_f64, |size, entry| size.max(entry.abs()))
+}
+
+fn compare_on_scale(
+    routes: [&str; 2],
+    quantity: &str,
+    [left, right]: [&[f64]; 2],
+    comparison: Comparison,
+    scale: f64,
+) -> Agreement {
     let bound = agreement_bound(comparison, scale);
     let mut max_abs_diff = if left.len() == right.len() { 0.0 } else { f64::NAN };
     let mut max_rel_diff = max_abs_diff;
@@ -66,10 +80,21 @@ pub fn quantities(map: &CornerMap) -> Vec<(&'static str, Vec<f64>)> {
 
 /// Every pair of routes to the map, in every quantity.
 pub fn compare_routes(routes: &[Route]) -> Vec<Agreement> {
-    let known: Vec<_> = routes.iter().map(|route| (route.name, quantities(&route.map))).collect();
-    pairs(&known)
-        .flat_map(|((left, these), (right, those))| {
-            these.iter().zip(those).map(|((quantity, a), (_, b))| compare([*left, *right], quantity, [a, b], Comparison::Routes))
+    pairs(routes)
+        .flat_map(|(left, right)| {
+            let (these, those) = (quantities(&left.map), quantities(&right.map));
+            // C and D are differences of A's and B's entries, and known no better than those.
+            let (a, b) = (size(left.map.minus.a.as_slice()), size(left.map.minus.b.as_slice()));
+            let compare = move |((quantity, x), (_, y)): ((&'static str, Vec<f64>), (_, Vec<f64>))| {
+                let (comparison, scale) = match quantity {
+                    "C" => (Comparison::Routes, a),
+                    "D" => (Comparison::Routes, b),
+                    "eigenvalues_minus" | "eigenvalues_plus" => (Comparison::Eigenvalues, size(&x)),
+                    _ => (Comparison::Routes, size(&x)),
+                };
+                compare_on_scale([left.name, right.name], quantity, [&x, &y], comparison, scale)
+            };
+            these.into_iter().zip(those).map(compare).collect::<Vec<_>>()
         })
         .collect()
 }

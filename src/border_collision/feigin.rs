@@ -19,8 +19,6 @@ pub enum Scenario {
     NonsmoothFold,
     /// It crosses, and an orbit of period two is born.
     NonsmoothFlip,
-    /// Both counts are odd: two fixed points vanish and an orbit of period two is born.
-    NonsmoothFoldAndFlip,
 }
 
 impl Scenario {
@@ -30,7 +28,6 @@ impl Scenario {
             Self::Persistence => "persistence",
             Self::NonsmoothFold => "nonsmooth-fold",
             Self::NonsmoothFlip => "nonsmooth-flip",
-            Self::NonsmoothFoldAndFlip => "nonsmooth-fold-and-flip",
         }
     }
 }
@@ -76,6 +73,8 @@ pub struct SideCounts {
 pub struct Classification {
     /// The verdict.
     pub scenario: Scenario,
+    /// Whether an orbit of period two exists on one side of the corner-impact speed; beside a fold it is a second verdict.
+    pub period_two_orbit: bool,
     /// Impacts before the corner.
     pub minus: SideCounts,
     /// Impacts after the corner.
@@ -92,16 +91,20 @@ pub fn classify(map: &CornerMap, border: (RowVector2<f64>, f64)) -> Result<Class
     let fold = (minus.above_one + plus.above_one) % 2 == 1;
     let flip = (minus.below_minus_one + plus.below_minus_one) % 2 == 1;
     let scenario = match (fold, flip) {
-        (false, false) => Scenario::Persistence,
-        (true, false) => Scenario::NonsmoothFold,
+        (true, _) => Scenario::NonsmoothFold,
         (false, true) => Scenario::NonsmoothFlip,
-        (true, true) => Scenario::NonsmoothFoldAndFlip,
+        (false, false) => Scenario::Persistence,
     };
-    Ok(Classification { scenario, minus, plus })
+    Ok(Classification { scenario, period_two_orbit: flip, minus, plus })
 }
 
 /// `sign` is that of `e x + f dT` on this side.
-fn side_counts(name: &'static str, side: &SideMap, (e, f): (RowVector2<f64>, f64), sign: f64) -> Result<SideCounts, Degenerate> {
+fn side_counts(
+    name: &'static str,
+    side: &SideMap,
+    (e, f): (RowVector2<f64>, f64),
+    sign: f64,
+) -> Result<SideCounts, Degenerate> {
     let eigenvalues = side.eigenvalues();
     for Eigenvalue { re, im } in eigenvalues {
         for boundary in [1.0, -1.0] {

@@ -44,7 +44,8 @@ impl Arc {
             // c'' = -kappa cos phi + u''/(2 w) - u'^2/(4 w^3)
             curvature: -kappa * cos + u2 / (2.0 * w) - u1 * u1 / (4.0 * w.powi(3)),
             // c''' = kappa sin phi + u'''/(2 w) - 3 u' u''/(4 w^3) + 3 u'^3/(8 w^5)
-            third: kappa * sin + u3 / (2.0 * w) - 3.0 * u1 * u2 / (4.0 * w.powi(3)) + 3.0 * u1.powi(3) / (8.0 * w.powi(5)),
+            third: kappa * sin + u3 / (2.0 * w) - 3.0 * u1 * u2 / (4.0 * w.powi(3))
+                + 3.0 * u1.powi(3) / (8.0 * w.powi(5)),
         }
     }
 
@@ -97,11 +98,15 @@ pub(super) fn build(model: &Model, profile: &ArcsProfile) -> Result<Cam, ModelEr
         return Err(model.reject("cam.nose_end_deg", format!("must be above cam.flank_start_deg = {flank_start_deg}")));
     }
     if flank_radius <= base_radius {
-        let words = format!("must be above cam.base_radius = {base_radius}: the flank circle touches the base circle from outside it");
+        let words = format!(
+            "must be above cam.base_radius = {base_radius}: the flank circle touches the base circle from outside it"
+        );
         return Err(model.reject("cam.flank_radius", words));
     }
     if nose_radius >= flank_radius {
-        let words = format!("must be below cam.flank_radius = {flank_radius}: the nose circle touches the flank circle from inside");
+        let words = format!(
+            "must be below cam.flank_radius = {flank_radius}: the nose circle touches the flank circle from inside"
+        );
         return Err(model.reject("cam.nose_radius", words));
     }
     let (flank_start, nose_end) = (flank_start_deg.to_radians(), nose_end_deg.to_radians());
@@ -114,7 +119,9 @@ pub(super) fn build(model: &Model, profile: &ArcsProfile) -> Result<Cam, ModelEr
     if !(root >= 0.0 && nose_distance > 0.0) {
         // rho2 = rho0 puts O2 on the axis; past a right angle the circles part where O1 O2 is square to the ray at Q.
         let largest = if span_cos > 0.0 { base_radius } else { flank_radius - flank_distance * span_sin };
-        let words = format!("must be below {largest} for the nose circle to touch the flank circle and end at cam.nose_end_deg");
+        let words = format!(
+            "must be below {largest} for the nose circle to touch the flank circle and end at cam.nose_end_deg"
+        );
         return Err(model.reject("cam.nose_radius", words));
     }
     // P = O1 + rho1 (O2 - O1)/|O2 - O1|, in axes turned so that R is at angle 0.

@@ -75,8 +75,6 @@ pub struct Segment {
     pub end: f64,
     /// Its lift.
     pub law: Law,
-    /// A bound on `|d^3c/dtheta^3|` over the segment, m/rad^3.
-    pub third_bound: f64,
 }
 
 /// The side of a corner: the segment before it or the one after.
@@ -121,7 +119,7 @@ impl Cam {
     fn from_laws(laws: Vec<(f64, Law)>) -> Self {
         let ends: Vec<f64> = laws.iter().skip(1).map(|(start, _)| *start).chain([TAU]).collect();
         let segments = laws.into_iter().zip(ends).filter(|((start, _), end)| start < end);
-        Self { segments: segments.map(|((start, law), end)| Segment::new(start, end, law)).collect() }
+        Self { segments: segments.map(|((start, law), end)| Segment { start, end, law }).collect() }
     }
 
     /// The segments, in order of angle.
@@ -145,8 +143,10 @@ impl Cam {
         let meetings = (0..count).map(|after| (self.segments[(after + count - 1) % count], after));
         meetings
             .filter_map(|(before, after)| {
-                let (minus, plus) = (before.law.lift(before.end), self.segments[after].law.lift(self.segments[after].start));
-                let scale = minus.derivatives().iter().chain(&plus.derivatives()).fold(0.0_f64, |scale, x| scale.max(x.abs()));
+                let (minus, plus) =
+                    (before.law.lift(before.end), self.segments[after].law.lift(self.segments[after].start));
+                let scale =
+                    minus.derivatives().iter().chain(&plus.derivatives()).fold(0.0_f64, |scale, x| scale.max(x.abs()));
                 let jumps = minus.derivatives().into_iter().zip(plus.derivatives());
                 let jump_order = jumps.enumerate().position(|(order, (minus, plus))| {
                     order > 0 && (minus - plus).abs() > tolerance::CAM_JUMP.value * scale
@@ -163,31 +163,21 @@ impl Cam {
         let count = self.segments.len();
         let (before, after) = ((corner.segment + count - 1) % count, corner.segment);
         let mut segments = self.segments.clone();
-        match side {
-            Side::Minus => {
-                let ahead = segments[after];
-                // The segment before angle 0 ends at 2 pi: continuing it would need a segment that wraps.
-                if after == 0 || ahead.end - ahead.start < 2.0 * reach {
-                    return None;
-                }
-                segments[before] = Segment::new(segments[before].start, corner.angle + reach, segments[before].law);
-                segments[after] = Segment::new(corner.angle + reach, ahead.end, ahead.law);
-            }
-            Side::Plus => {
-                let behind = segments[before];
-                if after == 0 || behind.end - behind.start < 2.0 * reach {
-                    return None;
-                }
-                segments[after] = Segment::new(corner.angle - reach, segments[after].end, segments[after].law);
-                segments[before] = Segment::new(behind.start, corner.angle - reach, behind.law);
-            }
+        let shortened = match side {
+            Side::Minus => segments[after],
+            Side::Plus => segments[before],
+        };
+        // The segment before angle 0 ends at 2 pi: continuing it would need a segment that wraps.
+        if after == 0 || shortened.end - shortened.start < 2.0 * reach {
+            return None;
         }
-        segments.iter().all(|segment| segment.third_bound.is_finite()).then_some(Self { segments })
-    }
-}
-
-impl Segment {
-    fn new(start: f64, end: f64, law: Law) -> Self {
-        Self { start, end, law, third_bound: law.third_bound(start, end) }
+        let meeting = match side {
+            Side::Minus => corner.angle + reach,
+            Side::Plus => corner.angle - reach,
+        };
+        segments[before].end = meeting;
+        segments[after].start = meeting;
+        let reaches = |segment: &Segment| segment.law.third_bound(segment.start, segment.end).is_finite();
+        segments.iter().all(reaches).then_some(Self { segments })
     }
 }

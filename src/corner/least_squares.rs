@@ -1,11 +1,12 @@
 //! A and B as the paper estimates them: a least-squares fit to simulated revolutions from perturbed starts.
 //!
-//! The paper fits a linear map, and its estimates of B keep three decimals: the curvature of the real map goes into them.
+//! The paper fits a linear map, so the curvature of the real map goes into its coefficients.
 //! Here the perturbations are scaled by the impact's own scales, placed on a grid of Chebyshev nodes, and fitted with all
 //! monomials up to the fourth degree, so that what the linear coefficients take on from the map's curvature is of the
-//! fifth. Their standard errors come from the residual.
+//! fifth. Their standard errors come from the residual; their bias, which no residual shows in full, from a grid twice as
+//! wide.
 
-use faer::linalg::solvers::SolveLstsqCore;
+use faer::linalg::solvers::{Qr, SolveLstsqCore};
 use faer::{Conj, Mat};
 use nalgebra::{Matrix2, Vector2, Vector3};
 
@@ -20,9 +21,10 @@ const DEGREE: u32 = 4;
 /// Nodes in each direction: one more than the degree, so that the grid determines every monomial, with room for a residual.
 const NODES: usize = DEGREE as usize + 1;
 
-/// Half-width of the grid in units of the impact's scales: what the fifth degree puts into the linear coefficients falls
-/// with its fourth power, rounding rises with its inverse; they meet near here.
-const SPREAD: f64 = 0.25;
+/// Halvings of the grid that are tried, from the impact's own scales down. What the missing degrees put into the linear
+/// coefficients falls with the fourth power of the width, and rounding rises with its inverse: the fit that is kept has the
+/// smallest sum of standard error and bias.
+const WIDTHS: u32 = 8;
 
 /// The map by least squares, with a standard error for each entry and the condition number of the design.
 pub fn route(model: &Model, cam: &Cam, at: &CornerImpact) -> Result<Route, SampleError> {
@@ -31,8 +33,9 @@ pub fn route(model: &Model, cam: &Cam, at: &CornerImpact) -> Result<Route, Sampl
     Ok(Route {
         name: "least_squares",
         map: CornerMap { minus: minus.value, plus: plus.value },
-        uncertainty: Some(Uncertainty::StandardError {
-            error: CornerMap { minus: minus.error, plus: plus.error },
+        uncertainty: Some(Uncertainty::Fit {
+            standard: CornerMap { minus: minus.standard_error, plus: plus.standard_error },
+            systematic: CornerMap { minus: minus.systematic_error, plus: plus.systematic_error },
             condition_number: minus.condition_number.max(plus.condition_number),
         }),
     })
@@ -40,30 +43,71 @@ pub fn route(model: &Model, cam: &Cam, at: &CornerImpact) -> Result<Route, Sampl
 
 struct SideFit {
     value: SideMap,
-    error: SideMap,
+    standard_error: SideMap,
+    systematic_error: SideMap,
     condition_number: f64,
 }
 
 fn side_map(map: &OneSidedMap<'_>) -> Result<SideFit, SampleError> {
-    let scales = map.scales() * SPREAD;
+    let scales = map.scales();
     let grid = grid();
-    let ends = grid.iter().map(|z| map.sample(z.component_mul(&scales)).map(|sample| sample.end)).collect::<Result<Vec<_>, _>>()?;
     let monomials = monomials();
-    let design = Mat::from_fn(grid.len(), monomials.len(), |row, column| power(grid[row], monomials[column]));
-    let response = Mat::from_fn(grid.len(), 2, |row, component| ends[row][component]);
-    let fit = fit(&design, &response)?;
-    // The linear monomials follow the constant, in the order of the directions.
-    let entry = |of: &Mat<f64>, component: usize, direction: usize| of[(1 + direction, component)] / scales[direction];
-    let side = |of: &Mat<f64>| SideMap {
-        a: Matrix2::from_fn(|row, column| entry(of, row, column)),
-        b: Vector2::from_fn(|row, _| entry(of, row, 2)),
-    };
-    Ok(SideFit { value: side(&fit.coefficients), error: side(&fit.standard_errors), condition_number: fit.condition_number })
+    let mut failure = None;
+    let mut wider: Option<SideMap> = None;
+    let mut best: Option<(f64, SideFit)> = None;
+    for halving in 0..=WIDTHS {
+        let width = scales / f64::from(1_u32 << halving);
+        let samples = grid.iter().map(|z| map.sample(z.component_mul(&width))).collect::<Result<Vec<_>, _>>();
+        let samples = match samples {
+            Ok(samples) => samples,
+            // Too wide for one impact near the corner: a narrower grid may do.
+            Err(error) => {
+                failure = Some(error);
+                continue;
+            }
+        };
+        let design = Mat::from_fn(grid.len(), monomials.len(), |row, column| {
+            power(samples[row].perturbation.component_div(&width), monomials[column])
+        });
+        let response = Mat::from_fn(grid.len(), 2, |row, component| samples[row].end[component]);
+        let solver = Solver::new(&design)?;
+        let fit = solver.fit(&response);
+        // The linear monomials follow the constant, in the order of the directions.
+        let entry =
+            |of: &Mat<f64>, component: usize, direction: usize| of[(1 + direction, component)] / width[direction];
+        let side = |of: &Mat<f64>| SideMap {
+            a: Matrix2::from_fn(|row, column| entry(of, row, column)),
+            b: Vector2::from_fn(|row, _| entry(of, row, 2)),
+        };
+        let (value, standard_error) = (side(&fit.coefficients), side(&fit.standard_errors));
+        if let Some(wider) = wider {
+            // The bias falls with the fourth power of the width, so this fit keeps a fifteenth of what halving changed.
+            let bias = |wide: f64, here: f64| (wide - here).abs() / 15.0;
+            let systematic_error = SideMap { a: wider.a.zip_map(&value.a, bias), b: wider.b.zip_map(&value.b, bias) };
+            let size = in_scales(&standard_error, &scales) + in_scales(&systematic_error, &scales);
+            if best.as_ref().is_none_or(|(least, _)| size < *least) {
+                best = Some((
+                    size,
+                    SideFit { value, standard_error, systematic_error, condition_number: solver.condition_number },
+                ));
+            }
+        }
+        wider = Some(value);
+    }
+    let singular = SampleError::Singular { what: "coefficients of the fit" };
+    best.map(|(_, fit)| fit).ok_or(failure.unwrap_or(singular))
+}
+
+/// The sum of a map's entries in units of the impact's scales, where they can be added.
+fn in_scales(map: &SideMap, scales: &Vector3<f64>) -> f64 {
+    let row = |row: usize| map.a[(row, 0)] * scales[0] + map.a[(row, 1)] * scales[1] + map.b[row] * scales[2];
+    row(0) / scales[0] + row(1) / scales[1]
 }
 
 /// The design points in units of the scales: Chebyshev nodes in each direction, all combinations.
 fn grid() -> Vec<Vector3<f64>> {
-    let nodes: Vec<f64> = (0..NODES).map(|k| ((2 * k + 1) as f64 * std::f64::consts::PI / (2 * NODES) as f64).cos()).collect();
+    let nodes: Vec<f64> =
+        (0..NODES).map(|k| ((2 * k + 1) as f64 * std::f64::consts::PI / (2 * NODES) as f64).cos()).collect();
     let mut grid = Vec::with_capacity(NODES.pow(3));
     for &first in &nodes {
         for &second in &nodes {
@@ -75,7 +119,8 @@ fn grid() -> Vec<Vector3<f64>> {
 
 /// Exponents of all monomials in three variables up to the degree, by degree; within one, first variable first.
 fn monomials() -> Vec<[u32; 3]> {
-    let of_degree = |degree: u32| (0..=degree).rev().flat_map(move |i| (0..=degree - i).rev().map(move |j| [i, j, degree - i - j]));
+    let of_degree =
+        |degree: u32| (0..=degree).rev().flat_map(move |i| (0..=degree - i).rev().map(move |j| [i, j, degree - i - j]));
     (0..=DEGREE).flat_map(of_degree).collect()
 }
 
@@ -88,32 +133,50 @@ struct Fit {
     coefficients: Mat<f64>,
     /// In the same shape.
     standard_errors: Mat<f64>,
-    condition_number: f64,
 }
 
 /// Ordinary least squares by QR: `min |X beta - Y|`, with `se_j^2 = sigma^2 [(X'X)^{-1}]_jj`, `sigma^2 = |residual|^2/(n - p)`.
-fn fit(design: &Mat<f64>, response: &Mat<f64>) -> Result<Fit, SampleError> {
-    let (rows, columns) = (design.nrows(), design.ncols());
-    let singular = SampleError::Singular { what: "coefficients of the fit" };
-    let singular_values = design.singular_values().map_err(|_| singular)?;
-    let (largest, smallest) = (singular_values[0], singular_values[columns - 1]);
-    if !(smallest > f64::EPSILON * largest) || rows <= columns {
-        return Err(singular);
+struct Solver<'a> {
+    design: &'a Mat<f64>,
+    factors: Qr<f64>,
+    /// Lengths of the rows of R^{-1}: the square roots of the diagonal of (X'X)^{-1} = R^{-1} R^{-T}.
+    row_lengths: Vec<f64>,
+    /// Largest over smallest singular value of X.
+    condition_number: f64,
+}
+
+impl<'a> Solver<'a> {
+    fn new(design: &'a Mat<f64>) -> Result<Self, SampleError> {
+        let (rows, columns) = (design.nrows(), design.ncols());
+        let singular = SampleError::Singular { what: "coefficients of the fit" };
+        let singular_values = design.singular_values().map_err(|_| singular)?;
+        let (largest, smallest) = (singular_values[0], singular_values[columns - 1]);
+        if !(smallest > f64::EPSILON * rows as f64 * largest) || rows <= columns {
+            return Err(singular);
+        }
+        let factors = design.qr();
+        let mut inverse = Mat::<f64>::identity(columns, columns);
+        faer::linalg::triangular_solve::solve_upper_triangular_in_place(
+            factors.thin_R(),
+            inverse.as_mut(),
+            faer::Par::Seq,
+        );
+        let row_lengths = (0..columns).map(|j| inverse.row(j).norm_l2()).collect();
+        Ok(Self { design, factors, row_lengths, condition_number: largest / smallest })
     }
-    let qr = design.qr();
-    let mut solution = response.clone();
-    qr.solve_lstsq_in_place_with_conj(Conj::No, solution.as_mut());
-    let coefficients = solution.get(..columns, ..).to_owned();
-    let residual = response - design * &coefficients;
-    // (X'X)^{-1} = R^{-1} R^{-T}: its diagonal is the squared length of the rows of R^{-1}.
-    let triangle = qr.thin_R();
-    let mut inverse = Mat::<f64>::identity(columns, columns);
-    faer::linalg::triangular_solve::solve_upper_triangular_in_place(triangle, inverse.as_mut(), faer::Par::Seq);
-    let standard_errors = Mat::from_fn(columns, response.ncols(), |j, component| {
-        let variance = residual.col(component).squared_norm_l2() / (rows - columns) as f64;
-        (variance * inverse.row(j).squared_norm_l2()).sqrt()
-    });
-    Ok(Fit { coefficients, standard_errors, condition_number: largest / smallest })
+
+    fn fit(&self, response: &Mat<f64>) -> Fit {
+        let (rows, columns) = (self.design.nrows(), self.design.ncols());
+        let mut solution = response.clone();
+        self.factors.solve_lstsq_in_place_with_conj(Conj::No, solution.as_mut());
+        let coefficients = solution.get(..columns, ..).to_owned();
+        let residual = response - self.design * &coefficients;
+        let standard_errors = Mat::from_fn(columns, response.ncols(), |j, component| {
+            let sigma = residual.col(component).norm_l2() / ((rows - columns) as f64).sqrt();
+            sigma * self.row_lengths[j]
+        });
+        Fit { coefficients, standard_errors }
+    }
 }
 
 #[cfg(test)]
@@ -126,20 +189,21 @@ mod tests {
     fn standard_errors_are_those_of_the_textbook() {
         let design = Mat::from_fn(4, 2, |row, column| if column == 0 { 1.0 } else { row as f64 });
         let response = Mat::from_fn(4, 1, |row, _| [1.0, 3.0, 4.0, 4.0][row]);
-        let Ok(fit) = fit(&design, &response) else { unreachable!("four points determine a line") };
+        let Ok(solver) = Solver::new(&design) else { unreachable!("four points determine a line") };
+        let fit = solver.fit(&response);
         approx::assert_relative_eq!(fit.coefficients[(0, 0)], 1.5, epsilon = 1e-14);
         approx::assert_relative_eq!(fit.coefficients[(1, 0)], 1.0, epsilon = 1e-14);
         approx::assert_relative_eq!(fit.standard_errors[(0, 0)], (0.5_f64 * 0.7).sqrt(), epsilon = 1e-14);
         approx::assert_relative_eq!(fit.standard_errors[(1, 0)], (0.5_f64 / 5.0).sqrt(), epsilon = 1e-14);
         // X'X = [[4, 6], [6, 14]] has eigenvalues 9 +- sqrt(61).
         let ratio = (9.0 + 61.0_f64.sqrt()) / (9.0 - 61.0_f64.sqrt());
-        approx::assert_relative_eq!(fit.condition_number, ratio.sqrt(), epsilon = 1e-13);
+        approx::assert_relative_eq!(solver.condition_number, ratio.sqrt(), epsilon = 1e-13);
     }
 
     #[test]
     fn a_design_without_rank_is_refused() {
         let design = Mat::from_fn(4, 2, |_, _| 1.0);
-        assert!(fit(&design, &Mat::zeros(4, 1)).is_err());
+        assert!(Solver::new(&design).is_err());
     }
 
     #[test]

@@ -12,6 +12,7 @@
 
 use std::f64::consts::{PI, TAU};
 use std::fmt;
+use std::ops::ControlFlow;
 
 use nalgebra::Vector2;
 
@@ -63,19 +64,14 @@ impl CornerImpact {
         Vector2::new(self.state.position - self.origin, self.state.velocity)
     }
 
-    /// The stroboscopic map over `cam` at `period`, s.
-    pub fn map(&self, model: &Model, cam: Cam, period: f64) -> StroboscopicMap {
-        stroboscopic_map(&model.follower, cam, &self.corner, period)
+    /// The stroboscopic map over `cam` at `angular_velocity`, rad/s.
+    pub fn map(&self, model: &Model, cam: Cam, angular_velocity: f64) -> StroboscopicMap {
+        stroboscopic_map(&model.follower, cam, &self.corner, angular_velocity)
     }
 }
 
-fn stroboscopic_map(follower: &Follower, cam: Cam, corner: &Corner, period: f64) -> StroboscopicMap {
-    let machine = Machine {
-        cam,
-        flight: Flight::new(follower),
-        restitution: follower.restitution,
-        angular_velocity: TAU / period,
-    };
+fn stroboscopic_map(follower: &Follower, cam: Cam, corner: &Corner, angular_velocity: f64) -> StroboscopicMap {
+    let machine = Machine { cam, flight: Flight::new(follower), restitution: follower.restitution, angular_velocity };
     StroboscopicMap { machine, cam_angle: (corner.angle + PI) % TAU }
 }
 
@@ -152,7 +148,25 @@ pub fn locate(model: &Model, cam: &Cam) -> Result<(CornerImpact, Vec<CornerImpac
     let (mut found, mut rejected, mut grazing) = (Vec::new(), Vec::new(), None);
     for corner in &corners {
         let equation = PeriodEquation { flight: &flight, corner, restitution: model.follower.restitution };
-        for root in equation.roots(study) {
+        let roots = match equation.roots(study) {
+            Roots::Some(roots) => roots,
+            Roots::All { slowest } => {
+                let speed_rpm = 60.0 / slowest;
+                if equation.rests() {
+                    grazing.get_or_insert(LocateError::Grazing {
+                        file: model.file().into(),
+                        cam_angle: corner.angle,
+                        speed_rpm,
+                        velocity: 0.0,
+                    });
+                } else {
+                    let why = "flights of every period start and end there, so nothing fixes a speed".into();
+                    rejected.push(Rejected { cam_angle: corner.angle, speed_rpm, why });
+                }
+                continue;
+            }
+        };
+        for root in roots {
             match equation.orbit(model, cam, root) {
                 Verdict::Orbit(orbit) => found.push(*orbit),
                 Verdict::Grazing(velocity) => {
@@ -163,7 +177,9 @@ pub fn locate(model: &Model, cam: &Cam) -> Result<(CornerImpact, Vec<CornerImpac
                         velocity,
                     });
                 }
-                Verdict::Rejected(why) => rejected.push(Rejected { cam_angle: corner.angle, speed_rpm: 60.0 / root.period, why }),
+                Verdict::Rejected(why) => {
+                    rejected.push(Rejected { cam_angle: corner.angle, speed_rpm: 60.0 / root.period, why })
+                }
             }
         }
     }
@@ -173,7 +189,8 @@ pub fn locate(model: &Model, cam: &Cam) -> Result<(CornerImpact, Vec<CornerImpac
         return Ok((first, found.collect()));
     }
     Err(grazing.unwrap_or_else(|| {
-        let words = format!("no corner impact of a one-impact, one-revolution orbit up to study.rpm_max = {}", study.rpm_max);
+        let words =
+            format!("no corner impact of a one-impact, one-revolution orbit up to study.rpm_max = {}", study.rpm_max);
         let corners = corners.iter().map(|corner| corner.angle).collect();
         LocateError::NotFound(Box::new(NotFound { study: model.reject("study.rpm_min", words), corners, rejected }))
     }))
@@ -193,6 +210,15 @@ struct Root {
     residual: f64,
 }
 
+/// The roots in range.
+enum Roots {
+    Some(Vec<Root>),
+    /// The equation holds at every speed.
+    All {
+        slowest: f64,
+    },
+}
+
 enum Verdict {
     Orbit(Box<CornerImpact>),
     Grazing(f64),
@@ -205,6 +231,11 @@ impl PeriodEquation<'_> {
 
     fn force(&self) -> f64 {
         self.flight.force(self.corner.plus.value)
+    }
+
+    /// Whether a follower that rests at the corner stays there: no force, and a cam that does not move.
+    fn rests(&self) -> bool {
+        self.force() == 0.0 && self.corner.plus.slope == 0.0
     }
 
     fn cam_velocity(&self, period: f64) -> f64 {
@@ -220,24 +251,27 @@ impl PeriodEquation<'_> {
         (terms.iter().sum(), terms.iter().map(|term| term.abs()).sum())
     }
 
-    /// Every sign change over `[study]`, closed by bisection; one root at the slow end if the equation holds at all speeds.
-    fn roots(&self, study: Study) -> Vec<Root> {
+    /// Every sign change over `[study]`, closed by bisection.
+    fn roots(&self, study: Study) -> Roots {
         let (first, last) = (60.0 / study.rpm_max, 60.0 / study.rpm_min);
         let at = |index: usize| first + (last - first) * index as f64 / Self::SAMPLES as f64;
-        if self.force() == 0.0 && self.corner.plus.slope == 0.0 {
-            return vec![Root { period: last, bracket: [last, last], residual: 0.0 }];
-        }
         let mut roots = Vec::new();
+        let (mut largest, mut largest_term) = (0.0_f64, 0.0_f64);
         let (mut low, mut at_low) = (first, self.evaluate(first).0);
         for index in 1..=Self::SAMPLES {
             let high = at(index);
-            let at_high = self.evaluate(high).0;
+            let (at_high, size) = self.evaluate(high);
+            (largest, largest_term) = (largest.max(at_high.abs()), largest_term.max(size));
             if (at_low < 0.0) != (at_high < 0.0) {
                 roots.push(self.close([low, high], at_low < 0.0));
             }
             (low, at_low) = (high, at_high);
         }
-        roots
+        if largest <= tolerance::DEGENERATE.value * largest_term {
+            Roots::All { slowest: last }
+        } else {
+            Roots::Some(roots)
+        }
     }
 
     /// Bisection down to neighbouring doubles.
@@ -258,12 +292,17 @@ impl PeriodEquation<'_> {
         let response = self.flight.response(period);
         let cam_velocity = self.cam_velocity(period);
         let force = self.force();
-        // A flight that returns to its start whatever its velocity (s = p = 0, or at rest) fixes no v+: only v+ = v- = c'.
-        let free = force == 0.0 && cam_velocity == 0.0
-            || response.impulse.abs() <= tolerance::GRAZING.value * period * response.impulse_rate.abs()
-                && response.step.abs() <= tolerance::GRAZING.value * period * period;
+        // Half-period and full-period resonance (s = 0): any v+ or none brings the flight back after T.
+        let resonant = response.impulse.abs() <= tolerance::GRAZING.value * period * response.impulse_rate.abs();
+        let returns = response.step.abs() <= tolerance::GRAZING.value * period * period;
+        // In full resonance v+ is free: only v+ = v- = c' is an orbit, a graze.
+        let free = resonant && returns;
+        if resonant && !free {
+            return Verdict::Rejected("the flight would need an unbounded velocity: the period is in resonance".into());
+        }
         let velocity_after = if free { cam_velocity } else { -force * response.step / response.impulse };
-        let velocity_before = if free { cam_velocity } else { velocity_after * response.impulse_rate + force * response.impulse };
+        let velocity_before =
+            if free { cam_velocity } else { velocity_after * response.impulse_rate + force * response.impulse };
         let approach = cam_velocity - velocity_before;
         if approach.abs() <= tolerance::GRAZING.value * (cam_velocity.abs() + velocity_before.abs()) {
             return Verdict::Grazing(cam_velocity);
@@ -273,21 +312,29 @@ impl PeriodEquation<'_> {
         }
         let position = self.corner.plus.value;
         let state = self.flight.fly(State { position, velocity: velocity_after }, 0.5 * period).1;
-        let map = stroboscopic_map(&model.follower, cam.clone(), self.corner, period);
-        let back = match map.apply(state) {
-            Ok(back) => back,
+        let map = stroboscopic_map(&model.follower, cam.clone(), self.corner, TAU / period);
+        let (mut impacts, mut elsewhere) = (0, None);
+        let end = map.machine.turn(map.cam_angle, state, TAU, |impact| {
+            impacts += 1;
+            if (impact.turned - PI).abs() <= tolerance::CORNER_ANGLE.value {
+                return ControlFlow::Continue(());
+            }
+            elsewhere = Some(impact.cam_angle);
+            ControlFlow::Break(())
+        });
+        if let Some(angle) = elsewhere {
+            return Verdict::Rejected(format!("the flight meets the cam elsewhere, at {:.4} deg", angle.to_degrees()));
+        }
+        let end = match end {
+            Ok(end) => end,
             Err(error) => return Verdict::Rejected(error.to_string()),
         };
-        let elsewhere = back.impacts.iter().find(|impact| (impact.turned - PI).abs() > tolerance::CORNER_ANGLE.value);
-        if let Some(impact) = elsewhere {
-            let angle = impact.cam_angle.to_degrees();
-            return Verdict::Rejected(format!("the flight meets the cam at {angle:.4} deg before it is back at the corner"));
-        }
         let size = (state.position - position).abs() + period * approach;
-        let closure = ((back.state.position - state.position).abs() + period * (back.state.velocity - state.velocity).abs()) / size;
-        if back.impacts.len() != 1 || closure > tolerance::ORBIT_CLOSURE.value {
-            let impacts = back.impacts.len();
-            return Verdict::Rejected(format!("one revolution has {impacts} impacts and ends {closure:e} of the orbit's size from its start"));
+        let closure = ((end.position - state.position).abs() + period * (end.velocity - state.velocity).abs()) / size;
+        if impacts != 1 || closure > tolerance::ORBIT_CLOSURE.value {
+            return Verdict::Rejected(format!(
+                "one revolution has {impacts} impacts and ends {closure:e} of the orbit's size from its start"
+            ));
         }
         Verdict::Orbit(Box::new(CornerImpact {
             corner: *self.corner,

@@ -80,10 +80,12 @@ pub struct Route {
 /// How well a numerical route knows its entries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Uncertainty {
-    /// Of a fit: a standard error for each entry, and the condition number of the scaled design (both sides' larger one).
-    StandardError {
-        /// For each entry.
-        error: CornerMap,
+    /// Of a fit: two kinds of error, and the condition number of the scaled design (the larger of both sides').
+    Fit {
+        /// Standard error of each entry.
+        standard: CornerMap,
+        /// Estimated bias of each entry.
+        systematic: CornerMap,
         /// Largest over smallest singular value.
         condition_number: f64,
     },

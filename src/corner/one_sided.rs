@@ -27,7 +27,9 @@ pub enum SampleError {
         least: f64,
     },
     /// A perturbed revolution did something else than hit the cam once near the corner.
-    #[error("{side:?} side: a revolution perturbed by {perturbation:?} has {impacts} impacts near the corner or elsewhere instead of one near it")]
+    #[error(
+        "{side:?} side: a revolution perturbed by {perturbation:?} has {impacts} impacts near the corner or elsewhere instead of one near it"
+    )]
     NotOneImpact {
         /// Which side's law.
         side: Side,
@@ -64,6 +66,8 @@ pub struct OneSidedMap<'a> {
 /// A sampled revolution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
+    /// Deviation of position (m), velocity (m/s) and period (s) that the revolution started with.
+    pub perturbation: Vector3<f64>,
     /// Deviation from x* after the revolution: m, m/s.
     pub end: Vector2<f64>,
     /// Cam angle of the impact past the corner, rad.
@@ -103,22 +107,29 @@ impl<'a> OneSidedMap<'a> {
         Vector3::new(approach * period / TAU, approach, time) * (Self::PERTURBATION * self.reach)
     }
 
-    /// One revolution from `x* + (dx1, dx2)` at period `T* + dT`.
+    /// One revolution from about `x* + (dx1, dx2)` at a period of about `T* + dT`; the sample says from where exactly.
     pub fn sample(&self, perturbation: Vector3<f64>) -> Result<Sample, SampleError> {
-        let start = self.at.state;
-        let map = self.at.map(self.model, self.cam.clone(), self.at.period + perturbation[2]);
+        let CornerImpact { state: start, period, .. } = *self.at;
         let state = State { position: start.position + perturbation[0], velocity: start.velocity + perturbation[1] };
+        let (omega, perturbed) = (TAU / period, TAU / (period + perturbation[2]));
+        // A perturbation of a ten-thousandth keeps twelve digits when it is added to x* and T*. What is left of it is known
+        // exactly, the differences of close numbers being exact: dT = 2 pi/w - 2 pi/w* = T* (w* - w)/w.
+        let exact = Vector3::new(
+            state.position - start.position,
+            state.velocity - start.velocity,
+            period * ((omega - perturbed) / perturbed),
+        );
+        let map = self.at.map(self.model, self.cam.clone(), perturbed);
         let back = map.apply(state).map_err(|error| SampleError::Simulate { side: self.side, error })?;
         match back.impacts.as_slice() {
             [impact] if (impact.turned - PI).abs() < self.reach => Ok(Sample {
+                perturbation: exact,
                 end: Vector2::new(back.state.position - start.position, back.state.velocity - start.velocity),
                 past_corner: impact.turned - PI,
             }),
-            impacts => Err(SampleError::NotOneImpact {
-                side: self.side,
-                perturbation: perturbation.into(),
-                impacts: impacts.len(),
-            }),
+            impacts => {
+                Err(SampleError::NotOneImpact { side: self.side, perturbation: exact.into(), impacts: impacts.len() })
+            }
         }
     }
 }

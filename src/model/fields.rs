@@ -125,7 +125,13 @@ impl Fields {
         }
     }
 
-    fn add(&mut self, path: &str, line: usize, spanned: &Spanned<DeValue<'_>>, place: &dyn Fn(Range<usize>) -> (usize, String)) {
+    fn add(
+        &mut self,
+        path: &str,
+        line: usize,
+        spanned: &Spanned<DeValue<'_>>,
+        place: &dyn Fn(Range<usize>) -> (usize, String),
+    ) {
         let (_, written) = place(spanned.span());
         let value = match spanned.get_ref() {
             DeValue::Table(table) => {
@@ -201,10 +207,17 @@ impl Fields {
         let table = table_of(path);
         let siblings = self.known.iter().filter(|known| table_of(known) == table);
         let tables = tables.iter().filter(|known| !known.is_empty() && table_of(known) == table);
-        let allowed: Vec<&str> = siblings.chain(tables).map(|known| known.rsplit('.').next().unwrap_or(known)).collect();
+        let allowed: Vec<&str> =
+            siblings.chain(tables).map(|known| known.rsplit('.').next().unwrap_or(known)).collect();
         let place = if table.is_empty() { "at the top of the file".to_owned() } else { format!("in [{table}]") };
         let words = format!("unknown field; allowed {place}: {}", allowed.join(", "));
         let value = (!matches!(field.value, Value::Table)).then(|| field.written.clone());
-        Err(ModelError { file: self.file.clone(), line: Some(field.line), field: Some(path.clone()), value, allowed: words })
+        Err(ModelError {
+            file: self.file.clone(),
+            line: Some(field.line),
+            field: Some(path.clone()),
+            value,
+            allowed: words,
+        })
     }
 }

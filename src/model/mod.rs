@@ -117,7 +117,9 @@ impl Model {
 
     /// The `[study]` range, or the complaint that it is missing.
     pub fn study(&self) -> Result<Study, ModelError> {
-        self.study.ok_or_else(|| self.reject("study.rpm_min", "is needed here: [study] says where to look for the corner impact"))
+        self.study.ok_or_else(|| {
+            self.reject("study.rpm_min", "is needed here: [study] says where to look for the corner impact")
+        })
     }
 
     /// A complaint about `field` found by a later stage; `allowed` says what would be accepted.

@@ -137,6 +137,9 @@ pub struct RouteEntry {
     /// Of a fit.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub standard_error: Option<Sides<SideEntry>>,
+    /// Estimated bias of a fit.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub systematic_error: Option<Sides<SideEntry>>,
     /// Of a fit's scaled design.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub condition_number: Option<f64>,
@@ -207,6 +210,8 @@ pub struct ClassificationEntry {
     pub real_eigenvalues_below_minus_one: Sides<usize>,
     /// Speeds at which each side's fixed point exists.
     pub fixed_points_exist_for: Sides<&'static str>,
+    /// Whether an orbit of period two is born: the total below -1 is odd.
+    pub period_two_orbit: bool,
     /// Whether each side's fixed point is stable.
     pub stable: Sides<bool>,
     /// Each side's fixed point for dT = 1 s.
@@ -257,21 +262,38 @@ pub struct SkippedEntry {
 impl Verification {
     /// Lays out what was found about `model`.
     pub fn new(model: &Model, findings: &Findings) -> Self {
-        let Findings { at, others, routes, comparisons, border, normal_form, classification, published, skipped, agrees } = findings;
+        let Findings {
+            at,
+            others,
+            routes,
+            comparisons,
+            border,
+            normal_form,
+            classification,
+            published,
+            skipped,
+            agrees,
+        } = findings;
         let eigenvalues = |side: &SideMap| side.eigenvalues().map(|Eigenvalue { re, im }| EigenvalueEntry { re, im });
         let map = &findings.closed_form().map;
         Self {
             schema: "corner-impact/verify/1",
             model: ModelLabel { name: model.name.clone(), source: model.source.clone() },
             corner_impact: Orbit::new(at),
-            other_corner_impacts: others.iter().map(|at| Place { speed_rpm: at.speed_rpm(), cam_angle_rad: at.corner.angle }).collect(),
+            other_corner_impacts: others
+                .iter()
+                .map(|at| Place { speed_rpm: at.speed_rpm(), cam_angle_rad: at.corner.angle })
+                .collect(),
             routes: routes.iter().map(|route| (route.name, RouteEntry::new(route))).collect(),
             agreement: comparisons.iter().map(AgreementEntry::new).collect(),
             eigenvalues: Sides { minus: eigenvalues(&map.minus), plus: eigenvalues(&map.plus) },
             normal_form: normal_form.as_ref().map(NormalFormEntry::new),
             classification: classification.as_ref().map(|verdict| ClassificationEntry::new(verdict, *border)),
             published: published.iter().map(PublishedEntry::new).collect(),
-            skipped: skipped.iter().map(|Skipped { route, why }| SkippedEntry { route: route.clone(), why: why.clone() }).collect(),
+            skipped: skipped
+                .iter()
+                .map(|Skipped { route, why }| SkippedEntry { route: route.clone(), why: why.clone() })
+                .collect(),
             agrees: *agrees,
         }
     }
@@ -293,7 +315,10 @@ impl Orbit {
             velocity_before_m_s: at.velocity_before,
             velocity_after_m_s: at.velocity_after,
             cam_velocity_m_s: at.cam_velocity,
-            cam_acceleration_m_s2: Sides { minus: acceleration(at.corner.minus.curvature), plus: acceleration(at.corner.plus.curvature) },
+            cam_acceleration_m_s2: Sides {
+                minus: acceleration(at.corner.minus.curvature),
+                plus: acceleration(at.corner.plus.curvature),
+            },
         }
     }
 }
@@ -311,18 +336,20 @@ impl Sides<SideEntry> {
 
 impl RouteEntry {
     fn new(route: &Route) -> Self {
-        let (mut standard_error, mut condition, mut last_correction) = (None, None, None);
-        match &route.uncertainty {
-            Some(Uncertainty::StandardError { error, condition_number }) => {
-                standard_error = Some(Sides::new(error));
-                condition = Some(*condition_number);
-            }
-            Some(Uncertainty::LastCorrection(correction)) => last_correction = Some(Sides::new(correction)),
-            None => {}
-        }
         let sides = Sides::new(&route.map);
         let map = MapEntry { minus: sides.minus, plus: sides.plus, c: route.map.c().into(), d: route.map.d() };
-        Self { map, standard_error, condition_number: condition, last_correction }
+        let mut entry =
+            Self { map, standard_error: None, systematic_error: None, condition_number: None, last_correction: None };
+        match &route.uncertainty {
+            Some(Uncertainty::Fit { standard, systematic, condition_number }) => {
+                entry.standard_error = Some(Sides::new(standard));
+                entry.systematic_error = Some(Sides::new(systematic));
+                entry.condition_number = Some(*condition_number);
+            }
+            Some(Uncertainty::LastCorrection(correction)) => entry.last_correction = Some(Sides::new(correction)),
+            None => {}
+        }
+        entry
     }
 }
 
@@ -348,12 +375,13 @@ impl NormalFormEntry {
 
 impl ClassificationEntry {
     fn new(verdict: &Classification, (e, f): (RowVector2<f64>, f64)) -> Self {
-        let Classification { scenario, minus, plus } = verdict;
+        let Classification { scenario, period_two_orbit, minus, plus } = verdict;
         Self {
             scenario: scenario.name(),
             real_eigenvalues_above_one: Sides { minus: minus.above_one, plus: plus.above_one },
             real_eigenvalues_below_minus_one: Sides { minus: minus.below_minus_one, plus: plus.below_minus_one },
             fixed_points_exist_for: Sides { minus: minus.exists_for.name(), plus: plus.exists_for.name() },
+            period_two_orbit: *period_two_orbit,
             stable: Sides { minus: minus.stable, plus: plus.stable },
             fixed_point_per_unit_period: Sides { minus: minus.fixed_point.into(), plus: plus.fixed_point.into() },
             determinant_of_identity_minus_a: Sides { minus: minus.determinant, plus: plus.determinant },

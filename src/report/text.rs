@@ -39,14 +39,23 @@ fn orbit(out: &mut String, document: &Verification) -> fmt::Result {
         significant(at.state_origin_m, 9)
     )?;
     let degrees = at.cam_angle_rad.to_degrees();
-    writeln!(out, "  impact   at cam angle {degrees:.6} deg, where c'' jumps from {:.4} to {:.4} m/s^2", at.cam_acceleration_m_s2.minus, at.cam_acceleration_m_s2.plus)?;
+    writeln!(
+        out,
+        "  impact   at cam angle {degrees:.6} deg, where c'' jumps from {:.4} to {:.4} m/s^2",
+        at.cam_acceleration_m_s2.minus, at.cam_acceleration_m_s2.plus
+    )?;
     writeln!(
         out,
         "           q = {:.9} m, v = {:.6} before and {:.6} after, c' = {:.6} m/s",
         at.position_m, at.velocity_before_m_s, at.velocity_after_m_s, at.cam_velocity_m_s
     )?;
     for other in &document.other_corner_impacts {
-        writeln!(out, "  also     {:.6} rpm at {:.6} deg: narrow [study] to verify that one", other.speed_rpm, other.cam_angle_rad.to_degrees())?;
+        writeln!(
+            out,
+            "  also     {:.6} rpm at {:.6} deg: narrow [study] to verify that one",
+            other.speed_rpm,
+            other.cam_angle_rad.to_degrees()
+        )?;
     }
     Ok(())
 }
@@ -56,9 +65,16 @@ fn map(out: &mut String, document: &Verification) -> fmt::Result {
     side(out, document, "minus", "impact before the corner")?;
     side(out, document, "plus", "impact after the corner")?;
     for (name, route) in &document.routes {
-        if let (Some(error), Some(condition)) = (&route.standard_error, route.condition_number) {
-            let (a, b) = largest(error);
-            writeln!(out, "  {}: standard errors up to {a:.1e} in A, {b:.1e} in B; condition number {condition:.1}", spoken(name))?;
+        if let (Some(standard), Some(systematic), Some(condition)) =
+            (&route.standard_error, &route.systematic_error, route.condition_number)
+        {
+            let ((a, b), (bias_a, bias_b)) = (largest(standard), largest(systematic));
+            writeln!(
+                out,
+                "  {}: standard error up to {a:.1e} in A, {b:.1e} in B; bias up to {bias_a:.1e}, {bias_b:.1e};",
+                spoken(name)
+            )?;
+            writeln!(out, "  {:width$}  condition number {condition:.1}", "", width = name.len())?;
         }
         if let Some(correction) = &route.last_correction {
             let (a, b) = largest(correction);
@@ -69,15 +85,20 @@ fn map(out: &mut String, document: &Verification) -> fmt::Result {
 }
 
 fn side(out: &mut String, document: &Verification, name: &str, when: &str) -> fmt::Result {
-    let of = |sides: &Sides<SideEntry>| if name == "minus" { sides.minus } else { sides.plus };
+    let of = |sides: &Sides<SideEntry>| {
+        if name == "minus" { sides.minus } else { sides.plus }
+    };
     write!(out, "  {name:<6}")?;
-    let routes: Vec<_> = document.routes.iter().map(|(route, entry)| {
-        (spoken(route), of(&Sides { minus: entry.map.minus, plus: entry.map.plus }))
-    }).collect();
+    let routes: Vec<_> = document
+        .routes
+        .iter()
+        .map(|(route, entry)| (spoken(route), of(&Sides { minus: entry.map.minus, plus: entry.map.plus })))
+        .collect();
     for (route, _) in &routes {
         write!(out, "{route:>18}")?;
     }
-    let printed = |quantity: &str| document.published.iter().find(|entry| entry.quantity == format!("{quantity}_{name}"));
+    let printed =
+        |quantity: &str| document.published.iter().find(|entry| entry.quantity == format!("{quantity}_{name}"));
     if printed("A").is_some() {
         write!(out, "{:>21}", "printed")?;
     }
@@ -120,7 +141,8 @@ fn agreement(out: &mut String, document: &Verification) -> fmt::Result {
     writeln!(out, "  {:<20}{:<40}{:>12}{:>12}  shared", "quantity", "routes", "differ by", "allowed")?;
     for AgreementEntry { routes: [left, right], quantity, max_abs_diff, tolerance, agrees, .. } in &document.agreement {
         let pair = format!("{} - {}", spoken(left), spoken(right));
-        let shared = shared_decimals(*max_abs_diff).map_or("all digits".to_owned(), |decimals| format!("{decimals} decimals"));
+        let shared =
+            shared_decimals(*max_abs_diff).map_or("all digits".to_owned(), |decimals| format!("{decimals} decimals"));
         let flag = if *agrees { "" } else { "   DISAGREE" };
         writeln!(out, "  {quantity:<20}{pair:<40}{max_abs_diff:>12.1e}{tolerance:>12.1e}  {shared}{flag}")?;
     }
@@ -130,25 +152,56 @@ fn agreement(out: &mut String, document: &Verification) -> fmt::Result {
 fn bifurcation(out: &mut String, document: &Verification) -> fmt::Result {
     heading(out, "What happens there")?;
     let eigenvalues = |pair: &[super::document::EigenvalueEntry; 2]| {
-        let one = |re: f64, im: f64| if im == 0.0 { format!("{re:.9}") } else { format!("{re:.9} {} {:.9}i", if im < 0.0 { '-' } else { '+' }, im.abs()) };
+        let one = |re: f64, im: f64| {
+            if im == 0.0 {
+                format!("{re:.9}")
+            } else {
+                format!("{re:.9} {} {:.9}i", if im < 0.0 { '-' } else { '+' }, im.abs())
+            }
+        };
         format!("{},  {}", one(pair[0].re, pair[0].im), one(pair[1].re, pair[1].im))
     };
     writeln!(out, "  eigenvalues of A-   {}", eigenvalues(&document.eigenvalues.minus))?;
     writeln!(out, "  eigenvalues of A+   {}", eigenvalues(&document.eigenvalues.plus))?;
     if let Some(form) = &document.normal_form {
-        let matrix = |m: &[[f64; 2]; 2]| format!("[[{:.9}, {:.9}], [{:.9}, {:.9}]]", m[0][0], m[0][1], m[1][0], m[1][1]);
+        let matrix = |m: &[[f64; 2]; 2]| {
+            let [a, b, c, d] = [m[0][0], m[0][1], m[1][0], m[1][1]].map(entry);
+            format!("[[{a}, {b}], [{c}, {d}]]")
+        };
         writeln!(out, "  normal form         A-bar {}", matrix(&form.a_bar_minus))?;
         writeln!(out, "                      A+bar {}", matrix(&form.a_bar_plus))?;
-        writeln!(out, "                      B bar ({}, {}),  C bar ({:.0}, {:.0})", significant(form.b_bar[0], 9), significant(form.b_bar[1], 9), form.c_bar[0], form.c_bar[1])?;
+        writeln!(
+            out,
+            "                      B bar ({}, {}),  C bar ({}, {})",
+            entry(form.b_bar[0]),
+            entry(form.b_bar[1]),
+            entry(form.c_bar[0]),
+            entry(form.c_bar[1])
+        )?;
     }
     if let Some(verdict) = &document.classification {
         let above = &verdict.real_eigenvalues_above_one;
         let below = &verdict.real_eigenvalues_below_minus_one;
-        writeln!(out, "  Feigin's counts     {} + {} real eigenvalues above 1, {} + {} below -1", above.minus, above.plus, below.minus, below.plus)?;
-        writeln!(out, "  verdict             {}", verdict.scenario)?;
-        let fate = |stable: bool, speeds: &str| format!("{} one at speeds {speeds} than omega*", if stable { "a stable" } else { "an unstable" });
-        writeln!(out, "  fixed points        minus: {}", fate(verdict.stable.minus, verdict.fixed_points_exist_for.minus))?;
-        writeln!(out, "                      plus:  {}", fate(verdict.stable.plus, verdict.fixed_points_exist_for.plus))?;
+        writeln!(
+            out,
+            "  Feigin's counts     {} + {} real eigenvalues above 1, {} + {} below -1",
+            above.minus, above.plus, below.minus, below.plus
+        )?;
+        let born = if verdict.period_two_orbit { ", and an orbit of period two on one side of omega*" } else { "" };
+        writeln!(out, "  verdict             {}{born}", verdict.scenario)?;
+        let fate = |stable: bool, speeds: &str| {
+            format!("{} one at speeds {speeds} than omega*", if stable { "a stable" } else { "an unstable" })
+        };
+        writeln!(
+            out,
+            "  fixed points        minus: {}",
+            fate(verdict.stable.minus, verdict.fixed_points_exist_for.minus)
+        )?;
+        writeln!(
+            out,
+            "                      plus:  {}",
+            fate(verdict.stable.plus, verdict.fixed_points_exist_for.plus)
+        )?;
     }
     Ok(())
 }
@@ -160,13 +213,23 @@ fn published(out: &mut String, document: &Verification) -> fmt::Result {
     heading(out, "The paper's printed numbers")?;
     for entry in &document.published {
         let PublishedEntry { quantity, place, max_abs_diff, verdict, as_found, .. } = entry;
-        let shared = shared_decimals(*max_abs_diff).map_or("all digits".to_owned(), |decimals| format!("{decimals} decimals"));
+        let shared =
+            shared_decimals(*max_abs_diff).map_or("all digits".to_owned(), |decimals| format!("{decimals} decimals"));
         let flag = if *as_found { "" } else { "   UNEXPECTED" };
-        writeln!(out, "  {quantity:<20}{place:<20}differs by {max_abs_diff:.1e}, shares {shared:<14}{verdict}{flag}")?;
+        writeln!(
+            out,
+            "  {quantity:<20}{place:<20}differs by {max_abs_diff:>7.1e}, shares {shared:<13}{verdict}{flag}"
+        )?;
     }
     for entry in document.published.iter().filter(|entry| !entry.note.is_empty()) {
         let computed: Vec<_> = entry.computed.iter().map(|value| significant(*value, 10)).collect();
-        let words = format!("{}, printed ({}), computed ({}): {}", entry.quantity, entry.printed.join(", "), computed.join(", "), entry.note);
+        let words = format!(
+            "{}, printed ({}), computed ({}): {}",
+            entry.quantity,
+            entry.printed.join(", "),
+            computed.join(", "),
+            entry.note
+        );
         writeln!(out)?;
         paragraph(out, &words)?;
     }
@@ -184,15 +247,34 @@ fn verdict(out: &mut String, document: &Verification) -> fmt::Result {
     let failed = document.agreement.iter().filter(|entry| !entry.agrees).count();
     let unexpected = document.published.iter().filter(|entry| !entry.as_found).count();
     let wrong = document.published.iter().filter(|entry| entry.as_found && !entry.agrees).count();
-    let maps = document.agreement.iter().filter(|entry| ["A_minus", "A_plus", "B_minus", "B_plus"].contains(&entry.quantity.as_str()));
+    let maps = document
+        .agreement
+        .iter()
+        .filter(|entry| ["A_minus", "A_plus", "B_minus", "B_plus"].contains(&entry.quantity.as_str()));
     let fewest = maps.filter_map(|entry| shared_decimals(entry.max_abs_diff)).min();
     let shared = fewest.map_or("all digits".to_owned(), |decimals| format!("{decimals} decimals or more"));
-    writeln!(out, "  {} of {} comparisons agree; every entry of A and B shares {shared}.", document.agreement.len() - failed, document.agreement.len())?;
+    writeln!(
+        out,
+        "  {} of {} comparisons agree; every entry of A and B shares {shared}.",
+        document.agreement.len() - failed,
+        document.agreement.len()
+    )?;
     if !document.published.is_empty() {
         let right = document.published.len() - wrong - unexpected;
-        writeln!(out, "  Of the paper's {} printed numbers {right} hold and {wrong} are wrong, as found before; {unexpected} came out otherwise.", document.published.len())?;
+        writeln!(
+            out,
+            "  Of the paper's {} printed numbers {right} hold and {wrong} are wrong, as found before; {unexpected} came out otherwise.",
+            document.published.len()
+        )?;
     }
     writeln!(out, "  {}", if document.agrees { "AGREES" } else { "DISAGREES" })
+}
+
+/// Nine decimals, without trailing zeros.
+fn entry(value: f64) -> String {
+    let text = format!("{value:.9}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".into() } else { text.into() }
 }
 
 /// `significant` digits, without trailing zeros.

@@ -15,8 +15,8 @@ pub(super) struct Gap {
     pub rate: f64,
     /// g'', m/s^2.
     pub curvature: f64,
-    /// A bound on `|g'''|` from here to the end of the segment, m/s^3.
-    pub third_bound: f64,
+    /// A guess at `|g'''|` from here on, m/s^3: it sets which step is tried first, never which is certain.
+    pub third: f64,
 }
 
 /// What the search found.
@@ -34,12 +34,13 @@ pub(super) enum Outcome {
     NotFinite,
 }
 
-/// The first contact within `[0, end]`, s.
-pub(super) fn first_contact(gap_at: impl Fn(f64) -> Gap, end: f64) -> Outcome {
+/// The first contact within `[0, end]`, s, of the gap `gap_at(time)`; `third_bound(time, reach)` bounds `|g'''|` over
+/// `[time, time + reach]`.
+pub(super) fn first_contact(gap_at: impl Fn(f64) -> Gap, third_bound: impl Fn(f64, f64) -> f64, end: f64) -> Outcome {
     let mut time = 0.0;
     loop {
         let gap = gap_at(time);
-        if !(gap.value.is_finite() && gap.rate.is_finite() && gap.curvature.is_finite() && gap.third_bound.is_finite()) {
+        if !(gap.value.is_finite() && gap.rate.is_finite() && gap.curvature.is_finite()) {
             return Outcome::NotFinite;
         }
         if gap.value < -gap.rounding && (time == 0.0 || gap.rate >= 0.0) {
@@ -48,7 +49,7 @@ pub(super) fn first_contact(gap_at: impl Fn(f64) -> Gap, end: f64) -> Outcome {
         if gap.value <= gap.rounding && gap.rate < 0.0 {
             return Outcome::Contact(polish(&gap_at, time, &gap, end));
         }
-        let step = free_time(gap, end - time);
+        let step = free_time(&gap, |reach| third_bound(time, reach), end - time);
         if time + step >= end {
             return Outcome::None;
         }
@@ -67,19 +68,30 @@ fn polish(gap_at: impl Fn(f64) -> Gap, time: f64, gap: &Gap, end: f64) -> f64 {
 }
 
 /// A time ahead, at most `end`, before which the gap is certainly open.
-fn free_time(gap: Gap, end: f64) -> f64 {
-    // Leaving a tangency: the parabola opens upwards for this long whatever the third derivative does.
-    let mut best = if gap.curvature > 0.0 && gap.rate >= 0.0 { end.min(3.0 * gap.curvature / gap.third_bound) } else { 0.0 };
+fn free_time(gap: &Gap, third_bound: impl Fn(f64) -> f64, end: f64) -> f64 {
+    let value = gap.value.max(0.0);
+    // Over [0, reach] the cubic minorant lies above the parabola with curvature g'' - M reach/3.
+    let open = |reach: f64, bound: f64| first_root(value, gap.rate, gap.curvature - bound * reach / 3.0).min(reach);
     let mut reach = end;
-    // Over [0, reach] the cubic minorant lies above the parabola with curvature g'' - M reach/3. A shorter reach bends it
-    // less: three rounds bring it within a part in eight of the cubic's own root.
+    // A shorter reach bends the parabola less: three rounds bring it within a part in eight of the cubic's own root.
     for _ in 0..4 {
-        let root = first_root(gap.value.max(0.0), gap.rate, gap.curvature - gap.third_bound * reach / 3.0);
-        best = best.max(root.min(reach));
-        if root >= 0.5 * reach || root == 0.0 {
+        let root = open(reach, gap.third);
+        if root >= 0.5 * reach {
             break;
         }
-        reach = 2.0 * root;
+        // Leaving a tangency the parabola opens upwards for a time that its curvature sets.
+        let upwards = if gap.curvature > 0.0 { gap.curvature / gap.third } else { 0.0 };
+        reach = reach.min((2.0 * root).max(upwards));
+    }
+    let mut best: f64 = 0.0;
+    // What was a guess becomes certain: the bound over the reach, which shrinks until the bound lets a good part of it pass.
+    for _ in 0..24 {
+        let root = open(reach, third_bound(reach));
+        best = best.max(root);
+        if root >= 0.5 * reach {
+            break;
+        }
+        reach = (2.0 * root).max(0.25 * reach);
     }
     best
 }

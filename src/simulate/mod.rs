@@ -5,6 +5,8 @@
 
 mod contact;
 
+use std::ops::ControlFlow;
+
 use crate::cam::Cam;
 use crate::flight::{Flight, State};
 use crate::impact::rebound;
@@ -97,8 +99,15 @@ impl Machine {
 
     /// Turns the cam by `turn`, rad, from `cam_angle`, rad, in `[0, 2 pi)`, and returns the state there.
     ///
-    /// `observe` sees every impact; one in the last instant is left to the run that goes on from there.
-    pub fn turn(&self, cam_angle: f64, start: State, turn: f64, mut observe: impl FnMut(&Impact)) -> Result<State, SimulateError> {
+    /// `observe` sees every impact, and may end the run right after one; an impact in the last instant is left to the run
+    /// that goes on from there.
+    pub fn turn(
+        &self,
+        cam_angle: f64,
+        start: State,
+        turn: f64,
+        mut observe: impl FnMut(&Impact) -> ControlFlow<()>,
+    ) -> Result<State, SimulateError> {
         let segment = self.cam.segment_at(cam_angle);
         let lift = self.cam.lift(cam_angle).value;
         let mut gap = start.position - lift;
@@ -115,17 +124,19 @@ impl Machine {
             let lift = self.cam.segments()[now.segment].law.lift(now.cam_angle);
             let cam_velocity = lift.slope * self.angular_velocity;
             let velocity_before = now.state.velocity;
-            let velocity_after = rebound(self.restitution, velocity_before, cam_velocity);
+            let mut velocity_after = rebound(self.restitution, velocity_before, cam_velocity);
+            // Impacts that accumulate die out here, and not in the rounding of two velocities.
+            if (velocity_after - cam_velocity).abs() <= tolerance::RELATIVE_VELOCITY_ROUNDING.value * cam_velocity.abs()
+            {
+                velocity_after = cam_velocity;
+            }
             now.state = State { position: lift.value, velocity: velocity_after };
             gap = 0.0;
-            observe(&Impact {
-                turned: now.turned,
-                cam_angle: now.cam_angle,
-                position: lift.value,
-                velocity_before,
-                velocity_after,
-                cam_velocity,
-            });
+            let (turned, cam_angle, position) = (now.turned, now.cam_angle, lift.value);
+            let impact = Impact { turned, cam_angle, position, velocity_before, velocity_after, cam_velocity };
+            if observe(&impact).is_break() {
+                return Ok(now.state);
+            }
         }
         Err(SimulateError::Accumulating { impacts: Self::MOST_IMPACTS, cam_angle: now.cam_angle })
     }
@@ -152,7 +163,8 @@ impl Machine {
                     state: self.flight.fly(from.state, piece.time + time).1,
                 }
             };
-            match first_contact(gap_at, span / self.angular_velocity) {
+            let third_bound = |time: f64, reach: f64| self.third_bound(from.state, &piece, time, reach);
+            match first_contact(gap_at, third_bound, span / self.angular_velocity) {
                 Outcome::None if last => return Ok(land(false, span / self.angular_velocity)),
                 Outcome::None => {
                     let next = (piece.segment + 1) % segments.len();
@@ -163,16 +175,24 @@ impl Machine {
                         // A continued law leaves a step in the lift at its far end; it counts as rise.
                         rise: piece.rise
                             + segment.law.rise(piece.angle, span)
-                            + (segments[next].law.lift(segments[next].start).value - segment.law.lift(segment.end).value),
+                            + (segments[next].law.lift(segments[next].start).value
+                                - segment.law.lift(segment.end).value),
                     };
                     turned += span;
                 }
                 Outcome::Contact(time) => return Ok(land(true, time)),
-                Outcome::Resting => return Err(SimulateError::Sticking { cam_angle: piece.angle }),
-                Outcome::Below { depth, time } => {
-                    return Err(SimulateError::BelowCam { depth, cam_angle: piece.angle + time * self.angular_velocity });
+                Outcome::Resting => {
+                    return Err(SimulateError::Sticking { cam_angle: piece.angle });
                 }
-                Outcome::NotFinite => return Err(SimulateError::NotFinite { cam_angle: piece.angle }),
+                Outcome::Below { depth, time } => {
+                    return Err(SimulateError::BelowCam {
+                        depth,
+                        cam_angle: piece.angle + time * self.angular_velocity,
+                    });
+                }
+                Outcome::NotFinite => {
+                    return Err(SimulateError::NotFinite { cam_angle: piece.angle });
+                }
             }
         }
     }
@@ -189,7 +209,16 @@ impl Machine {
             rounding: tolerance::GAP_ROUNDING.value * (gap.abs() + displacement.abs() + rise.abs()),
             rate: state.velocity - omega * lift.slope,
             curvature: self.flight.acceleration(state) - omega * omega * lift.curvature,
-            third_bound: self.flight.jerk_bound(state) + omega.powi(3) * segment.third_bound,
+            third: 2.0 * (self.flight.jerk(state) - omega.powi(3) * lift.third).abs(),
         }
+    }
+
+    /// A bound on `|g'''|` over `[time, time + reach]` of `piece`.
+    fn third_bound(&self, start: State, piece: &Piece, time: f64, reach: f64) -> f64 {
+        let omega = self.angular_velocity;
+        let angle = piece.angle + omega * time;
+        let (_, state) = self.flight.fly(start, piece.time + time);
+        let law = &self.cam.segments()[piece.segment].law;
+        self.flight.jerk_bound(state) + omega.powi(3) * law.third_bound(angle, angle + omega * reach)
     }
 }
