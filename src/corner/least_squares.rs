@@ -1,9 +1,9 @@
 //! A and B as the paper estimates them: a least-squares fit to simulated revolutions from perturbed starts.
 //!
 //! The paper fits a linear map, so the curvature of the real map goes into its coefficients.
-//! Here the perturbations are scaled by the impact's own scales, placed on a grid of Chebyshev nodes, and fitted with all
+//! Here the perturbations are scaled by the impact's own scales, spread over a cube, and fitted with all
 //! monomials up to the fourth degree, so that what the linear coefficients take on from the map's curvature is of the
-//! fifth. Their standard errors come from the residual; their bias, which no residual shows in full, from a grid twice as
+//! fifth. Their standard errors come from the residual; their bias, which no residual shows in full, from a cube twice as
 //! wide.
 
 use faer::linalg::solvers::{Qr, SolveLstsqCore};
@@ -18,10 +18,10 @@ use crate::model::Model;
 
 /// Highest total degree of the fitted monomials.
 const DEGREE: u32 = 4;
-/// Nodes in each direction: one more than the degree, so that the grid determines every monomial, with room for a residual.
-const NODES: usize = DEGREE as usize + 1;
+/// Revolutions in a fit: four for each of the 35 monomials.
+const POINTS: usize = 140;
 
-/// Halvings of the grid that are tried, from the impact's own scales down. What the missing degrees put into the linear
+/// Halvings of the cube that are tried, from the impact's own scales down. What the missing degrees put into the linear
 /// coefficients falls with the fourth power of the width, and rounding rises with its inverse: the fit that is kept has the
 /// smallest sum of standard error and bias.
 const WIDTHS: u32 = 8;
@@ -50,26 +50,26 @@ struct SideFit {
 
 fn side_map(map: &OneSidedMap<'_>) -> Result<SideFit, SampleError> {
     let scales = map.scales();
-    let grid = grid();
+    let points = design_points();
     let monomials = monomials();
     let mut failure = None;
     let mut wider: Option<SideMap> = None;
     let mut best: Option<(f64, SideFit)> = None;
     for halving in 0..=WIDTHS {
         let width = scales / f64::from(1_u32 << halving);
-        let samples = grid.iter().map(|z| map.sample(z.component_mul(&width))).collect::<Result<Vec<_>, _>>();
+        let samples = points.iter().map(|z| map.sample(z.component_mul(&width))).collect::<Result<Vec<_>, _>>();
         let samples = match samples {
             Ok(samples) => samples,
-            // Too wide for one impact near the corner: a narrower grid may do.
+            // Too wide for one impact near the corner: a narrower cube may do.
             Err(error) => {
                 failure = Some(error);
                 continue;
             }
         };
-        let design = Mat::from_fn(grid.len(), monomials.len(), |row, column| {
+        let design = Mat::from_fn(points.len(), monomials.len(), |row, column| {
             power(samples[row].perturbation.component_div(&width), monomials[column])
         });
-        let response = Mat::from_fn(grid.len(), 2, |row, component| samples[row].end[component]);
+        let response = Mat::from_fn(points.len(), 2, |row, component| samples[row].end[component]);
         let solver = Solver::new(&design)?;
         let fit = solver.fit(&response);
         // The linear monomials follow the constant, in the order of the directions.
@@ -104,17 +104,15 @@ fn in_scales(map: &SideMap, scales: &Vector3<f64>) -> f64 {
     row(0) / scales[0] + row(1) / scales[1]
 }
 
-/// The design points in units of the scales: Chebyshev nodes in each direction, all combinations.
-fn grid() -> Vec<Vector3<f64>> {
-    let nodes: Vec<f64> =
-        (0..NODES).map(|k| ((2 * k + 1) as f64 * std::f64::consts::PI / (2 * NODES) as f64).cos()).collect();
-    let mut grid = Vec::with_capacity(NODES.pow(3));
-    for &first in &nodes {
-        for &second in &nodes {
-            grid.extend(nodes.iter().map(|&third| Vector3::new(first, second, third)));
-        }
-    }
-    grid
+/// The design points in units of the scales: an additive recurrence, bent towards the faces like Chebyshev nodes.
+///
+/// No two points share a coordinate, as those of a grid do, so that the rounding that a perturbation of the period brings
+/// into its revolutions is a different one in each, and standard errors mean what they say.
+fn design_points() -> Vec<Vector3<f64>> {
+    // Fractional parts of n/g, n/g^2, n/g^3 with g^4 = g + 1 fill the cube evenly.
+    const G: f64 = 1.2207440846057596;
+    let coordinate = |n: usize, power: i32| (std::f64::consts::PI * (0.5 + n as f64 / G.powi(power)).fract()).cos();
+    (0..POINTS).map(|n| Vector3::new(coordinate(n, 1), coordinate(n, 2), coordinate(n, 3))).collect()
 }
 
 /// Exponents of all monomials in three variables up to the degree, by degree; within one, first variable first.

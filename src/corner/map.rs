@@ -89,6 +89,6 @@ pub enum Uncertainty {
         /// Largest over smallest singular value.
         condition_number: f64,
     },
-    /// Of an extrapolation: the last correction to each entry.
-    LastCorrection(CornerMap),
+    /// Of an extrapolation: the last correction to each entry and the rounding in it.
+    Extrapolation(CornerMap),
 }

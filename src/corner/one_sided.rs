@@ -107,6 +107,14 @@ impl<'a> OneSidedMap<'a> {
         Vector3::new(approach * period / TAU, approach, time) * (Self::PERTURBATION * self.reach)
     }
 
+    /// How far rounding may move the end of a revolution: a few ulps of the largest position and velocity on the way.
+    pub fn rounding(&self) -> Vector2<f64> {
+        let CornerImpact { state, velocity_before, velocity_after, .. } = *self.at;
+        let position = state.position.abs().max(self.at.corner.plus.value);
+        let velocity = state.velocity.abs().max(velocity_before.abs()).max(velocity_after.abs());
+        Vector2::new(position, velocity) * (4.0 * f64::EPSILON)
+    }
+
     /// One revolution from about `x* + (dx1, dx2)` at a period of about `T* + dT`; the sample says from where exactly.
     pub fn sample(&self, perturbation: Vector3<f64>) -> Result<Sample, SampleError> {
         let CornerImpact { state: start, period, .. } = *self.at;

@@ -145,7 +145,7 @@ pub struct RouteEntry {
     pub condition_number: Option<f64>,
     /// Of an extrapolation.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub last_correction: Option<Sides<SideEntry>>,
+    pub extrapolation_error: Option<Sides<SideEntry>>,
 }
 
 /// A comparison.
@@ -339,14 +339,14 @@ impl RouteEntry {
         let sides = Sides::new(&route.map);
         let map = MapEntry { minus: sides.minus, plus: sides.plus, c: route.map.c().into(), d: route.map.d() };
         let mut entry =
-            Self { map, standard_error: None, systematic_error: None, condition_number: None, last_correction: None };
+            Self { map, standard_error: None, systematic_error: None, condition_number: None, extrapolation_error: None };
         match &route.uncertainty {
             Some(Uncertainty::Fit { standard, systematic, condition_number }) => {
                 entry.standard_error = Some(Sides::new(standard));
                 entry.systematic_error = Some(Sides::new(systematic));
                 entry.condition_number = Some(*condition_number);
             }
-            Some(Uncertainty::LastCorrection(correction)) => entry.last_correction = Some(Sides::new(correction)),
+            Some(Uncertainty::Extrapolation(correction)) => entry.extrapolation_error = Some(Sides::new(correction)),
             None => {}
         }
         entry

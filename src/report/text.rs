@@ -76,9 +76,9 @@ fn map(out: &mut String, document: &Verification) -> fmt::Result {
             )?;
             writeln!(out, "  {:width$}  condition number {condition:.1}", "", width = name.len())?;
         }
-        if let Some(correction) = &route.last_correction {
+        if let Some(correction) = &route.extrapolation_error {
             let (a, b) = largest(correction);
-            writeln!(out, "  {}: last correction up to {a:.1e} in A, {b:.1e} in B", spoken(name))?;
+            writeln!(out, "  {}: error estimate up to {a:.1e} in A, {b:.1e} in B", spoken(name))?;
         }
     }
     Ok(())
@@ -187,7 +187,7 @@ fn bifurcation(out: &mut String, document: &Verification) -> fmt::Result {
             "  Feigin's counts     {} + {} real eigenvalues above 1, {} + {} below -1",
             above.minus, above.plus, below.minus, below.plus
         )?;
-        let born = if verdict.period_two_orbit { ", and an orbit of period two on one side of omega*" } else { "" };
+        let born = if verdict.period_two_orbit && verdict.scenario != "nonsmooth-flip" { ", and an orbit of period two" } else { "" };
         writeln!(out, "  verdict             {}{born}", verdict.scenario)?;
         let fate = |stable: bool, speeds: &str| {
             format!("{} one at speeds {speeds} than omega*", if stable { "a stable" } else { "an unstable" })
