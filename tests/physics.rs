@@ -1,4 +1,5 @@
 //! Do flight, impact and cam obey their own laws, for every damping and stiffness?
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 mod common;
 
@@ -106,7 +107,8 @@ fn the_jerk_and_its_bound() {
         let h = 1e-6;
         for k in 0..60 {
             let now = flight.fly(start, 0.004 * f64::from(k)).1;
-            let (before, after) = (flight.fly(start, 0.004 * f64::from(k) + h).1, flight.fly(start, 0.004 * f64::from(k) + 2.0 * h).1);
+            let (before, after) =
+                (flight.fly(start, 0.004 * f64::from(k) + h).1, flight.fly(start, 0.004 * f64::from(k) + 2.0 * h).1);
             let slope = (flight.acceleration(after) - flight.acceleration(now)) / (2.0 * h);
             let scale = flight.jerk_bound(start);
             assert_abs_diff_eq!(flight.jerk(before), slope, epsilon = 1e-4 * scale + 1e-6);
@@ -116,7 +118,8 @@ fn the_jerk_and_its_bound() {
         }
         // Not an empty bound: undamped it is the amplitude of the jerk.
         if follower.damping == 0.0 && follower.stiffness > 0.0 {
-            let largest = (0..1000).map(|k| flight.jerk(flight.fly(start, 2e-4 * f64::from(k)).1).abs()).fold(0.0, f64::max);
+            let largest =
+                (0..1000).map(|k| flight.jerk(flight.fly(start, 2e-4 * f64::from(k)).1).abs()).fold(0.0, f64::max);
             assert_relative_eq!(flight.jerk_bound(start), largest, max_relative = 1e-4);
         }
     }
@@ -155,19 +158,34 @@ fn cam_derivatives_bounds_and_rises() {
                 let scale = 1.0 + lift.third.abs() / span;
                 assert_abs_diff_eq!(lift.slope, (ahead.value - behind.value) / (2.0 * h), epsilon = 1e-6 * scale);
                 assert_abs_diff_eq!(lift.curvature, (ahead.slope - behind.slope) / (2.0 * h), epsilon = 1e-5 * scale);
-                assert_abs_diff_eq!(lift.third, (ahead.curvature - behind.curvature) / (2.0 * h), epsilon = 1e-4 * scale);
+                assert_abs_diff_eq!(
+                    lift.third,
+                    (ahead.curvature - behind.curvature) / (2.0 * h),
+                    epsilon = 1e-4 * scale
+                );
                 assert!(lift.third.abs() <= bound * (1.0 + 1e-12), "{file:?}: {} above {bound}", lift.third);
                 largest = largest.max(lift.third.abs());
-                assert_abs_diff_eq!(law.rise(segment.start, angle - segment.start), lift.value - law.lift(segment.start).value, epsilon = 1e-15);
+                assert_abs_diff_eq!(
+                    law.rise(segment.start, angle - segment.start),
+                    lift.value - law.lift(segment.start).value,
+                    epsilon = 1e-15
+                );
                 // A tiny turn keeps its digits.
                 let turn = 1e-9;
-                assert_abs_diff_eq!(law.rise(angle, turn), turn * (lift.slope + 0.5 * turn * lift.curvature), epsilon = 1e-23);
+                assert_abs_diff_eq!(
+                    law.rise(angle, turn),
+                    turn * (lift.slope + 0.5 * turn * lift.curvature),
+                    epsilon = 1e-23
+                );
             }
             // Over short stretches the bound is close to what it bounds.
             if largest > 0.0 {
                 let (start, end) = (segment.start + 0.50 * span, segment.start + 0.51 * span);
                 let local = law.third_bound(start, end);
-                assert!(local < 12.0 * law.lift(0.5 * (start + end)).third.abs() + 3.0 * law.lift(start).value, "{file:?} {local}");
+                assert!(
+                    local < 12.0 * law.lift(0.5 * (start + end)).third.abs() + 3.0 * law.lift(start).value,
+                    "{file:?} {local}"
+                );
             }
         }
     }

@@ -1,4 +1,5 @@
 //! Are planted coefficients recovered, and known maps classified as they must be?
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 mod common;
 
@@ -38,8 +39,7 @@ fn a_planted_normal_form_is_recovered() {
     let moved = form.w * (Matrix2::identity() - map.minus.a) * k;
     assert_relative_eq!(form.b_bar, Vector2::new(1.0, 0.5) * scale + moved, epsilon = 1e-11);
     // B~ is the same from either side.
-    let from_plus =
-        map.plus.b - (map.plus.a - Matrix2::identity()) * Vector2::new(map.d() / map.c()[0], 0.0);
+    let from_plus = map.plus.b - (map.plus.a - Matrix2::identity()) * Vector2::new(map.d() / map.c()[0], 0.0);
     assert_relative_eq!(form.b_tilde, from_plus, epsilon = 1e-12);
 }
 
@@ -101,7 +101,12 @@ fn known_maps_are_classified_by_trace_and_determinant() {
             let verdict = classify(&map, border).unwrap();
             let case = format!("{traces:?} {determinants:?} {sign}");
             assert_eq!(verdict.scenario.name(), scenario, "{case}");
-            let found = [verdict.minus.above_one, verdict.plus.above_one, verdict.minus.below_minus_one, verdict.plus.below_minus_one];
+            let found = [
+                verdict.minus.above_one,
+                verdict.plus.above_one,
+                verdict.minus.below_minus_one,
+                verdict.plus.below_minus_one,
+            ];
             assert_eq!(found, counts, "{case}");
             assert_eq!(verdict.period_two_orbit, period_two, "{case}");
             assert_eq!(verdict.minus.exists_for.name(), exists_for(&map, border, true), "{case}");
@@ -113,7 +118,8 @@ fn known_maps_are_classified_by_trace_and_determinant() {
                 let (trace, determinant) = (map.a.trace(), map.a.determinant());
                 assert_relative_eq!(side.determinant, 1.0 - trace + determinant, epsilon = 1e-12);
                 // Jury's conditions.
-                let stable = determinant.abs() < 1.0 && 1.0 - trace + determinant > 0.0 && 1.0 + trace + determinant > 0.0;
+                let stable =
+                    determinant.abs() < 1.0 && 1.0 - trace + determinant > 0.0 && 1.0 + trace + determinant > 0.0;
                 assert_eq!(side.stable, stable, "{case}");
             }
         }

@@ -1,4 +1,5 @@
 //! Do the routes agree on every model, and do they know how well?
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 mod common;
 
@@ -78,7 +79,11 @@ fn the_border_of_the_free_flight_says_on_which_side_the_impact_falls() {
             for direction in [[1.0, 0.3, 0.2], [-1.0, 0.2, -0.4], [0.1, -1.0, 0.3], [0.2, 0.1, -1.0], [0.0, 0.0, 1.0]] {
                 let sample = map.sample(scales.component_mul(&Vector3::from(direction))).unwrap();
                 let by_border = (e * sample.perturbation.xy())[0] + f * sample.perturbation[2];
-                assert!(by_border * sample.past_corner > 0.0, "{file:?} {direction:?}: {by_border} {}", sample.past_corner);
+                assert!(
+                    by_border * sample.past_corner > 0.0,
+                    "{file:?} {direction:?}: {by_border} {}",
+                    sample.past_corner
+                );
             }
         }
     }

@@ -3,6 +3,7 @@
 //! The digits below come from mpmath, from the same constants as `models/osorio-2008.toml`: T* by root finding on the
 //! repaired eq:fixedp, the matrices by the repaired eq:Px and eq:PT, cam derivatives by numerical differentiation at 40
 //! digits. Each is met to 1e-12 of its quantity's largest entry, T* to 1e-14.
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 mod common;
 

@@ -84,7 +84,8 @@ mod tests {
     fn extrapolation_recovers_a_derivative_to_rounding() {
         let difference =
             |h: f64| Ok::<_, ()>(Vector2::new(((1.0 + h).exp() - (1.0 - h).exp()) / (2.0 * h), (h.sin()) / h));
-        let (limit, error) = extrapolate(0.5, Vector2::repeat(f64::EPSILON), difference).unwrap_or((Vector2::zeros(), Vector2::zeros()));
+        let (limit, error) =
+            extrapolate(0.5, Vector2::repeat(f64::EPSILON), difference).unwrap_or((Vector2::zeros(), Vector2::zeros()));
         approx::assert_relative_eq!(limit[0], std::f64::consts::E, epsilon = 1e-12);
         approx::assert_relative_eq!(limit[1], 1.0, epsilon = 1e-12);
         assert!(error.max() < 1e-11 && error.min() > 0.0, "{error}");

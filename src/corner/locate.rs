@@ -148,37 +148,24 @@ pub fn locate(model: &Model, cam: &Cam) -> Result<(CornerImpact, Vec<CornerImpac
     let (mut found, mut rejected, mut grazing) = (Vec::new(), Vec::new(), None);
     for corner in &corners {
         let equation = PeriodEquation { flight: &flight, corner, restitution: model.follower.restitution };
-        let roots = match equation.roots(study) {
-            Roots::Some(roots) => roots,
+        let verdicts: Vec<(f64, Verdict)> = match equation.roots(study) {
+            Roots::Some(roots) => {
+                roots.into_iter().map(|root| (root.period, equation.orbit(model, cam, root))).collect()
+            }
+            Roots::All { slowest } if equation.rests() => vec![(slowest, equation.graze(model, cam, slowest))],
             Roots::All { slowest } => {
-                let speed_rpm = 60.0 / slowest;
-                if equation.rests() {
-                    grazing.get_or_insert(LocateError::Grazing {
-                        file: model.file().into(),
-                        cam_angle: corner.angle,
-                        speed_rpm,
-                        velocity: 0.0,
-                    });
-                } else {
-                    let why = "flights of every period start and end there, so nothing fixes a speed".into();
-                    rejected.push(Rejected { cam_angle: corner.angle, speed_rpm, why });
-                }
-                continue;
+                let why = "flights of every period start and end there, so nothing fixes a speed".into();
+                vec![(slowest, Verdict::Rejected(why))]
             }
         };
-        for root in roots {
-            match equation.orbit(model, cam, root) {
+        for (period, verdict) in verdicts {
+            let (cam_angle, speed_rpm) = (corner.angle, 60.0 / period);
+            match verdict {
                 Verdict::Orbit(orbit) => found.push(*orbit),
+                Verdict::Rejected(why) => rejected.push(Rejected { cam_angle, speed_rpm, why }),
                 Verdict::Grazing(velocity) => {
-                    grazing.get_or_insert(LocateError::Grazing {
-                        file: model.file().into(),
-                        cam_angle: corner.angle,
-                        speed_rpm: 60.0 / root.period,
-                        velocity,
-                    });
-                }
-                Verdict::Rejected(why) => {
-                    rejected.push(Rejected { cam_angle: corner.angle, speed_rpm: 60.0 / root.period, why })
+                    let file = model.file().into();
+                    grazing.get_or_insert(LocateError::Grazing { file, cam_angle, speed_rpm, velocity });
                 }
             }
         }
@@ -286,6 +273,18 @@ impl PeriodEquation<'_> {
         Root { period, bracket, residual: value.abs() / size }
     }
 
+    /// Whether a flight that leaves the corner with the cam's own velocity is free of the cam until it is back.
+    fn graze(&self, model: &Model, cam: &Cam, period: f64) -> Verdict {
+        let velocity = self.cam_velocity(period);
+        let machine = stroboscopic_map(&model.follower, cam.clone(), self.corner, TAU / period).machine;
+        let state = State { position: self.corner.plus.value, velocity };
+        let from_corner = |turned: f64| if turned > PI { turned - TAU } else { turned };
+        match one_revolution(&machine, self.corner.angle, state, from_corner) {
+            Ok(_) => Verdict::Grazing(velocity),
+            Err(why) => Verdict::Rejected(format!("a graze, v = c' = {velocity:.6} m/s, and no orbit: {why}")),
+        }
+    }
+
     /// Whether a root is an orbit of the cam as it is.
     fn orbit(&self, model: &Model, cam: &Cam, root: Root) -> Verdict {
         let Root { period, bracket, residual } = root;
@@ -293,19 +292,18 @@ impl PeriodEquation<'_> {
         let cam_velocity = self.cam_velocity(period);
         let force = self.force();
         // Half-period and full-period resonance (s = 0): any v+ or none brings the flight back after T.
-        let resonant = response.impulse.abs() <= tolerance::GRAZING.value * period * response.impulse_rate.abs();
-        let returns = response.step.abs() <= tolerance::GRAZING.value * period * period;
-        // In full resonance v+ is free: only v+ = v- = c' is an orbit, a graze.
-        let free = resonant && returns;
-        if resonant && !free {
+        if response.impulse.abs() <= tolerance::GRAZING.value * period * response.impulse_rate.abs() {
+            if response.step.abs() <= tolerance::GRAZING.value * period * period {
+                // v+ is free, so only v+ = v- = c' obeys the restitution law.
+                return self.graze(model, cam, period);
+            }
             return Verdict::Rejected("the flight would need an unbounded velocity: the period is in resonance".into());
         }
-        let velocity_after = if free { cam_velocity } else { -force * response.step / response.impulse };
-        let velocity_before =
-            if free { cam_velocity } else { velocity_after * response.impulse_rate + force * response.impulse };
+        let velocity_after = -force * response.step / response.impulse;
+        let velocity_before = velocity_after * response.impulse_rate + force * response.impulse;
         let approach = cam_velocity - velocity_before;
         if approach.abs() <= tolerance::GRAZING.value * (cam_velocity.abs() + velocity_before.abs()) {
-            return Verdict::Grazing(cam_velocity);
+            return self.graze(model, cam, period);
         }
         if approach < 0.0 {
             return Verdict::Rejected("the flight would come out of the cam at the corner".into());
@@ -313,21 +311,9 @@ impl PeriodEquation<'_> {
         let position = self.corner.plus.value;
         let state = self.flight.fly(State { position, velocity: velocity_after }, 0.5 * period).1;
         let map = stroboscopic_map(&model.follower, cam.clone(), self.corner, TAU / period);
-        let (mut impacts, mut elsewhere) = (0, None);
-        let end = map.machine.turn(map.cam_angle, state, TAU, |impact| {
-            impacts += 1;
-            if (impact.turned - PI).abs() <= tolerance::CORNER_ANGLE.value {
-                return ControlFlow::Continue(());
-            }
-            elsewhere = Some(impact.cam_angle);
-            ControlFlow::Break(())
-        });
-        if let Some(angle) = elsewhere {
-            return Verdict::Rejected(format!("the flight meets the cam elsewhere, at {:.4} deg", angle.to_degrees()));
-        }
-        let end = match end {
-            Ok(end) => end,
-            Err(error) => return Verdict::Rejected(error.to_string()),
+        let (impacts, end) = match one_revolution(&map.machine, map.cam_angle, state, |turned| turned - PI) {
+            Ok(result) => result,
+            Err(why) => return Verdict::Rejected(why),
         };
         let size = (state.position - position).abs() + period * approach;
         let closure = ((end.position - state.position).abs() + period * (end.velocity - state.velocity).abs()) / size;
@@ -348,6 +334,29 @@ impl PeriodEquation<'_> {
             origin: origin(&model.follower),
             closure,
         }))
+    }
+}
+
+/// Impacts and end of one revolution, or why it is no orbit with impacts only where `from_corner(turned)` is 0.
+fn one_revolution(
+    machine: &Machine,
+    cam_angle: f64,
+    start: State,
+    from_corner: impl Fn(f64) -> f64,
+) -> Result<(usize, State), String> {
+    let (mut impacts, mut elsewhere) = (0, None);
+    let end = machine.turn(cam_angle, start, TAU, |impact| {
+        impacts += 1;
+        if from_corner(impact.turned).abs() <= tolerance::CORNER_ANGLE.value {
+            return ControlFlow::Continue(());
+        }
+        elsewhere = Some(impact.cam_angle);
+        ControlFlow::Break(())
+    });
+    match (elsewhere, end) {
+        (Some(angle), _) => Err(format!("the flight meets the cam elsewhere, at {:.4} deg", angle.to_degrees())),
+        (None, Ok(end)) => Ok((impacts, end)),
+        (None, Err(error)) => Err(error.to_string()),
     }
 }
 

@@ -1,7 +1,7 @@
 //! The corner impact: where it happens, and its local map {A-, A+, B-, B+, C, D} by several routes.
 //!
 //! Near a periodic orbit whose impact falls on a corner of the cam, one revolution maps a deviation of the state `dx` and of
-//! the period `dT` to `A dx + B dT`, with matrices that depend on the side of the corner the impact falls on. [`locate`]
+//! the period `dT` to `A dx + B dT`, with matrices that depend on the side of the corner the impact falls on. [`mod@locate`]
 //! finds the orbit; each route then computes the matrices by means of its own:
 //!
 //! | module | shares with the simulator |

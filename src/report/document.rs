@@ -338,8 +338,13 @@ impl RouteEntry {
     fn new(route: &Route) -> Self {
         let sides = Sides::new(&route.map);
         let map = MapEntry { minus: sides.minus, plus: sides.plus, c: route.map.c().into(), d: route.map.d() };
-        let mut entry =
-            Self { map, standard_error: None, systematic_error: None, condition_number: None, extrapolation_error: None };
+        let mut entry = Self {
+            map,
+            standard_error: None,
+            systematic_error: None,
+            condition_number: None,
+            extrapolation_error: None,
+        };
         match &route.uncertainty {
             Some(Uncertainty::Fit { standard, systematic, condition_number }) => {
                 entry.standard_error = Some(Sides::new(standard));

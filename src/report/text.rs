@@ -33,7 +33,7 @@ fn orbit(out: &mut String, document: &Verification) -> fmt::Result {
     writeln!(out, "  period   T* = {} s   ({:.9} rpm)", significant(at.period_s, 14), at.speed_rpm)?;
     writeln!(
         out,
-        "  state    x* = ({}, {})   half a revolution from the impact; position from {} m",
+        "  state    x* = ({}, {})   half a turn from the impact, position from {} m",
         significant(at.state[0], 13),
         significant(at.state[1], 13),
         significant(at.state_origin_m, 9)
@@ -88,7 +88,8 @@ fn side(out: &mut String, document: &Verification, name: &str, when: &str) -> fm
     let of = |sides: &Sides<SideEntry>| {
         if name == "minus" { sides.minus } else { sides.plus }
     };
-    write!(out, "  {name:<6}")?;
+    writeln!(out, "  {name}: {when}")?;
+    write!(out, "{:8}", "")?;
     let routes: Vec<_> = document
         .routes
         .iter()
@@ -102,7 +103,7 @@ fn side(out: &mut String, document: &Verification, name: &str, when: &str) -> fm
     if printed("A").is_some() {
         write!(out, "{:>21}", "printed")?;
     }
-    writeln!(out, "   ({when})")?;
+    writeln!(out)?;
     let entries = |side: &SideEntry| -> [f64; 6] {
         let SideEntry { a: [[a11, a12], [a21, a22]], b: [b1, b2] } = *side;
         [a11, a12, a21, a22, b1, b2]
@@ -138,13 +139,13 @@ fn largest(sides: &Sides<SideEntry>) -> (f64, f64) {
 
 fn agreement(out: &mut String, document: &Verification) -> fmt::Result {
     heading(out, "Do the routes agree?")?;
-    writeln!(out, "  {:<20}{:<40}{:>12}{:>12}  shared", "quantity", "routes", "differ by", "allowed")?;
+    writeln!(out, "  {:<19}{:<34}{:>11}{:>10}  shared", "quantity", "routes", "differ by", "allowed")?;
     for AgreementEntry { routes: [left, right], quantity, max_abs_diff, tolerance, agrees, .. } in &document.agreement {
         let pair = format!("{} - {}", spoken(left), spoken(right));
         let shared =
             shared_decimals(*max_abs_diff).map_or("all digits".to_owned(), |decimals| format!("{decimals} decimals"));
         let flag = if *agrees { "" } else { "   DISAGREE" };
-        writeln!(out, "  {quantity:<20}{pair:<40}{max_abs_diff:>12.1e}{tolerance:>12.1e}  {shared}{flag}")?;
+        writeln!(out, "  {quantity:<19}{pair:<34}{max_abs_diff:>11.1e}{tolerance:>10.1e}  {shared}{flag}")?;
     }
     Ok(())
 }
@@ -187,7 +188,11 @@ fn bifurcation(out: &mut String, document: &Verification) -> fmt::Result {
             "  Feigin's counts     {} + {} real eigenvalues above 1, {} + {} below -1",
             above.minus, above.plus, below.minus, below.plus
         )?;
-        let born = if verdict.period_two_orbit && verdict.scenario != "nonsmooth-flip" { ", and an orbit of period two" } else { "" };
+        let born = if verdict.period_two_orbit && verdict.scenario != "nonsmooth-flip" {
+            ", and an orbit of period two"
+        } else {
+            ""
+        };
         writeln!(out, "  verdict             {}{born}", verdict.scenario)?;
         let fate = |stable: bool, speeds: &str| {
             format!("{} one at speeds {speeds} than omega*", if stable { "a stable" } else { "an unstable" })

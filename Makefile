@@ -1,0 +1,36 @@
+# The two commands that most people need are `make verify` and `make test`; both set up what they use.
+
+MODEL ?= models/osorio-2008.toml
+CARGO ?= cargo
+# One profile for the binary and its tests, so that the dependencies are compiled once.
+RELEASE := --release --locked
+
+.DEFAULT_GOAL := help
+.PHONY: help verify test check review mutants clean
+
+help: ## list the targets
+	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 20
+	@echo "  MODEL=path.toml     the model that verify takes (now $(MODEL))"
+
+verify: ## find the corner impact of MODEL, compute its map by every route, compare
+	$(CARGO) build $(RELEASE) --quiet
+	@target/release/corner-impact verify $(MODEL)
+
+test: ## run every test
+	$(CARGO) test $(RELEASE)
+
+check: ## formatting, lints and documentation, warnings denied
+	$(CARGO) fmt --check
+	$(CARGO) clippy --all-targets --locked -- -D warnings
+	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --no-deps --locked
+
+review: ## after a change to the model: look at each number that moved, accept or reject it
+	@command -v cargo-insta >/dev/null || $(CARGO) install cargo-insta --locked
+	$(CARGO) insta test $(RELEASE) --review
+
+mutants: ## change signs and factors in the formulas; each change must fail a test
+	@command -v cargo-mutants >/dev/null || $(CARGO) install cargo-mutants --locked
+	$(CARGO) mutants
+
+clean: ## remove what the other targets made
+	$(CARGO) clean
