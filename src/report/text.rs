@@ -33,7 +33,7 @@ fn orbit(out: &mut String, document: &Verification) -> fmt::Result {
     writeln!(out, "  period   T* = {} s   ({:.9} rpm)", significant(at.period_s, 14), at.speed_rpm)?;
     writeln!(
         out,
-        "  state    x* = ({}, {})   half a turn from the impact, position from {} m",
+        "  state    x* = ({}, {})   half a turn from the impact; origin {} m",
         significant(at.state[0], 13),
         significant(at.state[1], 13),
         significant(at.state_origin_m, 9)
