@@ -31,13 +31,9 @@ fn orbit(out: &mut String, document: &Verification) -> fmt::Result {
     paragraph(out, &document.model.source)?;
     heading(out, "The orbit, solved for from the model")?;
     writeln!(out, "  period   T* = {} s   ({:.9} rpm)", significant(at.period_s, 14), at.speed_rpm)?;
-    writeln!(
-        out,
-        "  state    x* = ({}, {})   half a turn from the impact; origin {} m",
-        significant(at.state[0], 13),
-        significant(at.state[1], 13),
-        significant(at.state_origin_m, 9)
-    )?;
+    writeln!(out, "  state    x* = ({}, {})", significant(at.state[0], 13), significant(at.state[1], 13))?;
+    let origin = significant(at.state_origin_m, 9);
+    writeln!(out, "           half a revolution from the impact; position is measured from q = {origin} m")?;
     let degrees = at.cam_angle_rad.to_degrees();
     writeln!(
         out,
