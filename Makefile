@@ -6,23 +6,37 @@ CARGO ?= cargo
 RELEASE := --release --locked
 
 .DEFAULT_GOAL := help
-.PHONY: help verify test check review mutants clean
+.PHONY: help verify test check derive derive-check claims review mutants clean
+
+# Python and its packages, once; again when the list of packages changes.
+PYTHON ?= python3
+VENV := .venv/.ready
+$(VENV): derivations/requirements.txt
+	$(PYTHON) -m venv .venv
+	.venv/bin/python -m pip install --quiet --disable-pip-version-check -r derivations/requirements.txt
+	@touch $@
 
 help: ## list the targets
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 20
 	@echo "  MODEL=path.toml     the model that verify takes (now $(MODEL))"
 
-verify: ## find the corner impact of MODEL, compute its map by every route, compare
+verify: $(VENV) ## find the corner impact of MODEL, compute its map by every route, compare
 	$(CARGO) build $(RELEASE) --quiet
 	@target/release/corner-impact verify $(MODEL)
 
-test: ## run every test
+test: $(VENV) ## run every test
 	$(CARGO) test $(RELEASE)
 
 check: ## formatting, lints and documentation, warnings denied
 	$(CARGO) fmt --check
 	$(CARGO) clippy --all-targets --locked -- -D warnings
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --no-deps --locked
+
+derive: $(VENV) ## redo the derivations by computer algebra and write golden/derived
+	.venv/bin/python derivations/derive.py
+
+derive-check: $(VENV) ## redo them, and fail if golden/derived is not what comes out
+	.venv/bin/python derivations/derive.py --check
 
 review: ## after a change to the model: look at each number that moved, accept or reject it
 	@command -v cargo-insta >/dev/null || $(CARGO) install cargo-insta --locked
@@ -34,3 +48,4 @@ mutants: ## change signs and factors in the formulas; each change must fail a te
 
 clean: ## remove what the other targets made
 	$(CARGO) clean
+	rm -rf .venv

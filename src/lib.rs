@@ -11,6 +11,8 @@
 //!    ▼
 //!  section               the stroboscopic map: one revolution of `simulate`
 //!    ▼
+//!  python                runs one script of `derivations/`
+//!    ▼
 //!  corner                where the corner impact is (x*, T*), and its map {A∓, B∓, C, D} by several routes
 //!    ▼
 //!  agreement             routes pairwise against the table of tolerances
@@ -30,10 +32,10 @@
 //! threshold is a row of its one table.
 //!
 //! ```
-//! use corner_impact::{model::{Model, OSORIO_2008}, verify::verify};
+//! use corner_impact::{model::{Model, OSORIO_2008}, verify::{External, verify}};
 //!
 //! let model = Model::parse("osorio-2008.toml", OSORIO_2008)?;
-//! let findings = verify(&model)?;
+//! let findings = verify(&model, External::LeftOut)?;
 //! assert!(findings.agrees);
 //! assert!((findings.at.speed_rpm() - 673.234445).abs() < 1e-6);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -51,6 +53,8 @@ pub mod impact;
 pub mod simulate;
 
 pub mod section;
+
+pub mod python;
 
 pub mod corner;
 

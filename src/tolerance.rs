@@ -64,6 +64,10 @@ pub enum Comparison {
     Routes,
     /// Eigenvalues by two routes of this program.
     Eigenvalues,
+    /// An integration by SciPy against a route of this program: the map.
+    Integrated,
+    /// The same: period and state.
+    IntegratedOrbit,
     /// The located orbit against the same orbit found by simulation alone: period in s and state.
     Orbit,
     /// A number that the paper prints against the closed form; `decimals` are those printed.
@@ -100,6 +104,16 @@ pub fn agreement_bound(comparison: Comparison, scale: f64) -> Bound {
         Comparison::Eigenvalues => Bound {
             value: FIVE_DECIMALS * scale.max(1.0),
             reason: "five decimals: eigenvalues have no unit, and near a double one they keep half the digits of A",
+        },
+        Comparison::Integrated => Bound {
+            value: 1e-7 * scale,
+            reason: "1e-7 of the largest entry: the integrator's steps end at 1e-13 and the fit divides them by perturbations \
+                of 1e-4; sharp cams take two digits more",
+        },
+        Comparison::IntegratedOrbit => Bound {
+            value: 1e-9 * scale,
+            reason: "1e-9 of the largest entry: the integrator's local error of 1e-13, over a revolution and divided by what \
+                the multipliers leave",
         },
         Comparison::Orbit => Bound {
             value: 1e-11 * scale,

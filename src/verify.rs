@@ -1,14 +1,18 @@
 //! One model through the whole pipeline: locate, every route, every comparison, the classification, the paper's numbers.
 
+use std::thread::JoinHandle;
+
 use nalgebra::RowVector2;
 
 use crate::agreement::{self, Agreement, NamedOrbit, compare};
 use crate::border_collision::{Classification, NormalForm, classify, normal_form};
 use crate::cam::Cam;
 use crate::claims::published::{PrintedNumber, PublishedError, compare_published};
+use crate::corner::external::{self, Outside, PROGRAMS, Program};
 use crate::corner::{self, CornerImpact, CornerMap, LocateError, Route};
 use crate::corner::{closed_form, finite_difference, least_squares, simulated_orbit};
 use crate::model::Model;
+use crate::python::PythonError;
 use crate::tolerance::Comparison;
 
 /// What a verification found.
@@ -52,38 +56,55 @@ impl Findings {
     }
 }
 
+/// Whether to run the routes outside this program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum External {
+    /// Run them; one that cannot run disagrees.
+    Run,
+    /// Leave them out, and say so.
+    LeftOut,
+}
+
 /// Locates the corner impact of a model, computes its map by every route, and compares.
 ///
 /// Fails only where there is nothing to compare; a route that fails is listed as skipped, and then the whole disagrees.
-pub fn verify(model: &Model) -> Result<Findings, LocateError> {
+pub fn verify(model: &Model, external: External) -> Result<Findings, LocateError> {
     let cam = Cam::new(model)?;
     let (at, others) = corner::locate(model, &cam)?;
     let mut log = Log::default();
+    // The programs outside take seconds and this one's routes a few hundredths: they run beside each other.
+    let outside = start_outside(model, external)?;
 
     let closed = closed_form::route(model, &at);
-    let estimates = [
-        log.keep("finite_difference", finite_difference::route(model, &cam, &at)),
-        log.keep("least_squares", least_squares::route(model, &cam, &at)),
-    ];
     let map = closed.map;
-    let routes: Vec<Route> = [closed].into_iter().chain(estimates.into_iter().flatten()).collect();
-    let mut comparisons = agreement::compare_routes(&routes);
+    let mut routes = vec![closed];
+    routes.extend(log.keep("finite_difference", finite_difference::route(model, &cam, &at)));
+    routes.extend(log.keep("least_squares", least_squares::route(model, &cam, &at)));
 
-    let simulated = log.keep("x_star by simulation", simulated_orbit::orbit(model, &cam, &at));
-    let transcribed = if model.follower.stiffness > 0.0 {
-        log.keep("x_star by closed_form", closed_form::orbit(model, &at))
+    let mut orbits: Vec<NamedOrbit> = vec![("located", at.x_star(), at.period)];
+    if model.follower.stiffness > 0.0 {
+        let transcribed = log.keep("x_star by closed_form", closed_form::orbit(model, &at));
+        orbits.extend(transcribed.map(|(x, period)| ("closed_form", x, period)));
     } else {
-        log.leave_out(
-            "x_star by closed_form",
-            "without stiffness there is no equilibrium to measure the paper's x from".into(),
-        );
-        None
-    };
-    let orbits: Vec<NamedOrbit> = [Some((at.x_star(), at.period)), transcribed, simulated]
-        .into_iter()
-        .zip(["located", "closed_form", "simulation"])
-        .filter_map(|(orbit, name)| orbit.map(|(x, period)| (name, x, period)))
-        .collect();
+        let why = "without stiffness there is no equilibrium to measure the paper's x from";
+        log.leave_out("x_star by closed_form", why.into());
+    }
+    let simulated = log.keep("x_star by simulation", simulated_orbit::orbit(model, &cam, &at));
+    orbits.extend(simulated.map(|(x, period)| ("simulation", x, period)));
+
+    for (program, answer) in outside {
+        match answer.map(JoinHandle::join) {
+            None => log.leave_out(program.name, "left out by --no-external".into()),
+            Some(Ok(result)) => {
+                if let Some(Outside { route, x_star, period }) = log.keep(program.name, result) {
+                    routes.push(route);
+                    orbits.push((program.name, x_star, period));
+                }
+            }
+            Some(Err(_)) => log.fail(program.name, "its thread ended without an answer".into()),
+        }
+    }
+    let mut comparisons = agreement::compare_routes(&routes);
     comparisons.extend(agreement::compare_orbits(&orbits));
 
     let border = closed_form::border(model, &at);
@@ -115,6 +136,18 @@ pub fn verify(model: &Model) -> Result<Findings, LocateError> {
     })
 }
 
+type Started = (Program, Option<JoinHandle<Result<Outside, PythonError>>>);
+
+/// Starts every program outside, or none.
+fn start_outside(model: &Model, external: External) -> Result<Vec<Started>, LocateError> {
+    let study = model.study()?;
+    let start = |program: Program| {
+        let model = model.clone();
+        std::thread::spawn(move || external::run(program, &model, study))
+    };
+    Ok(PROGRAMS.map(|program| (program, (external == External::Run).then(|| start(program)))).into())
+}
+
 /// The border of the maps, `C x + D dT = 0`, against that of the free flight, `e x + f dT = 0`: the same line.
 fn compare_borders(map: &CornerMap, (e, f): (RowVector2<f64>, f64)) -> Agreement {
     let (c, d) = (map.c(), map.d());
@@ -133,12 +166,12 @@ impl Log {
         self.skipped.push(Skipped { route: route.into(), why });
     }
 
+    fn fail(&mut self, route: &str, why: String) {
+        self.failed = true;
+        self.leave_out(route, why);
+    }
+
     fn keep<T, E: std::fmt::Display>(&mut self, route: &str, result: Result<T, E>) -> Option<T> {
-        result
-            .map_err(|error| {
-                self.failed = true;
-                self.leave_out(route, error.to_string());
-            })
-            .ok()
+        result.map_err(|error| self.fail(route, error.to_string())).ok()
     }
 }

@@ -19,7 +19,11 @@ fn folder() -> PathBuf {
 }
 
 fn verify(arguments: &[&std::ffi::OsStr]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_corner-impact")).arg("verify").args(arguments).output().unwrap()
+    Command::new(env!("CARGO_BIN_EXE_corner-impact"))
+        .args(["verify", "--no-external"])
+        .args(arguments)
+        .output()
+        .unwrap()
 }
 
 /// Runs `verify` on `text` and demands exit 2, an empty standard output and one message with these parts.

@@ -83,7 +83,7 @@ fn the_json_document_has_the_fields_of_the_contract() {
 fn the_json_document_carries_the_findings_unchanged() {
     let document = document("preloaded");
     let model = common::read(&PathBuf::from(model("preloaded")));
-    let found = corner_impact::verify::verify(&model).unwrap();
+    let found = corner_impact::verify::verify(&model, corner_impact::verify::External::LeftOut).unwrap();
     assert_eq!(document["corner_impact"]["period_s"].as_f64().unwrap(), found.at.period);
     assert_eq!(document["corner_impact"]["state"][0].as_f64().unwrap(), found.at.x_star()[0]);
     for route in &found.routes {
@@ -119,7 +119,7 @@ fn scenarios_of_the_other_models() {
 fn disagreement_is_said_plainly() {
     use corner_impact::report::{Verification, text};
     let model = common::osorio();
-    let mut found = corner_impact::verify::verify(&model).unwrap();
+    let mut found = corner_impact::verify::verify(&model, corner_impact::verify::External::LeftOut).unwrap();
     found.comparisons[3].agrees = false;
     found.published[0].as_found = false;
     found.agrees = false;
@@ -134,7 +134,7 @@ fn disagreement_is_said_plainly() {
 fn a_route_that_cannot_run_is_no_agreement() {
     let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("plastic.toml");
     std::fs::write(&file, common::osorio_text(&[("restitution", "0.0"), ("rpm_max", "1500.0")])).unwrap();
-    let output = corner_impact(&["verify", file.to_str().unwrap()]);
+    let output = corner_impact(&["verify", "--no-external", file.to_str().unwrap()]);
     let page = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(1), "{page}");
     assert!(page.contains("NOT RUN") && page.contains("least_squares: ") && page.contains("sticking"), "{page}");
@@ -144,7 +144,7 @@ fn a_route_that_cannot_run_is_no_agreement() {
 #[test]
 fn pages_fit_a_terminal() {
     for file in common::model_files() {
-        let output = corner_impact(&["verify", file.to_str().unwrap()]);
+        let output = corner_impact(&["verify", "--no-external", file.to_str().unwrap()]);
         let page = String::from_utf8(output.stdout).unwrap();
         for line in page.lines() {
             assert!(line.chars().count() <= 100, "{file:?}: {line}");

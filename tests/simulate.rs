@@ -11,7 +11,7 @@ use corner_impact::cam::Side;
 use corner_impact::flight::{Flight, State};
 use corner_impact::model::Model;
 use corner_impact::simulate::{Impact, Machine, SimulateError};
-use corner_impact::verify::verify;
+use corner_impact::verify::{External, verify};
 
 fn machine(model: &Model, rpm: f64) -> Machine {
     Machine {
@@ -151,7 +151,7 @@ fn a_run_may_be_split_anywhere() {
 #[test]
 fn an_observer_ends_the_run() {
     let model = common::osorio();
-    let found = verify(&model).unwrap();
+    let found = verify(&model, External::LeftOut).unwrap();
     let machine = machine(&model, found.at.speed_rpm());
     let end = machine.turn(found.at.section_angle(), found.at.state, TAU, |_| ControlFlow::Break(())).unwrap();
     assert_abs_diff_eq!(end.velocity, found.at.velocity_after, epsilon = 1e-9);

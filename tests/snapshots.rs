@@ -9,7 +9,7 @@ mod common;
 
 use corner_impact::corner::map::{Eigenvalue, SideMap};
 use corner_impact::report::{Verification, text};
-use corner_impact::verify::verify;
+use corner_impact::verify::{External, verify};
 use serde_json::{Value, json};
 
 const DIGITS: i32 = 10;
@@ -42,7 +42,7 @@ fn side(side: &SideMap) -> Value {
 #[test]
 fn fixed_points_matrices_eigenvalues_and_normal_forms() {
     for file in common::model_files() {
-        let found = verify(&common::read(&file)).unwrap();
+        let found = verify(&common::read(&file), External::LeftOut).unwrap();
         let map = &found.closed_form().map;
         let form = found.normal_form.unwrap();
         let verdict = found.classification.unwrap();
@@ -81,7 +81,7 @@ fn fixed_points_matrices_eigenvalues_and_normal_forms() {
 #[test]
 fn the_verify_page() {
     let model = common::osorio();
-    let page = text::render(&Verification::new(&model, &verify(&model).unwrap())).unwrap();
+    let page = text::render(&Verification::new(&model, &verify(&model, External::LeftOut).unwrap())).unwrap();
     let mut settings = settings();
     // Rounding: differences, error estimates, and how many decimals are shared beyond those asked for.
     settings.add_filter(r" +\d\.\de-?\d+(  |,|;| in | up to)", " [small]$1");

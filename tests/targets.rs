@@ -9,10 +9,10 @@ mod common;
 
 use approx::assert_relative_eq;
 use corner_impact::corner::closed_form;
-use corner_impact::verify::{Findings, verify};
+use corner_impact::verify::{External, Findings, verify};
 
 fn findings() -> Findings {
-    verify(&common::osorio()).unwrap()
+    verify(&common::osorio(), External::LeftOut).unwrap()
 }
 
 #[track_caller]

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use super::{CommandError, Exit};
 use crate::model::Model;
 use crate::report::{Verification, json, text};
-use crate::verify::verify;
+use crate::verify::{External, verify};
 
 /// Finds the corner impact of a model, computes its map by every route, and says whether they agree.
 #[derive(clap::Args)]
@@ -17,7 +17,7 @@ pub(super) struct Arguments {
     /// Print one JSON document instead of the page.
     #[arg(long)]
     json: bool,
-    /// Leave out the routes that need Python. None does yet, so this changes nothing.
+    /// Leave out the routes that need Python (symbolic, scipy), and say so.
     #[arg(long)]
     no_external: bool,
 }
@@ -25,7 +25,8 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<(String, Exit), CommandError> {
     let input = |error: &dyn std::fmt::Display| CommandError::Input(error.to_string());
     let model = Model::read(&arguments.model).map_err(|error| input(&error))?;
-    let findings = verify(&model).map_err(|error| input(&error))?;
+    let external = if arguments.no_external { External::LeftOut } else { External::Run };
+    let findings = verify(&model, external).map_err(|error| input(&error))?;
     let document = Verification::new(&model, &findings);
     let page = if arguments.json {
         json::render(&document).map_err(|error| CommandError::Report(error.to_string()))?

@@ -35,7 +35,7 @@ pub fn route(model: &Model, cam: &Cam, at: &CornerImpact) -> Result<Route, Sampl
         map: CornerMap { minus: minus.value, plus: plus.value },
         uncertainty: Some(Uncertainty::Fit {
             standard: CornerMap { minus: minus.standard_error, plus: plus.standard_error },
-            systematic: CornerMap { minus: minus.systematic_error, plus: plus.systematic_error },
+            systematic: Some(CornerMap { minus: minus.systematic_error, plus: plus.systematic_error }),
             condition_number: minus.condition_number.max(plus.condition_number),
         }),
     })

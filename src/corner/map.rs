@@ -84,8 +84,8 @@ pub enum Uncertainty {
     Fit {
         /// Standard error of each entry.
         standard: CornerMap,
-        /// Estimated bias of each entry.
-        systematic: CornerMap,
+        /// Estimated bias of each entry, where there is an estimate.
+        systematic: Option<CornerMap>,
         /// Largest over smallest singular value.
         condition_number: f64,
     },

@@ -9,10 +9,12 @@
 //! | [`closed_form`] | nothing: the paper's formulas, with their own propagator |
 //! | [`finite_difference`] | is built on it: differences of simulated revolutions |
 //! | [`least_squares`] | is built on it: a polynomial fitted to simulated revolutions |
+//! | [`external`] | nothing: Python programs that get the model file's numbers |
 //!
 //! States here are the paper's x: position from the spring's equilibrium, and velocity.
 
 pub mod closed_form;
+pub mod external;
 pub mod finite_difference;
 pub mod least_squares;
 pub mod locate;

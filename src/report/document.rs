@@ -348,7 +348,7 @@ impl RouteEntry {
         match &route.uncertainty {
             Some(Uncertainty::Fit { standard, systematic, condition_number }) => {
                 entry.standard_error = Some(Sides::new(standard));
-                entry.systematic_error = Some(Sides::new(systematic));
+                entry.systematic_error = systematic.as_ref().map(Sides::new);
                 entry.condition_number = Some(*condition_number);
             }
             Some(Uncertainty::Extrapolation(correction)) => entry.extrapolation_error = Some(Sides::new(correction)),

@@ -91,13 +91,19 @@ fn side(out: &mut String, document: &Verification, name: &str, when: &str) -> fm
         .iter()
         .map(|(route, entry)| (spoken(route), of(&Sides { minus: entry.map.minus, plus: entry.map.plus })))
         .collect();
-    for (route, _) in &routes {
-        write!(out, "{route:>18}")?;
-    }
     let printed =
         |quantity: &str| document.published.iter().find(|entry| entry.quantity == format!("{quantity}_{name}"));
+    // Two words, two lines.
+    let heads: Vec<_> = routes.iter().map(|(route, _)| route.split_once(' ').unwrap_or(("", route))).collect();
+    for (first, _) in &heads {
+        write!(out, "{first:>14}")?;
+    }
+    write!(out, "\n{:8}", "")?;
+    for (_, second) in &heads {
+        write!(out, "{second:>14}")?;
+    }
     if printed("A").is_some() {
-        write!(out, "{:>21}", "printed")?;
+        write!(out, "{:>19}", "printed")?;
     }
     writeln!(out)?;
     let entries = |side: &SideEntry| -> [f64; 6] {
@@ -110,10 +116,10 @@ fn side(out: &mut String, document: &Verification, name: &str, when: &str) -> fm
         for (_, side) in &routes {
             let values = entries(side);
             let block = if index < 4 { &values[..4] } else { &values[4..] };
-            write!(out, "{:>18.*}", places(block), values[index])?;
+            write!(out, "{:>14.*}", places(block), values[index])?;
         }
         if let Some(digits) = printed(quantity).and_then(|number| number.printed.get(entry)) {
-            write!(out, "{digits:>21}")?;
+            write!(out, "{digits:>19}")?;
         }
         writeln!(out)?;
     }
@@ -134,16 +140,33 @@ fn largest(sides: &Sides<SideEntry>) -> (f64, f64) {
 }
 
 fn agreement(out: &mut String, document: &Verification) -> fmt::Result {
-    heading(out, "Do the routes agree?")?;
-    writeln!(out, "  {:<19}{:<34}{:>11}{:>10}  shared", "quantity", "routes", "differ by", "allowed")?;
-    for AgreementEntry { routes: [left, right], quantity, max_abs_diff, tolerance, agrees, .. } in &document.agreement {
-        let pair = format!("{} - {}", spoken(left), spoken(right));
-        let shared =
-            shared_decimals(*max_abs_diff).map_or("all digits".to_owned(), |decimals| format!("{decimals} decimals"));
-        let flag = if *agrees { "" } else { "   DISAGREE" };
-        writeln!(out, "  {quantity:<19}{pair:<34}{max_abs_diff:>11.1e}{tolerance:>10.1e}  {shared}{flag}")?;
+    heading(out, "Do the routes agree? Every pair, in every quantity; shown is the pair closest to its bound")?;
+    writeln!(out, "  {:<19}{:>5}{:>12}{:>10}  {:<14}between", "quantity", "pairs", "differ by", "allowed", "share")?;
+    let mut quantities: Vec<&str> = Vec::new();
+    for entry in &document.agreement {
+        if !quantities.contains(&entry.quantity.as_str()) {
+            quantities.push(&entry.quantity);
+        }
+    }
+    for quantity in quantities {
+        let pairs: Vec<_> = document.agreement.iter().filter(|entry| entry.quantity == quantity).collect();
+        let use_of_bound = |entry: &&&AgreementEntry| entry.max_abs_diff / entry.tolerance;
+        let closest = pairs.iter().max_by(|a, b| use_of_bound(a).total_cmp(&use_of_bound(b)));
+        let disagreeing = pairs.iter().filter(|entry| !entry.agrees);
+        for (index, entry) in closest.into_iter().filter(|entry| entry.agrees).chain(disagreeing).enumerate() {
+            let AgreementEntry { routes: [left, right], max_abs_diff, tolerance, agrees, .. } = entry;
+            let pair = format!("{} - {}", spoken(left), spoken(right));
+            let shared = share(*max_abs_diff);
+            let flag = if *agrees { "" } else { "  DISAGREE" };
+            let (name, count) = if index == 0 { (quantity, pairs.len().to_string()) } else { ("", String::new()) };
+            writeln!(out, "  {name:<19}{count:>5}{max_abs_diff:>12.1e}{tolerance:>10.1e}  {shared:<14}{pair}{flag}")?;
+        }
     }
     Ok(())
+}
+
+fn share(diff: f64) -> String {
+    shared_decimals(diff).map_or("all digits".to_owned(), |decimals| format!("{decimals} decimals"))
 }
 
 fn bifurcation(out: &mut String, document: &Verification) -> fmt::Result {
@@ -214,8 +237,7 @@ fn published(out: &mut String, document: &Verification) -> fmt::Result {
     heading(out, "The paper's printed numbers")?;
     for entry in &document.published {
         let PublishedEntry { quantity, place, max_abs_diff, verdict, as_found, .. } = entry;
-        let shared =
-            shared_decimals(*max_abs_diff).map_or("all digits".to_owned(), |decimals| format!("{decimals} decimals"));
+        let shared = share(*max_abs_diff);
         let flag = if *as_found { "" } else { "   UNEXPECTED" };
         writeln!(
             out,

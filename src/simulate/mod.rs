@@ -5,9 +5,10 @@
 
 mod contact;
 
+use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
-use crate::cam::Cam;
+use crate::cam::{Cam, Segment};
 use crate::flight::{Flight, State};
 use crate::impact::rebound;
 use crate::tolerance;
@@ -132,7 +133,7 @@ impl Machine {
             }
             now.state = State { position: lift.value, velocity: velocity_after };
             gap = 0.0;
-            let (turned, cam_angle, position) = (now.turned, now.cam_angle, lift.value);
+            let (turned, cam_angle, position) = (now.turned, now.cam_angle % TAU, lift.value);
             let impact = Impact { turned, cam_angle, position, velocity_before, velocity_after, cam_velocity };
             if observe(&impact).is_break() {
                 return Ok(now.state);
@@ -159,7 +160,8 @@ impl Machine {
                     contact,
                     turned: turned + step,
                     segment: piece.segment,
-                    cam_angle: piece.angle + step,
+                    // A contact found at the segment's end belongs to it, whatever the last bit says.
+                    cam_angle: (piece.angle + step).min(segment.end),
                     state: self.flight.fly(from.state, piece.time + time).1,
                 }
             };
@@ -172,11 +174,7 @@ impl Machine {
                         segment: next,
                         angle: segments[next].start,
                         time: piece.time + span / self.angular_velocity,
-                        // A continued law leaves a step in the lift at its far end; it counts as rise.
-                        rise: piece.rise
-                            + segment.law.rise(piece.angle, span)
-                            + (segments[next].law.lift(segments[next].start).value
-                                - segment.law.lift(segment.end).value),
+                        rise: piece.rise + segment.law.rise(piece.angle, span) + step(segment, &segments[next]),
                     };
                     turned += span;
                 }
@@ -221,4 +219,14 @@ impl Machine {
         let law = &self.cam.segments()[piece.segment].law;
         self.flight.jerk_bound(state) + omega.powi(3) * law.third_bound(angle, angle + omega * reach)
     }
+}
+
+/// What the lift jumps by from one segment to the next, m.
+///
+/// Only a continued law leaves a step at its far end; where segments meet, two evaluations of one lift differ by rounding,
+/// which a follower that has just left the cam there must not be measured by.
+fn step(before: &Segment, after: &Segment) -> f64 {
+    let (end, start) = (before.law.lift(before.end).value, after.law.lift(after.start).value);
+    let step = start - end;
+    if step.abs() <= tolerance::GAP_ROUNDING.value * (start.abs() + end.abs()) { 0.0 } else { step }
 }

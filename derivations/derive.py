@@ -1,0 +1,117 @@
+"""All derivations, from the equation of motion to golden/derived.
+
+    python derivations/derive.py            prove everything, print a line for each, write golden/derived
+    python derivations/derive.py --check    the same, but write nothing: fail where golden/derived is stale
+
+Exit 1 if a proof fails or a file is stale; nothing is written unless every proof holds.
+"""
+
+import argparse
+import json
+import sys
+import time
+from pathlib import Path
+
+from mpmath import mpf
+
+import closed_forms
+import corner_map
+import flight
+import impact
+import normal_form
+import points
+import printed_equations
+import recover
+from proof import Proof, show
+
+GOLDEN = Path(__file__).resolve().parent.parent / "golden" / "derived"
+# Doubles meet the derived values to this at every point, which is what Rust is asked for.
+DOUBLE = 1e-12
+
+
+def lines(document, key):
+    """A JSON document with the entries of one list on a line each."""
+    entries = ",\n".join("  " + json.dumps(entry) for entry in document[key])
+    head = json.dumps({name: value for name, value in document.items() if name != key}, indent=1)
+    return f'{head[:-2]},\n "{key}": [\n{entries}\n ]\n}}\n'
+
+
+def pretty(document):
+    return json.dumps(document, indent=1) + "\n"
+
+
+def run():
+    """Prove each stage; the files, and whether all proofs hold."""
+    complete, stated = True, []
+
+    def stage(title, proofs):
+        nonlocal complete
+        proofs = list(proofs)
+        complete = show(title, proofs) and complete
+        stated.append({"stage": title, "proved": [proof.statement for proof in proofs]})
+
+    stage("flight", flight.proofs())
+    stage("impact", impact.proofs())
+    stage("corner map", corner_map.proofs())
+    stage("normal form", normal_form.proofs())
+    verdicts, results = printed_equations.examined()
+    stage("printed", results)
+    stage("recovered", recover.proofs())
+
+    expressions = corner_map.expressions()
+    rows = points.points(expressions)
+    apart, rounding = points.disagreement(rows), points.in_doubles(rows)
+    stage("points", [
+        Proof(f"{len(rows)} points: the derived expressions and closed_forms.py give the same 60 digits",
+              0 if apart < mpf(10) ** -60 else 1),
+        Proof(f"closed_forms.py in double precision meets them to {DOUBLE}", 0 if rounding < DOUBLE else 1),
+    ])  # fmt: skip
+
+    note = "written by derivations/derive.py; do not edit"
+    files = {
+        "closed_forms.json": pretty({
+            "note": note,
+            "inputs": closed_forms.INPUTS,
+            "lines": [{"name": name, "expression": text} for name, text in closed_forms.CLOSED_FORMS.items()],
+        }),
+        "corner_map.json": pretty({"note": note, "inputs": closed_forms.INPUTS, "expressions": expressions}),
+        "points.json": lines({"note": note, "seed": points.SEED, "digits": points.DIGITS, "points": [points.entry(row) for row in rows]}, "points"),
+        "printed_equations.json": pretty({"note": note, "equations": verdicts}),
+        "recovery.json": pretty({"note": note, **recover.document()}),
+        "proofs.json": pretty({"note": note, "stages": stated}),
+    }  # fmt: skip
+    return files, complete
+
+
+def stale(files):
+    """The files that are not what was derived, and those that nothing derives."""
+    for name, text in files.items():
+        path = GOLDEN / name
+        if not path.exists() or path.read_text() != text:
+            yield path
+    for path in sorted(GOLDEN.glob("*")):
+        if path.name not in files:
+            yield path
+
+
+def main():
+    parser = argparse.ArgumentParser(description="Prove the derivations and write golden/derived.")
+    parser.add_argument("--check", action="store_true", help="write nothing; fail where golden/derived is stale")
+    check = parser.parse_args().check
+    begun = time.monotonic()
+    files, complete = run()
+    print(f"{time.monotonic() - begun:.0f} s")
+    if not complete:
+        sys.exit("derive.py: a proof failed; golden/derived is left as it is")
+    if check:
+        names = [str(path) for path in stale(files)]
+        if names:
+            sys.exit("derive.py: stale: " + ", ".join(names))
+        return
+    GOLDEN.mkdir(parents=True, exist_ok=True)
+    for name, text in files.items():
+        (GOLDEN / name).write_text(text)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,331 @@
+"""The symbolic route: the derived A and B at a model's corner impact, to 30 digits.
+
+One JSON document on stdin (the model's follower, cam and study), one on stdout; a message on stderr and exit 1 otherwise.
+The expressions are those that corner_map.py derived and derive.py wrote to golden/derived/corner_map.json; nothing is
+proved or retyped here. Where the corner impact is, is found from the model alone:
+
+    leave the corner at (c, v+), fly for T, be back at c with v-;   v+ = (1 + r) c' - r v-,   c' = (2 pi/T) dc/dtheta,
+
+an equation for T. Of its roots in the study's range those count whose flight stays above the cam and comes down on it
+(v- < c'); the slowest is taken.
+"""
+
+import json
+import math
+import sys
+from bisect import bisect_right
+from pathlib import Path
+
+from mpmath import mp, mpf
+
+from arithmetic import evaluate, exact, flow, later, responses, text
+
+DERIVED = Path(__file__).resolve().parent.parent / "golden" / "derived" / "corner_map.json"
+DIGITS = 30
+# Samples over the study's periods, and over one revolution for the height above the cam.
+SCAN, HEIGHT = 4096, 16384
+# T is closed to this relative width.
+CLOSED = mpf(10) ** -60
+# Less than this of its terms is nothing.
+NOTHING = mpf(10) ** -70
+
+
+class Refused(Exception):
+    """The input holds no corner impact, or is no model."""
+
+
+class Dwell:
+    """A circle about the axis."""
+
+    def __init__(self, radius):
+        self.radius = radius
+
+    def lift(self, angle, library=mp):
+        return self.radius, 0, 0
+
+    def rounded(self):
+        return Dwell(float(self.radius))
+
+
+class Arc:
+    """A circle of a radius about a centre at polar (distance, direction): c^2 - 2 c distance cos(phi) + distance^2 = radius^2."""
+
+    def __init__(self, distance, direction, radius):
+        self.distance, self.direction, self.radius = distance, direction, radius
+
+    def lift(self, angle, library=mp):
+        """c, dc/dtheta, d^2c/dtheta^2, the last two from the circle's equation differentiated once and twice."""
+        phi = angle - self.direction
+        along, across = self.distance * library.cos(phi), self.distance * library.sin(phi)
+        c = along + library.sqrt((self.radius - across) * (self.radius + across))
+        outward = c - along
+        c1 = -c * across / outward
+        c2 = -(c1 * c1 + 2 * c1 * across + c * along) / outward
+        return c, c1, c2
+
+    def rounded(self):
+        return Arc(float(self.distance), float(self.direction), float(self.radius))
+
+
+def section(document, name):
+    part = document.get(name)
+    if not isinstance(part, dict):
+        raise Refused(f"no {name}")
+    return part
+
+
+def number(part, name, field):
+    if field not in part:
+        raise Refused(f"no {name}.{field}")
+    try:
+        return exact(part[field])
+    except ValueError as error:
+        raise Refused(f"{name}.{field}: {error}") from error
+
+
+def numbers(document, name, fields):
+    part = section(document, name)
+    return [number(part, name, field) for field in fields]
+
+
+def arcs(cam):
+    """Base, flank and nose circles that touch, mirrored about pi: [(angle where it starts, law)]."""
+    fields = ("base_radius", "flank_radius", "nose_radius", "flank_start_deg", "nose_end_deg")
+    base, flank, nose, start, end = (number(cam, "cam", field) for field in fields)
+    if not (0 < base < flank and 0 < nose < flank and 0 < start < end <= 180):
+        raise Refused("cam: the circles need 0 < base < flank, 0 < nose < flank and 0 < flank_start < nose_end <= 180 deg")
+    start, end = start * mp.pi / 180, end * mp.pi / 180
+    # The flank touches the base circle at the ray `start`, so its centre is opposite.
+    behind = flank - base
+    # |O1 O2| = flank - nose fixes O2 on the ray `end`.
+    span = end - start
+    under_root = (flank - nose) ** 2 - (behind * mp.sin(span)) ** 2
+    if under_root < 0:
+        raise Refused("cam: no nose circle on the ray nose_end touches the flank circle")
+    ahead = mp.sqrt(under_root) - behind * mp.cos(span)
+    if ahead <= 0:
+        raise Refused("cam: the nose circle's centre is not on the ray nose_end")
+    # The flank and the nose touch on the line through their centres.
+    centre_1, centre_2 = -behind * mp.expj(start), ahead * mp.expj(end)
+    meeting = mp.arg(centre_1 + (centre_2 - centre_1) * flank / (flank - nose)) % (2 * mp.pi)
+    if not start < meeting < end:
+        raise Refused("cam: flank and nose do not touch between flank_start and nose_end")
+    turn = 2 * mp.pi
+    rising = Arc(behind, start + mp.pi, flank), Arc(ahead, end, nose)
+    falling = Arc(ahead, turn - end, nose), Arc(behind, mp.pi - start, flank)
+    laws = [(mpf(0), Dwell(base)), (start, rising[0]), (meeting, rising[1])]
+    if end < mp.pi:
+        laws.append((end, Dwell(ahead + nose)))
+    return laws + [(turn - end, falling[0]), (turn - meeting, falling[1]), (turn - start, Dwell(base))]
+
+
+def corners(laws):
+    """Where c'' jumps: (angle, (c, c', c'') before, (c, c', c'') after), derivatives by angle."""
+    for (_, before), (angle, after) in zip(laws, laws[1:]):
+        left, right = before.lift(angle), after.lift(angle)
+        if abs(left[2] - right[2]) > mpf(10) ** -30 * (abs(left[2]) + abs(right[2]) + left[0]):
+            yield angle, left, right
+
+
+class Follower:
+    """What the flight and the impact need of a follower."""
+
+    def __init__(self, document):
+        fields = ("mass", "damping", "stiffness", "gravity", "rest_position", "restitution")
+        mass, damping, stiffness, self.gravity, self.rest, self.r = numbers(document, "follower", fields)
+        if not (mass > 0 and damping >= 0 and stiffness >= 0):
+            raise Refused("follower: needs mass > 0, damping >= 0 and stiffness >= 0")
+        self.zeta, self.omega0_squared = damping / (2 * mass), stiffness / mass
+        # x is measured from the spring's equilibrium, or from the slack spring if it has no stiffness.
+        self.origin = self.rest - self.gravity / self.omega0_squared if stiffness else self.rest
+
+    def spring(self, position):
+        return self.omega0_squared * (position - self.rest) + self.gravity
+
+    def responses(self, time):
+        return responses(self.zeta, self.omega0_squared, time)
+
+    def return_rate(self, response):
+        """s' after a flight."""
+        return 1 - self.omega0_squared * response[0] - 2 * self.zeta * response[1]
+
+
+class Return:
+    """The flights of one period from a corner back to it."""
+
+    def __init__(self, follower, corner):
+        self.follower = follower
+        self.angle, self.left, self.right = corner
+        self.position, self.slope = self.left[0], self.left[1]
+        self.force = -follower.spring(self.position)
+
+    def miss(self, period, response):
+        """s times (where a flight ends that leaves at the v+ of its own v-), cleared of the division: 0 = v+ s + force p."""
+        p, s = response
+        r, cam = self.follower.r, 2 * mp.pi / period * self.slope
+        return (1 + r) * cam * s - r * self.force * s * s + (1 + r * self.follower.return_rate(response)) * self.force * p
+
+    def at(self, period):
+        """miss, 0 where its terms cancel to working precision: some corners are met again after every period."""
+        p, s = response = self.follower.responses(period)
+        value = self.miss(period, response)
+        size = abs(self.force) * (abs(p) + s * s) + abs(self.slope * s) / period
+        return value if abs(value) > NOTHING * size else mpf(0)
+
+    def rounded(self):
+        """miss in doubles, for the search."""
+        follower, turn = self.follower, 2 * math.pi * float(self.slope)
+        r, force, zeta, omega0_squared = (float(x) for x in (follower.r, self.force, follower.zeta, follower.omega0_squared))
+
+        def miss(period, response):
+            p, s = response
+            rate = 1 - omega0_squared * p - 2 * zeta * s
+            return (1 + r) * turn / period * s - r * force * s * s + (1 + r * rate) * force * p
+
+        return miss
+
+    def close(self, low, high):
+        """The root of a sign change by regula falsi, an end that stays put halved; None without one."""
+        at_low, at_high = self.at(low), self.at(high)
+        if (at_low < 0) == (at_high < 0):
+            return None
+        last = low
+        for _ in range(1000):
+            middle = (low * at_high - high * at_low) / (at_high - at_low)
+            value = self.at(middle)
+            if value == 0 or abs(middle - last) <= CLOSED * middle:
+                return middle
+            if (value < 0) == (at_high < 0):
+                at_low /= 2
+            else:
+                low, at_low = high, at_high
+            high, at_high, last = middle, value, middle
+        return None
+
+    def orbit(self, period, laws):
+        """The orbit of this period, or why it is none."""
+        follower, (p, s) = self.follower, self.follower.responses(period)
+        if abs(s) <= mpf(10) ** -40 * period:
+            return None, "the period is in resonance with the follower"
+        cam = 2 * mp.pi / period * self.slope
+        leaving = -self.force * p / s
+        arriving = self.follower.return_rate((p, s)) * leaving + s * self.force
+        if cam - arriving <= mpf(10) ** -30 * (abs(cam) + abs(arriving)):
+            return None, "the follower does not come down on the cam"
+        if not self.stays_above(period, leaving, laws):
+            return None, "the flight meets the cam elsewhere"
+        half = follower.responses(period / 2)
+        position, velocity = flow(follower.zeta, follower.omega0_squared, half, (mpf(0), leaving), self.force)
+        state = (self.position + position - follower.origin, velocity)
+        return {"period": period, "arriving": arriving, "cam": cam, "half": half, "state": state, "corner": self}, None
+
+    def stays_above(self, period, leaving, laws):
+        """Whether the follower is above the cam at every sample between the two impacts."""
+        zeta, omega0_squared = float(self.follower.zeta), float(self.follower.omega0_squared)
+        step = tuple(map(float, self.follower.responses(period / HEIGHT)))
+        starts, rounded = [float(angle) for angle, _ in laws], [law.rounded() for _, law in laws]
+        first, leaving, force, response = float(self.angle), float(leaving), float(self.force), (0.0, 0.0)
+        for index in range(1, HEIGHT):
+            response = later(zeta, omega0_squared, response, step)
+            angle = (first + 2 * math.pi * index / HEIGHT) % (2 * math.pi)
+            law = rounded[bisect_right(starts, angle) - 1]
+            height = float(self.position) + response[1] * leaving + response[0] * force
+            if height <= law.lift(angle, math)[0]:
+                return False
+        return True
+
+
+def locate(document):
+    """The slowest corner impact of the model."""
+    follower = Follower(document)
+    cam = section(document, "cam")
+    if cam.get("law") != "arcs":
+        raise Refused(f"cam.law: this route knows \"arcs\", not {cam.get('law')!r}")
+    laws = arcs(cam)
+    slowest_rpm, fastest_rpm = numbers(document, "study", ("rpm_min", "rpm_max"))
+    if not 0 < slowest_rpm < fastest_rpm:
+        raise Refused("study: needs 0 < rpm_min < rpm_max")
+    first, last = 60 / fastest_rpm, 60 / slowest_rpm
+    # At least 128 samples for each radian that the follower turns through.
+    samples = max(SCAN, min(16 * SCAN, int(128 * mp.sqrt(follower.omega0_squared) * (last - first))))
+    width = (last - first) / samples
+    step, response = (tuple(map(float, follower.responses(time))) for time in (width, first))
+    zeta, omega0_squared = float(follower.zeta), float(follower.omega0_squared)
+    equations = [Return(follower, corner) for corner in corners(laws)]
+    searches = [equation.rounded() for equation in equations]
+    before = [search(float(first), response) for search in searches]
+    found, refused = [], []
+    for index in range(1, samples + 1):
+        response = later(zeta, omega0_squared, response, step)
+        period = first + width * index
+        now = [search(float(period), response) for search in searches]
+        for equation, low, high in zip(equations, before, now):
+            if (low < 0) == (high < 0):
+                continue
+            # A hundredth more on either side: rounding may have moved the change past a sample.
+            root = equation.close(period - width * 1.01, period + width / 100)
+            if root is None or not first <= root <= last:
+                continue
+            orbit, why = equation.orbit(root, laws)
+            if orbit:
+                found.append(orbit)
+            else:
+                refused.append(f"{mp.nstr(60 / root, 10)} rpm at {mp.nstr(equation.angle * 180 / mp.pi, 8)} deg: {why}")
+        before = now
+    if not found:
+        tried = "; ".join(refused) or "no flight of one period starts and ends on a corner"
+        raise Refused(f"no corner impact between study.rpm_min and study.rpm_max; {tried}")
+    return follower, max(found, key=lambda orbit: orbit["period"])
+
+
+def route(document):
+    """The whole answer."""
+    follower, orbit = locate(document)
+    entries = json.loads(DERIVED.read_text())["expressions"]
+    corner, period = orbit["corner"], orbit["period"]
+    p, s = orbit["half"]
+
+    def side(lift):
+        names = {
+            "zeta": follower.zeta,
+            "omega0_squared": follower.omega0_squared,
+            "T": period,
+            "r": follower.r,
+            "spring": follower.spring(corner.position),
+            "v": orbit["arriving"],
+            "c1": orbit["cam"],
+            "c2": (2 * mp.pi / period) ** 2 * lift[2],
+            "p": p,
+            "s": s,
+        }
+        value = {name: text(evaluate(source, names), DIGITS) for name, source in entries.items()}
+        return {"A": [[value["A11"], value["A12"]], [value["A21"], value["A22"]]], "B": [value["B1"], value["B2"]]}
+
+    # What is 0 but for the root's width is written as 0.
+    size = abs(orbit["state"][0]) + period * abs(orbit["arriving"])
+    state = [0 if abs(value) <= CLOSED * 10**9 * size / period else value for value in orbit["state"]]
+    return {
+        "period_s": text(period, DIGITS),
+        "speed_rpm": text(60 / period, DIGITS),
+        "cam_angle_rad": text(corner.angle, DIGITS),
+        "x_star": [text(value, DIGITS) for value in state],
+        "minus": side(corner.left),
+        "plus": side(corner.right),
+        "digits": DIGITS,
+    }
+
+
+def main():
+    try:
+        document = json.load(sys.stdin, parse_float=str, parse_int=str)
+        if not isinstance(document, dict):
+            raise Refused("stdin holds no JSON object")
+        answer = route(document)
+    except (Refused, ValueError, OSError, KeyError, ZeroDivisionError) as error:
+        sys.exit(f"evaluate.py: {error}")
+    json.dump(answer, sys.stdout, indent=2)
+    print()
+
+
+if __name__ == "__main__":
+    main()

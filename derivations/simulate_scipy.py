@@ -1,0 +1,399 @@
+"""A and B at the corner impact, by nothing but simulated revolutions: an outside check with SciPy.
+
+Reads one JSON document from stdin, the numbers of a model file ("follower", "cam", "study"), and writes one to stdout.
+It may know nothing else: no formula of the flow, of A or of B, and no result of the program that starts it. What goes in
+is the equation of motion, Newton's impact and the circles that the cam is made of; the rest is integrated.
+
+  1. The cam: circles, and the polar angles where two of them meet with different curvature (the corners).
+  2. The corner impact: leave a corner with v+, fly for T, and be back at the corner with the v- that Newton's law turns into
+     v+. Two conditions for v+ and T; a flight counts if it stays above the cam for the whole revolution.
+  3. The map of either side: the cam's law of that side is continued past the corner, and one revolution is simulated from
+     perturbed (x1, x2, T). A and B are the linear coefficients of a polynomial fitted to where the revolutions end.
+
+What limits it, measured against the closed forms (largest error of an entry of A, absolute; of B, relative):
+
+  - The perturbations' size. With all monomials up to the fourth degree, the bias is of the fifth and falls with the fourth
+    power of the width: for the paper's cam 6e-7 and 4e-7 at 0.2 of the reach, 4e-8 and 2e-8 at 0.1, and so on down to 2e-10
+    at 0.025. From 0.0125 on rounding takes over, 2e-11 and 5e-12, and grows with the inverse width: 6e-11 at 0.003.
+  - The integrator's tolerance hardly: 2e-9 and 4e-9 at 1e-8, 1e-9 at 1e-9, and no difference any more from 1e-11 down.
+  - The event hardly: its state comes from the last step's interpolant. To fly there again from before that step, with
+    Newton's correction, changes nothing that shows; only at strong damping (100 N s/m) is A then 1e-11 off and not 8e-11.
+
+The bias is what is left where the cam's law bends fast: 3e-9 and 2e-10 without a spring, at a gravity of 300 m/s^2. The
+standard errors hold it, estimated from a second, wider fit; not what the integrator gets wrong each time alike, 1e-10.
+"""
+
+import json
+import math
+import sys
+from bisect import bisect_right
+from itertools import product
+
+try:
+    import numpy as np
+    from scipy import linalg, optimize
+    from scipy.integrate import solve_ivp
+except ImportError as missing:
+    sys.exit(f"this check needs numpy and scipy: {missing}")
+
+METHOD = "DOP853"
+# Error allowed per step, relative, and absolute in units of the base radius (for velocities: base radius times omega).
+RTOL = ATOL = 1e-13
+
+# Periods tried per corner, at least, and for each swing of the follower on its spring, before roots are refined.
+SCAN, SCAN_PER_SWING = 4000, 40
+# What counts as zero beside the terms it is the sum of: well above the integrator's error.
+NOISE = 1e-8
+# Points at which a revolution is compared with the cam, before minima are refined.
+LOOKS = 2000
+# Furthest continuation of a law past its corner, rad.
+REACH = 0.05
+# How far each perturbation moves the impact, about, over the reach. The bias of the wider fit is 2^DEGREE of the other's.
+WIDTHS = 0.025, 0.0125
+# Degree of the fitted polynomial, even: the first one left out is odd, so that the bias falls with the width to the DEGREE.
+DEGREE = 4
+LIMITS = (
+    "bias of the fit, of the fifth degree in the perturbations, above some hundredths of the reach, and rounding below a "
+    "hundredth; at the width used either leaves about 1e-11 to 1e-9 in A and B, the integrator's tolerance less"
+)
+
+
+class CannotCheck(Exception):
+    """The input is not a model that this check can take, or there is nothing to check."""
+
+
+# ---------------------------------------------------------------------------------------------------------- 1. The cam
+
+
+class Circle:
+    """A stretch of the cam's outline: seen from the axis, its distance along the ray at angle theta is the lift."""
+
+    def __init__(self, centre, radius):
+        self.x, self.y = centre
+        self.radius = radius
+
+    def law(self, theta):
+        """Lift, and its first and second derivative by the angle."""
+        cos, sin = math.cos(theta), math.sin(theta)
+        # The circle's centre along the ray and across it, and half of the chord that it cuts from the ray.
+        along, across = self.x * cos + self.y * sin, self.x * sin - self.y * cos
+        square = (self.radius - across) * (self.radius + across)
+        if square <= 0.0:
+            raise CannotCheck(f"the ray at {theta} rad misses the circle of radius {self.radius}")
+        chord = math.sqrt(square)
+        lift = along + chord
+        slope = -across * lift / chord
+        return lift, slope, -(along * lift + across * slope) / chord - across**2 * along * lift / chord**3
+
+    def mirrored(self):
+        return Circle((self.x, -self.y), self.radius)
+
+    def last_ray(self, theta):
+        """Angle from theta to the nearest ray that only touches the circle; the lift is not analytic there."""
+        distance = math.hypot(self.x, self.y)
+        if distance <= self.radius:
+            return math.inf
+        from_centre = math.remainder(theta - math.atan2(self.y, self.x), math.tau)
+        return math.asin(self.radius / distance) - abs(from_centre)
+
+
+class Cam:
+    """Base circle, flank, nose, dwell and their mirror images, each from its first angle on."""
+
+    def __init__(self, numbers):
+        if numbers.get("law") != "arcs":
+            raise CannotCheck(f"only the cam law \"arcs\" can be checked, not {numbers.get('law')!r}")
+        base, flank, nose = (number(numbers, key, least=0.0) for key in ("base_radius", "flank_radius", "nose_radius"))
+        start, end = (math.radians(number(numbers, key)) for key in ("flank_start_deg", "nose_end_deg"))
+        if not 0.0 <= start < end <= math.pi:
+            raise CannotCheck("the cam needs 0 <= flank_start_deg < nose_end_deg <= 180")
+        self.base = base
+        toward_start, toward_end = (np.array([math.cos(angle), math.sin(angle)]) for angle in (start, end))
+        # The flank touches the base circle at `start` from outside it: its centre lies behind the axis.
+        flank_centre = -(flank - base) * toward_start
+        # The nose touches the flank from inside: their centres are flank - nose apart. The root along the ray at `end`:
+        b, c = toward_end @ flank_centre, flank_centre @ flank_centre - (flank - nose) ** 2
+        if flank <= base or flank <= nose or b * b < c or b + math.sqrt(b * b - c) <= 0.0:
+            raise CannotCheck("the circles of the cam cannot touch each other")
+        nose_distance = b + math.sqrt(b * b - c)
+        nose_centre, top = nose_distance * toward_end, nose_distance + nose
+        meeting_point = flank_centre + flank * (nose_centre - flank_centre) / (flank - nose)
+        meeting = math.atan2(meeting_point[1], meeting_point[0])
+        if not start < meeting < end:
+            raise CannotCheck("flank and nose of the cam do not meet between flank_start_deg and nose_end_deg")
+
+        axis, bounds = np.zeros(2), [0.0, start, meeting, end, math.pi]
+        circles = Circle(axis, base), Circle(flank_centre, flank), Circle(nose_centre, nose), Circle(axis, top)
+        half = [stretch for stretch in zip(bounds, bounds[1:], circles) if stretch[1] > stretch[0]]
+        other = [(math.tau - stop, circle.mirrored()) for _, stop, circle in reversed(half)]
+        self.starts = [first for first, _, _ in half] + [first for first, _ in other]
+        self.circles = [circle for _, _, circle in half] + [circle for _, circle in other]
+
+    def law(self, theta):
+        return self.circles[bisect_right(self.starts, theta % math.tau) - 1].law(theta)
+
+    def corners(self):
+        """(angle, circle before, circle after, angle to the nearest other boundary) of each jump of the curvature."""
+        for i, theta in enumerate(self.starts):
+            before, after = self.circles[i - 1], self.circles[i]
+            if abs(after.law(theta)[2] - before.law(theta)[2]) > NOISE * self.base:
+                others = self.starts[:i] + self.starts[i + 1 :]
+                yield theta, before, after, min(abs(math.remainder(theta - other, math.tau)) for other in others)
+
+
+class Follower:
+    """The mass on its spring, flying or hit by the cam."""
+
+    def __init__(self, numbers):
+        self.mass = number(numbers, "mass", least=0.0)
+        self.damping, self.stiffness, self.gravity, self.rest, self.restitution = (
+            number(numbers, key) for key in ("damping", "stiffness", "gravity", "rest_position", "restitution")
+        )
+        if self.stiffness < 0.0 or self.damping < 0.0 or not 0.0 <= self.restitution <= 1.0:
+            raise CannotCheck("stiffness and damping must not be negative, restitution must be in [0, 1]")
+
+    def origin(self):
+        """Where x1 is measured from: the spring's equilibrium, or where it is slack if it has no stiffness."""
+        return self.rest - self.gravity * self.mass / self.stiffness if self.stiffness > 0.0 else self.rest
+
+    def motion(self, _, state):
+        """m q'' + b q' + k (q - rest) = -m g."""
+        q, v = state
+        return v, -self.gravity - (self.damping * v + self.stiffness * (q - self.rest)) / self.mass
+
+    def fly(self, state, start, end, units, **options):
+        """Free flight from `start` to `end`; `units` are a length and a velocity for the absolute tolerance."""
+        atol = [ATOL * unit for unit in units]
+        flight = solve_ivp(self.motion, (start, end), state, method=METHOD, rtol=RTOL, atol=atol, **options)
+        if not flight.success or not np.all(np.isfinite(flight.y)):
+            raise CannotCheck(f"the follower's flight cannot be integrated: {flight.message}")
+        return flight
+
+    def rebound(self, cam_velocity, velocity):
+        return (1.0 + self.restitution) * cam_velocity - self.restitution * velocity
+
+
+# ---------------------------------------------------------------------------------------------------- 2. The corner impact
+
+
+class CornerImpact:
+    """A flight of one period from a corner to the same corner, found by shooting."""
+
+    def __init__(self, follower, cam, corner, guess):
+        self.cam, self.follower = cam, follower
+        self.angle, self.before, self.after, self.room = corner
+        self.height, self.slope, _ = self.after.law(self.angle)
+
+        def misses(unknowns):
+            period = unknowns[1] * guess[1]
+            leaves = unknowns[0] * speed
+            q, v = follower.fly((self.height, leaves), 0.0, period, self.units(period)).y[:, -1]
+            rebound = follower.rebound(self.cam_velocity(period), v)
+            return (q - self.height) / cam.base, (rebound - leaves) / speed
+
+        # v+ and T in units of their guesses; a flight is smooth in both, so that the solver stops at rounding.
+        speed = max(abs(guess[0]), cam.base / guess[1])
+        found = optimize.root(misses, (guess[0] / speed, 1.0), method="hybr", options={"xtol": 1e-15})
+        self.residual = float(np.max(np.abs(found.fun)))
+        self.leaves, self.period = float(found.x[0] * speed), float(found.x[1] * guess[1])
+        corner, units = (self.height, self.leaves), self.units(self.period)
+        orbit = follower.fly(corner, 0.0, self.period, units, dense_output=True)
+        self.arrives, self.orbit = float(orbit.y[1, -1]), orbit.sol
+        self.closing_speed = self.cam_velocity(self.period) - self.arrives
+        # x* needs no interpolation: fly there.
+        self.start = follower.fly(corner, 0.0, 0.5 * self.period, units).y[:, -1]
+
+    def units(self, period):
+        return self.cam.base, self.cam.base * math.tau / period
+
+    def cam_velocity(self, period):
+        return self.slope * math.tau / period
+
+    def admissible(self):
+        """It hits the cam at the corner and is above it for the rest of the revolution."""
+        if not (self.residual < NOISE and self.closing_speed > NOISE * self.units(self.period)[1]):
+            return False
+
+        def gap(t):
+            theta = self.angle + math.tau * t / self.period
+            return float(self.orbit(t)[0]) - self.cam.law(theta)[0]
+
+        times = np.linspace(0.0, self.period, LOOKS + 1)[1:-1]
+        gaps = [gap(t) for t in times]
+        # A minimum between two looks may be lower than both.
+        lows = [times[i - 1 : i + 2 : 2] for i in range(1, len(gaps) - 1) if gaps[i] <= min(gaps[i - 1], gaps[i + 1])]
+        lowest = (optimize.minimize_scalar(gap, bounds=between, method="bounded").fun for between in lows)
+        return min(gaps) > 0.0 and all(height > 0.0 for height in lowest)
+
+
+def guesses(follower, cam, corner, periods):
+    """(v+, T) near each solution: where the miss changes its sign over the study's periods."""
+    height, slope, _ = corner[2].law(corner[0])
+    units = cam.base, cam.base * math.tau / periods[-1]
+    # The equation of motion is linear, so that two flights over the longest period tell how all others end.
+    flights = (follower.fly((height, v), 0.0, periods[-1], units, dense_output=True) for v in (0.0, units[1]))
+    rest, moving = (flight.sol for flight in flights)
+
+    def ends(period):
+        """End of the flight that leaves at rest, and what each unit of v+ adds to it."""
+        return *rest(period), *(moving(period) - rest(period)) / units[1]
+
+    def terms(period):
+        """(v+ - rebound) times q1, which leaves no poles where a flight of that period cannot be aimed, in two parts."""
+        q0, v0, q1, v1 = ends(period)
+        r = follower.restitution
+        return (height - q0) * (1.0 + r * v1), q1 * (r * v0 - (1.0 + r) * slope * math.tau / period)
+
+    values = sum(terms(periods))
+    # Where every period solves the equation, as for a follower at rest on a dwell, no speed is singled out.
+    if np.max(np.abs(values)) <= NOISE * np.max(np.abs(terms(periods))):
+        return
+    for i in np.flatnonzero((values[:-1] < 0.0) != (values[1:] < 0.0)):
+        period = optimize.brentq(lambda period: sum(terms(period)), *periods[i : i + 2])
+        q0, _, q1, v1 = ends(period)
+        # In resonance no v+ is singled out.
+        if abs(q1) > NOISE * period * abs(v1):
+            yield (height - q0) / q1, period
+
+
+def corner_impact(follower, cam, study):
+    rpm_min, rpm_max = number(study, "rpm_min", least=0.0), number(study, "rpm_max", least=0.0)
+    if not rpm_min < rpm_max:
+        raise CannotCheck("study.rpm_min must be below study.rpm_max")
+    swings = 60.0 / rpm_min * math.sqrt(follower.stiffness / follower.mass) / math.tau
+    tries = SCAN + SCAN_PER_SWING * swings * math.log(rpm_max / rpm_min)
+    if not (tries < 1e6 and 60.0 / rpm_min * follower.damping / follower.mass < 1e5):
+        raise CannotCheck("the follower swings or settles too often in one revolution at study.rpm_min to be followed")
+    periods = np.geomspace(60.0 / rpm_max, 60.0 / rpm_min, int(tries))
+    candidates = [(corner, guess) for corner in cam.corners() for guess in guesses(follower, cam, corner, periods)]
+    # The slowest counts.
+    for corner, guess in sorted(candidates, key=lambda candidate: -candidate[1][1]):
+        impact = CornerImpact(follower, cam, corner, guess)
+        if impact.admissible():
+            return impact
+    words = f"from {rpm_min} to {rpm_max} rpm {len(candidates)} flights return to a corner, none clear of the cam"
+    raise CannotCheck(f"no corner impact of a one-impact, one-revolution orbit: {words}")
+
+
+# ------------------------------------------------------------------------------------------------ 3. The map of either side
+
+
+class OneSidedMap:
+    """One revolution over a cam with one circle continued past the corner, as deviations from x* and T*."""
+
+    def __init__(self, impact, circle):
+        self.impact, self.circle = impact, circle
+        omega, u, v = math.tau / impact.period, impact.closing_speed, abs(impact.arrives)
+        jump = abs(impact.after.law(impact.angle)[2] - impact.before.law(impact.angle)[2])
+        # Half of a neighbour keeps the next corner out, a quarter of the way to the last ray keeps the law well analytic; up
+        # to u/(omega jump) the approach stays above the step that a continued law ends with.
+        self.reach = min(REACH, 0.5 * impact.room, 0.25 * circle.last_ray(impact.angle), u / (omega * jump))
+        if not self.reach > 1e-4:
+            raise CannotCheck(f"the cam's law cannot be continued past the corner at {impact.angle} rad")
+        # Perturbations of x1, x2 and T that move the impact by comparable angles.
+        self.scales = self.reach * np.array([u / omega, u / math.pi, 2.0 * u / (omega * (u + v))])
+
+    def revolution(self, perturbation):
+        """(perturbation that survives rounding, where the revolution ends), both as deviations."""
+        impact, follower = self.impact, self.impact.follower
+        start, period = impact.start + perturbation[:2], impact.period + perturbation[2]
+        omega, units = math.tau / period, impact.units(period)
+
+        def gap(t, state):
+            angle = omega * t
+            law = self.circle.law if abs(angle) <= self.reach else impact.cam.law
+            return state[0] - law(impact.angle + angle)[0]
+
+        gap.terminal, gap.direction = True, -1
+        approach = follower.fly(start, -0.5 * period, self.reach / omega, units, events=gap)
+        if approach.status != 1 or abs(approach.t[-1]) * omega >= self.reach:
+            raise CannotCheck("a perturbed revolution does not hit the cam near the corner")
+        t, velocity = approach.t[-1], approach.y[1, -1]
+        height, slope, _ = self.circle.law(impact.angle + omega * t)
+        departure = follower.fly((height, follower.rebound(omega * slope, velocity)), t, 0.5 * period, units, events=gap)
+        if departure.status == 1:
+            raise CannotCheck("a perturbed revolution hits the cam twice")
+        survives = np.array([*(start - impact.start), period - impact.period])
+        return survives, departure.y[:, -1] - impact.start
+
+    def fit(self, width):
+        """The 2 x 3 matrix [A | B], its standard errors from the residual, and the condition number of the design."""
+        scales = width * self.scales
+        # One Chebyshev node more than the degree, in each direction, determines the polynomial.
+        nodes = np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
+        samples = [self.revolution(scales * z) for z in product(nodes, repeat=3)]
+        z = np.array([perturbation for perturbation, _ in samples]) / scales
+        ends = np.array([end for _, end in samples])
+        # All monomials up to the degree, so that the map's curvature does not go into the linear ones.
+        exponents = sorted((e for e in product(range(DEGREE + 1), repeat=3) if sum(e) <= DEGREE), key=sum)
+        design = np.column_stack([np.prod(z**e, axis=1) for e in exponents])
+        values, _, _, singular = linalg.lstsq(design, ends)
+        variance = np.sum((ends - design @ values) ** 2, axis=0) / (len(z) - len(exponents))
+        errors = np.sqrt(np.outer(np.diag(linalg.inv(design.T @ design)), variance))
+        linear = [exponents.index(e) for e in ((1, 0, 0), (0, 1, 0), (0, 0, 1))]
+        per_unit = [(table[linear] / scales[:, None]).T for table in (values, errors)]
+        return *per_unit, float(singular[0] / singular[-1])
+
+    def estimate(self):
+        """The narrower fit, its standard errors with the bias that the wider one shows, and the condition number."""
+        wide, _, _ = self.fit(WIDTHS[0])
+        values, errors, condition = self.fit(WIDTHS[1])
+        bias = (wide - values) / ((WIDTHS[0] / WIDTHS[1]) ** DEGREE - 1.0)
+        return values, np.hypot(errors, bias), condition
+
+
+# ------------------------------------------------------------------------------------------------------------- In and out
+
+
+def number(table, key, least=None):
+    value = table.get(key)
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+        raise CannotCheck(f"{key} must be a number, not {value!r}")
+    if least is not None and not value > least:
+        raise CannotCheck(f"{key} must be above {least}, not {value}")
+    return float(value)
+
+
+def entries(matrix):
+    return {"A": matrix[:, :2].tolist(), "B": matrix[:, 2].tolist()}
+
+
+def eigenvalues(matrix):
+    values = sorted(linalg.eig(matrix[:, :2], right=False), key=lambda value: (-value.real, -value.imag))
+    return [{"re": float(value.real), "im": float(value.imag)} for value in values]
+
+
+def check(model):
+    model = model if isinstance(model, dict) else {}
+    for name in ("follower", "cam", "study"):
+        if not isinstance(model.get(name), dict):
+            raise CannotCheck(f"the input has no table \"{name}\"")
+    follower, cam = Follower(model["follower"]), Cam(model["cam"])
+    impact = corner_impact(follower, cam, model["study"])
+    sides = {"minus": impact.before, "plus": impact.after}
+    maps = {side: OneSidedMap(impact, circle).estimate() for side, circle in sides.items()}
+    return {
+        "period_s": impact.period,
+        "speed_rpm": 60.0 / impact.period,
+        "cam_angle_rad": impact.angle,
+        "x_star": [float(impact.start[0]) - follower.origin(), float(impact.start[1])],
+        **{side: entries(values) for side, (values, _, _) in maps.items()},
+        "standard_error": {side: entries(errors) for side, (_, errors, _) in maps.items()},
+        "condition_number": max(condition for _, _, condition in maps.values()),
+        "eigenvalues": {side: eigenvalues(values) for side, (values, _, _) in maps.items()},
+        "tolerances": {"rtol": RTOL, "atol": ATOL, "method": METHOD},
+        "limits": LIMITS,
+    }
+
+
+def main():
+    try:
+        print(json.dumps(check(json.load(sys.stdin)), indent=2, allow_nan=False))
+    except json.JSONDecodeError as error:
+        sys.exit(f"the input is not JSON: {error}")
+    except (CannotCheck, linalg.LinAlgError, ArithmeticError, ValueError) as error:
+        sys.exit(f"no result for this model: {error}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,120 @@
+//! The orbit and its map by programs outside this one: `symbolic` (the derived expressions, to 30 digits) and `scipy` (an
+//! integration of its own). Both get the numbers of the model file and nothing else, and find the corner impact themselves.
+
+use nalgebra::{Matrix2, Vector2};
+use serde::Deserialize;
+use serde_json::json;
+
+use super::map::{CornerMap, Route, SideMap, Uncertainty};
+use crate::model::{ArcsProfile, CamProfile, Follower, Model, Study};
+use crate::python::{self, PythonError};
+
+/// A route outside this program: its name, and its script in `derivations/`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Program {
+    /// The route's name in documents.
+    pub name: &'static str,
+    /// The script.
+    pub script: &'static str,
+}
+
+/// Every route outside this program.
+pub const PROGRAMS: [Program; 2] =
+    [Program { name: "symbolic", script: "evaluate.py" }, Program { name: "scipy", script: "simulate_scipy.py" }];
+
+/// What such a route found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outside {
+    /// The map.
+    pub route: Route,
+    /// x*, m from the equilibrium and m/s.
+    pub x_star: Vector2<f64>,
+    /// T*, s.
+    pub period: f64,
+}
+
+/// Runs one of them on a model whose study range is `study`.
+pub fn run(program: Program, model: &Model, study: Study) -> Result<Outside, PythonError> {
+    let answer: Answer = python::run(program.script, &numbers(model, study))?;
+    let map = answer.map.map();
+    let uncertainty = answer.standard_error.map(|error| Uncertainty::Fit {
+        standard: error.map(),
+        systematic: None,
+        condition_number: answer.condition_number.unwrap_or(f64::NAN),
+    });
+    Ok(Outside {
+        route: Route { name: program.name, map, uncertainty },
+        x_star: Vector2::new(answer.x_star[0].value(), answer.x_star[1].value()),
+        period: answer.period_s.value(),
+    })
+}
+
+/// The numbers of a model file, as its tables name them.
+fn numbers(model: &Model, study: Study) -> serde_json::Value {
+    let Follower { mass, damping, stiffness, gravity, rest_position, restitution } = model.follower;
+    let CamProfile::Arcs(ArcsProfile { base_radius, flank_radius, nose_radius, flank_start_deg, nose_end_deg }) =
+        model.cam;
+    json!({
+        "follower": {
+            "mass": mass, "damping": damping, "stiffness": stiffness, "gravity": gravity,
+            "rest_position": rest_position, "restitution": restitution,
+        },
+        "cam": {
+            "law": "arcs", "base_radius": base_radius, "flank_radius": flank_radius, "nose_radius": nose_radius,
+            "flank_start_deg": flank_start_deg, "nose_end_deg": nose_end_deg,
+        },
+        "study": { "rpm_min": study.rpm_min, "rpm_max": study.rpm_max },
+    })
+}
+
+/// A number, or one with more digits than a double holds, as text.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Number {
+    Double(f64),
+    Digits(String),
+}
+
+impl Number {
+    /// The nearest double; not a number where the text is none, which no comparison lets pass.
+    fn value(&self) -> f64 {
+        match self {
+            Self::Double(value) => *value,
+            Self::Digits(digits) => digits.parse().unwrap_or(f64::NAN),
+        }
+    }
+}
+
+#[derive(Deserialize)]
+struct Answer {
+    period_s: Number,
+    x_star: [Number; 2],
+    #[serde(flatten)]
+    map: Sides,
+    standard_error: Option<Sides>,
+    condition_number: Option<f64>,
+}
+
+#[derive(Deserialize)]
+struct Sides {
+    minus: Side,
+    plus: Side,
+}
+
+#[derive(Deserialize)]
+struct Side {
+    #[serde(rename = "A")]
+    a: [[Number; 2]; 2],
+    #[serde(rename = "B")]
+    b: [Number; 2],
+}
+
+impl Sides {
+    fn map(&self) -> CornerMap {
+        let side = |side: &Side| SideMap {
+            a: Matrix2::from_fn(|row, column| side.a[row][column].value()),
+            b: Vector2::from_fn(|row, _| side.b[row].value()),
+        };
+        CornerMap { minus: side(&self.minus), plus: side(&self.plus) }
+    }
+}
