@@ -38,6 +38,12 @@ derive: $(VENV) ## redo the derivations by computer algebra and write golden/der
 derive-check: $(VENV) ## redo them, and fail if golden/derived is not what comes out
 	.venv/bin/python derivations/derive.py --check
 
+claims: ## write docs/claims.md: what the paper states, and what was found
+	$(CARGO) build $(RELEASE) --quiet
+	@mkdir -p docs
+	target/release/corner-impact claims models/osorio-2008.toml --markdown > docs/claims.md.new
+	@mv docs/claims.md.new docs/claims.md
+
 review: ## after a change to the model: look at each number that moved, accept or reject it
 	@command -v cargo-insta >/dev/null || $(CARGO) install cargo-insta --locked
 	$(CARGO) insta test $(RELEASE) --review

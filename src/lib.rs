@@ -19,11 +19,13 @@
 //!    ▼
 //!  border_collision      normal form, Feigin's classification
 //!    ▼
-//!  claims                what the paper prints, and what was found about it
+//!  published             the numbers that the paper prints, against those computed
 //!    ▼
 //!  verify                all of the above on one model
 //!    ▼
-//!  report                one document value; text and JSON
+//!  claims                the paper's statements, one by one: holds, misprint, refuted, open
+//!    ▼
+//!  report                document values; text, JSON, Markdown
 //!    ▼
 //!  cli                   parse, one library call, exit code
 //! ```
@@ -62,9 +64,11 @@ pub mod agreement;
 
 pub mod border_collision;
 
-pub mod claims;
+pub mod published;
 
 pub mod verify;
+
+pub mod claims;
 
 pub mod report;
 

@@ -44,6 +44,14 @@ table! {
     /// When an eigenvalue counts as on the boundary that Feigin's counts divide at.
     UNIT_EIGENVALUE = 1e-9, "of one: counting an eigenvalue that rounding decides would be guessing; the paper's nearest is \
         5e-3 away";
+    /// When a number that should be 0 is shown as 0.
+    DISPLAYED_ZERO = 1e-12, "absolute, in the model's units: a thousand times the rounding of an orbit of size one";
+    /// How closely a difference quotient meets the derivative it stands for.
+    DIFFERENCED = 1e-5, "of the larger: a central difference over 1e-4 s of motions that take hundredths of a second";
+    /// How far a drawing's circles may miss one another.
+    DRAWING = 0.01, "cm, absolute: less than the width of its lines";
+    /// How little a settled motion may move from one revolution to the next, m.
+    SETTLED = 1e-9, "absolute: far below any amplitude, far above the rounding of a thousand revolutions";
     /// When a quantity that a change of coordinates divides by counts as zero.
     DEGENERATE = 1e-10, "of the terms it is made of: the quotient would keep fewer than six digits";
 }

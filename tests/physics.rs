@@ -12,24 +12,24 @@ const REST: f64 = 0.3;
 
 fn followers() -> Vec<Follower> {
     let follower = |damping, stiffness, gravity| Follower {
-        mass: 1.25,
+        mass: 1.0,
         damping,
         stiffness,
         gravity,
         rest_position: REST,
         restitution: 0.8,
     };
-    // zeta = damping/2.5, w0^2 = stiffness/1.25: undamped, under-, nearly and exactly critical, over-, far over-damped,
+    // zeta = damping/2, w0^2 = stiffness; 64 and 1024 are critical to the last bit: undamped, under-, nearly and exactly critical, over-, far over-damped,
     // a weak spring with strong damping, damping alone, nothing but gravity, nothing at all.
-    let critical = 2.0 * (1250.0_f64 * 1.25).sqrt();
+    let critical = 64.0;
     [
-        (0.0, 1250.0, 0.0),
-        (2.5, 1250.0, 9.81),
-        (critical * (1.0 - 1e-9), 1250.0, 9.81),
-        (critical, 1250.0, 9.81),
-        (critical * (1.0 + 1e-9), 1250.0, 9.81),
-        (200.0, 1250.0, 9.81),
-        (20000.0, 1250.0, 9.81),
+        (0.0, 1024.0, 0.0),
+        (2.5, 1024.0, 9.81),
+        (critical * (1.0 - 1e-9), 1024.0, 9.81),
+        (critical, 1024.0, 9.81),
+        (critical * (1.0 + 1e-9), 1024.0, 9.81),
+        (200.0, 1024.0, 9.81),
+        (20000.0, 1024.0, 9.81),
         (50.0, 1e-3, 9.81),
         (25.0, 0.0, 9.81),
         (0.0, 0.0, 9.81),

@@ -3,7 +3,7 @@
 
 mod common;
 
-use corner_impact::claims::published::{PublishedError, Verdict, compare_published};
+use corner_impact::published::{PublishedError, Verdict, compare_published};
 use corner_impact::verify::{External, verify};
 
 #[test]

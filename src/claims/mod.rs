@@ -1,3 +1,11 @@
-//! What the paper prints, held against what comes out here.
+//! The paper's statements, one by one, with a verdict that a check computes.
+//!
+//! `claims.toml` lists what the paper says and what was found; [`checks`] has one check for each id.
+//! A check that comes to another verdict than the ledger is an error, never an update: a misprint stays a
+//! misprint until somebody looks.
 
-pub mod published;
+pub mod checks;
+pub mod ledger;
+pub mod statements;
+
+pub use ledger::{Claim, Held, hold};

@@ -1,5 +1,6 @@
 //! The command line: parse, one library call, exit code. Results to standard output, complaints to standard error.
 
+mod claims;
 mod verify;
 
 use std::ffi::OsString;
@@ -29,6 +30,7 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     Verify(verify::Arguments),
+    Claims(claims::Arguments),
 }
 
 /// Why a command has no result.
@@ -53,7 +55,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         }
     };
     let result = match &arguments.command {
-        Command::Verify(arguments) => verify::run(arguments),
+        Command::Verify(arguments) => verify::run(arguments, err),
+        Command::Claims(arguments) => claims::run(arguments),
     };
     match result {
         Ok((text, exit)) => match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {

@@ -1,5 +1,6 @@
 //! `corner-impact verify MODEL`.
 
+use std::io::Write;
 use std::path::PathBuf;
 
 use super::{CommandError, Exit};
@@ -22,11 +23,15 @@ pub(super) struct Arguments {
     no_external: bool,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<(String, Exit), CommandError> {
+pub(super) fn run(arguments: &Arguments, err: &mut dyn Write) -> Result<(String, Exit), CommandError> {
     let input = |error: &dyn std::fmt::Display| CommandError::Input(error.to_string());
     let model = Model::read(&arguments.model).map_err(|error| input(&error))?;
     let external = if arguments.no_external { External::LeftOut } else { External::Run };
     let findings = verify(&model, external).map_err(|error| input(&error))?;
+    for failure in findings.skipped.iter().filter(|skipped| skipped.failed) {
+        // A closed pipe leaves nobody to tell; the page says the same.
+        let _ = writeln!(err, "error: {} did not run: {}", failure.route, failure.why);
+    }
     let document = Verification::new(&model, &findings);
     let page = if arguments.json {
         json::render(&document).map_err(|error| CommandError::Report(error.to_string()))?

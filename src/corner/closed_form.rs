@@ -34,8 +34,8 @@ pub fn route(model: &Model, at: &CornerImpact) -> Route {
     Route { name: "closed_form", map, uncertainty: None }
 }
 
-/// `A` and `B` for one side's lift at the corner; `v` is the velocity before the impact.
-fn side_map(follower: &Follower, period: f64, v: f64, lift: &Lift) -> SideMap {
+/// `A` and `B` for one side's lift at the corner; `v` is the velocity before the impact, m/s, and `period` T*, s.
+pub fn side_map(follower: &Follower, period: f64, v: f64, lift: &Lift) -> SideMap {
     let zeta = follower.damping / (2.0 * follower.mass);
     let omega0_squared = follower.stiffness / follower.mass;
     let r = follower.restitution;

@@ -9,10 +9,10 @@ use serde::Serialize;
 
 use crate::agreement::Agreement;
 use crate::border_collision::{Classification, NormalForm};
-use crate::claims::published::PrintedNumber;
 use crate::corner::CornerImpact;
 use crate::corner::map::{CornerMap, Eigenvalue, Route, SideMap, Uncertainty};
 use crate::model::Model;
+use crate::published::PrintedNumber;
 use crate::verify::{Findings, Skipped};
 
 /// What `verify` found; serializes to the document `corner-impact/verify/1`.
@@ -257,6 +257,8 @@ pub struct SkippedEntry {
     pub route: String,
     /// Why.
     pub why: String,
+    /// Whether it should have run.
+    pub failed: bool,
 }
 
 impl Verification {
@@ -292,7 +294,11 @@ impl Verification {
             published: published.iter().map(PublishedEntry::new).collect(),
             skipped: skipped
                 .iter()
-                .map(|Skipped { route, why }| SkippedEntry { route: route.clone(), why: why.clone() })
+                .map(|Skipped { route, why, failed }| SkippedEntry {
+                    route: route.clone(),
+                    why: why.clone(),
+                    failed: *failed,
+                })
                 .collect(),
             agrees: *agrees,
         }

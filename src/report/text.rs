@@ -318,6 +318,11 @@ fn spoken(name: &str) -> String {
 
 /// Text in lines that fit, indented by two.
 fn paragraph(out: &mut String, text: &str) -> fmt::Result {
+    paragraph_at(out, 2, text)
+}
+
+/// Text in lines that fit, indented by `indent`.
+pub(super) fn paragraph_at(out: &mut String, indent: usize, text: &str) -> fmt::Result {
     let mut column = 0;
     for word in text.split_whitespace() {
         let length = word.chars().count();
@@ -326,8 +331,8 @@ fn paragraph(out: &mut String, text: &str) -> fmt::Result {
             column = 0;
         }
         if column == 0 {
-            write!(out, "  {word}")?;
-            column = 2 + length;
+            write!(out, "{:indent$}{word}", "")?;
+            column = indent + length;
         } else {
             write!(out, " {word}")?;
             column += 1 + length;

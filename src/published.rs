@@ -12,17 +12,20 @@ use crate::model::{Model, ModelError, OSORIO_2008};
 use crate::tolerance::Comparison;
 
 /// The printed digits.
-const PRINTED: &str = include_str!("../../golden/published/osorio-2008.json");
+const PRINTED: &str = include_str!("../golden/published/osorio-2008.json");
 
-/// What was found about a printed number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// What was found about a printed number or a statement.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Verdict {
     /// It is right.
     Holds,
-    /// The digits are a slip; nothing was built on them.
+    /// A slip of the pen: digits, a sign, brackets; what was built on the right form stands.
     Misprint,
-    /// What is said of it, or the formula it came from, is wrong.
+    /// What it says is wrong.
     Refuted,
+    /// Not decided by this program.
+    Open,
 }
 
 impl Verdict {
@@ -32,6 +35,7 @@ impl Verdict {
             Self::Holds => "holds",
             Self::Misprint => "misprint",
             Self::Refuted => "refuted",
+            Self::Open => "open",
         }
     }
 }

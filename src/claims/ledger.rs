@@ -1,0 +1,83 @@
+//! The ledger: what the paper says, what was found, and whether the check still finds it.
+
+use serde::Deserialize;
+
+use super::checks::{self, Context};
+use crate::published::Verdict;
+
+/// The statements and the verdicts found.
+const CLAIMS: &str = include_str!("claims.toml");
+
+/// A statement of the paper.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Claim {
+    /// Names it for good; checks go by it.
+    pub id: String,
+    /// Where the paper has it.
+    #[serde(rename = "where")]
+    pub place: String,
+    /// What it says, in words of this project.
+    pub statement: String,
+    /// What was found.
+    pub verdict: Verdict,
+    /// What is right instead; with every misprint and refutation.
+    pub correct: Option<String>,
+}
+
+/// What a check found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Found {
+    /// Its verdict.
+    pub verdict: Verdict,
+    /// The numbers that it rests on.
+    pub evidence: String,
+}
+
+/// A statement beside what its check found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Held {
+    /// The statement.
+    pub claim: Claim,
+    /// What the check found; `open` for another model where the statement is about the paper's.
+    pub found: Found,
+    /// Whether that is the ledger's verdict, or the statement is not about this model.
+    pub as_found: bool,
+}
+
+/// Why the ledger cannot be held against anything.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum LedgerError {
+    /// The file does not read.
+    #[error("claims.toml: {0}")]
+    Unreadable(String),
+    /// A statement without a check.
+    #[error("claims.toml: no check for \"{0}\"")]
+    Unchecked(String),
+    /// What the checks need is not there.
+    #[error("claims: {0}")]
+    Derived(String),
+}
+
+#[derive(Deserialize)]
+struct Ledger {
+    claim: Vec<Claim>,
+}
+
+/// Every statement, in the paper's order by kind: equations, numbers, statements and figures.
+pub fn claims() -> Result<Vec<Claim>, LedgerError> {
+    let ledger: Ledger = toml::from_str(CLAIMS).map_err(|error| LedgerError::Unreadable(error.to_string()))?;
+    Ok(ledger.claim)
+}
+
+/// Holds every statement against its check.
+pub fn hold(context: &Context<'_>) -> Result<Vec<Held>, LedgerError> {
+    let one = |claim: Claim| {
+        let check = checks::find(&claim.id).ok_or_else(|| LedgerError::Unchecked(claim.id.clone()))?;
+        let found = check.run(context);
+        let elsewhere = !context.is_paper && check.is_about_the_papers_model() && found.verdict == Verdict::Open;
+        let as_found = found.verdict == claim.verdict || elsewhere;
+        Ok(Held { claim, found, as_found })
+    };
+    claims()?.into_iter().map(one).collect()
+}
