@@ -40,11 +40,10 @@ fn two_hundred_points_to_twelve_digits() {
         let lift = Lift { value: position, slope, curvature, third: 0.0 };
         let map = side_map(&follower, period, input("v"), &lift);
         let rows = point["A"].as_array().unwrap();
-        for row in 0..2 {
-            for column in 0..2 {
-                meets(map.a[(row, column)], number(&rows[row][column]), point);
-            }
-            meets(map.b[row], number(&point["B"][row]), point);
+        for (index, row) in rows.iter().enumerate() {
+            meets(map.a[(index, 0)], number(&row[0]), point);
+            meets(map.a[(index, 1)], number(&row[1]), point);
+            meets(map.b[index], number(&point["B"][index]), point);
         }
         let response = Flight::new(&follower).response(0.5 * period);
         meets(response.step, number(&point["p"]), point);

@@ -155,3 +155,22 @@ fn degenerate_maps_are_refused_with_the_reason() {
     let border = (map.c(), -(map.c() * x)[0]);
     assert!(matches!(classify(&map, border), Err(Degenerate::Vanishes { .. })));
 }
+
+/// Zero to rounding means zero beside what it is made of: the same small number is refused or not by its terms.
+#[test]
+fn degenerate_is_measured_against_its_terms() {
+    // The first entry of C beside A's own entries of 1000: 1e-7 is rounding, 4e-7 is not.
+    for (jump, refused) in [(1e-7, true), (4e-7, false)] {
+        let minus = SideMap { a: Matrix2::new(1000.0, 2.0, 3.0, 0.5), b: Vector2::new(1.0, 1.0) };
+        let plus = SideMap { a: Matrix2::new(1000.0 + jump, 2.5, 3.0, 0.5), b: Vector2::new(2.0, 1.0) };
+        let form = normal_form(&CornerMap { minus, plus });
+        assert_eq!(form.is_err(), refused, "{jump}: {form:?}");
+    }
+    // det [C; C A-] beside the lengths of its rows, 400 and 200.
+    for (coupling, refused) in [(2e-11, true), (2e-10, false)] {
+        let minus = SideMap { a: Matrix2::new(0.5, coupling, 1.0, 0.3), b: Vector2::new(1.0, 1.0) };
+        let plus = SideMap { a: Matrix2::new(400.5, coupling, 2.0, 0.3), b: Vector2::new(2.0, 1.0) };
+        let form = normal_form(&CornerMap { minus, plus });
+        assert_eq!(form.is_err(), refused, "{coupling}: {form:?}");
+    }
+}

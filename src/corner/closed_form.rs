@@ -96,8 +96,8 @@ pub fn orbit(model: &Model, at: &CornerImpact) -> Result<(Vector2<f64>, f64), No
     // Each secant step gains half as many digits again; rounding is reached after a handful.
     for _ in 0..20 {
         let (x, miss) = fixed_point(period)?;
-        if miss == before.1 {
-            return if miss == 0.0 { Ok((x, period)) } else { Err(NoFixedPoint { period }) };
+        if miss == 0.0 {
+            return Ok((x, period));
         }
         let next = period - miss * (period - before.0) / (miss - before.1);
         if (next - period).abs() <= tolerance::ROOT_WIDTH.value * period {
