@@ -6,9 +6,9 @@ mod common;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use corner_impact::claims::checks::{CHECKS, Check, Context};
+use corner_impact::claims::checks::{CHECKS, Check};
 use corner_impact::claims::ledger::claims;
-use corner_impact::claims::{Held, hold};
+use corner_impact::claims::{Context, Held, hold};
 use corner_impact::model::Model;
 use corner_impact::published::Verdict;
 use corner_impact::report::ClaimsDocument;

@@ -1,70 +1,14 @@
 //! One check for each statement of the ledger: its id, and what decides it.
 
-use std::collections::BTreeMap;
-
-use serde::Deserialize;
-
-use super::ledger::{Found, LedgerError};
+use super::context::{Context, Found, Residuals};
 use super::statements::*;
-use crate::cam::Cam;
-use crate::model::{Model, OSORIO_2008};
 use crate::published::Verdict;
-use crate::verify::Findings;
-
-/// What computer algebra found about the printed equations; `make derive` writes it, `make derive-check` redoes it.
-const EQUATIONS: &str = include_str!("../../golden/derived/printed_equations.json");
 
 /// Why the dynamics from detachment to chattering is not decided.
 const STICKING: &str = "needs a simulation of chattering and sticking, which the event loop refuses";
 
 /// Why some figures have nothing to decide.
 const DRAWING: &str = "a drawing: it states nothing that a computation could contradict";
-
-/// What checks may look at.
-pub struct Context<'a> {
-    /// The model.
-    pub model: &'a Model,
-    /// Its cam.
-    pub cam: &'a Cam,
-    /// What `verify` found for it, without programs outside.
-    pub findings: &'a Findings,
-    /// Whether follower and cam are the paper's.
-    pub is_paper: bool,
-    equations: BTreeMap<String, Equation>,
-}
-
-/// A printed equation, as the derivations judged it.
-#[derive(Debug, Deserialize)]
-struct Equation {
-    label: String,
-    verdict: Verdict,
-    evidence: Residuals,
-}
-
-#[derive(Debug, Deserialize)]
-struct Residuals {
-    residual_as_printed: serde_json::Value,
-    residual_repaired: serde_json::Value,
-    subsets: Vec<serde_json::Value>,
-}
-
-#[derive(Deserialize)]
-struct Equations {
-    equations: Vec<Equation>,
-}
-
-impl<'a> Context<'a> {
-    /// The context of a verified model.
-    pub fn new(model: &'a Model, cam: &'a Cam, findings: &'a Findings) -> Result<Self, LedgerError> {
-        let derived = |error: String| LedgerError::Derived(format!("golden/derived/printed_equations.json: {error}"));
-        let read: Equations = serde_json::from_str(EQUATIONS).map_err(|error| derived(error.to_string()))?;
-        let paper =
-            Model::parse("the built-in model", OSORIO_2008).map_err(|error| LedgerError::Derived(error.to_string()))?;
-        let is_paper = model.follower == paper.follower && model.cam == paper.cam;
-        let equations = read.equations.into_iter().map(|equation| (equation.label.clone(), equation)).collect();
-        Ok(Self { model, cam, findings, is_paper, equations })
-    }
-}
 
 /// What decides a statement.
 #[derive(Clone, Copy)]

@@ -2,7 +2,8 @@
 
 use serde::Deserialize;
 
-use super::checks::{self, Context};
+use super::checks;
+use super::context::{Context, Found, LedgerError};
 use crate::published::Verdict;
 
 /// The statements and the verdicts found.
@@ -25,15 +26,6 @@ pub struct Claim {
     pub correct: Option<String>,
 }
 
-/// What a check found.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Found {
-    /// Its verdict.
-    pub verdict: Verdict,
-    /// The numbers that it rests on.
-    pub evidence: String,
-}
-
 /// A statement beside what its check found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Held {
@@ -43,20 +35,6 @@ pub struct Held {
     pub found: Found,
     /// Whether that is the ledger's verdict, or the statement is not about this model.
     pub as_found: bool,
-}
-
-/// Why the ledger cannot be held against anything.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum LedgerError {
-    /// The file does not read.
-    #[error("claims.toml: {0}")]
-    Unreadable(String),
-    /// A statement without a check.
-    #[error("claims.toml: no check for \"{0}\"")]
-    Unchecked(String),
-    /// What the checks need is not there.
-    #[error("claims: {0}")]
-    Derived(String),
 }
 
 #[derive(Deserialize)]

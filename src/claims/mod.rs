@@ -5,7 +5,9 @@
 //! misprint until somebody looks.
 
 pub mod checks;
+pub mod context;
 pub mod ledger;
 pub mod statements;
 
+pub use context::{Context, Found, LedgerError};
 pub use ledger::{Claim, Held, hold};

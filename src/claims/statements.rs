@@ -5,8 +5,7 @@ use std::fmt;
 
 use nalgebra::Vector2;
 
-use super::checks::Context;
-use super::ledger::Found;
+use super::context::{Context, Found};
 use crate::corner;
 use crate::flight::{Flight, State};
 use crate::impact::rebound;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::{CommandError, Exit};
 use crate::cam::Cam;
-use crate::claims::{checks::Context, hold};
+use crate::claims::{Context, hold};
 use crate::model::Model;
 use crate::report::{ClaimsDocument, json};
 use crate::verify::{External, verify};
