@@ -143,11 +143,13 @@ impl fmt::Display for NotFound {
 /// The slowest corner impact in `[study]`, and the others by rising speed.
 pub fn locate(model: &Model, cam: &Cam) -> Result<(CornerImpact, Vec<CornerImpact>), LocateError> {
     let study = model.study()?;
-    let flight = Flight::new(&model.follower);
+    let follower = &model.follower;
+    let flight = Flight::new(follower);
+    let fastest_rate = (follower.stiffness / follower.mass).sqrt() + follower.damping / (2.0 * follower.mass);
     let corners: Vec<Corner> = cam.corners().into_iter().filter(|corner| corner.jump_order == 2).collect();
     let (mut found, mut rejected, mut grazing) = (Vec::new(), Vec::new(), None);
     for corner in &corners {
-        let equation = PeriodEquation { flight: &flight, corner, restitution: model.follower.restitution };
+        let equation = PeriodEquation { flight: &flight, corner, restitution: follower.restitution, fastest_rate };
         let verdicts: Vec<(f64, Verdict)> = match equation.roots(study) {
             Roots::Some(roots) => {
                 roots.into_iter().map(|root| (root.period, equation.orbit(model, cam, root))).collect()
@@ -188,6 +190,8 @@ struct PeriodEquation<'a> {
     flight: &'a Flight,
     corner: &'a Corner,
     restitution: f64,
+    /// w0 + zeta, 1/s.
+    fastest_rate: f64,
 }
 
 #[derive(Clone, Copy)]
@@ -213,8 +217,10 @@ enum Verdict {
 }
 
 impl PeriodEquation<'_> {
-    /// Samples in `[study]`: more than a hundred for each radian that any follower met so far oscillates through.
-    const SAMPLES: usize = 4096;
+    /// Least and most samples in `[study]`.
+    const SAMPLES: std::ops::RangeInclusive<f64> = 4096.0..=1e6;
+    /// Samples for each radian or time constant that the follower goes through between the shortest period and the longest.
+    const SAMPLES_PER_RADIAN: f64 = 64.0;
 
     fn force(&self) -> f64 {
         self.flight.force(self.corner.plus.value)
@@ -241,11 +247,13 @@ impl PeriodEquation<'_> {
     /// Every sign change over `[study]`, closed by bisection.
     fn roots(&self, study: Study) -> Roots {
         let (first, last) = (60.0 / study.rpm_max, 60.0 / study.rpm_min);
-        let at = |index: usize| first + (last - first) * index as f64 / Self::SAMPLES as f64;
+        let samples = Self::SAMPLES_PER_RADIAN * self.fastest_rate * (last - first);
+        let samples = samples.clamp(*Self::SAMPLES.start(), *Self::SAMPLES.end()) as usize;
+        let at = |index: usize| first + (last - first) * index as f64 / samples as f64;
         let mut roots = Vec::new();
         let (mut largest, mut largest_term) = (0.0_f64, 0.0_f64);
         let (mut low, mut at_low) = (first, self.evaluate(first).0);
-        for index in 1..=Self::SAMPLES {
+        for index in 1..=samples {
             let high = at(index);
             let (at_high, size) = self.evaluate(high);
             (largest, largest_term) = (largest.max(at_high.abs()), largest_term.max(size));
