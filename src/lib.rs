@@ -1,5 +1,5 @@
-//! corner-impact re-proves, on every run, what a paper derives by hand: the local map of a cam-follower system whose
-//! follower hits the cam at a corner, where the cam's acceleration jumps.
+//! corner-impact checks, on every run, what a paper derives by hand: the local map of a cam-follower system whose follower
+//! hits the cam at a corner, where the cam's acceleration jumps. The proofs by computer algebra are redone on every commit.
 //!
 //! ```text
 //!  model file (TOML)

@@ -8,7 +8,7 @@ use serde::Deserialize;
 use crate::agreement::{Agreement, compare, quantities};
 use crate::border_collision::NormalForm;
 use crate::corner::{CornerImpact, CornerMap};
-use crate::model::{Model, ModelError, OSORIO_2008};
+use crate::model::{Model, ModelError};
 use crate::tolerance::Comparison;
 
 /// The printed digits.
@@ -154,8 +154,7 @@ pub fn compare_published(
     map: &CornerMap,
     normal_form: Option<&NormalForm>,
 ) -> Result<Vec<PrintedNumber>, PublishedError> {
-    let paper = Model::parse("the built-in model", OSORIO_2008)?;
-    if model.follower != paper.follower || model.cam != paper.cam {
+    if !model.is_the_papers()? {
         return Err(PublishedError::OtherModel);
     }
     let numbers: Paper = serde_json::from_str(PRINTED).map_err(|error| PublishedError::Digits(error.to_string()))?;

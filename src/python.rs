@@ -1,7 +1,7 @@
 //! Runs one script of `derivations/`: JSON in, JSON out, errors that carry the command and what it said.
 //!
 //! The scripts get a model's numbers and nothing that this program computed. The folder is looked for at
-//! `$CORNER_IMPACT_HOME`, above the current folder and above the executable; the interpreter is `$CORNER_IMPACT_PYTHON`, or
+//! `$CORNER_IMPACT_HOME`, above the executable and above the current folder; the interpreter is `$CORNER_IMPACT_PYTHON`, or
 //! that of `.venv` beside `derivations/`, or `python3`.
 
 use std::io::{Read, Write};
@@ -17,7 +17,7 @@ const TIME_LIMIT: Duration = Duration::from_secs(120);
 pub enum PythonError {
     /// No `derivations/` with the script in it.
     #[error(
-        "derivations/{script} was not found above the current folder or the executable; set CORNER_IMPACT_HOME to the \
+        "derivations/{script} was not found above the executable or the current folder; set CORNER_IMPACT_HOME to the \
          project's folder"
     )]
     NoScript {
@@ -34,7 +34,8 @@ pub enum PythonError {
     },
     /// It ended with an error.
     #[error(
-        "`{command}` failed ({status}); `make verify` sets up Python's packages, --no-external does without them; it said:\n{stderr}"
+        "`{command}` failed ({status}); if a package is missing, `make verify` sets it up, and --no-external does without; it \
+         said:\n{stderr}"
     )]
     Failed {
         /// What was run.
@@ -68,14 +69,15 @@ pub fn run<T: serde::de::DeserializeOwned>(script: &str, input: &serde_json::Val
         .spawn()
         .map_err(not_started)?;
     let (status, stdout, stderr) = talk(child, input.to_string().into_bytes()).map_err(not_started)?;
-    if status != "exit status: 0" {
+    let Some(stdout) = stdout else {
         return Err(PythonError::Failed { command, status, stderr: stderr.trim().into() });
-    }
+    };
     serde_json::from_str(&stdout).map_err(|error| PythonError::Output { command, error: error.to_string() })
 }
 
-/// Feeds `input`, collects both streams, and stops a child that does not end.
-fn talk(mut child: Child, input: Vec<u8>) -> std::io::Result<(String, String, String)> {
+/// Feeds `input`, collects both streams, and stops a child that does not end: its end in words, its output if it succeeded,
+/// and its standard error.
+fn talk(mut child: Child, input: Vec<u8>) -> std::io::Result<(String, Option<String>, String)> {
     let pipes = (child.stdin.take(), child.stdout.take(), child.stderr.take());
     std::thread::scope(|scope| {
         // A script that ends without reading closes the pipe: its own message says why.
@@ -83,13 +85,13 @@ fn talk(mut child: Child, input: Vec<u8>) -> std::io::Result<(String, String, St
         let stdout = pipes.1.map(|pipe| scope.spawn(|| collect(pipe)));
         let stderr = pipes.2.map(|pipe| scope.spawn(|| collect(pipe)));
         let start = Instant::now();
-        let status = loop {
+        let (status, succeeded) = loop {
             match child.try_wait()? {
-                Some(status) => break status.to_string(),
+                Some(status) => break (status.to_string(), status.success()),
                 None if start.elapsed() > TIME_LIMIT => {
                     child.kill()?;
                     child.wait()?;
-                    break format!("stopped after {} s", TIME_LIMIT.as_secs());
+                    break (format!("stopped after {} s", TIME_LIMIT.as_secs()), false);
                 }
                 None => std::thread::sleep(Duration::from_millis(5)),
             }
@@ -98,7 +100,8 @@ fn talk(mut child: Child, input: Vec<u8>) -> std::io::Result<(String, String, St
             reader.and_then(|reader| reader.join().ok()).unwrap_or_default()
         };
         drop(feed);
-        Ok((status, text(stdout), text(stderr)))
+        let stdout = text(stdout);
+        Ok((status, succeeded.then_some(stdout), text(stderr)))
     })
 }
 
@@ -113,7 +116,7 @@ fn find(script: &str) -> Option<PathBuf> {
     let home = std::env::var_os("CORNER_IMPACT_HOME").map(PathBuf::from);
     let current = std::env::current_dir().ok();
     let executable = std::env::current_exe().ok();
-    let above = [current, executable];
+    let above = [executable, current];
     let folders = above.iter().flatten().flat_map(|path| path.ancestors()).map(Path::to_path_buf);
     home.into_iter().chain(folders).map(|folder| folder.join("derivations").join(script)).find(|path| path.is_file())
 }

@@ -50,6 +50,12 @@ table! {
     DIFFERENCED = 1e-5, "of the larger: a central difference over 1e-4 s of motions that take hundredths of a second";
     /// How far a drawing's circles may miss one another.
     DRAWING = 0.01, "cm, absolute: less than the width of its lines";
+    /// How far a speed said to be "about" a whole number of rpm may be from it.
+    ABOUT_RPM = 1.0, "rpm, absolute: the last digit that is given";
+    /// From which growth of a small deviation per revolution a motion counts as chaotic.
+    CHAOTIC_GROWTH = 0.1, "absolute, a logarithm: sampling over thousands of revolutions leaves a few hundredths";
+    /// How closely an identity between computed matrices is met.
+    IDENTITY = 1e-12, "of the terms: a few hundred roundings";
     /// How little a settled motion may move from one revolution to the next, m.
     SETTLED = 1e-9, "absolute: far below any amplitude, far above the rounding of a thousand revolutions";
     /// When a quantity that a change of coordinates divides by counts as zero.
@@ -88,7 +94,7 @@ pub enum Comparison {
 }
 
 /// Five decimals, half a unit in the sixth.
-const FIVE_DECIMALS: f64 = 5e-6;
+pub const FIVE_DECIMALS: f64 = 5e-6;
 
 /// The bound for a quantity of size `scale`: its largest entry, or that of the quantities it is a difference of.
 pub fn agreement_bound(comparison: Comparison, scale: f64) -> Bound {

@@ -7,6 +7,7 @@ use nalgebra::RowVector2;
 use crate::agreement::{self, Agreement, NamedOrbit, compare};
 use crate::border_collision::{Classification, NormalForm, classify, normal_form};
 use crate::cam::Cam;
+use crate::corner::border::border;
 use crate::corner::external::{self, Outside, PROGRAMS, Program};
 use crate::corner::{self, CornerImpact, CornerMap, LocateError, Route};
 use crate::corner::{closed_form, finite_difference, least_squares, simulated_orbit};
@@ -109,7 +110,7 @@ pub fn verify(model: &Model, external: External) -> Result<Findings, LocateError
     let mut comparisons = agreement::compare_routes(&routes);
     comparisons.extend(agreement::compare_orbits(&orbits));
 
-    let border = closed_form::border(model, &at);
+    let border = border(model, &at);
     comparisons.push(compare_borders(&map, border));
     let normal_form = normal_form(&map).map_err(|error| log.leave_out("normal_form", error.to_string())).ok();
     let classification =
@@ -150,10 +151,10 @@ fn start_outside(model: &Model, external: External) -> Result<Vec<Started>, Loca
     Ok(PROGRAMS.map(|program| (program, (external == External::Run).then(|| start(program)))).into())
 }
 
-/// The border of the maps, `C x + D dT = 0`, against that of the free flight, `e x + f dT = 0`: the same line.
+/// The border of the maps, `C x + D dT = 0`, against that of the free flight, `e x + f dT = 0`: one line, so `f C = D e`.
 fn compare_borders(map: &CornerMap, (e, f): (RowVector2<f64>, f64)) -> Agreement {
     let (c, d) = (map.c(), map.d());
-    compare(["closed_form", "free_flight"], "border", [(c / d).as_slice(), (e / f).as_slice()], Comparison::Routes)
+    compare(["closed_form", "free_flight"], "border", [(c * f).as_slice(), (e * d).as_slice()], Comparison::Routes)
 }
 
 /// What did not run: on purpose, or because it failed.

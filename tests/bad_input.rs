@@ -178,6 +178,15 @@ fn an_elastic_undamped_follower_bounces_at_every_speed() {
     refuses("family", text.as_bytes(), &["no corner impact", "nothing fixes a speed"]);
 }
 
+/// A range too wide to search is refused, not searched thinly; magnitudes that overflow are named as such.
+#[test]
+fn ranges_and_magnitudes_that_cannot_be_searched() {
+    let text = common::osorio_text(&[("rpm_min", "1e-3")]);
+    refuses("too-wide", text.as_bytes(), &["study.rpm_min = 1e-3", "spans too much", "radians"]);
+    let text = common::osorio_text(&[("stiffness", "1e300"), ("mass", "1e-300")]);
+    refuses("overflow", text.as_bytes(), &["study.rpm_min = 600.0"]);
+}
+
 /// Numbers at the edge of a double end in a message, never in a panic.
 #[test]
 fn extreme_numbers() {

@@ -39,6 +39,15 @@ fn the_orbit() {
     meets(&[at.cam_velocity], &[19.366759891203492287]);
 }
 
+/// However wide the range, the orbit in it is found.
+#[test]
+fn the_orbit_in_a_wide_range() {
+    let model = common::osorio_with(&[("rpm_min", "1.0"), ("rpm_max", "100000.0")]);
+    let (first, others) = corner_impact::corner::locate(&model, &common::cam(&model)).unwrap();
+    let speeds: Vec<f64> = others.iter().chain([&first]).map(|at| at.speed_rpm()).collect();
+    assert!(speeds.iter().any(|speed| (speed - 673.234445).abs() < 1e-6), "{speeds:?}");
+}
+
 #[test]
 fn the_orbit_by_the_papers_own_equation() {
     let model = common::osorio();

@@ -85,7 +85,13 @@ pub fn compare_routes(routes: &[Route]) -> Vec<Agreement> {
             let (these, those) = (quantities(&left.map), quantities(&right.map));
             // C and D are differences of A's and B's entries, and known no better than those.
             let integrated = is_integrated(left.name) || is_integrated(right.name);
-            let (a, b) = (size(left.map.minus.a.as_slice()), size(left.map.minus.b.as_slice()));
+            let of = |route: &Route| {
+                let sides = [&route.map.minus, &route.map.plus];
+                let a = sides.map(|side| size(side.a.as_slice())).into_iter().fold(0.0, f64::max);
+                (a, sides.map(|side| size(side.b.as_slice())).into_iter().fold(0.0, f64::max))
+            };
+            let ((a, b), (other_a, other_b)) = (of(left), of(right));
+            let (a, b) = (a.max(other_a), b.max(other_b));
             let compare = move |((quantity, x), (_, y)): ((&'static str, Vec<f64>), (_, Vec<f64>))| {
                 let comparison = match quantity {
                     "eigenvalues_minus" | "eigenvalues_plus" => Comparison::Eigenvalues,
@@ -95,7 +101,7 @@ pub fn compare_routes(routes: &[Route]) -> Vec<Agreement> {
                 let scale = match quantity {
                     "C" => a,
                     "D" => b,
-                    _ => size(&x),
+                    _ => size(&x).max(size(&y)),
                 };
                 compare_on_scale([left.name, right.name], quantity, [&x, &y], comparison, scale)
             };

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 
 use crate::cam::Cam;
-use crate::model::{Model, OSORIO_2008};
+use crate::model::Model;
 use crate::published::Verdict;
 use crate::verify::Findings;
 
@@ -51,9 +51,7 @@ impl<'a> Context<'a> {
     pub fn new(model: &'a Model, cam: &'a Cam, findings: &'a Findings) -> Result<Self, LedgerError> {
         let derived = |error: String| LedgerError::Derived(format!("golden/derived/printed_equations.json: {error}"));
         let read: Equations = serde_json::from_str(EQUATIONS).map_err(|error| derived(error.to_string()))?;
-        let paper =
-            Model::parse("the built-in model", OSORIO_2008).map_err(|error| LedgerError::Derived(error.to_string()))?;
-        let is_paper = model.follower == paper.follower && model.cam == paper.cam;
+        let is_paper = model.is_the_papers().map_err(|error| LedgerError::Derived(error.to_string()))?;
         let equations = read.equations.into_iter().map(|equation| (equation.label.clone(), equation)).collect();
         Ok(Self { model, cam, findings, is_paper, equations })
     }

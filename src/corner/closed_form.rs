@@ -1,11 +1,12 @@
 //! The closed forms of the paper, each under its label, for every damping.
 //!
-//! Nothing of the simulator is used: the propagator is transcribed from the paper, not taken from [`crate::flight`].
+//! Nothing of the simulator is used: the propagator is transcribed from the paper, not taken from [`crate::flight`]. What
+//! goes in is the cam's lift at the corner, T*, and the velocity before the impact.
 //! Where the paper misprints a formula, the repaired form stands here and the repair is named.
 
 use std::f64::consts::TAU;
 
-use nalgebra::{Matrix2, RowVector2, Vector2};
+use nalgebra::{Matrix2, Vector2};
 
 use super::locate::CornerImpact;
 use super::map::{CornerMap, Route, SideMap};
@@ -60,16 +61,6 @@ pub fn side_map(follower: &Follower, period: f64, v: f64, lift: &Lift) -> SideMa
     let shift = Vector2::new(v - c1, s) * ((1.0 + r) * v / (v - c1));
     let b = f * (leaving + arriving - shift) * 0.5;
     SideMap { a, b }
-}
-
-/// Free flight's side of the corner: the impact comes before the corner where `e dx + f dT < 0`.
-///
-/// `h (phi_{T/2} x - y_0)` is the gap that a flight without impact would have when the corner passes: negative means that
-/// the impact has been. Its derivatives are `e = h F` and `f = h F' x*/2 = v/2`.
-pub fn border(model: &Model, at: &CornerImpact) -> (RowVector2<f64>, f64) {
-    let Follower { mass, damping, stiffness, .. } = model.follower;
-    let f = propagator(damping / (2.0 * mass), stiffness / mass, 0.5 * at.period);
-    (RowVector2::new(f[(0, 0)], f[(0, 1)]), 0.5 * at.velocity_before)
 }
 
 /// eq:fixedp, repaired: `x* = -[I - phi_T - F R F]^{-1} F R y_0`, `R = [[0, 0], [0, -(1+r)]]`, with the sign before `F R F`

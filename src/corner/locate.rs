@@ -154,6 +154,19 @@ pub fn locate(model: &Model, cam: &Cam) -> Result<(CornerImpact, Vec<CornerImpac
             Roots::Some(roots) => {
                 roots.into_iter().map(|root| (root.period, equation.orbit(model, cam, root))).collect()
             }
+            Roots::TooMany { radians } => {
+                let words = format!(
+                    "spans too much: between it and study.rpm_max the period grows by {radians:.3e} radians of the follower's \
+                     motion, and at most {:.3e} are searched",
+                    PeriodEquation::SAMPLES[1] / PeriodEquation::SAMPLES_PER_RADIAN
+                );
+                return Err(model.reject("study.rpm_min", words).into());
+            }
+            Roots::NotFinite => {
+                let words =
+                    "gives periods at which the follower's motion overflows a double: check the model's magnitudes";
+                return Err(model.reject("study.rpm_min", words).into());
+            }
             Roots::All { slowest } if equation.rests() => vec![(slowest, equation.graze(model, cam, slowest))],
             Roots::All { slowest } => {
                 let why = "flights of every period start and end there, so nothing fixes a speed".into();
@@ -208,6 +221,12 @@ enum Roots {
     All {
         slowest: f64,
     },
+    /// More oscillations between the shortest period and the longest than can be searched.
+    TooMany {
+        radians: f64,
+    },
+    /// The numbers of the model overflow in the equation.
+    NotFinite,
 }
 
 enum Verdict {
@@ -217,8 +236,8 @@ enum Verdict {
 }
 
 impl PeriodEquation<'_> {
-    /// Least and most samples in `[study]`.
-    const SAMPLES: std::ops::RangeInclusive<f64> = 4096.0..=1e6;
+    /// Least samples in `[study]`, and most: beyond them `[study]` is refused, not thinned out.
+    const SAMPLES: [f64; 2] = [4096.0, 1e6];
     /// Samples for each radian or time constant that the follower goes through between the shortest period and the longest.
     const SAMPLES_PER_RADIAN: f64 = 64.0;
 
@@ -248,21 +267,28 @@ impl PeriodEquation<'_> {
     fn roots(&self, study: Study) -> Roots {
         let (first, last) = (60.0 / study.rpm_max, 60.0 / study.rpm_min);
         let samples = Self::SAMPLES_PER_RADIAN * self.fastest_rate * (last - first);
-        let samples = samples.clamp(*Self::SAMPLES.start(), *Self::SAMPLES.end()) as usize;
+        if !(samples <= Self::SAMPLES[1]) {
+            return Roots::TooMany { radians: self.fastest_rate * (last - first) };
+        }
+        let samples = samples.max(Self::SAMPLES[0]) as usize;
         let at = |index: usize| first + (last - first) * index as f64 / samples as f64;
         let mut roots = Vec::new();
         let (mut largest, mut largest_term) = (0.0_f64, 0.0_f64);
         let (mut low, mut at_low) = (first, self.evaluate(first).0);
+        let mut finite = at_low.is_finite();
         for index in 1..=samples {
             let high = at(index);
             let (at_high, size) = self.evaluate(high);
+            finite &= at_high.is_finite();
             (largest, largest_term) = (largest.max(at_high.abs()), largest_term.max(size));
             if (at_low < 0.0) != (at_high < 0.0) {
                 roots.push(self.close([low, high], at_low < 0.0));
             }
             (low, at_low) = (high, at_high);
         }
-        if largest <= tolerance::DEGENERATE.value * largest_term {
+        if !finite {
+            Roots::NotFinite
+        } else if largest <= tolerance::DEGENERATE.value * largest_term {
             Roots::All { slowest: last }
         } else {
             Roots::Some(roots)

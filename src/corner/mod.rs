@@ -6,13 +6,14 @@
 //!
 //! | module | shares with the simulator |
 //! |---|---|
-//! | [`closed_form`] | nothing: the paper's formulas, with their own propagator |
+//! | [`closed_form`] | the place: T*, v and the cam's lift there; the formulas and their propagator are its own |
 //! | [`finite_difference`] | is built on it: differences of simulated revolutions |
 //! | [`least_squares`] | is built on it: a polynomial fitted to simulated revolutions |
-//! | [`external`] | nothing: Python programs that get the model file's numbers |
+//! | [`external`] | nothing: Python programs that get the model file's numbers and find the place themselves |
 //!
 //! States here are the paper's x: position from the spring's equilibrium, and velocity.
 
+pub mod border;
 pub mod closed_form;
 pub mod external;
 pub mod finite_difference;

@@ -115,6 +115,12 @@ impl Model {
         Ok(Self { name, source, follower, cam, study, fields })
     }
 
+    /// Whether follower and cam are the paper's, whatever the model is called.
+    pub fn is_the_papers(&self) -> Result<bool, ModelError> {
+        let paper = Self::parse("the built-in model", OSORIO_2008)?;
+        Ok(self.follower == paper.follower && self.cam == paper.cam)
+    }
+
     /// The `[study]` range, or the complaint that it is missing.
     pub fn study(&self) -> Result<Study, ModelError> {
         self.study.ok_or_else(|| {

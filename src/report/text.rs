@@ -58,8 +58,25 @@ fn orbit(out: &mut String, document: &Verification) -> fmt::Result {
 
 fn map(out: &mut String, document: &Verification) -> fmt::Result {
     heading(out, "Its local map:  dx' = A dx + B dT")?;
+    paragraph(
+        out,
+        "dx is the deviation of the state (position in m, velocity in m/s) from x*, dT that of the period from T* (s), dx' \
+         the deviation one revolution later. minus holds where the impact comes before the corner, plus where it comes \
+         after it. C = h (A+ - A-), D = h (B+ - B-), h = [1 0]: the sides meet where C dx + D dT = 0.",
+    )?;
+    writeln!(out)?;
     side(out, document, "minus", "impact before the corner")?;
     side(out, document, "plus", "impact after the corner")?;
+    if let Some(closed) = document.routes.get("closed_form") {
+        let [c1, c2] = closed.map.c;
+        writeln!(
+            out,
+            "  C = ({}, {}),  D = {}\n",
+            significant(c1, 10),
+            significant(c2, 10),
+            significant(closed.map.d, 10)
+        )?;
+    }
     for (name, route) in &document.routes {
         if let (Some(standard), Some(systematic), Some(condition)) =
             (&route.standard_error, &route.systematic_error, route.condition_number)
@@ -116,7 +133,7 @@ fn side(out: &mut String, document: &Verification, name: &str, when: &str) -> fm
         for (_, side) in &routes {
             let values = entries(side);
             let block = if index < 4 { &values[..4] } else { &values[4..] };
-            write!(out, "{:>14.*}", places(block), values[index])?;
+            write!(out, "{:>14}", cell(values[index], block))?;
         }
         if let Some(digits) = printed(quantity).and_then(|number| number.printed.get(entry)) {
             write!(out, "{digits:>19}")?;
@@ -124,6 +141,16 @@ fn side(out: &mut String, document: &Verification, name: &str, when: &str) -> fm
         writeln!(out)?;
     }
     writeln!(out)
+}
+
+/// An entry with ten digits of its block's largest, in at most 13 columns.
+fn cell(value: f64, block: &[f64]) -> String {
+    let largest = block.iter().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
+    if (1e-3..1e9).contains(&largest) || largest == 0.0 {
+        format!("{value:.*}", places(block))
+    } else {
+        format!("{value:.5e}")
+    }
 }
 
 /// Decimals that show ten digits of the largest entry.
@@ -134,8 +161,14 @@ fn places(entries: &[f64]) -> usize {
 
 fn largest(sides: &Sides<SideEntry>) -> (f64, f64) {
     let both = [sides.minus, sides.plus];
-    let a = both.iter().flat_map(|side| side.a.iter().flatten()).fold(0.0_f64, |largest, entry| largest.max(*entry));
-    let b = both.iter().flat_map(|side| side.b.iter()).fold(0.0_f64, |largest, entry| largest.max(*entry));
+    let a = both
+        .iter()
+        .flat_map(|side| side.a.iter().flatten())
+        .fold(0.0_f64, |largest, entry| if *entry <= largest { largest } else { *entry });
+    let b = both
+        .iter()
+        .flat_map(|side| side.b.iter())
+        .fold(0.0_f64, |largest, entry| if *entry <= largest { largest } else { *entry });
     (a, b)
 }
 
@@ -213,6 +246,16 @@ fn bifurcation(out: &mut String, document: &Verification) -> fmt::Result {
             ""
         };
         writeln!(out, "  verdict             {}{born}", verdict.scenario)?;
+        let meaning = match verdict.scenario {
+            "nonsmooth-fold" => {
+                "the two fixed points meet at omega* = 60/T* rpm and vanish: a motion that follows one of them has nowhere to go"
+            }
+            "nonsmooth-flip" => {
+                "the fixed point crosses from one side to the other, and an orbit of period two is born"
+            }
+            _ => "the fixed point crosses from one side to the other and lives on",
+        };
+        paragraph_at(out, 22, meaning)?;
         let fate = |stable: bool, speeds: &str| {
             format!("{} one at speeds {speeds} than omega*", if stable { "a stable" } else { "an unstable" })
         };
@@ -286,11 +329,18 @@ fn verdict(out: &mut String, document: &Verification) -> fmt::Result {
         let right = document.published.len() - wrong - unexpected;
         writeln!(
             out,
-            "  Of the paper's {} printed numbers {right} hold and {wrong} are wrong, as found before; {unexpected} came out otherwise.",
+            "  Of the paper's {} printed numbers {right} hold, {wrong} are wrong as listed, {unexpected} came out otherwise than found.",
             document.published.len()
         )?;
     }
-    writeln!(out, "  {}", if document.agrees { "AGREES" } else { "DISAGREES" })
+    let missing: Vec<&str> =
+        document.skipped.iter().filter(|skipped| skipped.failed).map(|skipped| skipped.route.as_str()).collect();
+    let reason = match missing.as_slice() {
+        [] => "a comparison above".to_owned(),
+        [one] => format!("{one} did not run"),
+        [most @ .., last] => format!("{} and {last} did not run", most.join(", ")),
+    };
+    if document.agrees { writeln!(out, "  AGREES") } else { writeln!(out, "  DISAGREES: {reason}") }
 }
 
 /// Nine decimals, without trailing zeros.

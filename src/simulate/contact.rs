@@ -26,12 +26,12 @@ pub(super) enum Outcome {
     None,
     /// The first contact, s after the start.
     Contact(f64),
-    /// On the cam, at rest against it, with nothing that would lift the follower.
-    Resting,
+    /// On the cam, at rest against it, with nothing that would lift the follower; s after the start.
+    Resting(f64),
     /// Inside the cam already.
     Below { depth: f64, time: f64 },
-    /// The gap is not a number.
-    NotFinite,
+    /// The gap is not a number; s after the start.
+    NotFinite(f64),
 }
 
 /// The first contact within `[0, end]`, s, of the gap `gap_at(time)`; `third_bound(time, reach)` bounds `|g'''|` over
@@ -41,7 +41,7 @@ pub(super) fn first_contact(gap_at: impl Fn(f64) -> Gap, third_bound: impl Fn(f6
     loop {
         let gap = gap_at(time);
         if !(gap.value.is_finite() && gap.rate.is_finite() && gap.curvature.is_finite()) {
-            return Outcome::NotFinite;
+            return Outcome::NotFinite(time);
         }
         if gap.value < -gap.rounding && (time == 0.0 || gap.rate >= 0.0) {
             return Outcome::Below { depth: -gap.value, time };
@@ -55,7 +55,7 @@ pub(super) fn first_contact(gap_at: impl Fn(f64) -> Gap, third_bound: impl Fn(f6
         }
         if time + step == time {
             // Contact to the last digit: approaching it is an impact, resting on it is not.
-            return if gap.rate < 0.0 { Outcome::Contact(time) } else { Outcome::Resting };
+            return if gap.rate < 0.0 { Outcome::Contact(time) } else { Outcome::Resting(time) };
         }
         time += step;
     }

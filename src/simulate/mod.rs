@@ -48,7 +48,7 @@ pub struct Impact {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum SimulateError {
     /// The follower started inside the cam.
-    #[error("simulate: the follower starts {depth:e} m below the cam at cam angle {cam_angle} rad")]
+    #[error("simulate: the follower starts {depth:.3e} m below the cam, at cam angle {:.4} deg", cam_angle.to_degrees())]
     BelowCam {
         /// How far, m.
         depth: f64,
@@ -56,13 +56,13 @@ pub enum SimulateError {
         cam_angle: f64,
     },
     /// The follower rests on the cam: contact with no relative velocity and none to come.
-    #[error("simulate: the follower stays on the cam from cam angle {cam_angle} rad on; sticking is not simulated")]
+    #[error("simulate: the follower stays on the cam from {:.4} deg on; sticking is not simulated", cam_angle.to_degrees())]
     Sticking {
         /// Where, rad.
         cam_angle: f64,
     },
     /// More impacts than a run may have.
-    #[error("simulate: {impacts} impacts and still at cam angle {cam_angle} rad: the impacts accumulate")]
+    #[error("simulate: {impacts} impacts and still at {:.4} deg: the impacts accumulate", cam_angle.to_degrees())]
     Accumulating {
         /// How many.
         impacts: usize,
@@ -70,7 +70,7 @@ pub enum SimulateError {
         cam_angle: f64,
     },
     /// A number that is not finite entered the run.
-    #[error("simulate: a state that is not finite near cam angle {cam_angle} rad")]
+    #[error("simulate: a state that is not finite near {:.4} deg", cam_angle.to_degrees())]
     NotFinite {
         /// Where, rad.
         cam_angle: f64,
@@ -153,6 +153,7 @@ impl Machine {
             let within = segment.end - piece.angle;
             let last = left < within;
             let span = if last { left.max(0.0) } else { within };
+            let angle_at = |time: f64| piece.angle + time * self.angular_velocity;
             let gap_at = |time: f64| self.gap(from.state, gap, &piece, time);
             let land = |contact: bool, time: f64| {
                 let step = if contact { time * self.angular_velocity } else { span };
@@ -179,18 +180,11 @@ impl Machine {
                     turned += span;
                 }
                 Outcome::Contact(time) => return Ok(land(true, time)),
-                Outcome::Resting => {
-                    return Err(SimulateError::Sticking { cam_angle: piece.angle });
-                }
+                Outcome::Resting(time) => return Err(SimulateError::Sticking { cam_angle: angle_at(time) }),
                 Outcome::Below { depth, time } => {
-                    return Err(SimulateError::BelowCam {
-                        depth,
-                        cam_angle: piece.angle + time * self.angular_velocity,
-                    });
+                    return Err(SimulateError::BelowCam { depth, cam_angle: angle_at(time) });
                 }
-                Outcome::NotFinite => {
-                    return Err(SimulateError::NotFinite { cam_angle: piece.angle });
-                }
+                Outcome::NotFinite(time) => return Err(SimulateError::NotFinite { cam_angle: angle_at(time) }),
             }
         }
     }
