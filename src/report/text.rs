@@ -102,7 +102,6 @@ fn side(out: &mut String, document: &Verification, name: &str, when: &str) -> fm
         if name == "minus" { sides.minus } else { sides.plus }
     };
     writeln!(out, "  {name}: {when}")?;
-    write!(out, "{:8}", "")?;
     let routes: Vec<_> = document
         .routes
         .iter()
@@ -112,17 +111,16 @@ fn side(out: &mut String, document: &Verification, name: &str, when: &str) -> fm
         |quantity: &str| document.published.iter().find(|entry| entry.quantity == format!("{quantity}_{name}"));
     // Two words, two lines.
     let heads: Vec<_> = routes.iter().map(|(route, _)| route.split_once(' ').unwrap_or(("", route))).collect();
-    for (first, _) in &heads {
-        write!(out, "{first:>14}")?;
-    }
-    write!(out, "\n{:8}", "")?;
-    for (_, second) in &heads {
-        write!(out, "{second:>14}")?;
+    let mut lines = [String::new(), String::new()];
+    for (first, second) in &heads {
+        write!(lines[0], "{first:>14}")?;
+        write!(lines[1], "{second:>14}")?;
     }
     if printed("A").is_some() {
-        write!(out, "{:>19}", "printed")?;
+        write!(lines[1], "{:>19}", "printed")?;
     }
-    writeln!(out)?;
+    writeln!(out, "{:8}{}", "", lines[0].trim_end())?;
+    writeln!(out, "{:8}{}", "", lines[1])?;
     let entries = |side: &SideEntry| -> [f64; 6] {
         let SideEntry { a: [[a11, a12], [a21, a22]], b: [b1, b2] } = *side;
         [a11, a12, a21, a22, b1, b2]
