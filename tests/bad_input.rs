@@ -104,6 +104,8 @@ fn fields_that_are_missing_or_unknown() {
         lines.collect::<Vec<_>>().join("\n")
     };
     refuses("missing-mass", without("mass").as_bytes(), &[":6: follower.mass is missing"]);
+    let mistyped = text.replace("restitution =", "restitutoin =");
+    refuses("mistyped", mistyped.as_bytes(), &["follower.restitution is missing; found there:", "restitutoin"]);
     refuses("missing-law", without("law").as_bytes(), &["cam.law is missing"]);
     refuses("missing-speed", without("rpm_max").as_bytes(), &["study.rpm_max is missing"]);
     refuses("missing-follower", b"[cam]\nlaw = \"arcs\"\n", &["follower.mass is missing"]);

@@ -177,7 +177,16 @@ impl Fields {
 
     fn take(&mut self, path: &str) -> Result<Field, ModelError> {
         self.known.insert(path.into());
-        self.fields.get(path).cloned().ok_or_else(|| self.reject(path, "is missing"))
+        self.fields.get(path).cloned().ok_or_else(|| {
+            // A mistyped field is missing under its own name: show what stands there.
+            let table = path.rsplit_once('.').map_or("", |(table, _)| table);
+            let inside = |name: &&String| name.rsplit_once('.').map_or("", |(table, _)| table) == table;
+            let present: Vec<&str> =
+                self.fields.keys().filter(inside).map(|name| name.rsplit('.').next().unwrap_or(name)).collect();
+            let found =
+                if present.is_empty() { String::new() } else { format!("; found there: {}", present.join(", ")) };
+            self.reject(path, format!("is missing{found}"))
+        })
     }
 
     /// The complaint about a field, present or not.
