@@ -30,6 +30,11 @@ pub fn compare(routes: [&str; 2], quantity: &str, entries: [&[f64]; 2], comparis
     compare_on_scale(routes, quantity, entries, comparison, scale)
 }
 
+/// The larger of two; not a number if either is not, which [`f64::max`] would pass over.
+pub fn worse(one: f64, other: f64) -> f64 {
+    if one.is_nan() || other.is_nan() { f64::NAN } else { one.max(other) }
+}
+
 fn size(entries: &[f64]) -> f64 {
     entries.iter().fold(0.0_f64, |size, entry| size.max(entry.abs()))
 }
@@ -47,10 +52,9 @@ fn compare_on_scale(
     for (a, b) in left.iter().zip(right) {
         let diff = (a - b).abs();
         let size = a.abs().max(b.abs());
-        // A NaN must not be lost to a comparison: it takes over and stays.
-        max_abs_diff = if diff <= max_abs_diff { max_abs_diff } else { diff };
+        max_abs_diff = worse(max_abs_diff, diff);
         let relative = if diff == 0.0 { 0.0 } else { diff / size };
-        max_rel_diff = if relative <= max_rel_diff { max_rel_diff } else { relative };
+        max_rel_diff = worse(max_rel_diff, relative);
     }
     Agreement {
         routes: routes.map(String::from),

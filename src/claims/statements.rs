@@ -6,6 +6,7 @@ use std::fmt;
 use nalgebra::Vector2;
 
 use super::context::{Context, Found};
+use crate::agreement::worse;
 use crate::corner;
 use crate::flight::{Flight, State};
 use crate::impact::rebound;
@@ -433,7 +434,7 @@ pub(super) fn continuity(context: &Context<'_>) -> Found {
     let jump = |(dx, dt): &(Vector2<f64>, f64)| {
         (jump_a * dx + jump_b * *dt).norm() / (jump_a.norm() * dx.norm() + jump_b.norm() * dt.abs())
     };
-    let largest = directions.iter().map(jump).fold(0.0_f64, f64::max);
+    let largest = directions.iter().map(jump).fold(0.0_f64, worse);
     let evidence = format!(
         "on C dx + D dT = 0 the two sides differ by {} of their jump elsewhere, with C and D of this model",
         Shown(largest)

@@ -3,7 +3,7 @@
 use std::fmt::{self, Write};
 
 use super::document::{AgreementEntry, PublishedEntry, SideEntry, Sides, Verification};
-use crate::agreement::shared_decimals;
+use crate::agreement::{shared_decimals, worse};
 
 const WIDTH: usize = 100;
 
@@ -159,14 +159,8 @@ fn places(entries: &[f64]) -> usize {
 
 fn largest(sides: &Sides<SideEntry>) -> (f64, f64) {
     let both = [sides.minus, sides.plus];
-    let a = both
-        .iter()
-        .flat_map(|side| side.a.iter().flatten())
-        .fold(0.0_f64, |largest, entry| if *entry <= largest { largest } else { *entry });
-    let b = both
-        .iter()
-        .flat_map(|side| side.b.iter())
-        .fold(0.0_f64, |largest, entry| if *entry <= largest { largest } else { *entry });
+    let a = both.iter().flat_map(|side| side.a.iter().flatten()).copied().fold(0.0, worse);
+    let b = both.iter().flat_map(|side| side.b.iter()).copied().fold(0.0, worse);
     (a, b)
 }
 
