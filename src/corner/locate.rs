@@ -54,6 +54,11 @@ impl CornerImpact {
         60.0 / self.period
     }
 
+    /// c'' before and after the corner, m/s^2.
+    pub fn cam_acceleration(&self) -> [f64; 2] {
+        [self.corner.minus, self.corner.plus].map(|lift| lift.curvature * (TAU / self.period).powi(2))
+    }
+
     /// The stroboscopic section, rad: half a revolution from the corner, so that the impact is at t = 0 in [-T/2, T/2].
     pub fn section_angle(&self) -> f64 {
         (self.corner.angle + PI) % TAU

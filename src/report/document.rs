@@ -307,7 +307,7 @@ impl Verification {
 
 impl Orbit {
     fn new(at: &CornerImpact) -> Self {
-        let acceleration = |curvature: f64| curvature * (std::f64::consts::TAU / at.period).powi(2);
+        let [minus, plus] = at.cam_acceleration();
         Self {
             period_s: at.period,
             period_bracket_s: at.bracket,
@@ -321,10 +321,7 @@ impl Orbit {
             velocity_before_m_s: at.velocity_before,
             velocity_after_m_s: at.velocity_after,
             cam_velocity_m_s: at.cam_velocity,
-            cam_acceleration_m_s2: Sides {
-                minus: acceleration(at.corner.minus.curvature),
-                plus: acceleration(at.corner.plus.curvature),
-            },
+            cam_acceleration_m_s2: Sides { minus, plus },
         }
     }
 }
