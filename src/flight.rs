@@ -10,7 +10,12 @@
 //!
 //! No equilibrium is needed, so stiffness 0 is no special case, and `q(t) - q0` comes without cancellation.
 
+use std::f64::consts::{PI, TAU};
+
+use nalgebra::Matrix2;
+
 use crate::model::Follower;
+use crate::tolerance;
 
 /// Position (m, in the cam's coordinates) and velocity (m/s) of the follower.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,6 +33,29 @@ pub struct Flight {
     omega0_squared: f64,
     rest_position: f64,
     gravity: f64,
+    regime: Regime,
+}
+
+/// The solutions of `s'' + 2 zeta s' + w0^2 s = 0`, by the roots of its characteristic polynomial.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Regime {
+    /// Roots `+-i w0`.
+    Undamped {
+        /// w0, 1/s.
+        omega: f64,
+    },
+    /// Roots `-zeta +- i w`.
+    Underdamped {
+        /// w, 1/s.
+        omega: f64,
+    },
+    /// Roots `-slow` and `-fast`, with `0 <= slow <= fast` and `slow fast = w0^2`; stiffness 0 has `slow = 0`.
+    Monotone {
+        /// 1/s.
+        slow: f64,
+        /// 1/s.
+        fast: f64,
+    },
 }
 
 /// What the follower does `t` after a unit impulse and a unit step, from rest.
@@ -44,25 +72,45 @@ pub struct Response {
 impl Flight {
     /// The free flight of a model's follower.
     pub fn new(follower: &Follower) -> Self {
-        Self {
-            zeta: follower.damping / (2.0 * follower.mass),
-            omega0_squared: follower.stiffness / follower.mass,
-            rest_position: follower.rest_position,
-            gravity: follower.gravity,
-        }
+        let zeta = follower.damping / (2.0 * follower.mass);
+        let omega0_squared = follower.stiffness / follower.mass;
+        let omega_squared = omega0_squared - zeta * zeta;
+        let regime = if omega_squared > 0.0 {
+            let omega = omega_squared.sqrt();
+            if zeta == 0.0 { Regime::Undamped { omega } } else { Regime::Underdamped { omega } }
+        } else {
+            let fast = zeta + (-omega_squared).sqrt();
+            Regime::Monotone { slow: if fast > 0.0 { omega0_squared / fast } else { 0.0 }, fast }
+        };
+        Self { zeta, omega0_squared, rest_position: follower.rest_position, gravity: follower.gravity, regime }
+    }
+
+    /// zeta = b/2m, 1/s.
+    #[inline]
+    pub fn zeta(&self) -> f64 {
+        self.zeta
+    }
+
+    /// w0^2 = k/m, 1/s^2.
+    #[inline]
+    pub fn omega0_squared(&self) -> f64 {
+        self.omega0_squared
     }
 
     /// `q''` in free flight, m/s^2.
+    #[inline]
     pub fn acceleration(&self, state: State) -> f64 {
         self.force(state.position) - 2.0 * self.zeta * state.velocity
     }
 
     /// Acceleration at rest at `position`: spring and gravity alone, m/s^2.
+    #[inline]
     pub fn force(&self, position: f64) -> f64 {
         -self.omega0_squared * (position - self.rest_position) - self.gravity
     }
 
     /// `q'''` in free flight, m/s^3.
+    #[inline]
     pub fn jerk(&self, state: State) -> f64 {
         -2.0 * self.zeta * self.acceleration(state) - self.omega0_squared * state.velocity
     }
@@ -70,12 +118,14 @@ impl Flight {
     /// A bound on `|q'''|` at `state` and at every later instant of the same flight, m/s^3.
     ///
     /// The acceleration obeys the same damped equation as the position, so `j^2 + w0^2 a^2` never grows.
+    #[inline]
     pub fn jerk_bound(&self, state: State) -> f64 {
         let acceleration = self.acceleration(state);
         self.jerk(state).hypot(self.omega0_squared.sqrt() * acceleration)
     }
 
     /// Displacement `q(t) - q0` and the state after flying for `t` from `start`.
+    #[inline]
     pub fn fly(&self, start: State, t: f64) -> (f64, State) {
         let Response { step, impulse, impulse_rate } = self.response(t);
         let force = self.force(start.position);
@@ -84,44 +134,63 @@ impl Flight {
         (displacement, State { position: start.position + displacement, velocity })
     }
 
+    /// `d(q, v)/d(q0, v0)` over a flight of `t`, s: the 2x2 propagator of a deviation, by rows.
+    ///
+    /// From `q = q0 + v0 s + f0 p`, `v = v0 s' + f0 s` with `df0/dq0 = -w0^2`.
+    pub fn propagator(&self, t: f64) -> Matrix2<f64> {
+        let Response { step, impulse, impulse_rate } = self.response(t);
+        let spring = self.omega0_squared;
+        Matrix2::new(1.0 - spring * step, impulse, -spring * impulse, impulse_rate)
+    }
+
     /// The responses at `t`, s, zero or more.
+    #[inline]
     pub fn response(&self, t: f64) -> Response {
+        match self.regime {
+            Regime::Undamped { omega } => {
+                let (sin, cos) = (omega * t).sin_cos();
+                let impulse = sin / omega;
+                // p = (1 - cos)/w^2 = s^2/(1 + cos), whichever does not cancel.
+                let step = if cos > 0.0 { impulse * impulse / (1.0 + cos) } else { (1.0 - cos) / self.omega0_squared };
+                Response { step, impulse, impulse_rate: cos }
+            }
+            _ => self.damped_response(t),
+        }
+    }
+
+    fn damped_response(&self, t: f64) -> Response {
         let (zeta, omega0_squared) = (self.zeta, self.omega0_squared);
         let angle_squared = omega0_squared * t * t;
         // p(t) = (1 - s' - 2 zeta s) / w0^2 cancels where little of an oscillation has passed.
         if angle_squared < 0.25 && zeta * t < 1.0 {
             return self.response_by_series(t);
         }
-        let omega_squared = omega0_squared - zeta * zeta;
-        if omega_squared > 0.0 {
-            let omega = omega_squared.sqrt();
-            let decay = (-zeta * t).exp();
-            let (sin, cos) = (omega * t).sin_cos();
-            // s = e^{-zeta t} sin(w t)/w
-            let impulse = decay * sin / omega;
-            // s' = e^{-zeta t} cos(w t) - zeta s
-            let impulse_rate = decay * cos - zeta * impulse;
-            return Response {
-                step: (1.0 - impulse_rate - 2.0 * zeta * impulse) / omega0_squared,
-                impulse,
-                impulse_rate,
-            };
+        match self.regime {
+            Regime::Undamped { omega } | Regime::Underdamped { omega } => {
+                let decay = (-zeta * t).exp();
+                let (sin, cos) = (omega * t).sin_cos();
+                // s = e^{-zeta t} sin(w t)/w
+                let impulse = decay * sin / omega;
+                // s' = e^{-zeta t} cos(w t) - zeta s
+                let impulse_rate = decay * cos - zeta * impulse;
+                Response { step: (1.0 - impulse_rate - 2.0 * zeta * impulse) / omega0_squared, impulse, impulse_rate }
+            }
+            // Rates l1 <= l2 of e^{-l1 t}, e^{-l2 t}, with l1 l2 = w0^2.
+            Regime::Monotone { slow, fast } => {
+                let gap = fast - slow;
+                // s = e^{-l1 t} (1 - e^{-(l2 - l1) t})/(l2 - l1)
+                let impulse = (-slow * t).exp() * t * mean_decay(gap * t);
+                // s' = e^{-l2 t} - l1 s
+                let impulse_rate = (-fast * t).exp() - slow * impulse;
+                let step = if angle_squared < 0.25 {
+                    // p = t (E(l1 t) - E(l2 t))/(l2 - l1),  E(x) = (1 - e^{-x})/x
+                    t * (mean_decay(slow * t) - mean_decay(fast * t)) / gap
+                } else {
+                    (1.0 - impulse_rate - 2.0 * zeta * impulse) / omega0_squared
+                };
+                Response { step, impulse, impulse_rate }
+            }
         }
-        // Overdamped, critical, and stiffness 0: rates l1 <= l2 of e^{-l1 t}, e^{-l2 t}, with l1 l2 = w0^2.
-        let half_gap = (-omega_squared).sqrt();
-        let fast = zeta + half_gap;
-        let slow = omega0_squared / fast;
-        // s = e^{-l1 t} (1 - e^{-(l2 - l1) t})/(l2 - l1)
-        let impulse = (-slow * t).exp() * t * mean_decay(2.0 * half_gap * t);
-        // s' = e^{-l2 t} - l1 s
-        let impulse_rate = (-fast * t).exp() - slow * impulse;
-        let step = if angle_squared < 0.25 {
-            // p = t (E(l1 t) - E(l2 t))/(l2 - l1),  E(x) = (1 - e^{-x})/x
-            t * (mean_decay(slow * t) - mean_decay(fast * t)) / (2.0 * half_gap)
-        } else {
-            (1.0 - impulse_rate - 2.0 * zeta * impulse) / omega0_squared
-        };
-        Response { step, impulse, impulse_rate }
     }
 
     /// `p(t) = sum p_n`, with `(n+2)(n+1) p_{n+2} = -2 zeta t (n+1) p_{n+1} - w0^2 t^2 p_n`, `p_2 = t^2/2`.
@@ -137,10 +206,121 @@ impl Flight {
             let next = (-damping * (n + 1.0) * term - spring * before) / ((n + 2.0) * (n + 1.0));
             step += next;
             impulse += (n + 2.0) * next;
-            impulse_rate += (n + 2.0) * (n + 1.0) * next;
+            let last = (n + 2.0) * (n + 1.0) * next;
+            impulse_rate += last;
+            // Two in a row, since one may vanish by chance; s' has the largest terms.
+            if last.abs().max((n + 1.0) * n * term.abs()) < tolerance::SERIES_END.value {
+                break;
+            }
             (before, term) = (term, next);
         }
         Response { step: t * t * step, impulse: t * impulse, impulse_rate }
+    }
+
+    /// The time, s, up to which position changes one way only: the first instant after the start with `v = 0`.
+    ///
+    /// Infinite where there is none. From `v = v0 s' + f0 s`.
+    pub fn turning_point(&self, start: State) -> f64 {
+        let State { position, velocity } = start;
+        let force = self.force(position);
+        match self.regime {
+            Regime::Undamped { omega } | Regime::Underdamped { omega } => {
+                // v0 cos + (f0 - zeta v0)/w sin = 0 first in (0, pi]; from rest half an oscillation on.
+                let (along, across) = (self.zeta * velocity - force, omega * velocity.abs());
+                if across == 0.0 {
+                    return if force == 0.0 { f64::INFINITY } else { PI / omega };
+                }
+                across.atan2(if velocity > 0.0 { along } else { -along }) / omega
+            }
+            Regime::Monotone { slow, fast } => {
+                // s'/s = -f0/v0 =: x, and s'/s falls from infinity to -l1: e^{-(l2 - l1) t} = 1 - (l2 - l1)/(l2 + x).
+                let ratio = -force / velocity;
+                // Not a number for a follower at rest, which goes one way only.
+                if !(ratio + slow > 0.0 && ratio.is_finite()) {
+                    return f64::INFINITY;
+                }
+                let part = (fast - slow) / (fast + ratio);
+                let stretch = if part == 0.0 { 1.0 } else { -(-part).ln_1p() / part };
+                stretch / (fast + ratio)
+            }
+        }
+    }
+
+    /// Time (s) and state at which a flight comes down to `level`, m, or `None` if it never does.
+    ///
+    /// For a flight that is above the level, or certain to rise above it; whatever it does before it has risen is not looked
+    /// at.
+    #[inline]
+    pub fn fall_to(&self, level: f64, start: State) -> Option<(f64, State)> {
+        let Regime::Undamped { omega } = self.regime else {
+            return self.fall_by_search(level, start);
+        };
+        // On the circle (x, v/w0) about the equilibrium, from (x0, y0) to (l, -h), h^2 = x0^2 + y0^2 - l^2.
+        let offset = self.rest_position - self.gravity / self.omega0_squared;
+        let (x, y, l) = (start.position - offset, start.velocity / omega, level - offset);
+        let height_squared = (x - l) * (x + l) + y * y;
+        // Above the level at all times, or, below the equilibrium, at none.
+        if !(height_squared > 0.0) {
+            return None;
+        }
+        let height = height_squared.sqrt();
+        let angle = (y * l + x * height).atan2(x * l - y * height);
+        let time = if angle < 0.0 { angle + TAU } else { angle } / omega;
+        Some((time, State { position: level, velocity: -omega * height }))
+    }
+
+    /// The same for every follower: between two turning points position changes one way, so a bracket holds one root.
+    fn fall_by_search(&self, level: f64, start: State) -> Option<(f64, State)> {
+        let at = |time: f64| self.fly(start, time).1;
+        let rising = start.velocity > 0.0 || (start.velocity == 0.0 && self.force(start.position) > 0.0);
+        let peak = if rising { self.turning_point(start) } else { 0.0 };
+        if !peak.is_finite() {
+            return None;
+        }
+        let valley = match self.regime {
+            Regime::Undamped { omega } | Regime::Underdamped { omega } => {
+                if rising {
+                    peak + PI / omega
+                } else {
+                    self.turning_point(start)
+                }
+            }
+            // Two real rates turn once.
+            Regime::Monotone { .. } if rising => f64::INFINITY,
+            Regime::Monotone { .. } => self.turning_point(start),
+        };
+        let mut high = valley;
+        if valley.is_infinite() {
+            // Downwards without end: reached sooner or later, unless it settles above.
+            let guess = (start.position - level) / start.velocity;
+            high = peak + if guess.is_finite() && guess != 0.0 { guess.abs() } else { 1.0 };
+            while at(high).position >= level {
+                high *= 2.0;
+                if !(high < f64::MAX / 2.0) {
+                    return None;
+                }
+            }
+        } else if at(valley).position >= level {
+            // Later valleys are shallower.
+            return None;
+        }
+        let mut low = peak;
+        let mut time = 0.5 * (low + high);
+        while high - low > tolerance::ROOT_WIDTH.value * high {
+            let state = at(time);
+            if state.position >= level {
+                low = time
+            } else {
+                high = time
+            }
+            let newton = time + (level - state.position) / state.velocity;
+            let better = if low < newton && newton < high { newton } else { 0.5 * (low + high) };
+            if (better - time).abs() <= f64::EPSILON * time {
+                break;
+            }
+            time = better;
+        }
+        Some((time, State { position: level, ..at(time) }))
     }
 }
 

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
 use crate::flight::State;
-use crate::simulate::{Impact, Machine, SimulateError};
+use crate::simulate::{Event, EventKind, Machine, SimulateError};
 
 /// The map of one revolution, from the section at a cam angle back to it.
 #[derive(Clone, Debug)]
@@ -20,18 +20,25 @@ pub struct StroboscopicMap {
 pub struct Return {
     /// The state on the section, one revolution later.
     pub state: State,
-    /// The impacts on the way, in order.
-    pub impacts: Vec<Impact>,
+    /// The events on the way, in order.
+    pub events: Vec<Event>,
+}
+
+impl Return {
+    /// The impacts among the events.
+    pub fn impacts(&self) -> impl Iterator<Item = &Event> {
+        self.events.iter().filter(|event| event.kind == EventKind::Impact)
+    }
 }
 
 impl StroboscopicMap {
     /// One revolution from `state`.
     pub fn apply(&self, state: State) -> Result<Return, SimulateError> {
-        let mut impacts = Vec::new();
-        let state = self.machine.turn(self.cam_angle, state, TAU, |impact| {
-            impacts.push(*impact);
+        let mut events = Vec::new();
+        let state = self.machine.turn(self.cam_angle, state, TAU, |event| {
+            events.push(*event);
             ControlFlow::Continue(())
         })?;
-        Ok(Return { state, impacts })
+        Ok(Return { state, events })
     }
 }

@@ -28,14 +28,32 @@ table! {
     /// Rounding of the gap between follower and cam.
     GAP_ROUNDING = 4.0 * f64::EPSILON, "of the distances that the gap is the difference of: a handful of roundings, so that \
         a dip deeper than this is an impact";
+    /// Where the series of the follower's responses ends.
+    SERIES_END = 0.25 * f64::EPSILON, "of the response s', which starts at 1: a smaller term changes no digit of the sum";
     /// Relative velocity after an impact that is none.
     RELATIVE_VELOCITY_ROUNDING = 4.0 * f64::EPSILON, "of the cam's velocity: below it the difference of the two velocities \
         is rounding, and a chattering follower would go on bouncing in it";
+    /// The last step to a contact, of the time flown.
+    LAST_STEP = 1e-5, "of the flight over a window: Halley's step errs by the cube of it, below an ulp of that time";
+    /// The last turn to a contact, rad.
+    LAST_TURN = 1e-6, "absolute, rad: the Taylor sums of follower and cam leave out its fourth power";
+    /// The last turn to a contact, by how much the cam bends in it.
+    LAST_BEND = 1e-11, "of the cam's slope: what the slope's Taylor sum leaves out is the next term, smaller again by the \
+        turn, so an ulp";
+    /// How near the next impact must come to the last for the one after to be looked for there, rad.
+    REPEATED_IMPACT = 0.05, "absolute, rad: only a first guess, worth taking where Newton's method converges at once";
+    /// The angle that is left to infinitely many impacts when their sum is taken, rad.
+    CHATTER_TURN = 1e-7, "absolute, rad: the third term of the sum is its cube, far below the rounding of an angle";
+    /// How much the second term of the sum of infinitely many impacts may differ from the first.
+    CHATTER_REMAINDER = 1e-8, "squared, of the sum: of a turn of 1e-7 rad it leaves 1e-15, the rounding of an angle";
     /// Width at which a bracket around a root is closed.
     ROOT_WIDTH = 4.0 * f64::EPSILON, "of the root: T* is asked for to 1e-14, and a bracket cannot close below two ulps";
     /// When relative velocity at the impact counts as none.
     GRAZING = 1e-9, "of the velocities it is the difference of: 1/(v - c') would amplify the rounding of a double to 1e-7, \
         the last size at which five decimals mean anything";
+    /// The relative velocity of an impact that may be a graze, simulated.
+    GRAZE_FOUND = 1e-6, "of the velocities it is the difference of: a graze is found where the gap falls below its rounding, \
+        so its velocity is of the size of the root of that rounding";
     /// How far the located orbit may miss its own start after one simulated revolution.
     ORBIT_CLOSURE = 1e-9, "of the orbit's size: rounding grows with the multipliers, about 1e-13 for the paper's orbit; a \
         wrong orbit misses by its amplitude";

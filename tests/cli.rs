@@ -138,7 +138,7 @@ fn a_route_that_cannot_run_is_no_agreement() {
     let page = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(1), "{page}");
     assert!(
-        page.contains("NOT RUN") && page.contains("least_squares: ") && page.contains("stays on the cam"),
+        page.contains("NOT RUN") && page.contains("least_squares: ") && page.contains("sticks to the cam"),
         "{page}"
     );
     assert!(page.contains("DISAGREES: finite_difference, least_squares and"), "{page}");

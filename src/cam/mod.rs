@@ -75,6 +75,47 @@ pub struct Segment {
     pub end: f64,
     /// Its lift.
     pub law: Law,
+    /// Ranges over it.
+    pub bounds: Bounds,
+}
+
+/// Ranges (low, high) that hold over a whole segment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// m.
+    pub lift: [f64; 2],
+    /// m/rad.
+    pub slope: [f64; 2],
+    /// m/rad^2.
+    pub curvature: [f64; 2],
+    /// m/rad^3, of the size.
+    pub third: f64,
+}
+
+impl Bounds {
+    fn new(law: &Law, start: f64, end: f64) -> Self {
+        let n = 256;
+        let h = (end - start) / n as f64;
+        let mut b = Self {
+            lift: [f64::INFINITY, f64::NEG_INFINITY],
+            slope: [f64::INFINITY, f64::NEG_INFINITY],
+            curvature: [f64::INFINITY, f64::NEG_INFINITY],
+            third: 0.0,
+        };
+        for i in 0..n {
+            let a = start + h * i as f64;
+            let t = law.third_bound(a, a + h);
+            b.third = b.third.max(t);
+            let l = law.lift(a + 0.5 * h);
+            let c = l.curvature.abs() + t * h;
+            let s = l.slope.abs() + c * h;
+            let w = |r: &mut [f64; 2], v: f64, e: f64| *r = [r[0].min(v - e), r[1].max(v + e)];
+            w(&mut b.curvature, l.curvature, t * h * 0.5);
+            w(&mut b.slope, l.slope, c * h * 0.5);
+            w(&mut b.lift, l.value, s * h * 0.5);
+        }
+        b
+    }
 }
 
 /// The side of a corner: the segment before it or the one after.
@@ -119,7 +160,11 @@ impl Cam {
     fn from_laws(laws: Vec<(f64, Law)>) -> Self {
         let ends: Vec<f64> = laws.iter().skip(1).map(|(start, _)| *start).chain([TAU]).collect();
         let segments = laws.into_iter().zip(ends).filter(|((start, _), end)| start < end);
-        Self { segments: segments.map(|((start, law), end)| Segment { start, end, law }).collect() }
+        Self {
+            segments: segments
+                .map(|((start, law), end)| Segment { start, end, law, bounds: Bounds::new(&law, start, end) })
+                .collect(),
+        }
     }
 
     /// The segments, in order of angle.
@@ -135,6 +180,11 @@ impl Cam {
     /// Lift and derivatives at `angle`, rad, in `[0, 2 pi)`; at a corner, those after it.
     pub fn lift(&self, angle: f64) -> Lift {
         self.segments[self.segment_at(angle)].law.lift(angle)
+    }
+
+    /// No lift is above it, m.
+    pub fn top(&self) -> f64 {
+        self.segments.iter().fold(f64::NEG_INFINITY, |top, segment| top.max(segment.bounds.lift[1]))
     }
 
     /// The corners, in order of angle.
@@ -177,6 +227,9 @@ impl Cam {
         };
         segments[before].end = meeting;
         segments[after].start = meeting;
+        for segment in &mut segments {
+            segment.bounds = Bounds::new(&segment.law, segment.start, segment.end);
+        }
         let reaches = |segment: &Segment| segment.law.third_bound(segment.start, segment.end).is_finite();
         segments.iter().all(reaches).then_some(Self { segments })
     }

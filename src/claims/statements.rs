@@ -158,13 +158,8 @@ fn run(context: &Context<'_>, rpm: f64, revolutions: usize) -> Result<Run, Simul
     const HAIR: f64 = 1e-8;
     let at = &context.findings.at;
     let follower = &context.model.follower;
-    let machine = Machine {
-        cam: context.cam.clone(),
-        flight: Flight::new(follower),
-        restitution: follower.restitution,
-        angular_velocity: rpm * TAU / 60.0,
-    };
-    let omega = machine.angular_velocity;
+    let omega = rpm * TAU / 60.0;
+    let machine = Machine::new(context.cam.clone(), follower, omega);
     let map = StroboscopicMap { machine, cam_angle: at.section_angle() };
     let mut state = at.state;
     let mut beside = State { position: state.position + HAIR, ..state };
@@ -178,10 +173,10 @@ fn run(context: &Context<'_>, rpm: f64, revolutions: usize) -> Result<Run, Simul
         let distance = apart.norm().max(f64::MIN_POSITIVE);
         result.growth += (distance / HAIR).ln() / revolutions as f64;
         if revolution + 100 >= revolutions {
-            result.impacts.push(back.impacts.len());
+            result.impacts.push(back.impacts().count());
             result.move_per_revolution = result.move_per_revolution.max((back.state.position - state.position).abs());
         }
-        result.last_impact = back.impacts.last().map_or(result.last_impact, |impact| impact.cam_angle);
+        result.last_impact = back.impacts().last().map_or(result.last_impact, |impact| impact.cam_angle);
         state = back.state;
         let scale = HAIR / distance;
         beside =

@@ -20,7 +20,7 @@ use crate::cam::{Cam, Corner};
 use crate::flight::{Flight, State};
 use crate::model::{Follower, Model, ModelError, Study};
 use crate::section::StroboscopicMap;
-use crate::simulate::Machine;
+use crate::simulate::{Event, EventKind, Machine};
 use crate::tolerance;
 
 /// A periodic orbit with one impact a revolution, on a corner of the cam.
@@ -76,7 +76,7 @@ impl CornerImpact {
 }
 
 fn stroboscopic_map(follower: &Follower, cam: Cam, corner: &Corner, angular_velocity: f64) -> StroboscopicMap {
-    let machine = Machine { cam, flight: Flight::new(follower), restitution: follower.restitution, angular_velocity };
+    let machine = Machine::new(cam, follower, angular_velocity);
     StroboscopicMap { machine, cam_angle: (corner.angle + PI) % TAU }
 }
 
@@ -319,7 +319,8 @@ impl PeriodEquation<'_> {
         let state = State { position: self.corner.plus.value, velocity };
         let from_corner = |turned: f64| if turned > PI { turned - TAU } else { turned };
         match one_revolution(&machine, self.corner.angle, state, from_corner) {
-            Ok(_) => Verdict::Grazing(velocity),
+            // Adding 0 takes the sign off a zero.
+            Ok(_) => Verdict::Grazing(velocity + 0.0),
             Err(why) => Verdict::Rejected(format!("a graze, v = c' = {velocity:.6} m/s, and no orbit: {why}")),
         }
     }
@@ -384,18 +385,32 @@ fn one_revolution(
     start: State,
     from_corner: impl Fn(f64) -> f64,
 ) -> Result<(usize, State), String> {
-    let (mut impacts, mut elsewhere) = (0, None);
-    let end = machine.turn(cam_angle, start, TAU, |impact| {
-        impacts += 1;
-        if from_corner(impact.turned).abs() <= tolerance::CORNER_ANGLE.value {
+    let mut motion = machine.start(cam_angle, start).map_err(|error| error.to_string())?;
+    let (mut impacts, mut why) = (0, None);
+    let angle = |event: &Event| event.cam_angle.to_degrees();
+    if motion.contact {
+        return Err(format!("the follower stays on the cam at {:.4} deg", cam_angle.to_degrees()));
+    }
+    let goal = motion.after(1);
+    let end = machine.advance(&mut motion, goal, &mut |event: &Event| {
+        let approach = event.cam_velocity - event.velocity_before;
+        let scale = event.cam_velocity.abs() + event.velocity_before.abs();
+        // Where a graze is found is known to the root of rounding only; it changes nothing.
+        if event.kind == EventKind::Impact && approach <= tolerance::GRAZE_FOUND.value * scale {
             return ControlFlow::Continue(());
         }
-        elsewhere = Some(impact.cam_angle);
-        ControlFlow::Break(())
+        impacts += usize::from(event.kind == EventKind::Impact);
+        if from_corner(event.turned_since(cam_angle)).abs() > tolerance::CORNER_ANGLE.value {
+            why = Some(match event.kind {
+                EventKind::Impact => format!("the flight meets the cam elsewhere, at {:.4} deg", angle(event)),
+                _ => format!("the follower sticks to the cam up to or from {:.4} deg", angle(event)),
+            });
+        }
+        if why.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
-    match (elsewhere, end) {
-        (Some(angle), _) => Err(format!("the flight meets the cam elsewhere, at {:.4} deg", angle.to_degrees())),
-        (None, Ok(end)) => Ok((impacts, end)),
+    match (why, end) {
+        (Some(why), _) => Err(why),
+        (None, Ok(_)) => Ok((impacts, motion.state)),
         (None, Err(error)) => Err(error.to_string()),
     }
 }

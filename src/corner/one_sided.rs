@@ -11,7 +11,7 @@ use super::locate::CornerImpact;
 use crate::cam::{Cam, Side};
 use crate::flight::State;
 use crate::model::Model;
-use crate::simulate::SimulateError;
+use crate::simulate::{Event, EventKind, SimulateError};
 
 /// Why a side of the map could not be sampled.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -28,7 +28,8 @@ pub enum SampleError {
     },
     /// A perturbed revolution did something else than hit the cam once near the corner.
     #[error(
-        "{side:?} side: a revolution perturbed by {perturbation:?} has {impacts} impacts near the corner or elsewhere instead of one near it"
+        "{side:?} side: a revolution perturbed by {perturbation:?} has {impacts} impacts near the corner or elsewhere{} instead of one near it",
+        if *sticks { ", and sticks to the cam," } else { "" }
     )]
     NotOneImpact {
         /// Which side's law.
@@ -37,6 +38,8 @@ pub enum SampleError {
         perturbation: [f64; 3],
         /// Impacts counted.
         impacts: usize,
+        /// Whether the follower stays on the cam for a while.
+        sticks: bool,
     },
     /// The simulator gave up.
     #[error("{side:?} side: {error}")]
@@ -129,14 +132,17 @@ impl<'a> OneSidedMap<'a> {
         );
         let map = self.at.map(self.model, self.cam.clone(), perturbed);
         let back = map.apply(state).map_err(|error| SampleError::Simulate { side: self.side, error })?;
-        match back.impacts.as_slice() {
-            [impact] if (impact.turned - PI).abs() < self.reach => Ok(Sample {
+        let past_corner = |event: &Event| event.turned_since(map.cam_angle) - PI;
+        match back.events.as_slice() {
+            [impact] if impact.kind == EventKind::Impact && past_corner(impact).abs() < self.reach => Ok(Sample {
                 perturbation: exact,
                 end: Vector2::new(back.state.position - start.position, back.state.velocity - start.velocity),
-                past_corner: impact.turned - PI,
+                past_corner: past_corner(impact),
             }),
-            impacts => {
-                Err(SampleError::NotOneImpact { side: self.side, perturbation: exact.into(), impacts: impacts.len() })
+            events => {
+                let impacts = back.impacts().count();
+                let sticks = events.iter().any(|event| event.kind == EventKind::Stick);
+                Err(SampleError::NotOneImpact { side: self.side, perturbation: exact.into(), impacts, sticks })
             }
         }
     }

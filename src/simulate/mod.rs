@@ -1,226 +1,412 @@
-//! The only event loop: fly to the first contact, resolve it, go on.
+//! The only event loop: fly to the first contact, resolve it, or follow the cam until it lets go.
 //!
-//! [`Machine::turn`] is `next_contact`, `fly`, `rebound`, repeated until the cam has turned far enough. Time runs from the
-//! last event, so that a short hop keeps its digits; the cam angle is kept in `[0, 2 pi)`.
+//! A [`Machine`] is a cam, a follower over it and a speed; a [`Motion`] is where the two are. [`Machine::advance`] takes a
+//! motion to a later angle and shows an [`Observer`] what happens on the way: impacts, the start of sticking, release.
+//! Time runs from the last event and the cam angle stays in `[0, 2 pi)`, so neither a short hop nor the hundred-millionth
+//! revolution loses digits.
 
 mod contact;
+mod event;
+mod sticking;
+mod terrain;
+mod variation;
+mod window;
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
-use crate::cam::{Cam, Segment};
+use crate::cam::{Cam, Lift};
 use crate::flight::{Flight, State};
 use crate::impact::rebound;
+use crate::model::Follower;
 use crate::tolerance;
-use contact::{Gap, Outcome, first_contact};
+pub use event::{Event, EventKind, Observer, SimulateError};
+pub use sticking::accumulation;
+use terrain::Terrain;
+pub use variation::Variation;
+use window::{Passage, Window};
 
 /// A cam, a follower over it, and the speed at which the cam turns.
 #[derive(Clone, Debug)]
 pub struct Machine {
-    /// The lift profile.
-    pub cam: Cam,
-    /// The follower away from the cam.
-    pub flight: Flight,
-    /// r, 0 to 1.
-    pub restitution: f64,
-    /// omega, rad/s, positive.
-    pub angular_velocity: f64,
+    terrain: Arc<Terrain>,
+    flight: Flight,
+    restitution: f64,
+    angular_velocity: f64,
 }
 
-/// An impact of the follower on the cam.
+/// Where cam and follower are.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Impact {
-    /// Cam angle turned since the start of the run, rad.
-    pub turned: f64,
+pub struct Motion {
+    /// How often the cam has passed angle 0 since the start.
+    pub revolution: u64,
     /// Cam angle, rad, in `[0, 2 pi)`.
     pub cam_angle: f64,
-    /// q = c, m.
-    pub position: f64,
-    /// v-, m/s.
-    pub velocity_before: f64,
-    /// v+, m/s.
-    pub velocity_after: f64,
-    /// c', m/s.
-    pub cam_velocity: f64,
-}
-
-/// Why a run could not go on.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum SimulateError {
-    /// The follower started inside the cam.
-    #[error("simulate: the follower starts {depth:.3e} m below the cam, at cam angle {:.4} deg", cam_angle.to_degrees())]
-    BelowCam {
-        /// How far, m.
-        depth: f64,
-        /// Where, rad.
-        cam_angle: f64,
-    },
-    /// The follower rests on the cam: contact with no relative velocity and none to come.
-    #[error("simulate: the follower stays on the cam from {:.4} deg on; sticking is not simulated", cam_angle.to_degrees())]
-    Sticking {
-        /// Where, rad.
-        cam_angle: f64,
-    },
-    /// More impacts than a run may have.
-    #[error("simulate: {impacts} impacts and still at {:.4} deg: the impacts accumulate", cam_angle.to_degrees())]
-    Accumulating {
-        /// How many.
-        impacts: usize,
-        /// Where, rad.
-        cam_angle: f64,
-    },
-    /// A number that is not finite entered the run.
-    #[error("simulate: a state that is not finite near {:.4} deg", cam_angle.to_degrees())]
-    NotFinite {
-        /// Where, rad.
-        cam_angle: f64,
-    },
-}
-
-/// A stretch of flight within one segment of the cam: where it starts, seen from the flight's own start.
-struct Piece {
+    /// The follower.
+    pub state: State,
+    /// Whether the follower sticks to the cam.
+    pub contact: bool,
     segment: usize,
-    angle: f64,
-    time: f64,
-    rise: f64,
+    /// The gap, m, where it is known better than as a difference of two positions.
+    gap: Option<f64>,
+    /// The lift under the follower, where it is known.
+    lift: Option<Lift>,
+    /// Where the last impact was, rad, if the one before it was close by: the next is looked for there first.
+    expected: Option<f64>,
+    last_impact: f64,
 }
 
-/// A flight from its start to the next contact or to the end of the run.
-struct Landing {
-    contact: bool,
-    turned: f64,
-    segment: usize,
-    cam_angle: f64,
-    state: State,
+/// Where a run ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Goal {
+    /// As [`Motion::revolution`].
+    pub revolution: u64,
+    /// Cam angle, rad, in `[0, 2 pi)`.
+    pub cam_angle: f64,
+}
+
+impl Motion {
+    /// The goal `revolutions` further on, at the angle where the cam is now.
+    pub fn after(&self, revolutions: u64) -> Goal {
+        Goal { revolution: self.revolution.saturating_add(revolutions), cam_angle: self.cam_angle }
+    }
+
+    /// The next passage of `cam_angle`, rad, in `[0, 2 pi)`; a whole turn if the cam is there now.
+    pub fn next(&self, cam_angle: f64) -> Goal {
+        Goal { revolution: self.revolution + u64::from(cam_angle <= self.cam_angle), cam_angle }
+    }
+
+    /// The angle still to turn, rad; not above 0 when the goal is passed.
+    fn left(&self, goal: &Goal) -> f64 {
+        let turns = goal.revolution as f64 - self.revolution as f64;
+        let within = goal.cam_angle - self.cam_angle;
+        if turns == 0.0 { within } else { turns * TAU + within }
+    }
+
+    /// Moves the cam on by `turn`, rad, within the same segment.
+    fn turn(&mut self, turn: f64) {
+        self.cam_angle += turn;
+    }
 }
 
 impl Machine {
-    /// Impacts after which a run is given up: a bouncing follower makes tens in a revolution, an accumulating one no end.
-    const MOST_IMPACTS: usize = 100_000;
+    /// Events in one revolution after which a run is given up: a follower that chatters with restitution 0.99 makes
+    /// thousands, one that makes no progress no end.
+    const MOST_EVENTS: u32 = 1_000_000;
+
+    /// A machine at `angular_velocity`, rad/s, positive.
+    pub fn new(cam: Cam, follower: &Follower, angular_velocity: f64) -> Self {
+        Self {
+            terrain: Arc::new(Terrain::new(cam)),
+            flight: Flight::new(follower),
+            restitution: follower.restitution,
+            angular_velocity,
+        }
+    }
+
+    /// The same machine at another speed, rad/s, positive; the cam is shared.
+    pub fn at_speed(&self, angular_velocity: f64) -> Self {
+        Self { angular_velocity, ..self.clone() }
+    }
+
+    /// The lift profile.
+    pub fn cam(&self) -> &Cam {
+        &self.terrain.cam
+    }
+
+    /// The follower away from the cam.
+    pub fn flight(&self) -> &Flight {
+        &self.flight
+    }
+
+    /// r, 0 to 1.
+    pub fn restitution(&self) -> f64 {
+        self.restitution
+    }
+
+    /// omega, rad/s.
+    pub fn angular_velocity(&self) -> f64 {
+        self.angular_velocity
+    }
+
+    /// A motion that starts at `cam_angle`, rad, in `[0, 2 pi)`, with `state`; in contact if it rests against the cam.
+    pub fn start(&self, cam_angle: f64, state: State) -> Result<Motion, SimulateError> {
+        let in_range = (0.0..TAU).contains(&cam_angle);
+        if !(in_range && state.position.is_finite() && state.velocity.is_finite() && self.angular_velocity > 0.0) {
+            return Err(SimulateError::NotFinite { revolution: 0, cam_angle });
+        }
+        let segment = self.cam().segment_at(cam_angle);
+        let lift = self.cam().segments()[segment].law.lift(cam_angle);
+        let gap = state.position - lift.value;
+        let rounding = tolerance::GAP_ROUNDING.value * (state.position.abs() + lift.value.abs());
+        if gap < -rounding {
+            return Err(SimulateError::BelowCam { depth: -gap, revolution: 0, cam_angle });
+        }
+        let mut motion = Motion {
+            revolution: 0,
+            cam_angle,
+            state,
+            contact: false,
+            segment,
+            gap: None,
+            lift: None,
+            expected: None,
+            last_impact: f64::NAN,
+        };
+        if gap <= rounding {
+            let relative_velocity = state.velocity - self.angular_velocity * lift.slope;
+            self.leave(&mut motion, &lift, relative_velocity);
+        }
+        Ok(motion)
+    }
+
+    /// A motion that starts on the cam at `cam_angle`, rad, and leaves it at `relative_velocity`, m/s, zero or more.
+    pub fn start_on_cam(&self, cam_angle: f64, relative_velocity: f64) -> Result<Motion, SimulateError> {
+        if !(0.0..TAU).contains(&cam_angle) {
+            return Err(SimulateError::NotFinite { revolution: 0, cam_angle });
+        }
+        let lift = self.cam().lift(cam_angle);
+        let velocity = self.angular_velocity * lift.slope + relative_velocity;
+        self.start(cam_angle, State { position: lift.value, velocity })
+    }
+
+    /// Puts the follower on the cam, where `lift` holds, with a relative velocity, m/s: sticking where it has none and is
+    /// pressed against the cam. Rounding counts as none.
+    fn leave(&self, motion: &mut Motion, lift: &Lift, relative_velocity: f64) {
+        let cam_velocity = self.angular_velocity * lift.slope;
+        (motion.gap, motion.lift) = (Some(0.0), Some(*lift));
+        motion.contact = false;
+        if relative_velocity.abs() <= tolerance::RELATIVE_VELOCITY_ROUNDING.value * cam_velocity.abs() {
+            motion.state = State { position: lift.value, velocity: cam_velocity };
+            motion.contact = self.lifting(lift) <= 0.0;
+        } else {
+            motion.state = State { position: lift.value, velocity: cam_velocity + relative_velocity };
+        }
+    }
+
+    /// Advances `motion` until the cam reaches `goal`, or until the observer breaks right after an event.
+    ///
+    /// An event in the last instant is left to the run that goes on from there.
+    pub fn advance(
+        &self,
+        motion: &mut Motion,
+        goal: Goal,
+        observer: &mut impl Observer,
+    ) -> Result<ControlFlow<()>, SimulateError> {
+        let (mut revolution, mut events) = (motion.revolution, 0);
+        loop {
+            let left = motion.left(&goal);
+            if !(left > 0.0) {
+                return Ok(ControlFlow::Continue(()));
+            }
+            let step =
+                if motion.contact { self.follow(motion, left, observer)? } else { self.fly(motion, left, observer)? };
+            match step {
+                Step::Moved => {}
+                Step::Event => events += 1,
+                Step::Reached => {
+                    (motion.revolution, motion.cam_angle) = (goal.revolution, goal.cam_angle);
+                    motion.segment = self.cam().segment_at(goal.cam_angle);
+                    return Ok(ControlFlow::Continue(()));
+                }
+                Step::Broken => return Ok(ControlFlow::Break(())),
+            }
+            if motion.revolution != revolution {
+                (revolution, events) = (motion.revolution, 0);
+            } else if events > Self::MOST_EVENTS {
+                return Err(SimulateError::NoProgress { events, revolution, cam_angle: motion.cam_angle });
+            }
+        }
+    }
 
     /// Turns the cam by `turn`, rad, from `cam_angle`, rad, in `[0, 2 pi)`, and returns the state there.
     ///
-    /// `observe` sees every impact, and may end the run right after one; an impact in the last instant is left to the run
-    /// that goes on from there.
+    /// `observe` sees every event, and may end the run right after one.
     pub fn turn(
         &self,
         cam_angle: f64,
         start: State,
         turn: f64,
-        mut observe: impl FnMut(&Impact) -> ControlFlow<()>,
+        mut observe: impl FnMut(&Event) -> ControlFlow<()>,
     ) -> Result<State, SimulateError> {
-        let segment = self.cam.segment_at(cam_angle);
-        let lift = self.cam.lift(cam_angle).value;
-        let mut gap = start.position - lift;
-        if gap.abs() <= tolerance::GAP_ROUNDING.value * (start.position.abs() + lift.abs()) {
-            gap = 0.0;
-        }
-        let mut now = Landing { contact: false, turned: 0.0, segment, cam_angle, state: start };
-        for _ in 0..Self::MOST_IMPACTS {
-            let landing = self.next_contact(&now, gap, turn - now.turned)?;
-            now = Landing { turned: now.turned + landing.turned, ..landing };
-            if !now.contact {
-                return Ok(now.state);
-            }
-            let lift = self.cam.segments()[now.segment].law.lift(now.cam_angle);
-            let cam_velocity = lift.slope * self.angular_velocity;
-            let velocity_before = now.state.velocity;
-            let mut velocity_after = rebound(self.restitution, velocity_before, cam_velocity);
-            // Impacts that accumulate die out here, and not in the rounding of two velocities.
-            if (velocity_after - cam_velocity).abs() <= tolerance::RELATIVE_VELOCITY_ROUNDING.value * cam_velocity.abs()
-            {
-                velocity_after = cam_velocity;
-            }
-            now.state = State { position: lift.value, velocity: velocity_after };
-            gap = 0.0;
-            let (turned, cam_angle, position) = (now.turned, now.cam_angle % TAU, lift.value);
-            let impact = Impact { turned, cam_angle, position, velocity_before, velocity_after, cam_velocity };
-            if observe(&impact).is_break() {
-                return Ok(now.state);
-            }
-        }
-        Err(SimulateError::Accumulating { impacts: Self::MOST_IMPACTS, cam_angle: now.cam_angle })
+        let mut motion = self.start(cam_angle, start)?;
+        let (whole, angle) = ((turn / TAU).floor(), cam_angle + turn % TAU);
+        let goal = Goal { revolution: whole as u64 + u64::from(angle >= TAU), cam_angle: angle % TAU };
+        let _ = self.advance(&mut motion, goal, &mut observe)?;
+        Ok(motion.state)
     }
 
-    /// The flight from `from`, `gap` above the cam, to its first contact within `turn`, rad, or to the end of that turn.
-    fn next_contact(&self, from: &Landing, gap: f64, turn: f64) -> Result<Landing, SimulateError> {
-        let segments = self.cam.segments();
-        let mut piece = Piece { segment: from.segment, angle: from.cam_angle, time: 0.0, rise: 0.0 };
-        let mut turned = 0.0;
-        loop {
-            let segment = &segments[piece.segment];
-            let left = turn - turned;
-            let within = segment.end - piece.angle;
-            let last = left < within;
-            let span = if last { left.max(0.0) } else { within };
-            let angle_at = |time: f64| piece.angle + time * self.angular_velocity;
-            let gap_at = |time: f64| self.gap(from.state, gap, &piece, time);
-            let land = |contact: bool, time: f64| {
-                let step = if contact { time * self.angular_velocity } else { span };
-                Landing {
-                    contact,
-                    turned: turned + step,
-                    segment: piece.segment,
-                    // A contact found at the segment's end belongs to it, whatever the last bit says.
-                    cam_angle: (piece.angle + step).min(segment.end),
-                    state: self.flight.fly(from.state, piece.time + time).1,
+    /// One stretch of flight: over the top of the cam, or up to a contact or the end of a segment.
+    fn fly(&self, motion: &mut Motion, left: f64, observer: &mut impl Observer) -> Result<Step, SimulateError> {
+        let omega = self.angular_velocity;
+        let top = self.terrain.top;
+        let start = motion.state;
+        if start.position > top || self.clears(motion, top) {
+            let (time, state) = match self.flight.fall_to(top, start) {
+                Some((time, state)) if omega * time < left => (time, state),
+                _ => {
+                    let time = left / omega;
+                    observer.flight(&self.flight, start, time);
+                    motion.state = self.flight.fly(start, time).1;
+                    (motion.gap, motion.lift) = (None, None);
+                    return Ok(Step::Reached);
                 }
             };
-            let third_bound = |time: f64, reach: f64| self.third_bound(from.state, &piece, time, reach);
-            match first_contact(gap_at, third_bound, span / self.angular_velocity) {
-                Outcome::None if last => return Ok(land(false, span / self.angular_velocity)),
-                Outcome::None => {
-                    let next = (piece.segment + 1) % segments.len();
-                    piece = Piece {
-                        segment: next,
-                        angle: segments[next].start,
-                        time: piece.time + span / self.angular_velocity,
-                        rise: piece.rise + segment.law.rise(piece.angle, span) + step(segment, &segments[next]),
-                    };
-                    turned += span;
+            observer.flight(&self.flight, start, time);
+            self.turn_over(motion, omega * time);
+            (motion.state, motion.gap, motion.lift) = (state, None, None);
+            // What is exactly at the top would be looked at as above it once more.
+            return if state.position <= top { Ok(Step::Moved) } else { Err(self.not_finite(motion)) };
+        }
+        let segment = &self.cam().segments()[motion.segment];
+        let within = segment.end - motion.cam_angle;
+        let (last, span) = if left < within { (true, left) } else { (false, within) };
+        let window = Window::new(self, motion);
+        let expected = motion.expected.map(|angle| (angle - motion.cam_angle) / omega);
+        match window.pass(span / omega, expected) {
+            Passage::Free { state, gap } => {
+                observer.flight(&self.flight, start, span / omega);
+                (motion.state, motion.gap, motion.lift) = (state, gap, None);
+                if last {
+                    return Ok(Step::Reached);
                 }
-                Outcome::Contact(time) => return Ok(land(true, time)),
-                Outcome::Resting(time) => return Err(SimulateError::Sticking { cam_angle: angle_at(time) }),
-                Outcome::Below { depth, time } => {
-                    return Err(SimulateError::BelowCam { depth, cam_angle: angle_at(time) });
-                }
-                Outcome::NotFinite(time) => return Err(SimulateError::NotFinite { cam_angle: angle_at(time) }),
+                self.enter_next(motion);
+                Ok(Step::Moved)
             }
+            Passage::Advanced { time, state, gap } => {
+                observer.flight(&self.flight, start, time);
+                (motion.state, motion.gap, motion.lift) = (state, gap, None);
+                motion.turn(omega * time);
+                Ok(Step::Moved)
+            }
+            Passage::Contact { time, velocity, lift } => {
+                observer.flight(&self.flight, start, time);
+                // A contact found at the segment's end belongs to it, whatever the last bit says.
+                motion.cam_angle = (motion.cam_angle + omega * time).min(segment.end);
+                Ok(self.strike(motion, velocity, &lift, left - omega * time, observer))
+            }
+            Passage::Resting { time } => {
+                motion.turn(omega * time);
+                let lift = segment.law.lift(motion.cam_angle);
+                Ok(self.stick(motion, &lift, observer))
+            }
+            Passage::Below { depth, time } => Err(SimulateError::BelowCam {
+                depth,
+                revolution: motion.revolution,
+                cam_angle: motion.cam_angle + omega * time,
+            }),
+            Passage::NotFinite => Err(self.not_finite(motion)),
         }
     }
 
-    /// The gap `time` after the start of `piece`, for a flight that left `start` with `gap`.
-    fn gap(&self, start: State, gap: f64, piece: &Piece, time: f64) -> Gap {
-        let omega = self.angular_velocity;
-        let segment = &self.cam.segments()[piece.segment];
-        let (displacement, state) = self.flight.fly(start, piece.time + time);
-        let rise = piece.rise + segment.law.rise(piece.angle, omega * time);
-        let lift = segment.law.lift(piece.angle + omega * time);
-        Gap {
-            value: gap + displacement - rise,
-            rounding: tolerance::GAP_ROUNDING.value * (gap.abs() + displacement.abs() + rise.abs()),
-            rate: state.velocity - omega * lift.slope,
-            curvature: self.flight.acceleration(state) - omega * omega * lift.curvature,
-            third: 2.0 * (self.flight.jerk(state) - omega.powi(3) * lift.third).abs(),
+    fn not_finite(&self, motion: &Motion) -> SimulateError {
+        SimulateError::NotFinite { revolution: motion.revolution, cam_angle: motion.cam_angle }
+    }
+
+    /// Whether a follower that leaves the cam is certain to rise above all of it without another contact.
+    fn clears(&self, motion: &Motion, top: f64) -> bool {
+        let (State { position, velocity }, omega) = (motion.state, self.angular_velocity);
+        if motion.gap != Some(0.0) || !(velocity > 0.0) {
+            return false;
+        }
+        let relative_velocity = velocity - omega * self.cam().segments()[motion.segment].bounds.slope[1];
+        // While it rises q >= q0 + v0 t + (a0 - J t) t^2/2, with |q'''| <= J: so much time is enough to be above the top,
+        let time = 1.25 * (top - position) / velocity;
+        let slowest = self.flight.acceleration(motion.state) - self.flight.jerk_bound(motion.state) * time;
+        let rises = position + time * (velocity + 0.5 * slowest * time) > top;
+        // and the gap, with g' >= u at the start and g'' >= a - w^2 max c'', stays open that long.
+        let closing = slowest - omega * omega * self.terrain.largest_curvature;
+        rises && relative_velocity + 0.5 * closing * time > 0.0
+    }
+
+    /// Moves the cam on by `turn`, rad, over any number of segments.
+    fn turn_over(&self, motion: &mut Motion, turn: f64) {
+        let angle = motion.cam_angle + turn;
+        if angle < TAU {
+            motion.cam_angle = angle;
+        } else {
+            let turns = (angle / TAU).floor();
+            motion.revolution += turns as u64;
+            motion.cam_angle = (angle - turns * TAU).clamp(0.0, TAU);
+        }
+        motion.segment = self.cam().segment_at(motion.cam_angle);
+    }
+
+    /// Goes over to the next segment, at its start.
+    fn enter_next(&self, motion: &mut Motion) {
+        let segments = self.cam().segments();
+        motion.segment += 1;
+        if motion.segment == segments.len() {
+            motion.segment = 0;
+            motion.revolution += 1;
+        }
+        motion.cam_angle = segments[motion.segment].start;
+        motion.lift = None;
+        let step = self.terrain.entries[motion.segment].lift_step;
+        if step != 0.0 {
+            motion.gap = motion.gap.map(|gap| gap - step);
         }
     }
 
-    /// A bound on `|g'''|` over `[time, time + reach]` of `piece`.
-    fn third_bound(&self, start: State, piece: &Piece, time: f64, reach: f64) -> f64 {
-        let omega = self.angular_velocity;
-        let angle = piece.angle + omega * time;
-        let (_, state) = self.flight.fly(start, piece.time + time);
-        let law = &self.cam.segments()[piece.segment].law;
-        self.flight.jerk_bound(state) + omega.powi(3) * law.third_bound(angle, angle + omega * reach)
+    /// An impact at the motion's angle, where `lift` holds, `left` rad before the end of the run.
+    fn strike(
+        &self,
+        motion: &mut Motion,
+        velocity_before: f64,
+        lift: &Lift,
+        left: f64,
+        observer: &mut impl Observer,
+    ) -> Step {
+        let cam_velocity = self.angular_velocity * lift.slope;
+        let velocity_after = rebound(self.restitution, velocity_before, cam_velocity);
+        let angle = motion.cam_angle;
+        motion.expected = ((angle - motion.last_impact).abs() <= tolerance::REPEATED_IMPACT.value).then_some(angle);
+        motion.last_impact = angle;
+        self.leave(motion, lift, self.restitution * (cam_velocity - velocity_before));
+        // What is left of the relative velocity is rounding: report what the follower does.
+        let velocity_after = if motion.state.velocity == cam_velocity { cam_velocity } else { velocity_after };
+        motion.state.velocity = velocity_after;
+        let impact = self.event(motion, EventKind::Impact, velocity_before, cam_velocity);
+        if observer.event(&impact).is_break() {
+            return Step::Broken;
+        }
+        if motion.contact {
+            return self.report(motion, EventKind::Stick, observer);
+        }
+        self.end_chatter(motion, lift, left, observer)
+    }
+
+    fn event(&self, motion: &Motion, kind: EventKind, velocity_before: f64, cam_velocity: f64) -> Event {
+        let over = motion.cam_angle >= TAU;
+        Event {
+            kind,
+            revolution: motion.revolution + u64::from(over),
+            cam_angle: if over { 0.0 } else { motion.cam_angle },
+            position: motion.state.position,
+            velocity_before,
+            velocity_after: motion.state.velocity,
+            cam_velocity,
+            segment: motion.segment,
+        }
+    }
+
+    /// Reports a stick or release: an event without a change of velocity.
+    fn report(&self, motion: &Motion, kind: EventKind, observer: &mut impl Observer) -> Step {
+        let velocity = motion.state.velocity;
+        let event = self.event(motion, kind, velocity, velocity);
+        if observer.event(&event).is_break() { Step::Broken } else { Step::Event }
     }
 }
 
-/// What the lift jumps by from one segment to the next, m.
-///
-/// Only a continued law leaves a step at its far end; where segments meet, two evaluations of one lift differ by rounding,
-/// which a follower that has just left the cam there must not be measured by.
-fn step(before: &Segment, after: &Segment) -> f64 {
-    let (end, start) = (before.law.lift(before.end).value, after.law.lift(after.start).value);
-    let step = start - end;
-    if step.abs() <= tolerance::GAP_ROUNDING.value * (start.abs() + end.abs()) { 0.0 } else { step }
+/// What one step of the loop came to.
+enum Step {
+    /// Somewhere further on.
+    Moved,
+    /// Past an event.
+    Event,
+    /// At the end of the run, state and gap as they are there.
+    Reached,
+    /// The observer wants no more.
+    Broken,
 }

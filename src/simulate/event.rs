@@ -1,0 +1,114 @@
+//! What happens on the way, who looks on, and why a run could not go on.
+
+use std::f64::consts::TAU;
+use std::ops::ControlFlow;
+
+use crate::flight::{Flight, State};
+
+/// What kind of event.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EventKind {
+    /// The follower hits the cam.
+    Impact,
+    /// From here on the follower stays on the cam: an impact left no relative velocity, or infinitely many have.
+    Stick,
+    /// The cam lets go of the follower.
+    Release,
+}
+
+impl EventKind {
+    /// The name that tables and files use.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Impact => "impact",
+            Self::Stick => "stick",
+            Self::Release => "release",
+        }
+    }
+}
+
+/// An impact, the start of sticking, or its end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Event {
+    /// What happened.
+    pub kind: EventKind,
+    /// How often the cam has passed angle 0 since the start of the run.
+    pub revolution: u64,
+    /// Cam angle, rad, in `[0, 2 pi)`.
+    pub cam_angle: f64,
+    /// q = c, m.
+    pub position: f64,
+    /// v-, m/s.
+    pub velocity_before: f64,
+    /// v+, m/s.
+    pub velocity_after: f64,
+    /// c', m/s; at a corner, that of the segment which was hit.
+    pub cam_velocity: f64,
+    /// Index of the segment of the cam.
+    pub segment: usize,
+}
+
+impl Event {
+    /// The angle turned since a start at `cam_angle`, rad, in revolution 0.
+    pub fn turned_since(&self, cam_angle: f64) -> f64 {
+        let within = self.cam_angle - cam_angle;
+        if self.revolution == 0 { within } else { self.revolution as f64 * TAU + within }
+    }
+}
+
+/// Who looks on. A closure that takes each event is one.
+pub trait Observer {
+    /// Sees an event; may end the run right after it.
+    fn event(&mut self, event: &Event) -> ControlFlow<()>;
+
+    /// Sees a stretch of free flight that has just been flown: from which state, for how long, s.
+    fn flight(&mut self, _flight: &Flight, _from: State, _time: f64) {}
+}
+
+impl<F: FnMut(&Event) -> ControlFlow<()>> Observer for F {
+    fn event(&mut self, event: &Event) -> ControlFlow<()> {
+        self(event)
+    }
+}
+
+/// Why a run could not go on.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum SimulateError {
+    /// The follower is inside the cam: it started there, or a continued cam has a step.
+    #[error(
+        "simulate: the follower is {depth:.3e} m below the cam at cam angle {:.4} deg of revolution {revolution}",
+        cam_angle.to_degrees()
+    )]
+    BelowCam {
+        /// How far, m.
+        depth: f64,
+        /// When.
+        revolution: u64,
+        /// Where, rad.
+        cam_angle: f64,
+    },
+    /// More events in one revolution than a run may have.
+    #[error(
+        "simulate: no progress: {events} events in revolution {revolution}, and still at cam angle {:.6} deg",
+        cam_angle.to_degrees()
+    )]
+    NoProgress {
+        /// How many.
+        events: u32,
+        /// When.
+        revolution: u64,
+        /// Where, rad.
+        cam_angle: f64,
+    },
+    /// A number that is not finite entered the run, or a start outside `[0, 2 pi)`.
+    #[error(
+        "simulate: a state that is not finite near cam angle {:.4} deg of revolution {revolution}",
+        cam_angle.to_degrees()
+    )]
+    NotFinite {
+        /// When.
+        revolution: u64,
+        /// Where, rad.
+        cam_angle: f64,
+    },
+}

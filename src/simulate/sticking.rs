@@ -1,0 +1,195 @@
+//! Following the cam: where infinitely many impacts end, and where the cam lets go.
+
+use super::{EventKind, Machine, Motion, Observer, SimulateError, Step};
+use crate::cam::{Lift, Segment};
+use crate::flight::State;
+use crate::tolerance;
+
+/// Time, s, in which infinitely many impacts end, and what that time is uncertain by, relative to it.
+///
+/// After an impact with relative velocity u and restitution r, over a cam that moves away from a follower which goes with it
+/// at `g'' = -A + J t` (damping: `zeta`), the hops are geometric up to the second order. With `y = u/A`,
+/// `k = J/A - zeta`: a hop takes `2y (1 + 2ky/3)` and leaves `y' = r y (1 + 4ky/3)`, so their sum is
+///
+/// ```text
+/// S = S1 (1 + k S1/3),  S1 = 2y/(1 - r)
+/// ```
+///
+/// and what is left out is of the size `(k S1)^2`.
+pub fn accumulation(relative_velocity: f64, restitution: f64, pressing: f64, rate: f64, zeta: f64) -> (f64, f64) {
+    let first = 2.0 * relative_velocity / (pressing * (1.0 - restitution));
+    let bend = (rate / pressing - zeta) * first;
+    (first * (1.0 + bend / 3.0), bend * bend)
+}
+
+impl Machine {
+    /// Acceleration of the gap of a follower that goes with the cam, m/s^2: above 0 the cam lets go of it.
+    pub(super) fn lifting(&self, lift: &Lift) -> f64 {
+        let omega = self.angular_velocity;
+        self.flight.acceleration(on_cam(lift, omega)) - omega * omega * lift.curvature
+    }
+
+    /// The time derivative of [`Machine::lifting`] along the cam, m/s^3, and how far rounding may move `lifting`, m/s^2.
+    fn lifting_rate(&self, lift: &Lift) -> (f64, f64) {
+        let omega = self.angular_velocity;
+        let (w, zeta) = (self.flight.omega0_squared(), self.flight.zeta());
+        let rate = -2.0 * zeta * omega * omega * lift.curvature - w * omega * lift.slope - omega.powi(3) * lift.third;
+        let terms = self.flight.force(lift.value).abs()
+            + w * lift.value.abs()
+            + 2.0 * zeta * omega * lift.slope.abs()
+            + omega * omega * lift.curvature.abs();
+        (rate, tolerance::GAP_ROUNDING.value * terms)
+    }
+
+    /// After an impact: goes to where infinitely many more end, if that is so near that two terms of their sum are all of it.
+    pub(super) fn end_chatter(
+        &self,
+        motion: &mut Motion,
+        lift: &Lift,
+        left: f64,
+        observer: &mut impl Observer,
+    ) -> Step {
+        let pressing = -self.lifting(lift);
+        let relative_velocity = motion.state.velocity - self.angular_velocity * lift.slope;
+        if !(pressing > 0.0 && self.restitution < 1.0) {
+            return Step::Event;
+        }
+        // Cheaply first: most impacts are far from the last.
+        let first = 2.0 * relative_velocity * self.angular_velocity;
+        if first > tolerance::CHATTER_TURN.value * pressing * (1.0 - self.restitution) {
+            return Step::Event;
+        }
+        let (rate, _) = self.lifting_rate(lift);
+        let (time, left_out) = accumulation(relative_velocity, self.restitution, pressing, rate, self.flight.zeta());
+        let segment = &self.cam().segments()[motion.segment];
+        let angle = motion.cam_angle + self.angular_velocity * time;
+        let inside = angle <= segment.end && self.angular_velocity * time < left;
+        if !(inside && left_out <= tolerance::CHATTER_REMAINDER.value) {
+            return Step::Event;
+        }
+        motion.cam_angle = angle;
+        self.stick(motion, &segment.law.lift(angle), observer)
+    }
+
+    /// Puts the follower on the cam, to stay.
+    pub(super) fn stick(&self, motion: &mut Motion, lift: &Lift, observer: &mut impl Observer) -> Step {
+        motion.state = on_cam(lift, self.angular_velocity);
+        (motion.contact, motion.gap, motion.lift) = (true, Some(0.0), Some(*lift));
+        self.report(motion, EventKind::Stick, observer)
+    }
+
+    /// One stretch on the cam: to a release, to the end of the segment, or to the end of the run.
+    pub(super) fn follow(
+        &self,
+        motion: &mut Motion,
+        left: f64,
+        observer: &mut impl Observer,
+    ) -> Result<Step, SimulateError> {
+        let omega = self.angular_velocity;
+        let segment = &self.cam().segments()[motion.segment];
+        let within = segment.end - motion.cam_angle;
+        let (last, span) = if left < within { (true, left) } else { (false, within) };
+        if let Some(turn) = self.release(segment, motion.cam_angle, span) {
+            motion.cam_angle += turn;
+            let lift = segment.law.lift(motion.cam_angle);
+            return Ok(self.let_go(motion, &lift, on_cam(&lift, omega), observer));
+        }
+        let before = on_cam(&segment.law.lift(motion.cam_angle + span), omega);
+        motion.cam_angle += span;
+        if last {
+            motion.state = before;
+            (motion.gap, motion.lift) = (Some(0.0), None);
+            return Ok(Step::Reached);
+        }
+        motion.gap = Some(0.0);
+        self.enter_next(motion);
+        let entry = self.terrain.entries[motion.segment];
+        let next = &self.cam().segments()[motion.segment];
+        let lift = next.law.lift(next.start);
+        let after = on_cam(&lift, omega);
+        if entry.lift_step > 0.0 {
+            let (revolution, cam_angle) = (motion.revolution, motion.cam_angle);
+            return Err(SimulateError::BelowCam { depth: entry.lift_step, revolution, cam_angle });
+        }
+        if entry.slope_jump > 0.0 && entry.lift_step == 0.0 {
+            // The cam's velocity jumps towards the follower.
+            return Ok(self.strike(motion, before.velocity, &lift, left - span, observer));
+        }
+        if entry.slope_jump < 0.0 || entry.lift_step < 0.0 {
+            let gap = motion.gap;
+            let step = self.let_go(motion, &lift, before, observer);
+            motion.gap = gap;
+            return Ok(step);
+        }
+        if self.lifting(&lift) > 0.0 {
+            return Ok(self.let_go(motion, &lift, after, observer));
+        }
+        motion.state = after;
+        Ok(Step::Moved)
+    }
+
+    /// Ends the contact: the follower flies on from `state`.
+    fn let_go(&self, motion: &mut Motion, lift: &Lift, state: State, observer: &mut impl Observer) -> Step {
+        motion.state = state;
+        (motion.contact, motion.gap, motion.lift) = (false, Some(0.0), Some(*lift));
+        self.report(motion, EventKind::Release, observer)
+    }
+
+    /// The turn, rad, after which the cam lets go within `span`, rad, of a segment, or `None` if it does not.
+    ///
+    /// With `|d lifting/dt| <= L` over a stretch, `lifting` stays below 0 for `-lifting/L`: marching so never passes a
+    /// release, and as the stretches shrink, L becomes the slope itself.
+    fn release(&self, segment: &Segment, angle: f64, span: f64) -> Option<f64> {
+        let omega = self.angular_velocity;
+        let (w, zeta) = (self.flight.omega0_squared(), self.flight.zeta());
+        let bounds = &segment.bounds;
+        // The whole segment at once: each term at its largest.
+        let largest = self.flight.force(bounds.lift[0]).max(self.flight.force(bounds.lift[1]))
+            - 2.0 * zeta * omega * bounds.slope[0]
+            - omega * omega * bounds.curvature[0];
+        if largest < 0.0 {
+            return None;
+        }
+        let end = span / omega;
+        let mut time = 0.0;
+        while time < end {
+            let lift = segment.law.lift(angle + omega * time);
+            let lifting = self.lifting(&lift);
+            let (_, rounding) = self.lifting_rate(&lift);
+            let steepest = |reach: f64| {
+                let turn = omega * reach;
+                let from = angle + omega * time;
+                let third = segment.law.third_bound(from, from + turn).min(bounds.third);
+                let curvature = lift.curvature.abs() + third * turn;
+                let slope = lift.slope.abs() + curvature * turn;
+                2.0 * zeta * omega * omega * curvature + w * omega * slope + omega.powi(3) * third
+            };
+            if lifting > -rounding {
+                // Where rounding decides, what comes next does: two roundings on it is lifted, or only touched 0.
+                let beyond = time + (2.0 * rounding / steepest(0.0)).max(f64::EPSILON * end);
+                if lifting > rounding || self.lifting(&segment.law.lift(angle + omega * beyond)) > 0.0 {
+                    return (time < end).then_some(omega * if lifting > rounding { time } else { beyond.min(end) });
+                }
+                time = beyond;
+                continue;
+            }
+            let mut reach = end - time;
+            let mut safe: f64 = 0.0;
+            for _ in 0..32 {
+                let free = -lifting / steepest(reach);
+                safe = safe.max(free.min(reach));
+                if free >= 0.5 * reach {
+                    break;
+                }
+                reach = 2.0 * free;
+            }
+            time += safe.max(f64::EPSILON * end);
+        }
+        None
+    }
+}
+
+/// The state of a follower that goes with the cam.
+fn on_cam(lift: &Lift, omega: f64) -> State {
+    State { position: lift.value, velocity: omega * lift.slope }
+}

@@ -1,0 +1,55 @@
+//! The cam as the event loop sees it: what changes from one segment to the next, and what no part of it exceeds.
+
+use crate::cam::{Cam, Segment};
+use crate::tolerance;
+
+/// A cam and what is asked of it at every step, computed once.
+#[derive(Clone, Debug)]
+pub(super) struct Terrain {
+    pub cam: Cam,
+    /// For each segment, what changes where it starts.
+    pub entries: Vec<Entry>,
+    /// No lift is above it, m.
+    pub top: f64,
+    /// No `d^2c/dtheta^2` is above it, m/rad^2; infinite where a velocity jumps upwards.
+    pub largest_curvature: f64,
+}
+
+/// What changes from the end of the segment before to the start of this one; 0 where it is rounding.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Entry {
+    /// m. Only a continued law leaves a step at its far end.
+    pub lift_step: f64,
+    /// m/rad.
+    pub slope_jump: f64,
+}
+
+impl Terrain {
+    pub fn new(cam: Cam) -> Self {
+        let segments = cam.segments();
+        let before = segments.last().into_iter().chain(segments);
+        let entries: Vec<Entry> = before.zip(segments).map(|(before, after)| entry(before, after)).collect();
+        let kicks = entries.iter().any(|entry| entry.slope_jump > 0.0 || entry.lift_step > 0.0);
+        let curvatures = segments.iter().map(|segment| segment.bounds.curvature[1]);
+        let largest_curvature = if kicks { f64::INFINITY } else { curvatures.fold(f64::NEG_INFINITY, f64::max) };
+        let top = cam.top();
+        Self { cam, entries, top, largest_curvature }
+    }
+}
+
+fn entry(before: &Segment, after: &Segment) -> Entry {
+    let (minus, plus) = (before.law.lift(before.end), after.law.lift(after.start));
+    let jump = |minus: f64, plus: f64, rounding: f64| {
+        if (plus - minus).abs() <= rounding { 0.0 } else { plus - minus }
+    };
+    // Where segments meet, two evaluations of one lift differ by rounding, which a follower that has just left the cam
+    // there must not be measured by.
+    let lift_rounding = tolerance::GAP_ROUNDING.value * (minus.value.abs() + plus.value.abs());
+    let scale = [minus, plus]
+        .iter()
+        .fold(0.0_f64, |scale, lift| scale.max(lift.value.abs()).max(lift.slope.abs()).max(lift.curvature.abs()));
+    Entry {
+        lift_step: jump(minus.value, plus.value, lift_rounding),
+        slope_jump: jump(minus.slope, plus.slope, tolerance::CAM_JUMP.value * scale),
+    }
+}

@@ -1,0 +1,67 @@
+//! The variational flow: how a small deviation of the follower's state is carried along a motion.
+
+use std::f64::consts::TAU;
+use std::ops::ControlFlow;
+
+use nalgebra::Matrix2;
+
+use super::{Event, EventKind, Machine, Motion, Observer};
+use crate::flight::{Flight, State};
+use crate::impact::ImpactRates;
+
+/// An [`Observer`] that multiplies up propagators of flights and saltation matrices of impacts.
+///
+/// Sticking forgets: once the follower stays on the cam, where it is depends on the cam alone, and the matrix is 0.
+#[derive(Clone, Copy, Debug)]
+pub struct Variation<'a> {
+    machine: &'a Machine,
+    matrix: Matrix2<f64>,
+}
+
+impl<'a> Variation<'a> {
+    /// The identity at the start of `motion`; 0 if that sticks to the cam.
+    pub fn new(machine: &'a Machine, motion: &Motion) -> Self {
+        let matrix = if motion.contact { Matrix2::zeros() } else { Matrix2::identity() };
+        Self { machine, matrix }
+    }
+
+    /// `d(q, v)/d(q0, v0)` since the start, or since [`Variation::reset`]; 2x2.
+    pub fn matrix(&self) -> Matrix2<f64> {
+        self.matrix
+    }
+
+    /// Starts again from `matrix`.
+    pub fn reset(&mut self, matrix: Matrix2<f64>) {
+        self.matrix = matrix;
+    }
+}
+
+impl Observer for Variation<'_> {
+    fn event(&mut self, event: &Event) -> ControlFlow<()> {
+        match event.kind {
+            EventKind::Impact => {
+                let segment = &self.machine.cam().segments()[event.segment];
+                let angle = if event.cam_angle < segment.start { event.cam_angle + TAU } else { event.cam_angle };
+                let omega = self.machine.angular_velocity();
+                let acceleration =
+                    |velocity: f64| self.machine.flight().acceleration(State { position: event.position, velocity });
+                let rates = ImpactRates {
+                    restitution: self.machine.restitution(),
+                    velocity_before: event.velocity_before,
+                    acceleration_before: acceleration(event.velocity_before),
+                    acceleration_after: acceleration(event.velocity_after),
+                    cam_velocity: event.cam_velocity,
+                    cam_acceleration: omega * omega * segment.law.lift(angle).curvature,
+                };
+                self.matrix = rates.saltation() * self.matrix;
+            }
+            EventKind::Stick => self.matrix = Matrix2::zeros(),
+            EventKind::Release => {}
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn flight(&mut self, flight: &Flight, _from: State, time: f64) {
+        self.matrix = flight.propagator(time) * self.matrix;
+    }
+}

@@ -1,0 +1,248 @@
+//! A stretch of flight over one segment of the cam: does it meet the cam, and where first?
+//!
+//! Two shapes of the gap have at most one contact to find, so that any way of finding it is certain: a gap that only
+//! shrinks (`g' < 0`), and one that is bent downwards (`g'' < 0`). Which shape a window has is decided from bounds of the
+//! flight's jerk and of the segment, before the gap is evaluated anywhere. All others go to [`super::contact`], which
+//! marches.
+
+use super::contact::{self, Gap, Outcome};
+use super::{Machine, Motion};
+use crate::cam::{Lift, Segment};
+use crate::flight::{Flight, State};
+use crate::tolerance;
+
+/// A flight over a segment, from the angle where it is now.
+pub(super) struct Window<'a> {
+    flight: &'a Flight,
+    segment: &'a Segment,
+    omega: f64,
+    start: State,
+    angle: f64,
+    /// The gap at the start, m, where it is better known than as a difference of two positions.
+    gap: Option<f64>,
+    /// The lift at the start, where it is known.
+    lift: Option<Lift>,
+}
+
+/// What became of a flight over a window.
+pub(super) enum Passage {
+    /// No contact up to the end.
+    Free { state: State, gap: Option<f64> },
+    /// None up to a time, s, before the end.
+    Advanced { time: f64, state: State, gap: Option<f64> },
+    /// The first contact, s after the start, with the velocity that it is met with.
+    Contact { time: f64, velocity: f64, lift: Lift },
+    /// At rest on the cam with nothing that would lift the follower off it.
+    Resting { time: f64 },
+    /// Inside the cam.
+    Below { depth: f64, time: f64 },
+    /// Something is not a number.
+    NotFinite,
+}
+
+/// Gap, follower and cam at an instant.
+struct Seen {
+    value: f64,
+    rounding: f64,
+    rate: f64,
+    curvature: f64,
+    state: State,
+    lift: Lift,
+}
+
+impl<'a> Window<'a> {
+    pub fn new(machine: &'a Machine, motion: &Motion) -> Self {
+        Self {
+            flight: &machine.flight,
+            segment: &machine.cam().segments()[motion.segment],
+            omega: machine.angular_velocity,
+            start: motion.state,
+            angle: motion.cam_angle,
+            gap: motion.gap,
+            lift: motion.lift,
+        }
+    }
+
+    /// Flies up to `end`, s, or to the first contact; `expected` is where one is likely, s.
+    pub fn pass(&self, end: f64, expected: Option<f64>) -> Passage {
+        if !(end > 0.0) {
+            return Passage::Free { state: self.start, gap: self.gap };
+        }
+        let jerk = self.flight.jerk_bound(self.start);
+        let acceleration = self.flight.acceleration(self.start);
+        // v <= v0 + max(a) t, and c' >= the segment's least slope.
+        let fastest = self.start.velocity + (acceleration + jerk * end).max(0.0) * end;
+        let bounds = &self.segment.bounds;
+        if self.gap != Some(0.0) && fastest < self.omega * bounds.slope[0] {
+            let first = expected.filter(|time| (0.0..=end).contains(time)).unwrap_or(0.0);
+            return self.only_contact(0.0, end, first).unwrap_or_else(|| self.free(end));
+        }
+        let now = self.at_start();
+        if !(now.value.is_finite() && now.rate.is_finite() && now.curvature.is_finite()) {
+            return Passage::NotFinite;
+        }
+        if now.curvature < 0.0 && now.value >= 0.0 && (now.value > 0.0 || now.rate > 0.0) {
+            // g + g' t + g'' t^2/2 = 0, as a first guess.
+            let root = (now.rate * now.rate - 2.0 * now.curvature * now.value).sqrt();
+            let back =
+                if now.rate > 0.0 { (now.rate + root) / -now.curvature } else { 2.0 * now.value / (root - now.rate) };
+            let reach = end.min(2.0 * back);
+            let third = jerk + self.omega.powi(3) * bounds.third;
+            if now.curvature + third * reach < 0.0 {
+                // From the cam, g >= u t - (|g''| + third reach) t^2/2: the contact left behind is not found again.
+                let low = if now.value == 0.0 { 2.0 * now.rate / (third * reach - now.curvature) } else { 0.0 };
+                let found = self.only_contact(low.min(reach), reach, self.bent(&now, back));
+                return found.unwrap_or_else(|| if reach < end { self.advanced(reach) } else { self.free(end) });
+            }
+        }
+        self.march(end)
+    }
+
+    /// The guess of a parabola with its cubic term: from the cam, `t = 2u/A (1 + 2 J u/(3 A^2))`.
+    fn bent(&self, now: &Seen, back: f64) -> f64 {
+        if now.value > 0.0 {
+            return back;
+        }
+        let third = self.flight.jerk(now.state) - self.omega.powi(3) * now.lift.third;
+        back * (1.0 + third * back / (-3.0 * now.curvature))
+    }
+
+    /// The contact of a gap that has at most one in `(low, end]`, by Halley's method inside a bracket; `None` if the gap is
+    /// open at the end.
+    fn only_contact(&self, low: f64, end: f64, first: f64) -> Option<Passage> {
+        let (mut low, mut high, mut high_is_closed) = (low, end, false);
+        let mut time = if low < first && first < end { first } else { low };
+        // Each halving of the bracket gains a bit.
+        for _ in 0..128 {
+            let now = self.at(time);
+            if now.value.is_nan() {
+                return Some(Passage::NotFinite);
+            }
+            // Halley: t = -g/g' / (1 - g g''/(2 g'^2))
+            let newton = -now.value / now.rate;
+            let step = newton / (1.0 + 0.5 * newton * now.curvature / now.rate);
+            if now.rate < 0.0 && self.is_small(step, time, &now.lift) && time + step <= end {
+                return Some(self.met(time, step, &now));
+            }
+            if now.value > 0.0 {
+                if time >= end {
+                    return None;
+                }
+                low = time;
+            } else {
+                (high, high_is_closed) = (time, true);
+            }
+            let next = time + step;
+            time = if low < next && next < high && now.rate < 0.0 {
+                next
+            } else if !high_is_closed {
+                end
+            } else {
+                0.5 * (low + high)
+            };
+            if high - low <= f64::EPSILON * high {
+                return Some(self.met(high, 0.0, &self.at(high)));
+            }
+        }
+        Some(self.met(high, 0.0, &self.at(high)))
+    }
+
+    /// Whether the last step is so small that the follower and the cam go through it by their Taylor sums.
+    fn is_small(&self, step: f64, time: f64, lift: &Lift) -> bool {
+        let turn = self.omega * step;
+        step.abs() <= tolerance::LAST_STEP.value * time
+            && turn.abs() <= tolerance::LAST_TURN.value
+            && lift.third.abs() * turn * turn <= tolerance::LAST_BEND.value * lift.slope.abs()
+            || step.abs() <= 2.0 * f64::EPSILON * time
+    }
+
+    /// The contact `step` after an instant.
+    fn met(&self, time: f64, step: f64, now: &Seen) -> Passage {
+        let turn = self.omega * step;
+        let Lift { value, slope, curvature, third } = now.lift;
+        let lift = Lift {
+            value: value + turn * (slope + turn * (0.5 * curvature + turn * third / 6.0)),
+            slope: slope + turn * (curvature + 0.5 * turn * third),
+            curvature: curvature + turn * third,
+            third,
+        };
+        let jerk = self.flight.jerk(now.state);
+        let velocity = now.state.velocity + step * (self.flight.acceleration(now.state) + 0.5 * step * jerk);
+        Passage::Contact { time: time + step, velocity, lift }
+    }
+
+    fn free(&self, end: f64) -> Passage {
+        let (state, gap) = self.moved(end);
+        Passage::Free { state, gap }
+    }
+
+    fn advanced(&self, time: f64) -> Passage {
+        let (state, gap) = self.moved(time);
+        Passage::Advanced { time, state, gap }
+    }
+
+    fn moved(&self, time: f64) -> (State, Option<f64>) {
+        let (displacement, state) = self.flight.fly(self.start, time);
+        let gap = self.gap.map(|gap| gap + displacement - self.segment.law.rise(self.angle, self.omega * time));
+        (state, gap)
+    }
+
+    fn at_start(&self) -> Seen {
+        let lift = self.lift.unwrap_or_else(|| self.segment.law.lift(self.angle));
+        let scale = self.gap.unwrap_or(self.start.position.abs() + lift.value.abs());
+        self.seen(self.gap.unwrap_or(self.start.position - lift.value), scale, self.start, lift)
+    }
+
+    #[inline]
+    fn at(&self, time: f64) -> Seen {
+        let (displacement, state) = self.flight.fly(self.start, time);
+        let turn = self.omega * time;
+        let lift = self.segment.law.lift(self.angle + turn);
+        match self.gap {
+            Some(gap) => {
+                let rise = self.segment.law.rise(self.angle, turn);
+                self.seen(gap + displacement - rise, gap + displacement.abs() + rise.abs(), state, lift)
+            }
+            None => self.seen(state.position - lift.value, state.position.abs() + lift.value.abs(), state, lift),
+        }
+    }
+
+    #[inline]
+    fn seen(&self, value: f64, scale: f64, state: State, lift: Lift) -> Seen {
+        let omega = self.omega;
+        Seen {
+            value,
+            rounding: tolerance::GAP_ROUNDING.value * scale.abs(),
+            rate: state.velocity - omega * lift.slope,
+            curvature: self.flight.acceleration(state) - omega * omega * lift.curvature,
+            state,
+            lift,
+        }
+    }
+
+    /// Any shape of gap.
+    #[cold]
+    fn march(&self, end: f64) -> Passage {
+        let omega = self.omega;
+        let gap_at = |time: f64| {
+            let now = if time == 0.0 { self.at_start() } else { self.at(time) };
+            let third = 2.0 * (self.flight.jerk(now.state) - omega.powi(3) * now.lift.third).abs();
+            Gap { value: now.value, rounding: now.rounding, rate: now.rate, curvature: now.curvature, third }
+        };
+        let third_bound = |time: f64, reach: f64| {
+            let state = if time == 0.0 { self.start } else { self.flight.fly(self.start, time).1 };
+            let angle = self.angle + omega * time;
+            self.flight.jerk_bound(state) + omega.powi(3) * self.segment.law.third_bound(angle, angle + omega * reach)
+        };
+        match contact::first_contact(gap_at, third_bound, end) {
+            Outcome::None => self.free(end),
+            Outcome::Contact(time) => {
+                let now = if time == 0.0 { self.at_start() } else { self.at(time) };
+                Passage::Contact { time, velocity: now.state.velocity, lift: now.lift }
+            }
+            Outcome::Resting(time) => Passage::Resting { time },
+            Outcome::Below { depth, time } => Passage::Below { depth, time },
+            Outcome::NotFinite(_) => Passage::NotFinite,
+        }
+    }
+}
