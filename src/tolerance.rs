@@ -23,8 +23,19 @@ macro_rules! table {
 
 table! {
     /// When one-sided derivatives of the lift differ enough to be a corner.
-    CAM_JUMP = 1e-9, "of the larger of the cam's size and its derivatives: a thousand times what rounding leaves between \
-        two arcs that meet smoothly, and far below any jump that a machined cam would have by design";
+    CAM_JUMP = 1e-9, "of the largest derivative of that order on the two segments that meet: a thousand times what rounding \
+        leaves between two laws that meet smoothly, and far below any jump that a machined cam would have by design";
+    /// What rounding of an angle may make of a derivative.
+    ANGLE_ROUNDING = 64.0 * f64::EPSILON, "rad, times the next derivative: a dozen ulps of a full turn, which would make a \
+        jump of a derivative that passes through 0 where a short segment begins";
+    /// How closely a cam closes on itself: spans on 360 degrees, rises on 0, a last row on the first.
+    CAM_CLOSURE = 1e-9, "of the sum of the sizes: what typing the numbers to ten digits leaves";
+    /// How wide a gap between the rows of a table may be.
+    TABLE_GAP = 0.1, "the median gap over the widest: ten median gaps without a row are rows that are missing, and a spline \
+        would make up the lift there; a table that is finer where the lift curves stays below";
+    /// How closely the ranges of a segment's lift and derivatives enclose them.
+    RANGE_WIDTH = 1e-3, "of the range, which is halved into pieces until what is added for what lies between the samples is \
+        below this: closer ranges would save a search for contacts less than they cost";
     /// Rounding of the gap between follower and cam.
     GAP_ROUNDING = 4.0 * f64::EPSILON, "of the distances that the gap is the difference of: a handful of roundings, so that \
         a dip deeper than this is an impact";

@@ -97,6 +97,7 @@ pub fn verify(model: &Model, external: External) -> Result<Findings, LocateError
 
     for (program, answer) in outside {
         match answer.map(JoinHandle::join) {
+            None if external == External::Run => log.leave_out(program.name, "knows cams of arcs only".into()),
             None => log.leave_out(program.name, "left out by --no-external".into()),
             Some(Ok(result)) => {
                 if let Some(Outside { route, x_star, period }) = log.keep(program.name, result) {
@@ -148,7 +149,8 @@ fn start_outside(model: &Model, external: External) -> Result<Vec<Started>, Loca
         let model = model.clone();
         std::thread::spawn(move || external::run(program, &model, study))
     };
-    Ok(PROGRAMS.map(|program| (program, (external == External::Run).then(|| start(program)))).into())
+    let runs = external == External::Run && external::know(model);
+    Ok(PROGRAMS.map(|program| (program, runs.then(|| start(program)))).into())
 }
 
 /// The border of the maps, `C x + D dT = 0`, against that of the free flight, `e x + f dT = 0`: one line, so `f C = D e`.

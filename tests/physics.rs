@@ -161,7 +161,7 @@ fn cam_derivatives_bounds_and_rises() {
     for file in common::model_files() {
         let cam = common::cam(&common::read(&file));
         for segment in cam.segments() {
-            let law = segment.law;
+            let law = &segment.law;
             let span = segment.end - segment.start;
             let bound = law.third_bound(segment.start, segment.end);
             let mut largest = 0.0_f64;

@@ -213,7 +213,7 @@ fn a_continued_cam_keeps_one_law_past_the_corner() {
     let cam = common::cam(&common::osorio());
     let corner = cam.corners()[1];
     let reach = 0.05;
-    let (flank, nose) = (cam.segments()[1].law, cam.segments()[2].law);
+    let (flank, nose) = (&cam.segments()[1].law, &cam.segments()[2].law);
     let minus = cam.continued(&corner, Side::Minus, reach).unwrap();
     let plus = cam.continued(&corner, Side::Plus, reach).unwrap();
     for (offset, on_minus, on_plus) in

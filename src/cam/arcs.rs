@@ -7,7 +7,9 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use super::{Cam, Law, Lift};
+use super::jet::{Jet, square_root};
+use super::law::{Law, Lift};
+use super::{Cam, Joint};
 use crate::model::{ArcsProfile, Model, ModelError};
 
 /// A circle whose centre lies at polar `(distance, direction)` from the cam's axis, met by the ray at angle theta:
@@ -29,53 +31,82 @@ impl Arc {
     }
 
     /// Lift and derivatives at `angle`, rad; not a number where the ray misses the circle.
+    #[inline]
     pub fn lift(&self, angle: f64) -> Lift {
         let (sin, cos) = (angle - self.direction).sin_cos();
         let kappa = self.distance;
-        // w = sqrt(rho^2 - kappa^2 sin^2 phi); u = w^2, u' = -kappa^2 sin 2 phi, u'' = -2 kappa^2 cos 2 phi, u''' = -4 u'
+        // u = w^2 = rho^2 - kappa^2 sin^2 phi, u' = -kappa^2 sin 2 phi, u'' = -2 kappa^2 cos 2 phi, u''' = -4 u'
         let w = self.root_squared(sin).sqrt();
         let u1 = -kappa * kappa * 2.0 * sin * cos;
         let u2 = -2.0 * kappa * kappa * (cos - sin) * (cos + sin);
         let u3 = -4.0 * u1;
-        Lift {
-            value: kappa * cos + w,
-            // c' = -kappa sin phi + u'/(2 w)
-            slope: -kappa * sin + u1 / (2.0 * w),
-            // c'' = -kappa cos phi + u''/(2 w) - u'^2/(4 w^3)
-            curvature: -kappa * cos + u2 / (2.0 * w) - u1 * u1 / (4.0 * w.powi(3)),
-            // c''' = kappa sin phi + u'''/(2 w) - 3 u' u''/(4 w^3) + 3 u'^3/(8 w^5)
-            third: kappa * sin + u3 / (2.0 * w) - 3.0 * u1 * u2 / (4.0 * w.powi(3))
-                + 3.0 * u1.powi(3) / (8.0 * w.powi(5)),
-        }
+        let half = 0.5 / w;
+        // u' = 2 w w' gives w' = u'/(2 w), w'' = (u'' - 2 w'^2)/(2 w), w''' = (u''' - 6 w' w'')/(2 w)
+        let w1 = u1 * half;
+        let w2 = (u2 - 2.0 * w1 * w1) * half;
+        let w3 = (u3 - 6.0 * w1 * w2) * half;
+        // c = kappa cos phi + w
+        Lift { value: kappa * cos + w, slope: -kappa * sin + w1, curvature: -kappa * cos + w2, third: kappa * sin + w3 }
     }
 
     /// `c(from + turn) - c(from)`, m, exact as `turn` goes to 0.
+    #[inline]
     pub fn rise(&self, from: f64, turn: f64) -> f64 {
-        let phi = from - self.direction;
+        let half = 0.5 * turn;
         let kappa = self.distance;
+        let (half_sin, half_cos) = half.sin_cos();
+        let (sin, cos) = (from - self.direction + half).sin_cos();
         // cos(phi + d) - cos phi = -2 sin(phi + d/2) sin(d/2)
-        let shift = -2.0 * kappa * (phi + 0.5 * turn).sin() * (0.5 * turn).sin();
+        let shift = -2.0 * kappa * sin * half_sin;
         // w1 - w0 = (u1 - u0)/(w1 + w0),  u1 - u0 = -kappa^2 sin(2 phi + d) sin d
-        let difference = -kappa * kappa * (2.0 * phi + turn).sin() * turn.sin();
-        let (w0, w1) = (self.root_squared(phi.sin()).sqrt(), self.root_squared((phi + turn).sin()).sqrt());
-        shift + difference / (w0 + w1)
+        let difference = -4.0 * kappa * kappa * sin * cos * half_sin * half_cos;
+        // sin(phi + d/2 -+ d/2)
+        let (before, after) = (sin * half_cos - cos * half_sin, sin * half_cos + cos * half_sin);
+        shift + difference / (self.root_squared(before).sqrt() + self.root_squared(after).sqrt())
     }
 
-    /// A bound on `|c'''|` over `[start, end]`: the formula of [`Arc::lift`] with each factor at its largest.
+    /// A bound on `|c'''|` over `[start, end]`: its terms at their largest, or from the middle by `|c''''|` where less.
+    #[inline]
     pub fn third_bound(&self, start: f64, end: f64) -> f64 {
-        let (start, end) = (start - self.direction, end - self.direction);
+        let (middle, reach) = (0.5 * (start + end), 0.5 * (end - start));
+        let (sin, cos) = (middle - self.direction).sin_cos();
+        let turn = reach.sin_cos();
         let kappa = self.distance.abs();
-        let sin = largest_sine(start, end);
-        let double_sine = largest_sine(2.0 * start, 2.0 * end);
-        let double_cosine = largest_sine(2.0 * start + FRAC_PI_2, 2.0 * end + FRAC_PI_2);
-        let w = self.root_squared(sin).sqrt();
-        if w.is_nan() || w <= 0.0 {
+        let largest = largest_sine((sin, cos), turn, reach);
+        // The smallest w decides whether the ray reaches the circle all the way.
+        let w = self.root_squared(largest).sqrt();
+        if !(w > 0.0) {
             return f64::INFINITY;
         }
-        let u1 = kappa * kappa * double_sine;
-        let u2 = 2.0 * kappa * kappa * double_cosine;
-        let u3 = 4.0 * u1;
-        kappa * sin + u3 / (2.0 * w) + 3.0 * u1 * u2 / (4.0 * w.powi(3)) + 3.0 * u1.powi(3) / (8.0 * w.powi(5))
+        let twice = |(sin, cos): (f64, f64)| (2.0 * sin * cos, (cos - sin) * (cos + sin));
+        let (double_sin, double_cos) = twice((sin, cos));
+        let square = kappa * kappa;
+        let u1 = square * largest_sine((double_sin, double_cos), twice(turn), 2.0 * reach);
+        // |cos 2 phi| = |sin(2 phi + pi/2)|
+        let u2 = 2.0 * square * largest_sine((double_cos, -double_sin), twice(turn), 2.0 * reach);
+        let half = 0.5 / w;
+        let w1 = u1 * half;
+        let w2 = (u2 + 2.0 * w1 * w1) * half;
+        let w3 = (4.0 * u1 + 6.0 * w1 * w2) * half;
+        // w'''' = (u'''' - 8 w' w''' - 6 w''^2)/(2 w),  u'''' = -4 u''
+        let w4 = (4.0 * u2 + 8.0 * w1 * w3 + 6.0 * w2 * w2) * half;
+        let everywhere = kappa * largest + w3;
+        let from_middle = self.lift(middle).third.abs() + reach * (kappa + w4);
+        // The last bits of a dozen operations; no min, which would take a bound for one that is not a number.
+        let rounding = 64.0 * f64::EPSILON * everywhere;
+        if from_middle < everywhere { from_middle + rounding } else { everywhere + rounding }
+    }
+
+    /// Lift and high derivatives at `angle`, rad.
+    pub fn jet(&self, angle: f64) -> Jet {
+        let (sin, cos) = (angle - self.direction).sin_cos();
+        let kappa = self.distance;
+        // c = kappa cos(phi + t) + w,  w^2 = rho^2 - kappa^2/2 + kappa^2/2 cos(2 phi + 2 t)
+        let half_square = 0.5 * kappa * kappa;
+        let (double_sin, double_cos) = (2.0 * sin * cos, (cos - sin) * (cos + sin));
+        let mut squared = Jet::of_sinusoid(-half_square * double_sin, half_square * double_cos, 2.0).series();
+        squared[0] = self.root_squared(sin);
+        Jet::of_sinusoid(-kappa * sin, kappa * cos, 1.0).plus(&Jet::from_series(square_root(squared)))
     }
 
     /// The same arc in the mirror theta -> 2 pi - theta.
@@ -84,11 +115,12 @@ impl Arc {
     }
 }
 
-/// The largest `|sin|` over `[start, end]`.
-fn largest_sine(start: f64, end: f64) -> f64 {
-    // |sin| peaks at pi/2 + n pi.
-    let next_peak = ((start - FRAC_PI_2) / PI).ceil() * PI + FRAC_PI_2;
-    if next_peak <= end { 1.0 } else { start.sin().abs().max(end.sin().abs()) }
+/// The largest `|sin|` from `reach` before an angle to `reach` after it; both given by sine and cosine.
+#[inline]
+fn largest_sine((sin, cos): (f64, f64), (sin_reach, cos_reach): (f64, f64), reach: f64) -> f64 {
+    let (sin, cos) = (sin.abs(), cos.abs());
+    // |sin| is 1 within reach where cos(|x| + reach) <= 0; else it is largest at the far end, sin(|x| + reach).
+    if reach >= FRAC_PI_2 || cos * cos_reach <= sin * sin_reach { 1.0 } else { sin * cos_reach + cos * sin_reach }
 }
 
 /// The cam of an `arcs` profile, or which field keeps its circles from touching.
@@ -133,13 +165,14 @@ pub(super) fn build(model: &Model, profile: &ArcsProfile) -> Result<Cam, ModelEr
     let nose = Arc { distance: nose_distance, direction: nose_end, radius: nose_radius };
     let base = Law::Dwell(base_radius);
     // P's outward normal leans towards R from Q's, so P lies between them and every ray leaves both circles outwards.
-    Ok(Cam::from_laws(vec![
-        (0.0, base),
+    let laws = vec![
+        (0.0, base.clone()),
         (flank_start, Law::Arc(flank)),
         (meeting, Law::Arc(nose)),
         (nose_end, Law::Dwell(nose_distance + nose_radius)),
         (TAU - nose_end, Law::Arc(nose.mirrored())),
         (TAU - meeting, Law::Arc(flank.mirrored())),
         (TAU - flank_start, base),
-    ]))
+    ];
+    Ok(Cam::from_laws(laws, Joint::Free))
 }

@@ -33,6 +33,11 @@ pub struct Outside {
     pub period: f64,
 }
 
+/// Whether they know the cam's law: both are written for the paper's circles.
+pub fn know(model: &Model) -> bool {
+    matches!(model.cam, CamProfile::Arcs(_))
+}
+
 /// Runs one of them on a model whose study range is `study`.
 pub fn run(program: Program, model: &Model, study: Study) -> Result<Outside, PythonError> {
     let answer: Answer = python::run(program.script, &numbers(model, study))?;
@@ -52,17 +57,21 @@ pub fn run(program: Program, model: &Model, study: Study) -> Result<Outside, Pyt
 /// The numbers of a model file, as its tables name them.
 fn numbers(model: &Model, study: Study) -> serde_json::Value {
     let Follower { mass, damping, stiffness, gravity, rest_position, restitution } = model.follower;
-    let CamProfile::Arcs(ArcsProfile { base_radius, flank_radius, nose_radius, flank_start_deg, nose_end_deg }) =
-        model.cam;
+    let cam = match model.cam {
+        CamProfile::Arcs(ArcsProfile { base_radius, flank_radius, nose_radius, flank_start_deg, nose_end_deg }) => {
+            json!({
+                "law": "arcs", "base_radius": base_radius, "flank_radius": flank_radius, "nose_radius": nose_radius,
+                "flank_start_deg": flank_start_deg, "nose_end_deg": nose_end_deg,
+            })
+        }
+        _ => json!({}),
+    };
     json!({
         "follower": {
             "mass": mass, "damping": damping, "stiffness": stiffness, "gravity": gravity,
             "rest_position": rest_position, "restitution": restitution,
         },
-        "cam": {
-            "law": "arcs", "base_radius": base_radius, "flank_radius": flank_radius, "nose_radius": nose_radius,
-            "flank_start_deg": flank_start_deg, "nose_end_deg": nose_end_deg,
-        },
+        "cam": cam,
         "study": { "rpm_min": study.rpm_min, "rpm_max": study.rpm_max },
     })
 }

@@ -59,6 +59,11 @@ impl Allowed {
         Self { low, low_is_allowed: true, high }
     }
 
+    /// Above `low`, and up to `high`.
+    pub(super) const fn above(low: f64, high: f64) -> Self {
+        Self { low, low_is_allowed: false, high }
+    }
+
     fn contains(self, number: f64) -> bool {
         let above = if self.low_is_allowed { number >= self.low } else { number > self.low };
         number.is_finite() && above && number <= self.high
@@ -69,7 +74,8 @@ impl fmt::Display for Allowed {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "must be a finite number")?;
         match (self.low.is_finite(), self.low_is_allowed, self.high.is_finite()) {
-            (true, _, true) => write!(f, " from {} to {}", self.low, self.high),
+            (true, false, true) => write!(f, " above {}, up to {}", self.low, self.high),
+            (true, true, true) => write!(f, " from {} to {}", self.low, self.high),
             (true, true, false) => write!(f, ", {} or more", self.low),
             (true, false, false) => write!(f, " above {}", self.low),
             _ => Ok(()),
@@ -80,6 +86,8 @@ impl fmt::Display for Allowed {
 #[derive(Clone, Debug)]
 enum Value {
     Table,
+    /// Its elements are fields of their own: `path[0]`, `path[1]`, ...
+    Array(usize),
     Text(String),
     Number(f64),
     Other,
@@ -92,6 +100,22 @@ struct Field {
     value: Value,
 }
 
+impl Field {
+    /// Longest value that a message repeats, in characters.
+    const MOST_SHOWN: usize = 60;
+
+    /// The value as written, cut where it is long; a list of tables is not shown.
+    fn shown(&self) -> Option<String> {
+        let is_long = self.written.chars().count() > Self::MOST_SHOWN;
+        match self.value {
+            Value::Table => None,
+            Value::Array(_) if self.written.starts_with("[[") || self.written.is_empty() => None,
+            _ if is_long => Some(self.written.chars().take(Self::MOST_SHOWN).chain("...".chars()).collect()),
+            _ => Some(self.written.clone()),
+        }
+    }
+}
+
 /// The fields of a model file by dotted path, and which of them have been asked for.
 #[derive(Clone, Debug)]
 pub(super) struct Fields {
@@ -102,7 +126,8 @@ pub(super) struct Fields {
 
 impl Fields {
     pub(super) fn parse(file: &str, text: &str) -> Result<Self, ModelError> {
-        let line_of = |offset: usize| 1 + text.bytes().take(offset).filter(|byte| *byte == b'\n').count();
+        let line_ends: Vec<usize> = text.match_indices('\n').map(|(at, _)| at).collect();
+        let line_of = |offset: usize| 1 + line_ends.partition_point(|end| *end < offset);
         let root = DeTable::parse(text).map_err(|error| ModelError {
             file: file.into(),
             line: error.span().map(|span| line_of(span.start)),
@@ -138,6 +163,13 @@ impl Fields {
                 self.add_table(&format!("{path}."), table, place);
                 Value::Table
             }
+            DeValue::Array(items) => {
+                for (index, item) in items.iter().enumerate() {
+                    let (line, _) = place(item.span());
+                    self.add(&format!("{path}[{index}]"), line, item, place);
+                }
+                Value::Array(items.len())
+            }
             DeValue::String(text) => Value::Text(text.to_string()),
             DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix())
                 .map_or(Value::Other, |integer| Value::Number(integer as f64)),
@@ -161,6 +193,40 @@ impl Fields {
             Value::Number(number) if allowed.contains(number) => Ok(number),
             _ => Err(self.reject(path, allowed.to_string())),
         }
+    }
+
+    /// A finite number within `allowed`, or `default` where the field is missing.
+    pub(super) fn number_or(&mut self, path: &str, allowed: Allowed, default: f64) -> Result<f64, ModelError> {
+        self.known.insert(path.into());
+        if self.has(path) { self.number(path, allowed) } else { Ok(default) }
+    }
+
+    /// How many elements an array has, at least one and at most `most`.
+    pub(super) fn length(&mut self, path: &str, what: &str, most: usize) -> Result<usize, ModelError> {
+        match self.take(path)?.value {
+            Value::Array(length) if (1..=most).contains(&length) => Ok(length),
+            Value::Array(length) => Err(self.reject(path, format!("has {length} {what}; 1 to {most} are allowed"))),
+            _ => Err(self.reject(path, format!("must be a list of {what}"))),
+        }
+    }
+
+    /// An array of finite numbers, one to `most` of them.
+    pub(super) fn numbers(&mut self, path: &str, most: usize) -> Result<Vec<f64>, ModelError> {
+        let length = self.length(path, "numbers", most)?;
+        (0..length).map(|index| self.number(&format!("{path}[{index}]"), Allowed::FINITE)).collect()
+    }
+
+    /// How many tables `[[path]]` there are, at least one.
+    pub(super) fn tables(&mut self, path: &str, most: usize) -> Result<usize, ModelError> {
+        let length = self.length(path, "tables", most)?;
+        let is_table = |field: Option<&Field>| matches!(field, Some(Field { value: Value::Table, .. }));
+        for item in (0..length).map(|index| format!("{path}[{index}]")) {
+            if !is_table(self.fields.get(&item)) {
+                return Err(self.reject(&item, format!("must be a table under [[{path}]]")));
+            }
+            self.known.insert(item);
+        }
+        Ok(length)
     }
 
     pub(super) fn text(&mut self, path: &str) -> Result<String, ModelError> {
@@ -197,7 +263,7 @@ impl Fields {
             file: self.file.clone(),
             line: field.or(table).map(|field| field.line),
             field: Some(path.into()),
-            value: field.map(|field| field.written.clone()),
+            value: field.and_then(Field::shown),
             allowed: allowed.into(),
         }
     }
@@ -214,13 +280,15 @@ impl Fields {
             return Ok(());
         };
         let table = table_of(path);
-        let siblings = self.known.iter().filter(|known| table_of(known) == table);
-        let tables = tables.iter().filter(|known| !known.is_empty() && table_of(known) == table);
+        // An array is listed by its own name, not once more for each element.
+        let listed = |known: &&String| !known.ends_with(']') && table_of(known) == table;
+        let siblings = self.known.iter().filter(listed);
+        let tables = tables.iter().filter(|known| !known.is_empty() && listed(known));
         let allowed: Vec<&str> =
             siblings.chain(tables).map(|known| known.rsplit('.').next().unwrap_or(known)).collect();
         let place = if table.is_empty() { "at the top of the file".to_owned() } else { format!("in [{table}]") };
         let words = format!("unknown field; allowed {place}: {}", allowed.join(", "));
-        let value = (!matches!(field.value, Value::Table)).then(|| field.written.clone());
+        let value = field.shown();
         Err(ModelError {
             file: self.file.clone(),
             line: Some(field.line),

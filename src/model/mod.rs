@@ -5,11 +5,18 @@
 //! [`Model::reject`], so that every complaint about a file names file, line, field and value.
 
 mod fields;
+mod profile;
+mod table;
 
 use std::path::Path;
 
 pub use fields::ModelError;
 use fields::{Allowed, Fields};
+pub use profile::{
+    ArcsProfile, CamProfile, HarmonicProfile, MOST_COEFFICIENTS, Motion, MotionSegment, PolynomialSegment,
+    ProgramProfile, RectifiedSineProfile,
+};
+pub use table::{Row, Spline, TableProfile};
 
 /// The model whose numbers the paper prints, built in so that the binary needs no other file.
 pub const OSORIO_2008: &str = include_str!("../../models/osorio-2008.toml");
@@ -47,28 +54,6 @@ pub struct Follower {
     pub restitution: f64,
 }
 
-/// The lift law of a `[cam]` table.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum CamProfile {
-    /// Appendix A of the paper: base, flank and nose circles.
-    Arcs(ArcsProfile),
-}
-
-/// Base, flank and nose circles, mirrored about theta = pi. Centres and top radius follow from tangency.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ArcsProfile {
-    /// rho0, m.
-    pub base_radius: f64,
-    /// rho1, m.
-    pub flank_radius: f64,
-    /// rho2, m.
-    pub nose_radius: f64,
-    /// R = 90 - theta1, degrees from the middle of the base circle.
-    pub flank_start_deg: f64,
-    /// Q = 90 - theta3, degrees from the middle of the base circle.
-    pub nose_end_deg: f64,
-}
-
 /// The range of speeds in which the corner impact is looked for, rpm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Study {
@@ -100,7 +85,7 @@ impl Model {
             rest_position: fields.number("follower.rest_position", Allowed::FINITE)?,
             restitution: fields.number("follower.restitution", Allowed::between(0.0, 1.0))?,
         };
-        let cam = CAM_LAWS.read(&mut fields)?;
+        let cam = profile::read(&mut fields)?;
         let study = if fields.has("study") {
             let rpm_min = fields.number("study.rpm_min", Allowed::POSITIVE)?;
             let rpm_max = fields.number("study.rpm_max", Allowed::POSITIVE)?;
@@ -133,39 +118,13 @@ impl Model {
         self.fields.reject(field, allowed)
     }
 
+    /// A complaint about `line` of another file that the model names.
+    pub fn reject_line(&self, file: &str, line: usize, allowed: impl Into<String>) -> ModelError {
+        ModelError { line: Some(line), ..ModelError::file(file, allowed.into()) }
+    }
+
     /// Name of the file that the model came from.
     pub fn file(&self) -> &str {
         self.fields.file()
     }
-}
-
-/// Reads the fields of one lift law.
-type ReadProfile = fn(&mut Fields) -> Result<CamProfile, ModelError>;
-
-/// Every lift law, by the name that `law` gives it.
-struct CamLaws(&'static [(&'static str, ReadProfile)]);
-
-static CAM_LAWS: CamLaws = CamLaws(&[("arcs", read_arcs)]);
-
-impl CamLaws {
-    fn read(&self, fields: &mut Fields) -> Result<CamProfile, ModelError> {
-        let law = fields.text("cam.law")?;
-        match self.0.iter().find(|(name, _)| *name == law) {
-            Some((_, read)) => read(fields),
-            None => {
-                let known: Vec<_> = self.0.iter().map(|(name, _)| format!("\"{name}\"")).collect();
-                Err(fields.reject("cam.law", format!("must be one of: {}", known.join(", "))))
-            }
-        }
-    }
-}
-
-fn read_arcs(fields: &mut Fields) -> Result<CamProfile, ModelError> {
-    Ok(CamProfile::Arcs(ArcsProfile {
-        base_radius: fields.number("cam.base_radius", Allowed::POSITIVE)?,
-        flank_radius: fields.number("cam.flank_radius", Allowed::POSITIVE)?,
-        nose_radius: fields.number("cam.nose_radius", Allowed::POSITIVE)?,
-        flank_start_deg: fields.number("cam.flank_start_deg", Allowed::between(0.0, 180.0))?,
-        nose_end_deg: fields.number("cam.nose_end_deg", Allowed::between(0.0, 180.0))?,
-    }))
 }

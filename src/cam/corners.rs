@@ -1,0 +1,115 @@
+//! Where segments meet: which derivative jumps there, and the cam with one side continued past it.
+
+use std::f64::consts::TAU;
+
+use super::jet::Jet;
+use super::law::Lift;
+use super::{Cam, Joint, Segment};
+use crate::tolerance;
+
+/// The side of a corner: the segment before it or the one after.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Before the corner: `c''-`, the limit from `t < 0`.
+    Minus,
+    /// After the corner: `c''+`, the limit from `t > 0`.
+    Plus,
+}
+
+/// A point of the cam where a derivative of the lift jumps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Corner {
+    /// Cam angle, rad, in `[0, 2 pi)`.
+    pub angle: f64,
+    /// Index of the segment that starts there.
+    pub segment: usize,
+    /// The lowest derivative that jumps: 1 velocity, 2 acceleration, 3 jerk, and so on.
+    pub jump_order: usize,
+    /// What that derivative jumps by, after less before, m/rad^order.
+    pub jump: f64,
+    /// Lift and derivatives in the limit from before.
+    pub minus: Lift,
+    /// Lift and derivatives in the limit from after.
+    pub plus: Lift,
+}
+
+impl Cam {
+    /// The corners, in order of angle, whatever derivative jumps.
+    pub fn corners(&self) -> Vec<Corner> {
+        let count = self.segments().len();
+        let meetings = (0..count).map(|after| ((after + count - 1) % count, after));
+        meetings.filter_map(|(before, after)| self.corner(before, after)).collect()
+    }
+
+    fn corner(&self, before: usize, after: usize) -> Option<Corner> {
+        let (before, next) = (&self.segments()[before], &self.segments()[after]);
+        // One law that goes on past 2 pi is smooth there.
+        if after == 0 && before.law.turned(-TAU) == next.law {
+            return None;
+        }
+        let (minus, plus) = (before.law.jet(before.end), next.law.jet(next.start));
+        let jump = |order: usize| plus.0[order] - minus.0[order];
+        let jump_order = match self.joint() {
+            // Two pieces that differ at all differ in the highest power, however little.
+            Joint::Spline { degree } => (jump(degree) != 0.0).then_some(degree)?,
+            Joint::Free => {
+                let scale = |order: usize| self.size(before, order).max(self.size(next, order));
+                (1..=Jet::HIGHEST_JUMP).find(|order| {
+                    let rounding = tolerance::ANGLE_ROUNDING.value * scale(order + 1);
+                    jump(*order).abs() > tolerance::CAM_JUMP.value * scale(*order) + rounding
+                })?
+            }
+        };
+        Some(Corner {
+            angle: next.start,
+            segment: after,
+            jump_order,
+            jump: jump(jump_order),
+            minus: before.law.lift(before.end),
+            plus: next.law.lift(next.start),
+        })
+    }
+
+    /// The largest derivative of an order at the ends and the middle of a segment.
+    fn size(&self, segment: &Segment, order: usize) -> f64 {
+        let at = [segment.start, 0.5 * (segment.start + segment.end), segment.end];
+        at.iter().fold(0.0, |size: f64, angle| size.max(segment.law.jet(*angle).0[order].abs()))
+    }
+
+    /// The cam with the law of one side of `corner` continued past it by `reach`, rad.
+    ///
+    /// At angle 0 the continued stretch is a segment of its own: the last law a revolution back, or the first one a
+    /// revolution on. Refused (`None`) where the neighbour is shorter than twice `reach` or the law ends before.
+    pub fn continued(&self, corner: &Corner, side: Side, reach: f64) -> Option<Self> {
+        let mut segments = self.segments().to_vec();
+        let count = segments.len();
+        let (before, after) = ((corner.segment + count - 1) % count, corner.segment);
+        let shortened = match side {
+            Side::Minus => &segments[after],
+            Side::Plus => &segments[before],
+        };
+        if !(shortened.end - shortened.start >= 2.0 * reach) {
+            return None;
+        }
+        let remade = |segment: &Segment, start: f64, end: f64| Segment::new(start, end, segment.law.clone(), 1);
+        match (side, after) {
+            (Side::Minus, 0) => {
+                let law = segments[before].law.turned(-TAU);
+                segments[after] = remade(&segments[after], reach, segments[after].end);
+                segments.insert(0, Segment::new(0.0, reach, law, 1));
+            }
+            (Side::Plus, 0) => {
+                let law = segments[after].law.turned(TAU);
+                segments[before] = remade(&segments[before], segments[before].start, TAU - reach);
+                segments.push(Segment::new(TAU - reach, TAU, law, 1));
+            }
+            (side, _) => {
+                let meeting = if side == Side::Minus { corner.angle + reach } else { corner.angle - reach };
+                segments[before] = remade(&segments[before], segments[before].start, meeting);
+                segments[after] = remade(&segments[after], meeting, segments[after].end);
+            }
+        }
+        let reaches = |segment: &Segment| segment.law.third_bound(segment.start, segment.end).is_finite();
+        segments.iter().all(reaches).then(|| Self::from_segments(segments))
+    }
+}

@@ -1,0 +1,70 @@
+//! Symmetric positive definite systems in which every unknown meets its two neighbours on a circle.
+//!
+//! `N_{i-1}^T x_{i-1} + D_i x_i + N_i x_{i+1} = r_i`, indices modulo n, with blocks of size K. Block Cholesky elimination
+//! from the first unknown on; the last one, which meets the first, is carried along as a border. O(n).
+
+use nalgebra::{Cholesky, Const, SMatrix, SVector};
+
+/// A system being set up, one equation a knot.
+#[derive(Clone, Debug)]
+pub(super) struct Cyclic<const K: usize> {
+    /// D_i, symmetric.
+    pub diagonal: Vec<SMatrix<f64, K, K>>,
+    /// N_i, between i and i + 1.
+    pub next: Vec<SMatrix<f64, K, K>>,
+    /// r_i.
+    pub right: Vec<SVector<f64, K>>,
+}
+
+/// An eliminated unknown: `x_i = y - N x_{i+1} - W x_last`, everything already divided by its pivot.
+struct Eliminated<const K: usize> {
+    y: SVector<f64, K>,
+    next: SMatrix<f64, K, K>,
+    last: SMatrix<f64, K, K>,
+}
+
+impl<const K: usize> Cyclic<K> {
+    pub fn new(count: usize) -> Self {
+        let (block, column) = (SMatrix::zeros(), SVector::zeros());
+        Self { diagonal: vec![block; count], next: vec![block; count], right: vec![column; count] }
+    }
+
+    /// The solution; none where the system is not positive definite, or fewer than three unknowns.
+    pub fn solve(self) -> Option<Vec<SVector<f64, K>>> {
+        let Self { diagonal, next, right } = self;
+        let count = diagonal.len();
+        if count < 3 {
+            return None;
+        }
+        let last = count - 1;
+        // The last equation, and what it makes of the unknowns before it.
+        let (mut corner, mut corner_right) = (diagonal[last], right[last]);
+        // Unknown 0 meets the last one through N_last^T; the one before the last meets it through its own N.
+        let (mut pivot, mut y, mut border) = (diagonal[0], right[0], next[last].transpose());
+        let mut eliminated: Vec<Eliminated<K>> = Vec::with_capacity(last);
+        for index in 0..last {
+            let is_neighbour = index + 1 == last;
+            if is_neighbour {
+                border += next[index];
+            }
+            let to_next = if is_neighbour { SMatrix::zeros() } else { next[index] };
+            let factor: Cholesky<f64, Const<K>> = pivot.cholesky()?;
+            let row = Eliminated { y: factor.solve(&y), next: factor.solve(&to_next), last: factor.solve(&border) };
+            // Schur complement: what is left of the next unknown and of the last one.
+            corner -= border.transpose() * row.last;
+            corner_right -= border.transpose() * row.y;
+            if !is_neighbour {
+                pivot = diagonal[index + 1] - to_next.transpose() * row.next;
+                y = right[index + 1] - to_next.transpose() * row.y;
+                border = -to_next.transpose() * row.last;
+            }
+            eliminated.push(row);
+        }
+        let x_last = corner.cholesky()?.solve(&corner_right);
+        let mut solution = vec![x_last; count];
+        for (index, row) in eliminated.iter().enumerate().rev() {
+            solution[index] = row.y - row.next * solution[index + 1] - row.last * x_last;
+        }
+        Some(solution)
+    }
+}

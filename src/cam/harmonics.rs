@@ -1,0 +1,102 @@
+//! A sum of cosines: the `harmonic` law, one smooth segment all round.
+
+use super::jet::Jet;
+use super::law::{Law, Lift};
+use super::{Cam, Joint};
+use crate::model::HarmonicProfile;
+
+/// `c = offset + sum A_k cos(k theta) + B_k sin(k theta)`, k from 1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Harmonics {
+    offset: f64,
+    terms: Box<[Term]>,
+    /// `sum k^3 |(A_k, B_k)|` and `sum k^4 |(A_k, B_k)|`: bounds on `|c'''|` and `|c''''|` anywhere.
+    bounds: [f64; 2],
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Term {
+    cosine: f64,
+    sine: f64,
+}
+
+/// `cos(k x)`, `sin(k x)` for k = 1, 2, ... by turning `(1, 0)` on by x.
+fn multiples(x: f64) -> impl Iterator<Item = (f64, f64)> {
+    let (sin, cos) = x.sin_cos();
+    let turn = move |&(c, s): &(f64, f64)| Some((c * cos - s * sin, s * cos + c * sin));
+    std::iter::successors(Some((cos, sin)), turn)
+}
+
+impl Harmonics {
+    /// From the amplitudes and phases of `offset + sum a_k cos(k theta + p_k)`.
+    pub fn new(profile: &HarmonicProfile) -> Self {
+        let of_phase = |(amplitude, phase_deg): (&f64, &f64)| {
+            let (sin, cos) = phase_deg.to_radians().sin_cos();
+            // a cos(x + p) = a cos p cos x - a sin p sin x
+            Term { cosine: amplitude * cos, sine: -amplitude * sin }
+        };
+        let terms: Box<[Term]> = profile.amplitudes.iter().zip(&profile.phases_deg).map(of_phase).collect();
+        let sum = |power: i32| {
+            let term = |(k, term): (usize, &Term)| (k as f64 + 1.0).powi(power) * term.cosine.hypot(term.sine);
+            terms.iter().enumerate().map(term).sum()
+        };
+        let bounds = [sum(3), sum(4)];
+        Self { offset: profile.offset, terms, bounds }
+    }
+
+    /// Lift and derivatives at `angle`, rad.
+    #[inline]
+    pub fn lift(&self, angle: f64) -> Lift {
+        let mut lift = Lift { value: self.offset, slope: 0.0, curvature: 0.0, third: 0.0 };
+        let mut k = 0.0;
+        for (term, (cos, sin)) in self.terms.iter().zip(multiples(angle)) {
+            k += 1.0;
+            let value = term.cosine * cos + term.sine * sin;
+            let slope = k * (term.sine * cos - term.cosine * sin);
+            lift.value += value;
+            lift.slope += slope;
+            lift.curvature -= k * k * value;
+            lift.third -= k * k * slope;
+        }
+        lift
+    }
+
+    /// `c(from + turn) - c(from)`, m, exact as `turn` goes to 0.
+    #[inline]
+    pub fn rise(&self, from: f64, turn: f64) -> f64 {
+        let half = 0.5 * turn;
+        let pairs = multiples(from + half).zip(multiples(half));
+        // cos(k(x + 2h)) - cos(k x) = -2 sin(k(x + h)) sin(k h),  sin(k(x + 2h)) - sin(k x) = 2 cos(k(x + h)) sin(k h)
+        let mut rise = 0.0;
+        for (term, ((cos, sin), (_, half))) in self.terms.iter().zip(pairs) {
+            rise += 2.0 * half * (term.sine * cos - term.cosine * sin);
+        }
+        rise
+    }
+
+    /// A bound on `|c'''|` over `[start, end]`: everywhere, or from the middle where that is less.
+    #[inline]
+    pub fn third_bound(&self, start: f64, end: f64) -> f64 {
+        let [third, fourth] = self.bounds;
+        let from_middle = self.lift(0.5 * (start + end)).third.abs() + 0.5 * (end - start) * fourth;
+        // Turning on by x again and again rounds by an ulp a time.
+        let rounding = 8.0 * f64::EPSILON * self.terms.len() as f64;
+        third.min(from_middle + rounding * fourth) * (1.0 + rounding)
+    }
+
+    /// Lift and high derivatives at `angle`, rad.
+    pub fn jet(&self, angle: f64) -> Jet {
+        let mut jet = Jet::constant(self.offset);
+        for (index, (term, (cos, sin))) in self.terms.iter().zip(multiples(angle)).enumerate() {
+            // A cos(x + w t) + B sin(x + w t) = (A cos x + B sin x) cos(w t) + (B cos x - A sin x) sin(w t)
+            let (b, a) = (term.cosine * cos + term.sine * sin, term.sine * cos - term.cosine * sin);
+            jet = jet.plus(&Jet::of_sinusoid(a, b, index as f64 + 1.0));
+        }
+        jet
+    }
+}
+
+/// The cam of a `harmonic` profile.
+pub(super) fn build(profile: &HarmonicProfile) -> Cam {
+    Cam::from_laws(vec![(0.0, Law::Harmonics(Harmonics::new(profile)))], Joint::Free)
+}

@@ -1,0 +1,70 @@
+//! Derivatives of a lift law beyond the third, by power series: what tells at which order two laws part.
+
+/// Lift and its derivatives at an angle, order 0 first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Jet(pub [f64; Jet::ORDERS]);
+
+impl Jet {
+    /// Orders held: 0 to 12, the last one only to judge the rounding of the one before.
+    pub const ORDERS: usize = 13;
+
+    /// The highest order at which a jump is looked for; laws that agree up to it meet smoothly as far as can be told.
+    pub const HIGHEST_JUMP: usize = Self::ORDERS - 2;
+
+    /// Of a constant.
+    pub(super) fn constant(value: f64) -> Self {
+        let mut orders = [0.0; Self::ORDERS];
+        orders[0] = value;
+        Self(orders)
+    }
+
+    /// From the coefficients of `sum c_n t^n`: the derivatives are `n! c_n`.
+    pub(super) fn from_series(mut series: [f64; Self::ORDERS]) -> Self {
+        let mut factorial = 1.0;
+        for (order, coefficient) in series.iter_mut().enumerate().skip(1) {
+            factorial *= order as f64;
+            *coefficient *= factorial;
+        }
+        Self(series)
+    }
+
+    /// The coefficients of `sum c_n t^n`.
+    pub(super) fn series(self) -> [f64; Self::ORDERS] {
+        let mut series = self.0;
+        let mut factorial = 1.0;
+        for (order, derivative) in series.iter_mut().enumerate().skip(1) {
+            factorial *= order as f64;
+            *derivative /= factorial;
+        }
+        series
+    }
+
+    /// The derivatives of `a sin(w t) + b cos(w t)` at t = 0: `(a w, -b w^2)`, times `-w^2` for every two orders.
+    pub(super) fn of_sinusoid(a: f64, b: f64, w: f64) -> Self {
+        let mut orders = [0.0; Self::ORDERS];
+        let (mut this, mut next) = (b, a * w);
+        for order in &mut orders {
+            *order = this;
+            (this, next) = (next, -w * w * this);
+        }
+        Self(orders)
+    }
+
+    pub(super) fn plus(mut self, other: &Self) -> Self {
+        for (order, other) in self.0.iter_mut().zip(other.0) {
+            *order += other;
+        }
+        self
+    }
+}
+
+/// The series of `sqrt(u)`: `w_0 = sqrt(u_0)`, `2 w_0 w_n = u_n - sum_{0<k<n} w_k w_{n-k}`.
+pub(super) fn square_root(u: [f64; Jet::ORDERS]) -> [f64; Jet::ORDERS] {
+    let mut w = [0.0; Jet::ORDERS];
+    w[0] = u[0].sqrt();
+    for n in 1..Jet::ORDERS {
+        let products: f64 = (1..n).map(|k| w[k] * w[n - k]).sum();
+        w[n] = (u[n] - products) / (2.0 * w[0]);
+    }
+    w
+}

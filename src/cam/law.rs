@@ -1,0 +1,108 @@
+//! A lift law: one smooth formula, its derivatives, and what is certain about them over a stretch of angle.
+
+use super::arcs::Arc;
+use super::harmonics::Harmonics;
+use super::jet::Jet;
+use super::polynomial::Polynomial;
+use super::sinusoid::Sinusoid;
+
+/// Lift and its derivatives with respect to the cam angle: m, m/rad, m/rad^2, m/rad^3.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lift {
+    /// c(theta), m.
+    pub value: f64,
+    /// dc/dtheta, m/rad.
+    pub slope: f64,
+    /// d^2c/dtheta^2, m/rad^2.
+    pub curvature: f64,
+    /// d^3c/dtheta^3, m/rad^3.
+    pub third: f64,
+}
+
+/// A smooth lift law, valid on its segment and some way past its ends.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Law {
+    /// Constant lift, m.
+    Dwell(f64),
+    /// A circle seen from the cam's axis.
+    Arc(Arc),
+    /// A polynomial in the angle.
+    Polynomial(Polynomial),
+    /// A sine on a straight line.
+    Sinusoid(Sinusoid),
+    /// A sum of cosines of period 2 pi.
+    Harmonics(Harmonics),
+}
+
+impl Law {
+    /// What kind of law it is, in a word.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Dwell(_) => "dwell",
+            Self::Arc(_) => "arc",
+            Self::Polynomial(_) => "polynomial",
+            Self::Sinusoid(_) => "sinusoid",
+            Self::Harmonics(_) => "harmonics",
+        }
+    }
+
+    /// Lift and derivatives at `angle`, rad.
+    #[inline]
+    pub fn lift(&self, angle: f64) -> Lift {
+        match self {
+            Self::Dwell(value) => Lift { value: *value, slope: 0.0, curvature: 0.0, third: 0.0 },
+            Self::Arc(arc) => arc.lift(angle),
+            Self::Polynomial(polynomial) => polynomial.lift(angle),
+            Self::Sinusoid(sinusoid) => sinusoid.lift(angle),
+            Self::Harmonics(harmonics) => harmonics.lift(angle),
+        }
+    }
+
+    /// `c(from + turn) - c(from)` without cancellation, m.
+    #[inline]
+    pub fn rise(&self, from: f64, turn: f64) -> f64 {
+        match self {
+            Self::Dwell(_) => 0.0,
+            Self::Arc(arc) => arc.rise(from, turn),
+            Self::Polynomial(polynomial) => polynomial.rise(from, turn),
+            Self::Sinusoid(sinusoid) => sinusoid.rise(from, turn),
+            Self::Harmonics(harmonics) => harmonics.rise(from, turn),
+        }
+    }
+
+    /// A bound on `|d^3c/dtheta^3|` over `[start, end]`, m/rad^3; infinite where the law does not reach.
+    #[inline]
+    pub fn third_bound(&self, start: f64, end: f64) -> f64 {
+        match self {
+            Self::Dwell(_) => 0.0,
+            Self::Arc(arc) => arc.third_bound(start, end),
+            Self::Polynomial(polynomial) => polynomial.third_bound(start, end),
+            Self::Sinusoid(sinusoid) => sinusoid.third_bound(start, end),
+            Self::Harmonics(harmonics) => harmonics.third_bound(start, end),
+        }
+    }
+
+    /// Lift and its derivatives up to a high order at `angle`, rad.
+    pub fn jet(&self, angle: f64) -> Jet {
+        match self {
+            Self::Dwell(value) => Jet::constant(*value),
+            Self::Arc(arc) => arc.jet(angle),
+            Self::Polynomial(polynomial) => polynomial.jet(angle),
+            Self::Sinusoid(sinusoid) => sinusoid.jet(angle),
+            Self::Harmonics(harmonics) => harmonics.jet(angle),
+        }
+    }
+
+    /// The same law a revolution on: at `angle + turn` what this one is at `angle`, for `turn` of 2 pi or -2 pi.
+    ///
+    /// Where the two meet, at 0 and 2 pi, the distance from the law's start rounds to the same bits.
+    pub(super) fn turned(&self, turn: f64) -> Self {
+        match self {
+            Self::Dwell(value) => Self::Dwell(*value),
+            Self::Arc(arc) => Self::Arc(Arc { direction: arc.direction + turn, ..*arc }),
+            Self::Polynomial(polynomial) => Self::Polynomial(polynomial.turned(turn)),
+            Self::Sinusoid(sinusoid) => Self::Sinusoid(Sinusoid { start: sinusoid.start + turn, ..*sinusoid }),
+            Self::Harmonics(harmonics) => Self::Harmonics(harmonics.clone()),
+        }
+    }
+}

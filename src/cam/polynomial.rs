@@ -1,0 +1,114 @@
+//! Polynomial lift: the `polynomial` law, the polynomial motions, and the pieces of a spline.
+
+use super::jet::Jet;
+use super::law::{Law, Lift};
+use super::{Cam, Joint};
+use crate::model::{MOST_COEFFICIENTS, Model, ModelError, PolynomialSegment};
+
+/// `c = sum a_k u^k`, `u = theta - start`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Polynomial {
+    start: f64,
+    coefficients: Box<[f64]>,
+}
+
+impl Polynomial {
+    /// From where `u` is 0, rad, and `a_k`, k from 0; powers past the 31st are cut off.
+    pub fn new(start: f64, coefficients: &[f64]) -> Self {
+        let kept = coefficients.len().min(MOST_COEFFICIENTS);
+        Self { start, coefficients: coefficients[..kept].into() }
+    }
+
+    pub(super) fn turned(&self, turn: f64) -> Self {
+        Self { start: self.start + turn, coefficients: self.coefficients.clone() }
+    }
+
+    /// The highest power.
+    pub fn degree(&self) -> usize {
+        self.coefficients.len().saturating_sub(1)
+    }
+
+    /// Lift and derivatives at `angle`, rad.
+    #[inline]
+    pub fn lift(&self, angle: f64) -> Lift {
+        let u = angle - self.start;
+        // Horner's scheme, differentiated: the Taylor coefficients c, c', c''/2, c'''/6.
+        let (mut value, mut slope, mut half, mut sixth) = (0.0, 0.0, 0.0, 0.0);
+        for a in self.coefficients.iter().rev() {
+            sixth = sixth * u + half;
+            half = half * u + slope;
+            slope = slope * u + value;
+            value = value * u + a;
+        }
+        Lift { value, slope, curvature: 2.0 * half, third: 6.0 * sixth }
+    }
+
+    /// `c(from + turn) - c(from)`, m, exact as `turn` goes to 0.
+    #[inline]
+    pub fn rise(&self, from: f64, turn: f64) -> f64 {
+        let x = from - self.start;
+        let y = x + turn;
+        // Horner's scheme at x, and for the divided difference: p = a + x p1 gives p[x, y] = p1(x) + y p1[x, y].
+        let (mut value, mut difference) = (0.0, 0.0);
+        for a in self.coefficients.iter().rev() {
+            difference = difference * y + value;
+            value = value * x + a;
+        }
+        turn * difference
+    }
+
+    /// A bound on `|c'''|` over `[start, end]`: its Taylor sum about the middle, every term at its largest.
+    #[inline]
+    pub fn third_bound(&self, start: f64, end: f64) -> f64 {
+        let Some(above) = self.coefficients.get(3..) else { return 0.0 };
+        let middle = 0.5 * (start + end) - self.start;
+        let reach = 0.5 * (end - start);
+        // c''' = sum (k+1)(k+2)(k+3) a_{k+3} u^k
+        let mut third = [0.0; MOST_COEFFICIENTS];
+        let count = above.len();
+        for (k, (slot, a)) in third.iter_mut().zip(above).enumerate() {
+            let k = k as f64;
+            *slot = (k + 1.0) * (k + 2.0) * (k + 3.0) * a;
+        }
+        shift(&mut third[..count], middle);
+        let bound = third[..count].iter().rev().fold(0.0, |bound, term| bound * reach + term.abs());
+        // Rounding of the sum itself.
+        bound * (1.0 + 64.0 * f64::EPSILON)
+    }
+
+    /// Lift and high derivatives at `angle`, rad.
+    pub fn jet(&self, angle: f64) -> Jet {
+        let mut shifted = [0.0; MOST_COEFFICIENTS];
+        let count = self.coefficients.len();
+        shifted[..count].copy_from_slice(&self.coefficients);
+        shift(&mut shifted[..count], angle - self.start);
+        let mut series = [0.0; Jet::ORDERS];
+        for (slot, coefficient) in series.iter_mut().zip(shifted) {
+            *slot = coefficient;
+        }
+        Jet::from_series(series)
+    }
+}
+
+/// Coefficients about 0 to coefficients about `u`, by repeated division by `x - u`.
+fn shift(coefficients: &mut [f64], u: f64) {
+    let count = coefficients.len();
+    for low in 0..count.saturating_sub(1) {
+        for k in (low..count - 1).rev() {
+            coefficients[k] += u * coefficients[k + 1];
+        }
+    }
+}
+
+/// The cam of a `polynomial` profile.
+pub(super) fn build(model: &Model, segments: &[PolynomialSegment]) -> Result<Cam, ModelError> {
+    let law = |segment: &PolynomialSegment| {
+        let start = segment.start_deg.to_radians();
+        (start, Law::Polynomial(Polynomial::new(start, &segment.coefficients)))
+    };
+    // Where the first one starts past 0, the last one comes first as well.
+    let moved = segments.first().is_some_and(|segment| segment.start_deg > 0.0);
+    Cam::from_laws(segments.iter().map(law).collect(), Joint::Free).without_steps(|segment| {
+        (model, format!("cam.segment[{}].coefficients[0]", segment.saturating_sub(usize::from(moved))))
+    })
+}

@@ -1,0 +1,114 @@
+//! A sine on a straight line: harmonic, cycloidal and modified motions, and the rectified sine.
+
+use std::f64::consts::PI;
+
+use super::jet::Jet;
+use super::law::{Law, Lift};
+use super::{Cam, Joint};
+use crate::model::RectifiedSineProfile;
+
+/// `c = value + tilt u + sine (phi - sin phi) + cosine (1 - cos phi)`, `phi = frequency u`, `u = theta - start`.
+///
+/// Written with what is left of sine and cosine near phi = 0, so that motions that start there at rest keep their digits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sinusoid {
+    /// Where `u` is 0, rad; need not lie on the segment.
+    pub start: f64,
+    /// Lift there, m.
+    pub value: f64,
+    /// Slope there, m/rad.
+    pub tilt: f64,
+    /// Of `phi - sin phi`, m.
+    pub sine: f64,
+    /// Of `1 - cos phi`, m.
+    pub cosine: f64,
+    /// dphi/dtheta.
+    pub frequency: f64,
+}
+
+impl Sinusoid {
+    /// `sin phi`, `cos phi` and `1 - cos phi`.
+    #[inline]
+    fn circular(phi: f64) -> (f64, f64, f64) {
+        let (sin, cos) = (0.5 * phi).sin_cos();
+        // sin phi = 2 s c, 1 - cos phi = 2 s^2
+        let versine = 2.0 * sin * sin;
+        (2.0 * sin * cos, 1.0 - versine, versine)
+    }
+
+    /// Lift and derivatives at `angle`, rad.
+    #[inline]
+    pub fn lift(&self, angle: f64) -> Lift {
+        let Self { start, value, tilt, sine, cosine, frequency } = *self;
+        let u = angle - start;
+        let phi = frequency * u;
+        let (sin, cos, versine) = Self::circular(phi);
+        let squared = frequency * frequency;
+        Lift {
+            value: value + tilt * u + sine * (phi - sin) + cosine * versine,
+            // c' = tilt + w (A (1 - cos phi) + B sin phi)
+            slope: tilt + frequency * (sine * versine + cosine * sin),
+            // c'' = w^2 (A sin phi + B cos phi)
+            curvature: squared * (sine * sin + cosine * cos),
+            // c''' = w^3 (A cos phi - B sin phi)
+            third: squared * frequency * (sine * cos - cosine * sin),
+        }
+    }
+
+    /// `c(from + turn) - c(from)`, m, exact as `turn` goes to 0.
+    #[inline]
+    pub fn rise(&self, from: f64, turn: f64) -> f64 {
+        let Self { start, tilt, sine, cosine, frequency, .. } = *self;
+        let (sin, cos, versine) = Self::circular(frequency * (from - start));
+        let delta = frequency * turn;
+        let (sin_delta, _, versine_delta) = Self::circular(delta);
+        // phi - sin phi grows by d (1 - cos phi) + (d - sin d) cos phi + (1 - cos d) sin phi
+        let of_sine = delta * versine + sine_deficit(delta, sin_delta) * cos + versine_delta * sin;
+        // 1 - cos phi grows by sin d sin phi + (1 - cos d) cos phi
+        let of_cosine = sin_delta * sin + versine_delta * cos;
+        tilt * turn + sine * of_sine + cosine * of_cosine
+    }
+
+    /// A bound on `|c'''|` over `[start, end]`: `w^3 |(A, B)|`, or from the middle by `w^4 |(A, B)|` where that is less.
+    #[inline]
+    pub fn third_bound(&self, start: f64, end: f64) -> f64 {
+        let frequency = self.frequency.abs();
+        let everywhere = frequency.powi(3) * self.sine.hypot(self.cosine);
+        let from_middle = self.lift(0.5 * (start + end)).third.abs() + 0.5 * (end - start) * frequency * everywhere;
+        // Rounding of the phase and of the sum.
+        everywhere.min(from_middle + 64.0 * f64::EPSILON * everywhere) * (1.0 + 8.0 * f64::EPSILON)
+    }
+
+    /// Lift and high derivatives at `angle`, rad.
+    pub fn jet(&self, angle: f64) -> Jet {
+        let Self { sine, cosine, frequency, .. } = *self;
+        let (sin, cos, _) = Self::circular(frequency * (angle - self.start));
+        // -A sin phi - B cos phi; order 0 and 1 have the straight line besides, which `lift` adds without cancellation.
+        let mut jet = Jet::of_sinusoid(cosine * sin - sine * cos, -(sine * sin + cosine * cos), frequency);
+        let lift = self.lift(angle);
+        (jet.0[0], jet.0[1]) = (lift.value, lift.slope);
+        jet
+    }
+}
+
+/// `d - sin d`: by its series where the difference would cancel.
+#[inline]
+fn sine_deficit(delta: f64, sin: f64) -> f64 {
+    if delta.abs() > 1.0 {
+        return delta - sin;
+    }
+    let square = delta * delta;
+    // d^3/6 (1 - d^2/20 (1 - d^2/42 (1 - ...))): the ninth factor is below an ulp.
+    const SERIES: [f64; 7] = [1.0 / 272.0, 1.0 / 210.0, 1.0 / 156.0, 1.0 / 110.0, 1.0 / 72.0, 1.0 / 42.0, 1.0 / 20.0];
+    let sum = SERIES.iter().fold(1.0, |sum, factor| 1.0 - square * factor * sum);
+    square * delta * (1.0 / 6.0) * sum
+}
+
+/// The cam of a `rectified-sine` profile: a hump on `[0, pi]`, and the same again.
+pub(super) fn rectified(profile: &RectifiedSineProfile) -> Cam {
+    let RectifiedSineProfile { offset, amplitude } = *profile;
+    // offset + a sin u = offset + a u - a (u - sin u)
+    let hump =
+        |start: f64| Sinusoid { start, value: offset, tilt: amplitude, sine: -amplitude, cosine: 0.0, frequency: 1.0 };
+    Cam::from_laws(vec![(0.0, Law::Sinusoid(hump(0.0))), (PI, Law::Sinusoid(hump(PI)))], Joint::Free)
+}

@@ -1,0 +1,230 @@
+//! The `[cam]` table: one entry for every lift law, and the fields of each.
+
+use super::fields::{Allowed, Fields, ModelError};
+use super::table::{self, TableProfile};
+
+/// The lift law of a `[cam]` table.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CamProfile {
+    /// Appendix A of the paper: base, flank and nose circles.
+    Arcs(ArcsProfile),
+    /// A sum of cosines.
+    Harmonic(HarmonicProfile),
+    /// The absolute value of a sine.
+    RectifiedSine(RectifiedSineProfile),
+    /// Rises, dwells and returns, one after the other.
+    Program(ProgramProfile),
+    /// Polynomials in the angle, in order of where they start.
+    Polynomial(Vec<PolynomialSegment>),
+    /// A spline through measured lifts.
+    Table(TableProfile),
+}
+
+/// Base, flank and nose circles, mirrored about theta = pi. Centres and top radius follow from tangency.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ArcsProfile {
+    /// rho0, m.
+    pub base_radius: f64,
+    /// rho1, m.
+    pub flank_radius: f64,
+    /// rho2, m.
+    pub nose_radius: f64,
+    /// R = 90 - theta1, degrees from the middle of the base circle.
+    pub flank_start_deg: f64,
+    /// Q = 90 - theta3, degrees from the middle of the base circle.
+    pub nose_end_deg: f64,
+}
+
+/// `c = offset + sum a_k cos(k theta + p_k)`, k from 1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HarmonicProfile {
+    /// Mean lift, m.
+    pub offset: f64,
+    /// a_k, m; at least one.
+    pub amplitudes: Vec<f64>,
+    /// p_k, degrees; as many.
+    pub phases_deg: Vec<f64>,
+}
+
+/// `c = offset + amplitude |sin theta|`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RectifiedSineProfile {
+    /// Lift at the corners, m.
+    pub offset: f64,
+    /// Height of the two humps, m; negative for two hollows.
+    pub amplitude: f64,
+}
+
+/// Motions from theta = 0 on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProgramProfile {
+    /// Lift at theta = 0, m.
+    pub base: f64,
+    /// In order; at least one.
+    pub segments: Vec<MotionSegment>,
+}
+
+/// One motion of a program.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotionSegment {
+    /// How the lift gets from one end to the other.
+    pub motion: Motion,
+    /// Angle that it takes, degrees, positive.
+    pub span_deg: f64,
+    /// What it adds to the lift, m; negative is a return, 0 a dwell.
+    pub rise: f64,
+}
+
+/// The standard motions of cam design, between ends at rest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Motion {
+    /// Constant lift.
+    Dwell,
+    /// Constant acceleration, then the same deceleration.
+    Parabolic,
+    /// Half a period of a cosine: simple harmonic motion.
+    Harmonic,
+    /// One period of a sine as acceleration.
+    Cycloidal,
+    /// An acceleration trapezoid whose flanks are quarter periods of a sine.
+    ModifiedTrapezoid,
+    /// A sine as acceleration, whose first and last eighth run three times as fast as the middle.
+    ModifiedSine,
+    /// The polynomial with velocity and acceleration 0 at both ends.
+    Poly345,
+    /// The polynomial with velocity, acceleration and jerk 0 at both ends.
+    Poly4567,
+}
+
+impl Motion {
+    /// Every motion, by the name that `motion` gives it.
+    pub const NAMES: [(&'static str, Self); 8] = [
+        ("dwell", Self::Dwell),
+        ("parabolic", Self::Parabolic),
+        ("harmonic", Self::Harmonic),
+        ("cycloidal", Self::Cycloidal),
+        ("modified-trapezoid", Self::ModifiedTrapezoid),
+        ("modified-sine", Self::ModifiedSine),
+        ("poly345", Self::Poly345),
+        ("poly4567", Self::Poly4567),
+    ];
+}
+
+/// `c = sum a_k (theta - start)^k` from its start to the next one's.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PolynomialSegment {
+    /// Where it starts, degrees, from 0 to below 360.
+    pub start_deg: f64,
+    /// a_k, m/rad^k, k from 0.
+    pub coefficients: Vec<f64>,
+}
+
+/// Most segments of a program or of polynomials: more than anyone writes by hand; a table takes more.
+const MOST_SEGMENTS: usize = 10_000;
+/// Most cosines: the hundredth harmonic is already shorter than any cutter that could make it.
+const MOST_HARMONICS: usize = 1000;
+
+/// Most coefficients of a polynomial: powers of a radian beyond the 31st say nothing that fewer would not.
+pub const MOST_COEFFICIENTS: usize = 32;
+
+type ReadProfile = fn(&mut Fields) -> Result<CamProfile, ModelError>;
+
+/// Every lift law, by the name that `law` gives it.
+static CAM_LAWS: [(&str, ReadProfile); 6] = [
+    ("arcs", arcs),
+    ("harmonic", harmonic),
+    ("rectified-sine", rectified_sine),
+    ("program", program),
+    ("polynomial", polynomial),
+    ("table", |fields| table::read(fields).map(CamProfile::Table)),
+];
+
+pub(super) fn read(fields: &mut Fields) -> Result<CamProfile, ModelError> {
+    let read = choice(fields, "cam.law", &CAM_LAWS)?;
+    read(fields)
+}
+
+/// The entry of `choices` that a text field names.
+pub(super) fn choice<T: Copy>(fields: &mut Fields, path: &str, choices: &[(&str, T)]) -> Result<T, ModelError> {
+    let text = fields.text(path)?;
+    match choices.iter().find(|(name, _)| *name == text) {
+        Some((_, entry)) => Ok(*entry),
+        None => {
+            let known: Vec<_> = choices.iter().map(|(name, _)| format!("\"{name}\"")).collect();
+            Err(fields.reject(path, format!("must be one of: {}", known.join(", "))))
+        }
+    }
+}
+
+fn arcs(fields: &mut Fields) -> Result<CamProfile, ModelError> {
+    Ok(CamProfile::Arcs(ArcsProfile {
+        base_radius: fields.number("cam.base_radius", Allowed::POSITIVE)?,
+        flank_radius: fields.number("cam.flank_radius", Allowed::POSITIVE)?,
+        nose_radius: fields.number("cam.nose_radius", Allowed::POSITIVE)?,
+        flank_start_deg: fields.number("cam.flank_start_deg", Allowed::between(0.0, 180.0))?,
+        nose_end_deg: fields.number("cam.nose_end_deg", Allowed::between(0.0, 180.0))?,
+    }))
+}
+
+fn harmonic(fields: &mut Fields) -> Result<CamProfile, ModelError> {
+    let offset = fields.number("cam.offset", Allowed::FINITE)?;
+    let amplitudes = fields.numbers("cam.amplitudes", MOST_HARMONICS)?;
+    let phases_deg = fields.numbers("cam.phases_deg", MOST_HARMONICS)?;
+    if amplitudes.len() != phases_deg.len() {
+        let words = format!(
+            "has {} numbers; one for each of the {} cam.amplitudes is needed",
+            phases_deg.len(),
+            amplitudes.len()
+        );
+        return Err(fields.reject("cam.phases_deg", words));
+    }
+    Ok(CamProfile::Harmonic(HarmonicProfile { offset, amplitudes, phases_deg }))
+}
+
+fn rectified_sine(fields: &mut Fields) -> Result<CamProfile, ModelError> {
+    Ok(CamProfile::RectifiedSine(RectifiedSineProfile {
+        offset: fields.number("cam.offset", Allowed::FINITE)?,
+        amplitude: fields.number("cam.amplitude", Allowed::FINITE)?,
+    }))
+}
+
+fn program(fields: &mut Fields) -> Result<CamProfile, ModelError> {
+    let base = fields.number("cam.base", Allowed::FINITE)?;
+    let count = fields.tables("cam.segment", MOST_SEGMENTS)?;
+    let segments = (0..count).map(|index| motion_segment(fields, index)).collect::<Result<_, _>>()?;
+    Ok(CamProfile::Program(ProgramProfile { base, segments }))
+}
+
+fn motion_segment(fields: &mut Fields, index: usize) -> Result<MotionSegment, ModelError> {
+    let path = |name: &str| format!("cam.segment[{index}].{name}");
+    let motion = choice(fields, &path("motion"), &Motion::NAMES)?;
+    let span_deg = fields.number(&path("span_deg"), Allowed::above(0.0, 360.0))?;
+    let rise = if motion == Motion::Dwell {
+        fields.number_or(&path("rise"), Allowed::FINITE, 0.0)?
+    } else {
+        fields.number(&path("rise"), Allowed::FINITE)?
+    };
+    if motion == Motion::Dwell && rise != 0.0 {
+        return Err(fields.reject(&path("rise"), "must be 0: a dwell does not rise"));
+    }
+    Ok(MotionSegment { motion, span_deg, rise })
+}
+
+fn polynomial(fields: &mut Fields) -> Result<CamProfile, ModelError> {
+    let count = fields.tables("cam.segment", MOST_SEGMENTS)?;
+    let mut segments: Vec<PolynomialSegment> = Vec::with_capacity(count);
+    for index in 0..count {
+        let path = |name: &str| format!("cam.segment[{index}].{name}");
+        let start_deg = fields.number(&path("start_deg"), Allowed::between(0.0, 360.0))?;
+        if start_deg >= 360.0 {
+            return Err(fields.reject(&path("start_deg"), "must be below 360, which is 0 again"));
+        }
+        if let Some(before) = segments.last().filter(|before| start_deg <= before.start_deg) {
+            let words = format!("must be above {}, where the segment before starts", before.start_deg);
+            return Err(fields.reject(&path("start_deg"), words));
+        }
+        let coefficients = fields.numbers(&path("coefficients"), MOST_COEFFICIENTS)?;
+        segments.push(PolynomialSegment { start_deg, coefficients });
+    }
+    Ok(CamProfile::Polynomial(segments))
+}

@@ -1,0 +1,169 @@
+//! Measured lifts: a CSV file of angle and lift, read whole and checked row by row.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::fields::{Fields, ModelError};
+use super::profile::choice;
+use crate::tolerance;
+
+/// A spline through the rows of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TableProfile {
+    /// The file as the model names it, from where the model file is.
+    pub file: String,
+    /// How the lift goes from row to row.
+    pub spline: Spline,
+    /// In order of angle, one for each angle of `[0, 360]`; shared, because a table may be long.
+    pub rows: Arc<[Row]>,
+}
+
+/// The periodic interpolating splines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Spline {
+    /// Pieces of degree 3; the third derivative jumps at every row.
+    Cubic,
+    /// Pieces of degree 5; the fifth derivative jumps at every row.
+    Quintic,
+}
+
+/// One measured lift.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row {
+    /// Cam angle, degrees.
+    pub angle_deg: f64,
+    /// Lift, m.
+    pub lift: f64,
+    /// Line in the file, from 1.
+    pub line: usize,
+}
+
+/// First line of the file.
+const HEADER: &str = "angle_deg,lift";
+/// A periodic spline needs three rows to have a neighbour on either side.
+const FEWEST_ROWS: usize = 3;
+/// More are finer than any cam is made or measured.
+const MOST_ROWS: usize = 1_000_000;
+
+/// The fields of `law = "table"`, and the file that they name.
+pub(super) fn read(fields: &mut Fields) -> Result<TableProfile, ModelError> {
+    let file = fields.text("cam.file")?;
+    let spline = choice(fields, "cam.spline", &[("cubic", Spline::Cubic), ("quintic", Spline::Quintic)])?;
+    let path = Path::new(fields.file()).parent().unwrap_or(Path::new("")).join(&file);
+    let shown = path.display().to_string();
+    let text = std::fs::read_to_string(&path)
+        .map_err(|error| fields.reject("cam.file", format!("cannot be read at {shown}: {error}")))?;
+    let table = Table { file: shown };
+    let rows = table.rows(&text)?;
+    Ok(TableProfile { file, spline, rows: rows.into() })
+}
+
+/// A file being read, for complaints.
+struct Table {
+    file: String,
+}
+
+impl Table {
+    fn reject(&self, line: usize, column: &str, value: &str, allowed: String) -> ModelError {
+        let shown: String = value.chars().take(60).collect();
+        let (field, value) = (Some(column.into()), Some(shown));
+        ModelError { file: self.file.clone(), line: Some(line), field, value, allowed }
+    }
+
+    fn complain(&self, line: Option<usize>, allowed: String) -> ModelError {
+        ModelError { line, ..ModelError::file(&self.file, allowed) }
+    }
+
+    fn rows(&self, text: &str) -> Result<Vec<Row>, ModelError> {
+        // Spreadsheets begin UTF-8 with a mark.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let mut lines = text.lines().enumerate().map(|(index, line)| (index + 1, line.trim()));
+        match lines.next() {
+            Some((_, HEADER)) => {}
+            Some((line, found)) => return Err(self.reject(line, "header", found, format!("must be {HEADER}"))),
+            None => return Err(self.complain(None, format!("is empty; its first line must be {HEADER}"))),
+        }
+        let mut rows: Vec<Row> = Vec::new();
+        for (line, text) in lines.filter(|(_, text)| !text.is_empty()) {
+            let row = self.row(line, text)?;
+            if let Some(before) = rows.last() {
+                self.in_order(before, &row)?;
+            }
+            if rows.len() == MOST_ROWS {
+                return Err(self.complain(Some(line), format!("more than {MOST_ROWS} rows")));
+            }
+            rows.push(row);
+        }
+        self.close(&mut rows)?;
+        if rows.len() < FEWEST_ROWS {
+            let words = format!("{} different angles; {FEWEST_ROWS} to {MOST_ROWS} are needed", rows.len());
+            return Err(self.complain(None, words));
+        }
+        self.even(&rows)?;
+        Ok(rows)
+    }
+
+    fn row(&self, line: usize, text: &str) -> Result<Row, ModelError> {
+        let Some((angle, lift)) = text.split_once(',') else {
+            return Err(self.reject(line, "row", text, format!("must be two numbers: {HEADER}")));
+        };
+        let number = |column: &str, text: &str, allowed: &str, is_allowed: fn(f64) -> bool| {
+            let number = text.trim().parse().ok().filter(|number| is_allowed(*number));
+            number.ok_or_else(|| self.reject(line, column, text.trim(), format!("must be a finite number{allowed}")))
+        };
+        let angle_deg = number("angle_deg", angle, " from 0 to 360", |angle| (0.0..=360.0).contains(&angle))?;
+        let lift = number("lift", lift, "", f64::is_finite)?;
+        Ok(Row { angle_deg, lift, line })
+    }
+
+    fn in_order(&self, before: &Row, row: &Row) -> Result<(), ModelError> {
+        // What cannot be told apart in radians is one angle.
+        if row.angle_deg.to_radians() > before.angle_deg.to_radians() {
+            return Ok(());
+        }
+        let repeats = row.angle_deg >= before.angle_deg;
+        let what = if repeats { "repeats the angle of the row before" } else { "angles must rise" };
+        let words = format!("{what}: must be above {}, line {}", before.angle_deg, before.line);
+        Err(self.reject(row.line, "angle_deg", &row.angle_deg.to_string(), words))
+    }
+
+    /// A last row at 360 is the first one again: dropped where it says the same.
+    fn close(&self, rows: &mut Vec<Row>) -> Result<(), ModelError> {
+        let (Some(first), Some(last)) = (rows.first().copied(), rows.last().copied()) else {
+            return Ok(());
+        };
+        if first.angle_deg > 0.0 || last.angle_deg < 360.0 {
+            return Ok(());
+        }
+        let largest = rows.iter().fold(0.0_f64, |largest, row| largest.max(row.lift.abs()));
+        if (last.lift - first.lift).abs() > tolerance::CAM_CLOSURE.value * largest {
+            let words =
+                format!("must be {}, the lift at 0 on line {}: 360 degrees are 0 again", first.lift, first.line);
+            return Err(self.reject(last.line, "lift", &last.lift.to_string(), words));
+        }
+        rows.pop();
+        Ok(())
+    }
+
+    /// Refuses a gap where rows are missing.
+    fn even(&self, rows: &[Row]) -> Result<(), ModelError> {
+        let next = |index: usize| match rows.get(index + 1) {
+            Some(row) => row.angle_deg,
+            None => rows[0].angle_deg + 360.0,
+        };
+        let gaps: Vec<f64> = rows.iter().enumerate().map(|(index, row)| next(index) - row.angle_deg).collect();
+        let mut sorted = gaps.clone();
+        let (_, median, _) = sorted.select_nth_unstable_by(gaps.len() / 2, f64::total_cmp);
+        let widest = *median / tolerance::TABLE_GAP.value;
+        let Some(index) = gaps.iter().position(|gap| *gap > widest) else {
+            return Ok(());
+        };
+        let words = format!(
+            "no row from {} to {}: rows are missing; a gap may be at most {widest}, {} times the median one",
+            rows[index].angle_deg,
+            next(index),
+            1.0 / tolerance::TABLE_GAP.value
+        );
+        Err(self.reject(rows[index].line, "angle_deg", &rows[index].angle_deg.to_string(), words))
+    }
+}
