@@ -120,8 +120,10 @@ impl Flight {
     /// The acceleration obeys the same damped equation as the position, so `j^2 + w0^2 a^2` never grows.
     #[inline]
     pub fn jerk_bound(&self, state: State) -> f64 {
-        let acceleration = self.acceleration(state);
-        self.jerk(state).hypot(self.omega0_squared.sqrt() * acceleration)
+        let (acceleration, jerk) = (self.acceleration(state), self.jerk(state));
+        let bound = (jerk * jerk + self.omega0_squared * acceleration * acceleration).sqrt();
+        // Squares leave a double's range long before their root does.
+        if bound.is_normal() { bound } else { jerk.hypot(self.omega0_squared.sqrt() * acceleration) }
     }
 
     /// Displacement `q(t) - q0` and the state after flying for `t` from `start`.

@@ -69,7 +69,8 @@ fn polish(gap_at: impl Fn(f64) -> Gap, time: f64, gap: &Gap, end: f64) -> f64 {
 
 /// A time ahead, at most `end`, before which the gap is certainly open.
 fn free_time(gap: &Gap, third_bound: impl Fn(f64) -> f64, end: f64) -> f64 {
-    let value = gap.value.max(0.0);
+    // Down to a depth of its rounding the gap is open: a flight that leaves a tangency gets a first step out of it.
+    let value = (gap.value + gap.rounding).max(0.0);
     // Over [0, reach] the cubic minorant lies above the parabola with curvature g'' - M reach/3.
     let open = |reach: f64, bound: f64| first_root(value, gap.rate, gap.curvature - bound * reach / 3.0).min(reach);
     let mut reach = end;

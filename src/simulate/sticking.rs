@@ -151,7 +151,7 @@ impl Machine {
             return None;
         }
         let end = span / omega;
-        let mut time = 0.0;
+        let (mut time, mut hover) = (0.0, 0.0);
         while time < end {
             let lift = segment.law.lift(angle + omega * time);
             let lifting = self.lifting(&lift);
@@ -164,15 +164,16 @@ impl Machine {
                 let slope = lift.slope.abs() + curvature * turn;
                 2.0 * zeta * omega * omega * curvature + w * omega * slope + omega.powi(3) * third
             };
+            if lifting > rounding {
+                return Some(omega * time);
+            }
             if lifting > -rounding {
-                // Where rounding decides, what comes next does: two roundings on it is lifted, or only touched 0.
-                let beyond = time + (2.0 * rounding / steepest(0.0)).max(f64::EPSILON * end);
-                if lifting > rounding || self.lifting(&segment.law.lift(angle + omega * beyond)) > 0.0 {
-                    return (time < end).then_some(omega * if lifting > rounding { time } else { beyond.min(end) });
-                }
-                time = beyond;
+                // Where rounding decides, look ahead, further each time: it may only touch 0, or stay there.
+                hover = if hover > 0.0 { 2.0 * hover } else { 2.0 * rounding / steepest(0.0) };
+                time += hover.max(f64::EPSILON * end);
                 continue;
             }
+            hover = 0.0;
             let mut reach = end - time;
             let mut safe: f64 = 0.0;
             for _ in 0..32 {

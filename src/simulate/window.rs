@@ -43,7 +43,6 @@ pub(super) enum Passage {
 /// Gap, follower and cam at an instant.
 struct Seen {
     value: f64,
-    rounding: f64,
     rate: f64,
     curvature: f64,
     state: State,
@@ -189,8 +188,7 @@ impl<'a> Window<'a> {
 
     fn at_start(&self) -> Seen {
         let lift = self.lift.unwrap_or_else(|| self.segment.law.lift(self.angle));
-        let scale = self.gap.unwrap_or(self.start.position.abs() + lift.value.abs());
-        self.seen(self.gap.unwrap_or(self.start.position - lift.value), scale, self.start, lift)
+        self.seen(self.gap.unwrap_or(self.start.position - lift.value), self.start, lift)
     }
 
     #[inline]
@@ -198,21 +196,18 @@ impl<'a> Window<'a> {
         let (displacement, state) = self.flight.fly(self.start, time);
         let turn = self.omega * time;
         let lift = self.segment.law.lift(self.angle + turn);
-        match self.gap {
-            Some(gap) => {
-                let rise = self.segment.law.rise(self.angle, turn);
-                self.seen(gap + displacement - rise, gap + displacement.abs() + rise.abs(), state, lift)
-            }
-            None => self.seen(state.position - lift.value, state.position.abs() + lift.value.abs(), state, lift),
-        }
+        let value = match self.gap {
+            Some(gap) => gap + displacement - self.segment.law.rise(self.angle, turn),
+            None => state.position - lift.value,
+        };
+        self.seen(value, state, lift)
     }
 
     #[inline]
-    fn seen(&self, value: f64, scale: f64, state: State, lift: Lift) -> Seen {
+    fn seen(&self, value: f64, state: State, lift: Lift) -> Seen {
         let omega = self.omega;
         Seen {
             value,
-            rounding: tolerance::GAP_ROUNDING.value * scale.abs(),
             rate: state.velocity - omega * lift.slope,
             curvature: self.flight.acceleration(state) - omega * omega * lift.curvature,
             state,
@@ -227,7 +222,9 @@ impl<'a> Window<'a> {
         let gap_at = |time: f64| {
             let now = if time == 0.0 { self.at_start() } else { self.at(time) };
             let third = 2.0 * (self.flight.jerk(now.state) - omega.powi(3) * now.lift.third).abs();
-            Gap { value: now.value, rounding: now.rounding, rate: now.rate, curvature: now.curvature, third }
+            // Of the two positions, however well their difference is known: no dip below that is an impact.
+            let rounding = tolerance::GAP_ROUNDING.value * (now.state.position.abs() + now.lift.value.abs());
+            Gap { value: now.value, rounding, rate: now.rate, curvature: now.curvature, third }
         };
         let third_bound = |time: f64, reach: f64| {
             let state = if time == 0.0 { self.start } else { self.flight.fly(self.start, time).1 };
