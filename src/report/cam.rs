@@ -157,8 +157,9 @@ impl CamDocument {
         paragraph(page, words)?;
         writeln!(page)?;
         let of_order = |order: usize| self.corners.iter().filter(move |corner| corner.jump_order == order);
-        let is_long = |order: usize| of_order(order).count() > Self::LONGEST;
-        let lines: Vec<_> = self.corners.iter().filter(|corner| !is_long(corner.jump_order)).collect();
+        let long: Vec<usize> =
+            (1..=self.highest_order).filter(|order| of_order(*order).count() > Self::LONGEST).collect();
+        let lines: Vec<_> = self.corners.iter().filter(|corner| !long.contains(&corner.jump_order)).collect();
         if !lines.is_empty() {
             let (angle, before, after) = ("angle deg", "slope before", "slope after");
             writeln!(page, "{angle:>12}  order{:>16}{:>16}{before:>16}{after:>16}", "jump", "lift m")?;
@@ -171,7 +172,7 @@ impl CamDocument {
             }
             writeln!(page)?;
         }
-        for order in (1..=self.highest_order).filter(|order| is_long(*order)) {
+        for order in long {
             let Some(largest) = of_order(order).max_by(|a, b| a.jump.abs().total_cmp(&b.jump.abs())) else { continue };
             let (count, jump) = (of_order(order).count(), short(largest.jump));
             writeln!(page, "  {count} of order {order}, the largest jump {jump} at {:.6} deg", largest.angle_deg)?;
