@@ -1,5 +1,6 @@
 //! The command line: parse, one library call, exit code. Results to standard output, complaints to standard error.
 
+mod cam;
 mod claims;
 mod verify;
 
@@ -31,6 +32,7 @@ struct Arguments {
 enum Command {
     Verify(verify::Arguments),
     Claims(claims::Arguments),
+    Cam(cam::Arguments),
 }
 
 /// Why a command has no result.
@@ -57,6 +59,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
     let result = match &arguments.command {
         Command::Verify(arguments) => verify::run(arguments, err),
         Command::Claims(arguments) => claims::run(arguments),
+        Command::Cam(arguments) => cam::run(arguments),
     };
     match result {
         Ok((text, exit)) => match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {

@@ -20,6 +20,20 @@ pub enum CamProfile {
     Table(TableProfile),
 }
 
+impl CamProfile {
+    /// The name that `law` gives it.
+    pub fn law(&self) -> &'static str {
+        match self {
+            Self::Arcs(_) => "arcs",
+            Self::Harmonic(_) => "harmonic",
+            Self::RectifiedSine(_) => "rectified-sine",
+            Self::Program(_) => "program",
+            Self::Polynomial(_) => "polynomial",
+            Self::Table(_) => "table",
+        }
+    }
+}
+
 /// Base, flank and nose circles, mirrored about theta = pi. Centres and top radius follow from tangency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ArcsProfile {

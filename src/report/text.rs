@@ -20,7 +20,7 @@ pub fn render(document: &Verification) -> Result<String, fmt::Error> {
     Ok(page)
 }
 
-fn heading(out: &mut String, text: &str) -> fmt::Result {
+pub(super) fn heading(out: &mut String, text: &str) -> fmt::Result {
     writeln!(out, "\n{text}\n{}", "-".repeat(text.chars().count()))
 }
 
@@ -343,7 +343,7 @@ fn entry(value: f64) -> String {
 }
 
 /// `significant` digits, without trailing zeros.
-fn significant(value: f64, digits: usize) -> String {
+pub(super) fn significant(value: f64, digits: usize) -> String {
     if !value.is_finite() || value == 0.0 {
         return format!("{value:.0}");
     }
@@ -359,7 +359,7 @@ fn spoken(name: &str) -> String {
 }
 
 /// Text in lines that fit, indented by two.
-fn paragraph(out: &mut String, text: &str) -> fmt::Result {
+pub(super) fn paragraph(out: &mut String, text: &str) -> fmt::Result {
     paragraph_at(out, 2, text)
 }
 

@@ -1,0 +1,192 @@
+//! The cam as a document: its segments and its corners, as JSON and as a page of text.
+
+use std::fmt::{self, Write};
+
+use serde::Serialize;
+
+use super::text::{heading, paragraph, significant};
+use crate::cam::{Cam, Corner, Jet, Segment};
+use crate::model::Model;
+
+/// What `cam` shows; serializes to the document `corner-impact/cam/1`.
+#[derive(Clone, Debug, Serialize)]
+pub struct CamDocument {
+    /// `corner-impact/cam/1`.
+    pub schema: &'static str,
+    /// Name of the model.
+    pub model: String,
+    /// Where its numbers come from.
+    pub source: String,
+    /// The law that `[cam]` names.
+    pub law: &'static str,
+    /// A range that holds every lift, lowest and highest.
+    pub lift_m: [f64; 2],
+    /// In order of angle.
+    pub segments: Vec<SegmentEntry>,
+    /// The highest order of a jump that is listed.
+    pub highest_order: usize,
+    /// In order of angle.
+    pub corners: Vec<CornerEntry>,
+}
+
+/// A stretch of cam with one law.
+#[derive(Clone, Debug, Serialize)]
+pub struct SegmentEntry {
+    /// Where it starts.
+    pub start_deg: f64,
+    /// Where it ends.
+    pub end_deg: f64,
+    /// What kind of law it has.
+    pub law: &'static str,
+    /// A range that holds its lift.
+    pub lift_m: [f64; 2],
+}
+
+/// A point where a derivative of the lift jumps.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct CornerEntry {
+    /// Where.
+    pub cam_angle_rad: f64,
+    /// The same in degrees.
+    pub angle_deg: f64,
+    /// The lowest derivative that jumps.
+    pub jump_order: usize,
+    /// What it jumps by, after less before, m/rad^order.
+    pub jump: f64,
+    /// c.
+    pub lift_m: f64,
+    /// c' before it, m/rad.
+    pub slope_before: f64,
+    /// c' after it, m/rad.
+    pub slope_after: f64,
+    /// c'' before it, m/rad^2.
+    pub curvature_before: f64,
+    /// c'' after it, m/rad^2.
+    pub curvature_after: f64,
+}
+
+impl From<&Segment> for SegmentEntry {
+    fn from(segment: &Segment) -> Self {
+        Self {
+            start_deg: segment.start.to_degrees(),
+            end_deg: segment.end.to_degrees(),
+            law: segment.law.name(),
+            lift_m: segment.bounds.lift,
+        }
+    }
+}
+
+impl From<Corner> for CornerEntry {
+    fn from(corner: Corner) -> Self {
+        let Corner { angle, jump_order, jump, minus, plus, .. } = corner;
+        Self {
+            cam_angle_rad: angle,
+            angle_deg: angle.to_degrees(),
+            jump_order,
+            jump,
+            lift_m: plus.value,
+            slope_before: minus.slope,
+            slope_after: plus.slope,
+            curvature_before: minus.curvature,
+            curvature_after: plus.curvature,
+        }
+    }
+}
+
+impl CamDocument {
+    /// Longest list that is printed line by line.
+    const LONGEST: usize = 40;
+
+    /// Lays out a model's cam, with corners up to an order.
+    pub fn new(model: &Model, cam: &Cam, highest_order: usize) -> Self {
+        let segments: Vec<SegmentEntry> = cam.segments().iter().map(SegmentEntry::from).collect();
+        let lowest = segments.iter().fold(f64::INFINITY, |lowest, segment| lowest.min(segment.lift_m[0]));
+        let highest_order = highest_order.min(Jet::HIGHEST_JUMP);
+        let listed = cam.corners().into_iter().filter(|corner| corner.jump_order <= highest_order);
+        Self {
+            schema: "corner-impact/cam/1",
+            model: model.name.clone(),
+            source: model.source.clone(),
+            law: model.cam.law(),
+            lift_m: [lowest, cam.top()],
+            segments,
+            highest_order,
+            corners: listed.map(CornerEntry::from).collect(),
+        }
+    }
+
+    /// The page for a terminal.
+    pub fn text(&self) -> Result<String, fmt::Error> {
+        let mut page = String::new();
+        let title = format!("Cam of {}", self.model);
+        writeln!(page, "{title}\n{}", "=".repeat(title.chars().count()))?;
+        paragraph(&mut page, &self.source)?;
+        let [low, high] = self.lift_m.map(|lift| significant(lift, 9));
+        writeln!(page, "\n  law \"{}\", lift from {low} to {high} m", self.law)?;
+        self.write_segments(&mut page)?;
+        self.write_corners(&mut page)?;
+        Ok(page)
+    }
+
+    fn write_segments(&self, page: &mut String) -> fmt::Result {
+        heading(page, &format!("Segments ({})", self.segments.len()))?;
+        if self.segments.len() > Self::LONGEST {
+            let spans = self.segments.iter().map(|segment| segment.end_deg - segment.start_deg);
+            let (least, most) =
+                spans.fold((f64::INFINITY, 0.0), |(least, most): (f64, f64), span| (least.min(span), most.max(span)));
+            let (least, most) = (significant(least, 6), significant(most, 6));
+            return writeln!(page, "  spans from {least} to {most} degrees; --json lists them");
+        }
+        writeln!(page, "{:>12}{:>12}  {:<12}{:>16}{:>16}", "from deg", "to deg", "law", "lowest m", "highest m")?;
+        for segment in &self.segments {
+            let [low, high] = segment.lift_m.map(|lift| significant(lift, 9));
+            let SegmentEntry { start_deg, end_deg, law, .. } = segment;
+            writeln!(page, "{start_deg:>12.6}{end_deg:>12.6}  {law:<12}{low:>16}{high:>16}")?;
+        }
+        Ok(())
+    }
+
+    fn write_corners(&self, page: &mut String) -> fmt::Result {
+        heading(page, &format!("Corners ({})", self.corners.len()))?;
+        if self.corners.is_empty() {
+            let words = "No derivative of the lift up to order";
+            return writeln!(page, "  {words} {} jumps as far as can be told.", self.highest_order);
+        }
+        let words = "order: of the lowest derivative of the lift that jumps (1 velocity, 2 acceleration, 3 jerk); jump: of \
+                     that derivative, after less before, m/rad^order; slopes in m/rad.";
+        paragraph(page, words)?;
+        writeln!(page)?;
+        let of_order = |order: usize| self.corners.iter().filter(move |corner| corner.jump_order == order);
+        let long: Vec<usize> =
+            (1..=self.highest_order).filter(|order| of_order(*order).count() > Self::LONGEST).collect();
+        let lines: Vec<_> = self.corners.iter().filter(|corner| !long.contains(&corner.jump_order)).collect();
+        if !lines.is_empty() {
+            let (angle, before, after) = ("angle deg", "slope before", "slope after");
+            writeln!(page, "{angle:>12}  order{:>16}{:>16}{before:>16}{after:>16}", "jump", "lift m")?;
+        }
+        for corner in lines {
+            let CornerEntry { angle_deg, jump_order, .. } = corner;
+            write!(page, "{angle_deg:>12.6}{jump_order:>7}")?;
+            for number in [corner.jump, corner.lift_m, corner.slope_before, corner.slope_after] {
+                write!(page, "{:>16}", short(number))?;
+            }
+            writeln!(page)?;
+        }
+        for order in long {
+            let Some(largest) = of_order(order).max_by(|a, b| a.jump.abs().total_cmp(&b.jump.abs())) else { continue };
+            let (count, jump) = (of_order(order).count(), short(largest.jump));
+            writeln!(page, "  {count} of order {order}, the largest jump {jump} at {:.6} deg", largest.angle_deg)?;
+        }
+        Ok(())
+    }
+}
+
+/// Nine digits, or six with an exponent where zeros would take their place.
+fn short(number: f64) -> String {
+    match number.abs() {
+        // Without the sign of a zero.
+        0.0 => "0".into(),
+        1e-4..1e9 => significant(number, 9),
+        _ => format!("{number:.5e}"),
+    }
+}
