@@ -1,7 +1,11 @@
-//! One document value, several renderers. No renderer computes anything but how many digits to show.
+//! One document value, several renderers, and one figure value, two renderers. No renderer computes anything but how many
+//! digits to show; [`file`] is how any of it reaches a disk.
 
 pub mod claims;
 pub mod document;
+pub mod figure;
+pub mod figures;
+pub mod file;
 pub mod json;
 pub mod text;
 
