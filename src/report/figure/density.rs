@@ -15,6 +15,8 @@ const KEPT: usize = 4096;
 const GROWTH: f64 = 1024.0;
 
 /// How many points fell into each cell of a grid over fixed ranges; points may be pushed for ever.
+///
+/// The finer the ranges fit what is shown, the finer it is drawn: [`Cloud`] finds the vertical one by itself.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Density {
     x: [f64; 2],
@@ -115,8 +117,8 @@ impl Density {
     pub fn shades(&self, spread: bool) -> Vec<u8> {
         let mut counts: Vec<u32> = self.counts.iter().copied().filter(|count| *count > 0).collect();
         counts.sort_unstable();
-        // The densest hundredth may not push all the rest into the faintest shade.
-        let full = f64::from(counts.get(counts.len().saturating_sub(1 + counts.len() / 100)).copied().unwrap_or(1));
+        // Periodic motions fall into few cells many times: the densest tenth may not push the rest into the faintest shade.
+        let full = f64::from(counts.get(counts.len().saturating_sub(1 + counts.len() / 10)).copied().unwrap_or(1));
         let shade = |count: u32| {
             let share = f64::from(count).ln_1p() / full.max(2.0).ln_1p();
             if count == 0 { 0 } else { ((share * f64::from(SHADES)) as u8).clamp(1, SHADES) }

@@ -22,6 +22,8 @@ const LINE: f64 = 16.0;
 const EDGE: f64 = 12.0;
 const GAP: f64 = 6.0;
 const LEADER: f64 = 14.0;
+/// Stands in, without ticks, for a range that nothing tells.
+const UNKNOWN: [f64; 2] = [0.0, 1.0];
 
 /// A rectangle of the page.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -160,20 +162,21 @@ fn extent(panel: &Panel, direction: usize) -> Option<[f64; 2]> {
     })
 }
 
-fn vertical_range(panel: &Panel) -> [f64; 2] {
-    valid(panel.y.range).unwrap_or_else(|| {
+/// Nothing where there is neither a range nor data.
+fn vertical_range(panel: &Panel) -> Option<[f64; 2]> {
+    valid(panel.y.range).or_else(|| {
         let data = extent(panel, 1);
         let marks = panel.marks.iter().map(|mark| mark.at).filter(|at| at.abs() < LARGEST);
         let both = marks.fold(data, |found, at| found.map(|[low, high]| [low.min(at), high.max(at)]));
-        both.map_or([0.0, 1.0], |range| widened(range, 0.05))
+        both.map(|range| widened(range, 0.07))
     })
 }
 
-fn horizontal_range(figure: &Figure) -> [f64; 2] {
-    valid(figure.x.range).unwrap_or_else(|| {
+fn horizontal_range(figure: &Figure) -> Option<[f64; 2]> {
+    valid(figure.x.range).or_else(|| {
         let data = figure.panels.iter().filter_map(|panel| extent(panel, 0));
         let both = data.reduce(|[low, high], [least, most]| [low.min(least), high.max(most)]);
-        both.map_or([0.0, 1.0], |range| widened(range, 0.02))
+        both.map(|range| widened(range, 0.02))
     })
 }
 
@@ -183,13 +186,15 @@ fn name(axis: &Axis, exponent: i32) -> String {
     if unit.is_empty() { axis.label.clone() } else { format!("{} ({unit})", axis.label) }
 }
 
-fn vertical_ticks(panel: &Panel, range: [f64; 2], height: f64) -> ticks::Ticks {
+fn vertical_ticks(panel: &Panel, range: Option<[f64; 2]>, height: f64) -> ticks::Ticks {
+    let Some(range) = range else { return ticks::Ticks::default() };
     ticks(range, panel.y.spacing, (height / 30.0) as usize, |ticks| {
         ticks.windows(2).all(|pair| height * (share(pair[1].at, range) - share(pair[0].at, range)) >= LINE)
     })
 }
 
-fn horizontal_ticks(axis: &Axis, range: [f64; 2], across: f64) -> ticks::Ticks {
+fn horizontal_ticks(axis: &Axis, range: Option<[f64; 2]>, across: f64) -> ticks::Ticks {
+    let Some(range) = range else { return ticks::Ticks::default() };
     let half = |tick: &Tick| width(&tick.label, TEXT) / 2.0;
     ticks(range, axis.spacing, (across / 44.0) as usize, |ticks| {
         ticks.windows(2).all(|pair| {
@@ -303,7 +308,8 @@ impl Layout {
             .zip(&heights)
             .map(|((panel, range), height)| vertical_ticks(panel, *range, *height))
             .collect();
-        let range = horizontal_range(figure);
+        let known = horizontal_range(figure);
+        let range = known.unwrap_or(UNKNOWN);
         let widest = vertical.iter().flat_map(|ticks| &ticks.ticks).map(|tick| width(&tick.label, TEXT));
         let left = EDGE + widest.fold(20.0, f64::max) + 9.0;
         let labels = figure.panels.iter().flat_map(|panel| &panel.marks).filter(|mark| !mark.label.is_empty());
@@ -315,7 +321,7 @@ impl Layout {
         };
         let right = WIDTH - EDGE - right.max(overhang(WIDTH - left - right - EDGE));
         let across = (right - left).max(0.3 * WIDTH);
-        let horizontal = horizontal_ticks(&figure.x, range, across);
+        let horizontal = horizontal_ticks(&figure.x, known, across);
 
         let mut y = EDGE;
         let mut down = |by: f64| {
@@ -323,27 +329,35 @@ impl Layout {
             y
         };
         let title = lines(&figure.title, TITLE, WIDTH - 2.0 * EDGE);
-        let title = title.into_iter().map(|text| Text { at: [EDGE, down(TITLE + 4.0) - 4.0], text }).collect();
+        let title = title.into_iter().map(|text| Text { at: [EDGE, down(TITLE + 4.0) - 4.0], text });
+        let title: Vec<Text> = title.collect();
+        down(if title.is_empty() { 0.0 } else { GAP });
         let mut panels = Vec::new();
         let mut marks = Vec::new();
         for (index, panel) in figure.panels.iter().enumerate() {
-            let (range_y, ticks) = (ranges[index], &vertical[index]);
+            let (range_y, ticks) = (ranges[index].unwrap_or(UNKNOWN), &vertical[index]);
             let name = name(&panel.y, ticks.exponent);
             let (entries, rows) = legend(panel, &name, left, left + across);
-            let base = down(LINE + 4.0) - 4.0;
-            let name = Text { at: [EDGE, base], text: name };
+            let mut base = down(LINE + 4.0) - 4.0;
             down((rows - 1) as f64 * LINE + GAP);
+            if index == 0 {
+                let frame = Frame { left, top: 0.0, width: across, height: heights[0] };
+                let (lines, mut rows) = above(&figure.marks, range, &frame);
+                let first = lines.iter().filter_map(|line| line.label.as_ref()).map(|label| label.at[0]);
+                // The axis's name moves into the lowest row of labels where it has room.
+                if rows > 0 && entries.is_empty() && first.fold(WIDTH, f64::min) > EDGE + width(&name, TEXT) + GAP {
+                    rows -= 1;
+                    base += rows as f64 * LINE;
+                }
+                let top = down(rows as f64 * LINE);
+                marks = above(&figure.marks, range, &Frame { top, ..frame }).0;
+            }
+            let name = Text { at: [EDGE, base], text: name };
             let entry = |(series, [x, row]): (usize, [f64; 2])| {
                 let at = [x + SAMPLE + GAP, base + row * LINE];
                 (series, Text { at, text: panel.series[series].label.clone() })
             };
             let legend = entries.into_iter().map(entry).collect();
-            if index == 0 {
-                let frame = Frame { left, top: 0.0, width: across, height: heights[0] };
-                let (_, rows) = above(&figure.marks, range, &frame);
-                let top = down(rows as f64 * LINE);
-                marks = above(&figure.marks, range, &Frame { top, ..frame }).0;
-            }
             let frame = Frame { left, top: down(0.0), width: across, height: heights[index] };
             down(heights[index] + GAP);
             panels.push(PanelLayout {

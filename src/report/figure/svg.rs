@@ -48,7 +48,7 @@ pub(super) fn write(figure: &Figure, dense: Dense) -> Result<String, fmt::Error>
         writeln!(out, r#"<text x="{}" y="{}" font-size="{TITLE}">{}</text>"#, number(*x), number(*y), escaped(text))?;
     }
     for (panel, place) in figure.panels.iter().zip(&layout.panels) {
-        self::panel(&mut out, figure, panel, &layout, place, dense)?;
+        self::panel(&mut out, panel, &layout, place, dense)?;
     }
     for mark in layout.marks.iter().filter(|mark| mark.inside) {
         leader(&mut out, mark, &layout)?;
@@ -85,7 +85,6 @@ fn style(out: &mut String) -> fmt::Result {
 
 fn panel(
     out: &mut String,
-    figure: &Figure,
     panel: &Panel,
     layout: &Layout,
     place: &super::layout::PanelLayout,
@@ -140,8 +139,7 @@ fn panel(
     }
     if place.empty {
         let (x, y) = (number(frame.left + frame.width / 2.0), number(frame.top + frame.height / 2.0));
-        let none = if figure.panels.len() > 1 { "no data in this panel" } else { "no data" };
-        writeln!(out, r#"<text x="{x}" y="{y}" text-anchor="middle">{none}</text>"#)?;
+        writeln!(out, r#"<text x="{x}" y="{y}" text-anchor="middle">no data</text>"#)?;
     }
     Ok(())
 }
@@ -276,7 +274,7 @@ impl Page {
     }
 
     fn line(&self, out: &mut String, points: &[[f64; 2]], how: Stroke, colour: Colour, filled: bool) -> fmt::Result {
-        let strokes = thin::strokes(points.iter().map(|point| self.at(*point)));
+        let strokes = thin::strokes(points.iter().map(|point| self.at(*point)), MOST_POINTS);
         if strokes.iter().map(Vec::len).sum::<usize>() > MOST_POINTS {
             let mut grid = Density::new(self.x, self.y);
             for pair in points.windows(2).filter(|pair| pair.iter().all(|point| !self.at(*point)[0].is_nan())) {
@@ -401,5 +399,5 @@ impl Page {
 
 /// Of a shade: the faintest is still seen in print.
 fn opacity(shade: u8) -> f64 {
-    0.35 + 0.65 * f64::from(shade - 1) / f64::from(SHADES - 1)
+    0.4 + 0.6 * f64::from(shade - 1) / f64::from(SHADES - 1)
 }

@@ -1,45 +1,102 @@
 //! Lines with no more points than print can show.
 
-/// Half a unit of the page: points in one such column are shown by the first, lowest, highest and last of them.
+/// How far a thinned line may be from the points left out, in units of the page: a tenth of a thin line's width.
+const CLOSE: f64 = 0.08;
+/// Half a unit of the page: of a line that is still too long, each such column keeps the first, lowest, highest and last.
 const COLUMN: f64 = 0.5;
 
 /// The runs of a line between its breaks, thinned; points are on the page, and what is not a number breaks the line.
-pub fn strokes(points: impl IntoIterator<Item = [f64; 2]>) -> Vec<Vec<[f64; 2]>> {
-    let mut strokes = Vec::new();
-    let mut stroke = Vec::new();
-    let mut column: Vec<[f64; 2]> = Vec::new();
+///
+/// A line that winds on with more than `most` points is thinned by columns as well, and may still have more.
+pub fn strokes(points: impl IntoIterator<Item = [f64; 2]>, most: usize) -> Vec<Vec<[f64; 2]>> {
+    let mut strokes = vec![Vec::new()];
     for point in points {
-        let broken = point.iter().any(|part| part.is_nan());
-        let same = column.first().is_some_and(|first| (first[0] / COLUMN).floor() == (point[0] / COLUMN).floor());
-        if broken || !same {
-            stroke.append(&mut column);
-        }
-        if broken {
-            finish(&mut strokes, &mut stroke);
-        } else if column.len() < 4 {
-            column.push(point);
-        } else {
-            merge(&mut column, point);
+        if point.iter().any(|part| part.is_nan()) {
+            strokes.push(Vec::new());
+        } else if let Some(stroke) = strokes.last_mut() {
+            stroke.push(point);
         }
     }
-    stroke.append(&mut column);
-    finish(&mut strokes, &mut stroke);
-    strokes
+    strokes.retain(|stroke| !stroke.is_empty());
+    let close: Vec<_> = strokes.iter().map(|stroke| close(stroke)).collect();
+    let long = close.iter().map(Vec::len).sum::<usize>() > most;
+    if long { strokes.iter().map(|stroke| columns(stroke)).collect() } else { close }
 }
 
-fn finish(strokes: &mut Vec<Vec<[f64; 2]>>, stroke: &mut Vec<[f64; 2]>) {
-    // Points in one place are one point.
-    stroke.dedup();
-    if !stroke.is_empty() {
-        strokes.push(std::mem::take(stroke));
+/// The line with the points left out that it passes anyway: from each point that stays, the next is the farthest that is
+/// seen through the gates, [`CLOSE`] to either side, around all points between (Zhao and Saalfeld's sleeve).
+fn close(stroke: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let Some((first, rest)) = stroke.split_first() else { return Vec::new() };
+    let mut kept = vec![*first];
+    let mut anchor = *first;
+    let mut last = *first;
+    let mut sleeve: Option<Sleeve> = None;
+    for point in rest {
+        let fits = match &mut sleeve {
+            None => true,
+            Some(sleeve) => sleeve.admits(anchor, *point),
+        };
+        if !fits {
+            kept.push(last);
+            anchor = last;
+            sleeve = None;
+        }
+        if sleeve.is_none() {
+            sleeve = Sleeve::towards(anchor, *point);
+        }
+        last = *point;
+    }
+    if last != anchor {
+        kept.push(last);
+    }
+    kept
+}
+
+/// Directions in which a straight line passes all points so far.
+struct Sleeve {
+    /// Along the first of them.
+    along: [f64; 2],
+    /// Lowest and highest angle from there.
+    gate: [f64; 2],
+    /// Distance of the farthest.
+    reach: f64,
+}
+
+impl Sleeve {
+    fn towards(anchor: [f64; 2], point: [f64; 2]) -> Option<Self> {
+        let along = [point[0] - anchor[0], point[1] - anchor[1]];
+        let reach = along[0].hypot(along[1]);
+        let open = (CLOSE / reach).min(1.0).asin();
+        (reach > CLOSE).then_some(Self { along, gate: [-open, open], reach })
+    }
+
+    fn admits(&mut self, anchor: [f64; 2], point: [f64; 2]) -> bool {
+        let to = [point[0] - anchor[0], point[1] - anchor[1]];
+        let distance = to[0].hypot(to[1]);
+        let cross = self.along[0] * to[1] - self.along[1] * to[0];
+        let angle = cross.atan2(self.along[0] * to[0] + self.along[1] * to[1]);
+        let [low, high] = self.gate;
+        // A line that turns back leaves its farthest point.
+        if distance < self.reach || angle < low || angle > high {
+            return false;
+        }
+        let open = (CLOSE / distance).min(1.0).asin();
+        self.gate = [low.max(angle - open), high.min(angle + open)];
+        self.reach = distance;
+        true
     }
 }
 
-/// Adds a point to a full column: the first and the last stay, of those between only the extremes, in their order.
-fn merge(column: &mut Vec<[f64; 2]>, point: [f64; 2]) {
-    let between = [column[1], column[2], column[3]];
-    let lowest = (0..3).fold(0, |best, at| if between[at][1] < between[best][1] { at } else { best });
-    let highest = (0..3).fold(0, |best, at| if between[at][1] > between[best][1] { at } else { best });
-    let (one, other) = (lowest.min(highest), lowest.max(highest));
-    *column = vec![column[0], between[one], between[other], point];
+fn columns(stroke: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let mut thinned = Vec::new();
+    for column in stroke.chunk_by(|one, other| (one[0] / COLUMN).floor() == (other[0] / COLUMN).floor()) {
+        let extreme = |better: fn(f64, f64) -> bool| {
+            (0..column.len()).fold(0, |best, at| if better(column[at][1], column[best][1]) { at } else { best })
+        };
+        let (lowest, highest) = (extreme(|one, other| one < other), extreme(|one, other| one > other));
+        let mut kept = [0, lowest.min(highest), lowest.max(highest), column.len() - 1].map(|at| column[at]).to_vec();
+        kept.dedup();
+        thinned.append(&mut kept);
+    }
+    thinned
 }

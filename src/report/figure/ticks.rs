@@ -32,7 +32,7 @@ pub struct Tick {
 }
 
 /// The ticks of one axis.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Ticks {
     /// From low to high.
     pub ticks: Vec<Tick>,
@@ -46,7 +46,7 @@ pub fn ticks(range: [f64; 2], spacing: Spacing, most: usize, fits: impl Fn(&[Tic
     let span = high - low;
     let exponent = exponent(low.abs().max(high.abs()));
     if !(span > 0.0 && span.is_finite()) {
-        return Ticks { ticks: Vec::new(), exponent: 0 };
+        return Ticks::default();
     }
     let (most, mut step) = (most.max(2) as f64, first_step(span / most.max(2) as f64, spacing));
     loop {

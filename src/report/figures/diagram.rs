@@ -11,7 +11,7 @@ pub struct Diagram<'a> {
     pub title: &'a str,
     /// Speeds in rpm across; impact phases in degrees, or positions in m, up.
     pub points: Density,
-    /// The part of the vertical range to show; all of it where there is none.
+    /// The vertical range to show; that of the points where there is none.
     pub shown: Option<[f64; 2]>,
     /// The cam's corners; only the impact diagram draws them.
     pub corners: &'a [CornerMark],
