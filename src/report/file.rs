@@ -155,8 +155,11 @@ fn begin<'a>(path: &Path) -> Result<Sink<'a>, FileError> {
         let missing = format!("there is no folder {}", folder.display());
         return Err(refuse(io::Error::new(io::ErrorKind::NotFound, missing)));
     }
+    let Some(name) = target.file_name() else {
+        return Err(refuse(io::Error::new(io::ErrorKind::InvalidInput, "it names no file")));
+    };
     let mut prefix = OsString::from(".");
-    prefix.push(target.file_name().unwrap_or_default());
+    prefix.push(name);
     prefix.push(".");
     let mut builder = tempfile::Builder::new();
     builder.prefix(&prefix).suffix(".tmp");

@@ -59,12 +59,11 @@ impl Density {
         }
     }
 
-    /// Counts every cell that the straight line between two points runs through.
-    pub fn join(&mut self, from: [f64; 2], to: [f64; 2]) {
+    /// Counts every cell that the straight line between two points runs through; of a long line `most` of them, evenly.
+    pub fn join(&mut self, from: [f64; 2], to: [f64; 2], most: usize) {
         let wide = (to[0] - from[0]).abs() / (self.x[1] - self.x[0]) * self.columns as f64;
         let high = (to[1] - from[1]).abs() / (self.y[1] - self.y[0]) * self.rows as f64;
-        // Lines that leave the grid are cut where the grid ends: a step is never shorter than a cell of it.
-        let steps = wide.max(high).clamp(1.0, 4.0 * (self.columns + self.rows) as f64).ceil();
+        let steps = wide.max(high).min(most as f64).max(1.0).ceil();
         for step in 0..steps as usize {
             let share = (step as f64 + 0.5) / steps;
             self.push(from[0] + share * (to[0] - from[0]), from[1] + share * (to[1] - from[1]));

@@ -7,6 +7,7 @@
 pub mod density;
 pub mod layout;
 pub mod png;
+mod series;
 pub mod svg;
 pub mod thin;
 pub mod ticks;

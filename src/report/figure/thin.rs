@@ -1,7 +1,7 @@
 //! Lines with no more points than print can show.
 
-/// How far a thinned line may be from the points left out, in units of the page: a tenth of a thin line's width.
-const CLOSE: f64 = 0.08;
+/// How far a thinned line may be from the points left out, in units of the page: a thirtieth of a thin line.
+const CLOSE: f64 = 0.03;
 /// Half a unit of the page: of a line that is still too long, each such column keeps the first, lowest, highest and last.
 const COLUMN: f64 = 0.5;
 
