@@ -25,7 +25,7 @@
 //!    ▼
 //!  claims                the paper's statements, one by one: holds, misprint, refuted, open
 //!    ▼
-//!  report                document values; text, JSON, Markdown
+//!  report                document values; text, JSON, Markdown; figures: SVG, PNG
 //!    ▼
 //!  cli                   parse, one library call, exit code
 //! ```

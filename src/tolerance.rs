@@ -87,6 +87,9 @@ table! {
     IDENTITY = 1e-12, "of the terms: a few hundred roundings";
     /// How little a settled motion may move from one revolution to the next, m.
     SETTLED = 1e-9, "absolute: far below any amplitude, far above the rounding of a thousand revolutions";
+    /// From which span an axis of a figure shows its values apart.
+    DRAWN_SPAN = 1e-9, "of the values: labels of ticks that differ in the tenth digit cannot be read, and rounding would draw \
+        itself";
     /// When a quantity that a change of coordinates divides by counts as zero.
     DEGENERATE = 1e-10, "of the terms it is made of: the quotient would keep fewer than six digits";
 }

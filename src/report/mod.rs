@@ -1,8 +1,12 @@
-//! One document value, several renderers. No renderer computes anything but how many digits to show.
+//! One document value, several renderers, and one figure value, two renderers. No renderer computes anything but how many
+//! digits to show; [`file`] is how any of it reaches a disk.
 
 pub mod cam;
 pub mod claims;
 pub mod document;
+pub mod figure;
+pub mod figures;
+pub mod file;
 pub mod json;
 pub mod text;
 

@@ -1,0 +1,211 @@
+//! Points counted on a grid finer than print: any number of them in bounded memory.
+
+use serde::{Serialize, Serializer};
+
+/// Cells across and up: three to a unit of a full-width figure, about 300 to the inch in print.
+const CELLS: [usize; 2] = [1800, 1200];
+
+/// How many shades a cell may have.
+pub const SHADES: u8 = 5;
+
+/// How many points are kept before a range is chosen for them.
+const KEPT: usize = 4096;
+
+/// The grid never covers more than this many times the range that it started with.
+const GROWTH: f64 = 1024.0;
+
+/// How many points fell into each cell of a grid over fixed ranges; points may be pushed for ever.
+///
+/// The finer the ranges fit what is shown, the finer it is drawn: [`Cloud`] finds the vertical one by itself.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Density {
+    x: [f64; 2],
+    y: [f64; 2],
+    columns: usize,
+    rows: usize,
+    /// `[cell, count]` where there are any; a cell is its row, from below, times the columns, plus its column.
+    #[serde(serialize_with = "occupied")]
+    counts: Vec<u32>,
+    outside: u64,
+}
+
+fn occupied<S: Serializer>(counts: &[u32], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(counts.iter().enumerate().filter(|(_, count)| **count > 0))
+}
+
+/// Where `value` lies in `range`, of one; nothing outside it, nor what is not a number.
+fn share(value: f64, [low, high]: [f64; 2]) -> Option<f64> {
+    let share = (value - low) / (high - low);
+    (0.0..=1.0).contains(&share).then_some(share)
+}
+
+impl Density {
+    /// An empty grid over these ranges, the lower end first. Nothing falls into a grid whose ranges are none.
+    pub fn new(x: [f64; 2], y: [f64; 2]) -> Self {
+        let [columns, rows] = CELLS;
+        Self { x, y, columns, rows, counts: vec![0; columns * rows], outside: 0 }
+    }
+
+    /// Counts a point; one outside the ranges is only counted as such.
+    pub fn push(&mut self, x: f64, y: f64) {
+        match share(x, self.x).zip(share(y, self.y)) {
+            Some((right, up)) => {
+                let column = ((right * self.columns as f64) as usize).min(self.columns - 1);
+                let row = ((up * self.rows as f64) as usize).min(self.rows - 1);
+                let count = &mut self.counts[row * self.columns + column];
+                *count = count.saturating_add(1);
+            }
+            None => self.outside += 1,
+        }
+    }
+
+    /// Counts every cell that the straight line between two points runs through; of a long line `most` of them, evenly.
+    pub fn join(&mut self, from: [f64; 2], to: [f64; 2], most: usize) {
+        let wide = (to[0] - from[0]).abs() / (self.x[1] - self.x[0]) * self.columns as f64;
+        let high = (to[1] - from[1]).abs() / (self.y[1] - self.y[0]) * self.rows as f64;
+        let steps = wide.max(high).min(most as f64).max(1.0).ceil();
+        for step in 0..steps as usize {
+            let share = (step as f64 + 0.5) / steps;
+            self.push(from[0] + share * (to[0] - from[0]), from[1] + share * (to[1] - from[1]));
+        }
+    }
+
+    /// Adds the counts of a grid over the same ranges; a grid over others is refused (`false`).
+    pub fn add(&mut self, other: &Self) -> bool {
+        let same = self.x == other.x && self.y == other.y && self.counts.len() == other.counts.len();
+        if same {
+            for (count, more) in self.counts.iter_mut().zip(&other.counts) {
+                *count = count.saturating_add(*more);
+            }
+            self.outside += other.outside;
+        }
+        same
+    }
+
+    /// The ranges that it covers, across and up.
+    pub fn ranges(&self) -> [[f64; 2]; 2] {
+        [self.x, self.y]
+    }
+
+    /// Columns and rows.
+    pub fn cells(&self) -> [usize; 2] {
+        [self.columns, self.rows]
+    }
+
+    /// How many cells have a point.
+    pub fn occupied(&self) -> usize {
+        self.counts.iter().filter(|count| **count > 0).count()
+    }
+
+    /// How many points were outside the ranges or not numbers.
+    pub fn outside(&self) -> u64 {
+        self.outside
+    }
+
+    /// The lowest and highest of the rows that have points, as values; nothing where none has.
+    pub fn extent(&self) -> Option<[f64; 2]> {
+        let has =
+            |row: &usize| self.counts[row * self.columns..(row + 1) * self.columns].iter().any(|count| *count > 0);
+        let (low, high) = ((0..self.rows).find(has)?, (0..self.rows).rev().find(has)?);
+        let at = |row: usize| self.y[0] + (self.y[1] - self.y[0]) * row as f64 / self.rows as f64;
+        Some([at(low), at(high + 1)])
+    }
+
+    /// A shade for each cell, rows from below: 0 for none, else 1 to [`SHADES`] with the logarithm of the count. With
+    /// `spread`, a point also shades the eight cells around it, so that single points are still seen in print.
+    pub fn shades(&self, spread: bool) -> Vec<u8> {
+        let mut counts: Vec<u32> = self.counts.iter().copied().filter(|count| *count > 0).collect();
+        counts.sort_unstable();
+        // Periodic motions fall into few cells many times: the densest tenth may not push the rest into the faintest shade.
+        let full = f64::from(counts.get(counts.len().saturating_sub(1 + counts.len() / 10)).copied().unwrap_or(1));
+        let shade = |count: u32| {
+            let share = f64::from(count).ln_1p() / full.max(2.0).ln_1p();
+            if count == 0 { 0 } else { ((share * f64::from(SHADES)) as u8).clamp(1, SHADES) }
+        };
+        let mut shades: Vec<u8> = self.counts.iter().map(|count| shade(*count)).collect();
+        if spread {
+            let width = self.columns;
+            let of = |cells: &[u8], at: usize, step: usize, first: bool, last: bool| {
+                let before = if first { 0 } else { cells[at - step] };
+                let after = if last { 0 } else { cells[at + step] };
+                cells[at].max(before).max(after)
+            };
+            let across: Vec<u8> =
+                (0..shades.len()).map(|at| of(&shades, at, 1, at % width == 0, at % width == width - 1)).collect();
+            let up = |at: usize| of(&across, at, width, at < width, at + width >= across.len());
+            shades = (0..across.len()).map(up).collect();
+        }
+        shades
+    }
+
+    /// Twice the range upwards or downwards at half the resolution, so that `y` comes nearer.
+    fn double(&mut self, upwards: bool) {
+        let span = self.y[1] - self.y[0];
+        let mut counts = vec![0_u32; self.counts.len()];
+        let shift = if upwards { 0 } else { self.rows / 2 };
+        for (at, count) in self.counts.iter().enumerate() {
+            let (row, column) = (at / self.columns, at % self.columns);
+            let into = &mut counts[(row / 2 + shift) * self.columns + column];
+            *into = into.saturating_add(*count);
+        }
+        self.counts = counts;
+        if upwards { self.y[1] += span } else { self.y[0] -= span }
+    }
+}
+
+/// Points whose vertical range is not known beforehand: a [`Density`] that starts from the first few thousand and grows.
+#[derive(Clone, Debug)]
+pub struct Cloud {
+    x: [f64; 2],
+    kept: Vec<[f64; 2]>,
+    grid: Option<(Density, f64)>,
+}
+
+impl Cloud {
+    /// No points yet; `x` is the horizontal range.
+    pub fn new(x: [f64; 2]) -> Self {
+        Self { x, kept: Vec::new(), grid: None }
+    }
+
+    /// Counts a point.
+    pub fn push(&mut self, x: f64, y: f64) {
+        if self.grid.is_none() {
+            self.kept.push([x, y]);
+            if self.kept.len() >= KEPT {
+                self.settle();
+            }
+        } else if let Some((grid, first_span)) = &mut self.grid {
+            let [low, high] = grid.y;
+            let reach = GROWTH * *first_span;
+            if y > low - reach && y < high + reach {
+                while (y > grid.y[1] || y < grid.y[0]) && grid.y[1] - grid.y[0] < reach {
+                    grid.double(y > grid.y[1]);
+                }
+            }
+            grid.push(x, y);
+        }
+    }
+
+    /// The grid of every point so far.
+    pub fn finish(mut self) -> Density {
+        self.settle();
+        self.grid.map_or_else(|| Density::new(self.x, [0.0, 1.0]), |(grid, _)| grid)
+    }
+
+    /// Chooses a range from the points kept, with a little room.
+    fn settle(&mut self) {
+        if self.grid.is_some() {
+            return;
+        }
+        let drawn = self.kept.iter().map(|[_, y]| *y).filter(|y| y.abs() < super::layout::LARGEST);
+        let extent = drawn.fold(None, |extent: Option<[f64; 2]>, y| {
+            Some(extent.map_or([y, y], |[low, high]| [low.min(y), high.max(y)]))
+        });
+        let range = super::layout::widened(extent.unwrap_or([0.0, 1.0]), 0.02);
+        let mut grid = Density::new(self.x, range);
+        for [x, y] in std::mem::take(&mut self.kept) {
+            grid.push(x, y);
+        }
+        self.grid = Some((grid, range[1] - range[0]));
+    }
+}

@@ -1,0 +1,383 @@
+//! Where everything of a figure stands on the page, so that no label covers another.
+//!
+//! The page is [`WIDTH`] units wide and as high as it needs to be. Widths of letters are guessed on the safe side: an SVG
+//! is read with whatever sans-serif font there is.
+
+use super::ticks::{self, Tick, ticks};
+use super::{Axis, Data, Figure, Mark, Panel};
+use crate::tolerance;
+
+/// Width of the page.
+pub const WIDTH: f64 = 720.0;
+/// Height of most letters.
+pub const TEXT: f64 = 12.5;
+/// Height of the title's letters.
+pub const TITLE: f64 = 15.0;
+/// Width of a sample in a legend.
+pub const SAMPLE: f64 = 24.0;
+/// Values of this size and above are not drawn: differences of them would overflow.
+pub const LARGEST: f64 = 1e300;
+
+const LINE: f64 = 16.0;
+const EDGE: f64 = 12.0;
+const GAP: f64 = 6.0;
+const LEADER: f64 = 14.0;
+/// Stands in, without ticks, for a range that nothing tells.
+const UNKNOWN: [f64; 2] = [0.0, 1.0];
+
+/// A rectangle of the page.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// Its left edge.
+    pub left: f64,
+    /// Its upper edge.
+    pub top: f64,
+    /// Its width.
+    pub width: f64,
+    /// Its height.
+    pub height: f64,
+}
+
+impl Frame {
+    /// Its right edge.
+    pub fn right(&self) -> f64 {
+        self.left + self.width
+    }
+
+    /// Its lower edge.
+    pub fn bottom(&self) -> f64 {
+        self.top + self.height
+    }
+}
+
+/// A line of text whose left end is on its base line at `at`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Text {
+    /// Where it starts.
+    pub at: [f64; 2],
+    /// What it says.
+    pub text: String,
+}
+
+/// A reference line with its label.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MarkLine {
+    /// Where it crosses its axis, on the page.
+    pub at: f64,
+    /// Whether it is within the axis.
+    pub inside: bool,
+    /// Its label, where it has one.
+    pub label: Option<Text>,
+}
+
+/// One panel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PanelLayout {
+    /// Where its data are drawn.
+    pub frame: Frame,
+    /// Ends of its vertical axis.
+    pub range: [f64; 2],
+    /// Its ticks.
+    pub ticks: Vec<Tick>,
+    /// Its vertical axis's name.
+    pub name: Text,
+    /// Where the samples of its legend stand, by the index of the series, with their names.
+    pub legend: Vec<(usize, Text)>,
+    /// Its horizontal lines.
+    pub marks: Vec<MarkLine>,
+    /// Whether nothing in it can be drawn.
+    pub empty: bool,
+}
+
+/// Where everything stands.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layout {
+    /// Height of the page.
+    pub height: f64,
+    /// Lines of the title.
+    pub title: Vec<Text>,
+    /// Ends of the horizontal axis.
+    pub range: [f64; 2],
+    /// Ticks of the horizontal axis.
+    pub ticks: Vec<Tick>,
+    /// The horizontal axis's name.
+    pub name: Text,
+    /// Vertical lines.
+    pub marks: Vec<MarkLine>,
+    /// The panels.
+    pub panels: Vec<PanelLayout>,
+    /// Lines of the note.
+    pub note: Vec<Text>,
+}
+
+/// How wide a text is, on the safe side.
+pub fn width(text: &str, size: f64) -> f64 {
+    let letter = |letter: char| match letter {
+        'i' | 'j' | 'l' | '.' | ',' | ':' | ';' | '\'' | '|' | '!' => 0.34,
+        ' ' | '(' | ')' | 'f' | 't' | 'r' | 'I' | '/' | '°' => 0.45,
+        'm' | 'w' | 'M' | 'W' | '−' | '=' | '+' => 0.95,
+        letter if letter.is_uppercase() => 0.74,
+        _ => 0.62,
+    };
+    size * text.chars().map(letter).sum::<f64>()
+}
+
+/// A range with room beside it, a share of its span; one that is a single value is given a span.
+pub fn widened([low, high]: [f64; 2], room: f64) -> [f64; 2] {
+    let size = low.abs().max(high.abs());
+    if high - low > tolerance::DRAWN_SPAN.value * size {
+        let room = room * (high - low);
+        return [low - room, high + room];
+    }
+    let room = if size > 0.0 { 0.05 * size } else { 1.0 };
+    [low - room, high + room]
+}
+
+/// The share of a range at which a value lies; not a number where there is nothing to draw.
+pub fn share(value: f64, [low, high]: [f64; 2]) -> f64 {
+    if value.abs() < LARGEST { (value - low) / (high - low) } else { f64::NAN }
+}
+
+fn valid(range: Option<[f64; 2]>) -> Option<[f64; 2]> {
+    range
+        .filter(|[low, high]| low.abs() < LARGEST && high.abs() < LARGEST && low < high)
+        .filter(|range| widened(*range, 0.0) == *range)
+}
+
+/// The extent of what can be drawn of a panel's series in one direction.
+fn extent(panel: &Panel, direction: usize) -> Option<[f64; 2]> {
+    let join = |one: Option<[f64; 2]>, low: f64, high: f64| {
+        Some(one.map_or([low, high], |[least, most]| [least.min(low), most.max(high)]))
+    };
+    let drawable = |point: &&[f64; 2]| point.iter().all(|part| part.abs() < LARGEST);
+    panel.series.iter().fold(None, |found, series| match &series.data {
+        Data::Line { points, .. } | Data::Area { points, .. } | Data::Points { points, .. } => {
+            points.iter().filter(drawable).fold(found, |found, point| join(found, point[direction], point[direction]))
+        }
+        Data::Density(density) if density.occupied() > 0 => {
+            let [low, high] = density.ranges()[direction];
+            join(found, low, high)
+        }
+        Data::Density(_) => found,
+    })
+}
+
+/// Nothing where there is neither a range nor data.
+fn vertical_range(panel: &Panel) -> Option<[f64; 2]> {
+    valid(panel.y.range).or_else(|| {
+        let data = extent(panel, 1);
+        let marks = panel.marks.iter().map(|mark| mark.at).filter(|at| at.abs() < LARGEST);
+        let both = marks.fold(data, |found, at| found.map(|[low, high]| [low.min(at), high.max(at)]));
+        both.map(|range| widened(range, 0.07))
+    })
+}
+
+fn horizontal_range(figure: &Figure) -> Option<[f64; 2]> {
+    valid(figure.x.range).or_else(|| {
+        let data = figure.panels.iter().filter_map(|panel| extent(panel, 0));
+        let both = data.reduce(|[low, high], [least, most]| [low.min(least), high.max(most)]);
+        both.map(|range| widened(range, 0.02))
+    })
+}
+
+/// An axis's name with its unit in brackets.
+fn name(axis: &Axis, exponent: i32) -> String {
+    let unit = ticks::unit(&axis.unit, exponent);
+    if unit.is_empty() { axis.label.clone() } else { format!("{} ({unit})", axis.label) }
+}
+
+fn vertical_ticks(panel: &Panel, range: Option<[f64; 2]>, height: f64) -> ticks::Ticks {
+    let Some(range) = range else { return ticks::Ticks::default() };
+    ticks(range, panel.y.spacing, (height / 30.0) as usize, |ticks| {
+        ticks.windows(2).all(|pair| height * (share(pair[1].at, range) - share(pair[0].at, range)) >= LINE)
+    })
+}
+
+fn horizontal_ticks(axis: &Axis, range: Option<[f64; 2]>, across: f64) -> ticks::Ticks {
+    let Some(range) = range else { return ticks::Ticks::default() };
+    let half = |tick: &Tick| width(&tick.label, TEXT) / 2.0;
+    ticks(range, axis.spacing, (across / 44.0) as usize, |ticks| {
+        ticks.windows(2).all(|pair| {
+            let apart = across * (share(pair[1].at, range) - share(pair[0].at, range));
+            apart >= half(&pair[0]) + half(&pair[1]) + GAP
+        })
+    })
+}
+
+/// Text in lines of at most `room`, at word ends.
+fn lines(text: &str, size: f64, room: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if width(line, size) + width(word, size) + 0.45 * size <= room => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+/// Labels of horizontal lines beside the frame, pushed apart where lines are close.
+fn beside(marks: &[Mark], range: [f64; 2], frame: &Frame) -> Vec<MarkLine> {
+    let at = |mark: &Mark| frame.bottom() - frame.height * share(mark.at, range);
+    let inside = |mark: &Mark| (0.0..=1.0).contains(&share(mark.at, range));
+    let mut order: Vec<usize> =
+        (0..marks.len()).filter(|index| inside(&marks[*index]) && !marks[*index].label.is_empty()).collect();
+    order.sort_by(|one, other| at(&marks[*one]).total_cmp(&at(&marks[*other])));
+    let mut middles: Vec<f64> = order.iter().map(|index| at(&marks[*index])).collect();
+    for index in 1..middles.len() {
+        middles[index] = middles[index].max(middles[index - 1] + LINE);
+    }
+    // What was pushed below the frame goes back up, and takes along what is in its way.
+    let mut limit = frame.bottom();
+    for middle in middles.iter_mut().rev() {
+        *middle = middle.min(limit);
+        limit = *middle - LINE;
+    }
+    let label = |index: usize| {
+        let place = order.iter().position(|ordered| *ordered == index)?;
+        let text = marks[index].label.clone();
+        Some(Text { at: [frame.right() + LEADER, middles[place] + 0.35 * TEXT], text })
+    };
+    let line = |(index, mark)| MarkLine { at: at(mark), inside: inside(mark), label: label(index) };
+    marks.iter().enumerate().map(line).collect()
+}
+
+/// Labels of vertical lines above the frame, right of their lines, in rows so that no line runs through a label.
+fn above(marks: &[Mark], range: [f64; 2], frame: &Frame) -> (Vec<MarkLine>, usize) {
+    let at = |mark: &Mark| frame.left + frame.width * share(mark.at, range);
+    let inside = |mark: &Mark| (0.0..=1.0).contains(&share(mark.at, range));
+    let mut order: Vec<usize> =
+        (0..marks.len()).filter(|index| inside(&marks[*index]) && !marks[*index].label.is_empty()).collect();
+    order.sort_by(|one, other| at(&marks[*other]).total_cmp(&at(&marks[*one])));
+    let mut rows: Vec<(f64, usize, usize)> = Vec::new();
+    for index in order {
+        let (left, right) = (at(&marks[index]), at(&marks[index]) + GAP + width(&marks[index].label, TEXT));
+        // A line to the right rises to its own label's row: this label stands above all of those that it spans.
+        let row = rows.iter().filter(|(other, _, _)| *other <= right).map(|(_, row, _)| row + 1).max().unwrap_or(0);
+        rows.push((left, row, index));
+    }
+    let count = rows.iter().map(|(_, row, _)| row + 1).max().unwrap_or(0);
+    let label = |index: usize| {
+        let (left, row, _) = rows.iter().find(|(_, _, other)| *other == index)?;
+        let text = marks[index].label.clone();
+        Some(Text { at: [left + 3.0, frame.top - 5.0 - *row as f64 * LINE], text })
+    };
+    let line = |(index, mark)| MarkLine { at: at(mark), inside: inside(mark), label: label(index) };
+    (marks.iter().enumerate().map(line).collect(), count)
+}
+
+/// The legend beside the axis's name where both fit, else in rows below it: entries at `[x, row]`, and how many rows.
+fn legend(panel: &Panel, name: &str, left: f64, right: f64) -> (Vec<(usize, [f64; 2])>, usize) {
+    let entries: Vec<(usize, f64)> = panel
+        .series
+        .iter()
+        .enumerate()
+        .filter(|(_, series)| !series.label.is_empty())
+        .map(|(index, series)| (index, SAMPLE + GAP + width(&series.label, TEXT) + 2.0 * GAP))
+        .collect();
+    let whole: f64 = entries.iter().map(|(_, wide)| wide).sum();
+    let beside = EDGE + width(name, TEXT) + 2.0 * GAP + whole <= right;
+    let (mut x, mut row) = if beside { (right - whole + 2.0 * GAP, 0) } else { (left, 1) };
+    let mut places = Vec::new();
+    for (index, wide) in entries {
+        if x > left && x + wide > right + 2.0 * GAP + 1.0 {
+            (x, row) = (left, row + 1);
+        }
+        places.push((index, [x, row as f64]));
+        x += wide;
+    }
+    (places, row + 1)
+}
+
+impl Layout {
+    /// Lays a figure out.
+    pub fn new(figure: &Figure) -> Self {
+        let heights: Vec<f64> = figure
+            .panels
+            .iter()
+            .map(|panel| WIDTH * if panel.height.is_nan() { 0.5 } else { panel.height.clamp(0.08, 2.0) })
+            .collect();
+        let ranges: Vec<_> = figure.panels.iter().map(vertical_range).collect();
+        let vertical: Vec<_> = figure
+            .panels
+            .iter()
+            .zip(&ranges)
+            .zip(&heights)
+            .map(|((panel, range), height)| vertical_ticks(panel, *range, *height))
+            .collect();
+        let known = horizontal_range(figure);
+        let range = known.unwrap_or(UNKNOWN);
+        let widest = vertical.iter().flat_map(|ticks| &ticks.ticks).map(|tick| width(&tick.label, TEXT));
+        let left = EDGE + widest.fold(20.0, f64::max) + 9.0;
+        let labels = figure.panels.iter().flat_map(|panel| &panel.marks).filter(|mark| !mark.label.is_empty());
+        let right = labels.map(|mark| LEADER + width(&mark.label, TEXT)).fold(12.0, f64::max);
+        let overhang = |across: f64| {
+            let past = |mark: &Mark| GAP + width(&mark.label, TEXT) - across * (1.0 - share(mark.at, range));
+            let labelled = figure.marks.iter().filter(|mark| !mark.label.is_empty() && share(mark.at, range) <= 1.0);
+            labelled.map(past).fold(0.0, f64::max)
+        };
+        let right = WIDTH - EDGE - right.max(overhang(WIDTH - left - right - EDGE));
+        let across = (right - left).max(0.3 * WIDTH);
+        let horizontal = horizontal_ticks(&figure.x, known, across);
+
+        let mut y = EDGE;
+        let mut down = |by: f64| {
+            y += by;
+            y
+        };
+        let title = lines(&figure.title, TITLE, WIDTH - 2.0 * EDGE);
+        let title = title.into_iter().map(|text| Text { at: [EDGE, down(TITLE + 4.0) - 4.0], text });
+        let title: Vec<Text> = title.collect();
+        down(if title.is_empty() { 0.0 } else { GAP });
+        let mut panels = Vec::new();
+        let mut marks = Vec::new();
+        for (index, panel) in figure.panels.iter().enumerate() {
+            let (range_y, ticks) = (ranges[index].unwrap_or(UNKNOWN), &vertical[index]);
+            let name = name(&panel.y, ticks.exponent);
+            let (entries, rows) = legend(panel, &name, left, left + across);
+            let mut base = down(LINE + 4.0) - 4.0;
+            down((rows - 1) as f64 * LINE + GAP);
+            if index == 0 {
+                let frame = Frame { left, top: 0.0, width: across, height: heights[0] };
+                let (lines, mut rows) = above(&figure.marks, range, &frame);
+                let first = lines.iter().filter_map(|line| line.label.as_ref()).map(|label| label.at[0]);
+                // The axis's name moves into the lowest row of labels where it has room.
+                if rows > 0 && entries.is_empty() && first.fold(WIDTH, f64::min) > EDGE + width(&name, TEXT) + GAP {
+                    rows -= 1;
+                    base += rows as f64 * LINE;
+                }
+                let top = down(rows as f64 * LINE);
+                marks = above(&figure.marks, range, &Frame { top, ..frame }).0;
+            }
+            let name = Text { at: [EDGE, base], text: name };
+            let entry = |(series, [x, row]): (usize, [f64; 2])| {
+                let at = [x + SAMPLE + GAP, base + row * LINE];
+                (series, Text { at, text: panel.series[series].label.clone() })
+            };
+            let legend = entries.into_iter().map(entry).collect();
+            let frame = Frame { left, top: down(0.0), width: across, height: heights[index] };
+            down(heights[index] + GAP);
+            panels.push(PanelLayout {
+                frame,
+                range: range_y,
+                ticks: ticks.ticks.clone(),
+                name,
+                legend,
+                marks: beside(&panel.marks, range_y, &frame),
+                empty: extent(panel, 1).is_none(),
+            });
+        }
+        let below = down(LINE + 4.0);
+        let text = name(&figure.x, horizontal.exponent);
+        let middle = left + (across - width(&text, TEXT)).max(0.0) / 2.0;
+        let name = Text { at: [middle, down(LINE - 2.0).max(below)], text };
+        let note = lines(&figure.note, TEXT, WIDTH - 2.0 * EDGE);
+        down(if note.is_empty() { 0.0 } else { GAP });
+        let note = note.into_iter().map(|text| Text { at: [EDGE, down(LINE)], text }).collect();
+        let height = down(EDGE).ceil();
+        Self { height, title, range, ticks: horizontal.ticks, name, marks, panels, note }
+    }
+}

@@ -1,0 +1,186 @@
+//! A figure as one value, and two renderers of it: SVG, and PNG from the SVG.
+//!
+//! A [`Figure`] says what is drawn in the data's own units; [`layout`] decides where on the page, [`svg`] and [`png`] only
+//! write that down. Nothing here computes anything from the data but its extent; the figures themselves are built in
+//! [`super::figures`].
+
+pub mod density;
+pub mod layout;
+pub mod png;
+mod series;
+pub mod svg;
+pub mod thin;
+pub mod ticks;
+
+use serde::Serialize;
+
+pub use density::{Cloud, Density};
+pub use ticks::Spacing;
+
+/// What is drawn: panels below each other that share the horizontal axis.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Figure {
+    /// Stands above; empty for none.
+    pub title: String,
+    /// The horizontal axis of every panel.
+    pub x: Axis,
+    /// Vertical lines through every panel, labelled above the first.
+    pub marks: Vec<Mark>,
+    /// From top to bottom.
+    pub panels: Vec<Panel>,
+    /// Stands below; empty for none.
+    pub note: String,
+}
+
+/// An axis: its name, unit and range.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Axis {
+    /// What is drawn against it.
+    pub label: String,
+    /// Its unit; empty for a pure number.
+    pub unit: String,
+    /// Its ends, the lower first; the extent of the data where there is none.
+    pub range: Option<[f64; 2]>,
+    /// Where its ticks may stand.
+    pub spacing: Spacing,
+}
+
+impl Axis {
+    /// An axis that takes the extent of the data.
+    pub fn new(label: &str, unit: &str) -> Self {
+        Self { label: label.into(), unit: unit.into(), range: None, spacing: Spacing::Decimal }
+    }
+
+    /// An axis of degrees.
+    pub fn degrees(label: &str) -> Self {
+        Self { spacing: Spacing::Degrees, ..Self::new(label, "deg") }
+    }
+
+    /// The axis with its ends set.
+    pub fn over(self, range: [f64; 2]) -> Self {
+        Self { range: Some(range), ..self }
+    }
+}
+
+/// One frame with its vertical axis.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Panel {
+    /// The vertical axis.
+    pub y: Axis,
+    /// Height of the frame, in units of the figure's width.
+    pub height: f64,
+    /// What it shows; the first is drawn first.
+    pub series: Vec<Series>,
+    /// Horizontal lines, labelled at the right.
+    pub marks: Vec<Mark>,
+}
+
+/// A reference line.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Mark {
+    /// Where it crosses its axis.
+    pub at: f64,
+    /// What it stands for; empty for a plain thin line, such as that of zero.
+    pub label: String,
+}
+
+/// Data drawn in one way.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Series {
+    /// Its name in the legend; empty for none.
+    pub label: String,
+    /// Its colour.
+    pub colour: Colour,
+    /// Its values.
+    pub data: Data,
+}
+
+/// The values of a series, and how they are joined.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Data {
+    /// Points joined in order; what is not a number breaks the line.
+    Line {
+        /// `[x, y]`.
+        points: Vec<[f64; 2]>,
+        /// How it is stroked.
+        stroke: Stroke,
+    },
+    /// Points joined in order, and what lies below them filled down to the frame.
+    Area {
+        /// `[x, y]`.
+        points: Vec<[f64; 2]>,
+        /// How its upper edge is stroked.
+        stroke: Stroke,
+    },
+    /// One marker each.
+    Points {
+        /// `[x, y]`.
+        points: Vec<[f64; 2]>,
+        /// What stands there.
+        marker: Marker,
+    },
+    /// More points than there is paper, counted on a grid.
+    Density(Density),
+}
+
+/// How a line is stroked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Stroke {
+    /// Thin and unbroken.
+    Thin,
+    /// Unbroken.
+    Solid,
+    /// Broken.
+    Dashed,
+    /// Unbroken, three times as wide.
+    Thick,
+}
+
+/// What stands at a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Marker {
+    /// A small disc.
+    Dot,
+    /// An open circle.
+    Ring,
+    /// A triangle, its tip at the point, standing below it.
+    Below,
+}
+
+/// Colours that stay apart for the colour-blind (Okabe and Ito), and in grey by what they are drawn with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Colour {
+    /// That of the text.
+    Ink,
+    /// Between text and paper.
+    Grey,
+    /// First choice.
+    Blue,
+    /// Second.
+    Vermilion,
+    /// Third.
+    Green,
+    /// Fourth.
+    Purple,
+}
+
+impl Colour {
+    /// Every colour.
+    pub const ALL: [Self; 6] = [Self::Ink, Self::Grey, Self::Blue, Self::Vermilion, Self::Green, Self::Purple];
+
+    /// Its class in the SVG, its hex value on white paper, and on a dark screen.
+    pub(crate) const fn shades(self) -> (&'static str, &'static str, &'static str) {
+        match self {
+            Self::Ink => ("ink", "#1a1a1a", "#e8e8e8"),
+            Self::Grey => ("grey", "#8a8a8a", "#8f8f8f"),
+            Self::Blue => ("blue", "#0072b2", "#56b4e9"),
+            Self::Vermilion => ("vermilion", "#d55e00", "#f0903c"),
+            Self::Green => ("green", "#009e73", "#35cfa2"),
+            Self::Purple => ("purple", "#b0588a", "#dd9cc2"),
+        }
+    }
+}

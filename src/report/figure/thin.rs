@@ -1,0 +1,102 @@
+//! Lines with no more points than print can show.
+
+/// How far a thinned line may be from the points left out, in units of the page: a thirtieth of a thin line.
+const CLOSE: f64 = 0.03;
+/// Half a unit of the page: of a line that is still too long, each such column keeps the first, lowest, highest and last.
+const COLUMN: f64 = 0.5;
+
+/// The runs of a line between its breaks, thinned; points are on the page, and what is not a number breaks the line.
+///
+/// A line that winds on with more than `most` points is thinned by columns as well, and may still have more.
+pub fn strokes(points: impl IntoIterator<Item = [f64; 2]>, most: usize) -> Vec<Vec<[f64; 2]>> {
+    let mut strokes = vec![Vec::new()];
+    for point in points {
+        if point.iter().any(|part| part.is_nan()) {
+            strokes.push(Vec::new());
+        } else if let Some(stroke) = strokes.last_mut() {
+            stroke.push(point);
+        }
+    }
+    strokes.retain(|stroke| !stroke.is_empty());
+    let close: Vec<_> = strokes.iter().map(|stroke| close(stroke)).collect();
+    let long = close.iter().map(Vec::len).sum::<usize>() > most;
+    if long { strokes.iter().map(|stroke| columns(stroke)).collect() } else { close }
+}
+
+/// The line with the points left out that it passes anyway: from each point that stays, the next is the farthest that is
+/// seen through the gates, [`CLOSE`] to either side, around all points between (Zhao and Saalfeld's sleeve).
+fn close(stroke: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let Some((first, rest)) = stroke.split_first() else { return Vec::new() };
+    let mut kept = vec![*first];
+    let mut anchor = *first;
+    let mut last = *first;
+    let mut sleeve: Option<Sleeve> = None;
+    for point in rest {
+        let fits = match &mut sleeve {
+            None => true,
+            Some(sleeve) => sleeve.admits(anchor, *point),
+        };
+        if !fits {
+            kept.push(last);
+            anchor = last;
+            sleeve = None;
+        }
+        if sleeve.is_none() {
+            sleeve = Sleeve::towards(anchor, *point);
+        }
+        last = *point;
+    }
+    if last != anchor {
+        kept.push(last);
+    }
+    kept
+}
+
+/// Directions in which a straight line passes all points so far.
+struct Sleeve {
+    /// Along the first of them.
+    along: [f64; 2],
+    /// Lowest and highest angle from there.
+    gate: [f64; 2],
+    /// Distance of the farthest.
+    reach: f64,
+}
+
+impl Sleeve {
+    fn towards(anchor: [f64; 2], point: [f64; 2]) -> Option<Self> {
+        let along = [point[0] - anchor[0], point[1] - anchor[1]];
+        let reach = along[0].hypot(along[1]);
+        let open = (CLOSE / reach).min(1.0).asin();
+        (reach > CLOSE).then_some(Self { along, gate: [-open, open], reach })
+    }
+
+    fn admits(&mut self, anchor: [f64; 2], point: [f64; 2]) -> bool {
+        let to = [point[0] - anchor[0], point[1] - anchor[1]];
+        let distance = to[0].hypot(to[1]);
+        let cross = self.along[0] * to[1] - self.along[1] * to[0];
+        let angle = cross.atan2(self.along[0] * to[0] + self.along[1] * to[1]);
+        let [low, high] = self.gate;
+        // A line that turns back leaves its farthest point.
+        if distance < self.reach || angle < low || angle > high {
+            return false;
+        }
+        let open = (CLOSE / distance).min(1.0).asin();
+        self.gate = [low.max(angle - open), high.min(angle + open)];
+        self.reach = distance;
+        true
+    }
+}
+
+fn columns(stroke: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let mut thinned = Vec::new();
+    for column in stroke.chunk_by(|one, other| (one[0] / COLUMN).floor() == (other[0] / COLUMN).floor()) {
+        let extreme = |better: fn(f64, f64) -> bool| {
+            (0..column.len()).fold(0, |best, at| if better(column[at][1], column[best][1]) { at } else { best })
+        };
+        let (lowest, highest) = (extreme(|one, other| one < other), extreme(|one, other| one > other));
+        let mut kept = [0, lowest.min(highest), lowest.max(highest), column.len() - 1].map(|at| column[at]).to_vec();
+        kept.dedup();
+        thinned.append(&mut kept);
+    }
+    thinned
+}

@@ -1,0 +1,120 @@
+//! Where ticks stand: at 1, 2 or 5 times a power of ten, or at the usual parts of a circle.
+
+use serde::Serialize;
+
+/// Where ticks may stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Spacing {
+    /// Multiples of 1, 2 or 5 times a power of ten.
+    Decimal,
+    /// Degrees: multiples of 15, 30, 45, 60, 90, …; decimal below 10.
+    Degrees,
+}
+
+/// Steps of ten degrees and more.
+const PARTS_OF_A_CIRCLE: [f64; 8] = [10.0, 15.0, 30.0, 45.0, 60.0, 90.0, 180.0, 360.0];
+
+/// Of a step: how far outside the range a tick may be by rounding.
+const ROUNDING: f64 = 1e-6;
+
+/// Values above this, or all below [`SMALL`], are shown with a power of ten beside the unit.
+const LARGE: f64 = 1e5;
+const SMALL: f64 = 1e-2;
+
+/// A labelled place on an axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tick {
+    /// Where, in the axis's unit.
+    pub at: f64,
+    /// What stands there.
+    pub label: String,
+}
+
+/// The ticks of one axis.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Ticks {
+    /// From low to high.
+    pub ticks: Vec<Tick>,
+    /// Labels are to be multiplied by ten to this power.
+    pub exponent: i32,
+}
+
+/// The finest ticks of at most `most` for which `fits` says that the labels do not touch.
+pub fn ticks(range: [f64; 2], spacing: Spacing, most: usize, fits: impl Fn(&[Tick]) -> bool) -> Ticks {
+    let [low, high] = range;
+    let span = high - low;
+    let exponent = exponent(low.abs().max(high.abs()));
+    if !(span > 0.0 && span.is_finite()) {
+        return Ticks::default();
+    }
+    let (most, mut step) = (most.max(2) as f64, first_step(span / most.max(2) as f64, spacing));
+    loop {
+        let ticks = multiples(low, high, step, exponent);
+        // Two steps of the span hold at most one tick: nothing is left to overlap.
+        if (ticks.len() as f64 <= most && fits(&ticks)) || step > 2.0 * span {
+            return Ticks { ticks, exponent };
+        }
+        step = next_step(step, spacing);
+    }
+}
+
+fn exponent(largest: f64) -> i32 {
+    let plain = (SMALL..LARGE).contains(&largest) || largest == 0.0;
+    if plain { 0 } else { (largest.log10() / 3.0).floor() as i32 * 3 }
+}
+
+fn first_step(least: f64, spacing: Spacing) -> f64 {
+    let power = 10_f64.powf(least.log10().floor());
+    let decimal = [1.0, 2.0, 5.0, 10.0].into_iter().map(|part| part * power).find(|step| *step >= least);
+    let step = decimal.unwrap_or(10.0 * power);
+    match spacing {
+        Spacing::Degrees if step >= 10.0 => {
+            let part = PARTS_OF_A_CIRCLE.into_iter().find(|part| *part >= least);
+            part.unwrap_or_else(|| 360.0 * first_step(least / 360.0, Spacing::Decimal))
+        }
+        _ => step,
+    }
+}
+
+fn next_step(step: f64, spacing: Spacing) -> f64 {
+    // A little more than the step: the next of the series.
+    first_step(step * 1.01, spacing)
+}
+
+fn multiples(low: f64, high: f64, step: f64, exponent: i32) -> Vec<Tick> {
+    let (first, last) = ((low / step - ROUNDING).ceil(), (high / step + ROUNDING).floor());
+    let count = (last - first + 1.0).clamp(0.0, 1000.0) as usize;
+    let scale = 10_f64.powi(exponent);
+    let places = decimals(step / scale);
+    let tick = |index: usize| {
+        let at = (first + index as f64) * step;
+        let text = format!("{:.places$}", at / scale);
+        let zero = text.chars().all(|letter| "-0.".contains(letter));
+        let label = if zero { text.replace('-', "") } else { text.replace('-', "−") };
+        Tick { at: at.clamp(low, high), label }
+    };
+    (0..count).map(tick).collect()
+}
+
+/// Decimals that show a step of 1, 2 or 5 times a power of ten, or of whole degrees.
+fn decimals(step: f64) -> usize {
+    (-(step.log10() + ROUNDING).floor()).clamp(0.0, 17.0) as usize
+}
+
+/// `exponent` in raised digits after a ten, with the unit: what stands in brackets beside an axis's name.
+pub fn unit(unit: &str, exponent: i32) -> String {
+    if exponent == 0 {
+        return unit.to_owned();
+    }
+    let digits = exponent.to_string();
+    let raised = digits.chars().map(|letter| match letter {
+        '-' => '⁻',
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        digit => digit.to_digit(10).and_then(|digit| char::from_u32(0x2070 + digit)).unwrap_or(digit),
+    });
+    let power: String = "10".chars().chain(raised).collect();
+    if unit.is_empty() { power } else { format!("{power} {unit}") }
+}

@@ -1,0 +1,26 @@
+//! The figures that this program draws, each built from plain data; nothing is simulated here.
+
+mod cam;
+mod diagram;
+mod trace;
+
+pub use cam::{CornerMark, cam_figure, corner_marks};
+pub use diagram::{Diagram, impact_diagram, strobe_diagram};
+pub use trace::{Against, ImpactPoint, Trace, TracePoint, phase_plane, time_trace};
+
+use super::figure::{Axis, Colour, Data, Mark, Panel, Series, Stroke};
+
+/// A line without a name.
+fn plain(points: Vec<[f64; 2]>, colour: Colour, stroke: Stroke) -> Series {
+    Series { label: String::new(), colour, data: Data::Line { points, stroke } }
+}
+
+/// A panel of one or more series with marks.
+fn panel(y: Axis, height: f64, series: Vec<Series>, marks: Vec<Mark>) -> Panel {
+    Panel { y, height, series, marks }
+}
+
+/// The plain line of zero.
+fn zero() -> Mark {
+    Mark { at: 0.0, label: String::new() }
+}
