@@ -7,9 +7,9 @@
 //!    ▼
 //!  cam · flight · impact the physical laws
 //!    ▼
-//!  simulate              the only event loop: fly, contact, impact
+//!  simulate              the only event loop: fly, contact, impact or stick, release; the variational flow
 //!    ▼
-//!  section               the stroboscopic map: one revolution of `simulate`
+//!  section · diagram     the stroboscopic map and traces; sweeps over speeds, Lyapunov exponents
 //!    ▼
 //!  python                runs one script of `derivations/`
 //!    ▼
@@ -55,6 +55,8 @@ pub mod impact;
 pub mod simulate;
 
 pub mod section;
+
+pub mod diagram;
 
 pub mod python;
 

@@ -1,10 +1,10 @@
-//! The stroboscopic map: the follower's state each time the cam passes one angle.
+//! The stroboscopic map: the follower's state each time the cam passes one angle; and traces, many angles a turn.
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
 use crate::flight::State;
-use crate::simulate::{Event, EventKind, Machine, SimulateError};
+use crate::simulate::{Event, EventKind, Goal, Machine, Motion, SimulateError};
 
 /// The map of one revolution, from the section at a cam angle back to it.
 #[derive(Clone, Debug)]
@@ -41,4 +41,70 @@ impl StroboscopicMap {
         })?;
         Ok(Return { state, events })
     }
+}
+
+/// Follower and cam at one moment of a trace.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// The angle turned since the cam passed 0 in revolution 0, rad.
+    pub turned: f64,
+    /// The follower.
+    pub state: State,
+    /// The cam's lift, m.
+    pub lift: f64,
+    /// The cam's velocity, m/s.
+    pub cam_velocity: f64,
+    /// The gap, m.
+    pub gap: f64,
+    /// Whether the follower sticks to the cam.
+    pub contact: bool,
+}
+
+/// `samples` moments, evenly spaced in angle, of every one of `revolutions` from `motion` on; and the events in between,
+/// each with a sample of its own right before and right after.
+pub fn trace(
+    machine: &Machine,
+    mut motion: Motion,
+    revolutions: u64,
+    samples: u32,
+) -> Result<(Vec<Sample>, Vec<Event>), SimulateError> {
+    let omega = machine.angular_velocity();
+    let sample = |motion: &Motion| {
+        let lift = machine.cam().lift(motion.cam_angle);
+        Sample {
+            turned: motion.revolution as f64 * TAU + motion.cam_angle,
+            state: motion.state,
+            lift: lift.value,
+            cam_velocity: omega * lift.slope,
+            gap: machine.gap(motion),
+            contact: motion.contact,
+        }
+    };
+    let mut found = vec![sample(&motion)];
+    let mut events = Vec::new();
+    let (first, step) = (motion.cam_angle, TAU / f64::from(samples));
+    for index in 1..=revolutions * u64::from(samples) {
+        let turns = index / u64::from(samples);
+        let angle = first + (index % u64::from(samples)) as f64 * step;
+        let (revolution, cam_angle) = if angle < TAU { (turns, angle) } else { (turns + 1, angle - TAU) };
+        let before = events.len();
+        let _ = machine.advance(&mut motion, Goal { revolution, cam_angle }, &mut |event: &Event| {
+            events.push(*event);
+            ControlFlow::Continue(())
+        })?;
+        for event in &events[before..] {
+            let at = |velocity: f64, contact: bool| Sample {
+                turned: event.turned_since(0.0),
+                state: State { position: event.position, velocity },
+                lift: event.position,
+                cam_velocity: event.cam_velocity,
+                gap: 0.0,
+                contact,
+            };
+            found.push(at(event.velocity_before, event.kind == EventKind::Release));
+            found.push(at(event.velocity_after, event.kind == EventKind::Stick));
+        }
+        found.push(sample(&motion));
+    }
+    Ok((found, events))
 }

@@ -2,12 +2,19 @@
 
 mod cam;
 mod claims;
+mod diagram;
+mod picture;
+mod progress;
+mod simulate;
+mod start;
 mod verify;
 
 use std::ffi::OsString;
 use std::io::Write;
 
 use clap::{Parser, Subcommand};
+
+use crate::report::file::FileError;
 
 /// How a command ended; the process's exit code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,6 +40,8 @@ enum Command {
     Verify(verify::Arguments),
     Claims(claims::Arguments),
     Cam(cam::Arguments),
+    Simulate(simulate::Arguments),
+    Diagram(diagram::Arguments),
 }
 
 /// Why a command has no result.
@@ -42,6 +51,34 @@ enum CommandError {
     Input(String),
     #[error("report: {0}")]
     Report(String),
+    #[error("{0}")]
+    Write(String),
+}
+
+impl CommandError {
+    fn input(error: impl std::fmt::Display) -> Self {
+        Self::Input(error.to_string())
+    }
+
+    fn report(error: impl std::fmt::Display) -> Self {
+        Self::Report(error.to_string())
+    }
+
+    fn file(error: FileError) -> Self {
+        Self::Write(error.to_string())
+    }
+
+    fn write(error: std::io::Error) -> Self {
+        Self::Write(error.to_string())
+    }
+}
+
+/// Prints a page whole.
+fn print(page: Result<(String, Exit), CommandError>, out: &mut dyn Write) -> Result<Exit, CommandError> {
+    let (text, exit) = page?;
+    let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+    written.map_err(|error| CommandError::Write(format!("standard output: {error}")))?;
+    Ok(exit)
 }
 
 /// Runs one command line, program name first.
@@ -57,21 +94,14 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         }
     };
     let result = match &arguments.command {
-        Command::Verify(arguments) => verify::run(arguments, err),
-        Command::Claims(arguments) => claims::run(arguments),
-        Command::Cam(arguments) => cam::run(arguments),
+        Command::Verify(arguments) => print(verify::run(arguments, err), out),
+        Command::Claims(arguments) => print(claims::run(arguments), out),
+        Command::Cam(arguments) => print(cam::run(arguments), out),
+        Command::Simulate(arguments) => simulate::run(arguments, out),
+        Command::Diagram(arguments) => diagram::run(arguments, out),
     };
-    match result {
-        Ok((text, exit)) => match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-            Ok(()) => exit,
-            Err(error) => {
-                let _ = writeln!(err, "error: standard output: {error}");
-                Exit::BadInput
-            }
-        },
-        Err(error) => {
-            let _ = writeln!(err, "error: {error}");
-            Exit::BadInput
-        }
-    }
+    result.unwrap_or_else(|error| {
+        let _ = writeln!(err, "error: {error}");
+        Exit::BadInput
+    })
 }

@@ -3,13 +3,16 @@
 
 pub mod cam;
 pub mod claims;
+pub mod csv;
 pub mod document;
 pub mod figure;
 pub mod figures;
 pub mod file;
 pub mod json;
+pub mod run;
 pub mod text;
 
 pub use cam::CamDocument;
 pub use claims::ClaimsDocument;
 pub use document::Verification;
+pub use run::{RunSummary, SweepSummary};

@@ -36,6 +36,11 @@ pub struct Machine {
     angular_velocity: f64,
 }
 
+/// Radians per second of a speed in revolutions per minute.
+pub fn angular_velocity(rpm: f64) -> f64 {
+    rpm * TAU / 60.0
+}
+
 /// Where cam and follower are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion {
@@ -171,6 +176,17 @@ impl Machine {
         self.start(cam_angle, State { position: lift.value, velocity })
     }
 
+    /// `motion` at the same angle of this machine, which may turn at another speed: a follower that sticks still does, if
+    /// the cam does not let go of it at this speed.
+    pub fn resume(&self, motion: &Motion) -> Result<Motion, SimulateError> {
+        let start = if motion.contact {
+            self.start_on_cam(motion.cam_angle, 0.0)?
+        } else {
+            self.start(motion.cam_angle, motion.state)?
+        };
+        Ok(Motion { revolution: 0, ..start })
+    }
+
     /// Puts the follower on the cam, where `lift` holds, with a relative velocity, m/s: sticking where it has none and is
     /// pressed against the cam. Rounding counts as none.
     fn leave(&self, motion: &mut Motion, lift: &Lift, relative_velocity: f64) {
@@ -185,9 +201,16 @@ impl Machine {
         }
     }
 
+    /// The gap between follower and cam, m.
+    pub fn gap(&self, motion: &Motion) -> f64 {
+        let lift = || self.cam().segments()[motion.segment].law.lift(motion.cam_angle).value;
+        motion.gap.unwrap_or_else(|| motion.state.position - lift())
+    }
+
     /// Advances `motion` until the cam reaches `goal`, or until the observer breaks right after an event.
     ///
-    /// An event in the last instant is left to the run that goes on from there.
+    /// An event in the last instant is left to the run that goes on from there; a stick is shown with the impact that led to
+    /// it.
     pub fn advance(
         &self,
         motion: &mut Motion,
@@ -322,15 +345,22 @@ impl Machine {
 
     /// Moves the cam on by `turn`, rad, over any number of segments.
     fn turn_over(&self, motion: &mut Motion, turn: f64) {
-        let angle = motion.cam_angle + turn;
-        if angle < TAU {
-            motion.cam_angle = angle;
-        } else {
-            let turns = (angle / TAU).floor();
-            motion.revolution += turns as u64;
-            motion.cam_angle = (angle - turns * TAU).clamp(0.0, TAU);
+        let mut angle = motion.cam_angle + turn;
+        if angle >= TAU {
+            angle -= TAU;
+            motion.revolution += 1;
+            if angle >= TAU {
+                let turns = (angle / TAU).floor();
+                motion.revolution += turns as u64;
+                angle = (angle - turns * TAU).clamp(0.0, TAU);
+            }
         }
-        motion.segment = self.cam().segment_at(motion.cam_angle);
+        motion.cam_angle = angle;
+        // Most flights come down where the one before did.
+        let here = &self.cam().segments()[motion.segment];
+        if !(here.start <= angle && angle < here.end) {
+            motion.segment = self.cam().segment_at(angle);
+        }
     }
 
     /// Goes over to the next segment, at its start.
@@ -368,13 +398,15 @@ impl Machine {
         let velocity_after = if motion.state.velocity == cam_velocity { cam_velocity } else { velocity_after };
         motion.state.velocity = velocity_after;
         let impact = self.event(motion, EventKind::Impact, velocity_before, cam_velocity);
-        if observer.event(&impact).is_break() {
-            return Step::Broken;
-        }
-        if motion.contact {
-            return self.report(motion, EventKind::Stick, observer);
-        }
-        self.end_chatter(motion, lift, left, observer)
+        // A stick that the impact leads to is part of it, also for an observer that has seen enough: a run goes on from
+        // there as if it had not been split.
+        let enough = observer.event(&impact).is_break();
+        let step = if motion.contact {
+            self.report(motion, EventKind::Stick, observer)
+        } else {
+            self.end_chatter(motion, lift, left, observer)
+        };
+        if enough { Step::Broken } else { step }
     }
 
     fn event(&self, motion: &Motion, kind: EventKind, velocity_before: f64, cam_velocity: f64) -> Event {

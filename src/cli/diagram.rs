@@ -1,0 +1,244 @@
+//! `corner-impact diagram MODEL --rpm LO:HI:N`.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use clap::ValueEnum;
+
+use super::start::{StartArguments, finite, speeds, turn};
+use super::{CommandError, Exit, picture, progress::Progress};
+use crate::cam::Cam;
+use crate::diagram::{Block, Following, Row, Section, Seen, Speeds, Sweep, SweepError, Tally};
+use crate::model::Model;
+use crate::report::figure::{Cloud, Figure};
+use crate::report::figures::{Diagram, corner_marks, impact_diagram, strobe_diagram};
+use crate::report::file::Output;
+use crate::report::{SweepSummary, csv, json};
+use crate::simulate::{EventKind, Machine, angular_velocity};
+
+/// Sweeps over speeds: what the motion settles on, as a table or a picture.
+#[derive(clap::Args)]
+#[command(after_help = "Examples: corner-impact diagram models/osorio-2008.toml --rpm 660:750:400 --out impacts.svg\n\
+    \x20         corner-impact diagram models/osorio-2008.toml --rpm 660:750:400 --start down --out impacts.csv\n\n\
+    Exit code: 0 done, 2 bad model file, usage or file, or a run that cannot go on.")]
+pub(super) struct Arguments {
+    /// Model file (TOML).
+    model: PathBuf,
+    /// Lowest speed, highest speed, and how many.
+    #[arg(long, value_name = "LO:HI:N", value_parser = speeds, allow_hyphen_values = true)]
+    rpm: Speeds,
+    /// Revolutions at each speed before anything is recorded.
+    #[arg(long, value_name = "N", default_value_t = 300)]
+    transient: u64,
+    /// Revolutions that are recorded.
+    #[arg(long, value_name = "N", default_value_t = 100)]
+    record: u64,
+    /// Record what happens at the cam, or the state at one cam angle.
+    #[arg(long, value_enum, default_value = "impact")]
+    section: SectionName,
+    /// That angle, rad.
+    #[arg(long, value_name = "RAD", value_parser = finite, default_value_t = 0.0, allow_hyphen_values = true)]
+    strobe: f64,
+    /// Start every speed alike, or go on from the next lower (up) or next higher speed (down).
+    #[arg(long = "start", value_enum, default_value = "fixed")]
+    following: FollowingName,
+    #[command(flatten)]
+    start: StartArguments,
+    /// Threads [default: one for each core].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// A table (.csv, or - for standard output) or a picture (.svg, .png).
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Add the Lyapunov exponent of each speed: a column, or a second panel.
+    #[arg(long)]
+    lyapunov: bool,
+    /// Print a summary as one JSON document.
+    #[arg(long)]
+    summary: bool,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum SectionName {
+    Impact,
+    Strobe,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum FollowingName {
+    Fixed,
+    Up,
+    Down,
+}
+
+/// Points of a picture, as a worker makes them.
+#[derive(Default)]
+struct Points {
+    places: Vec<[f64; 2]>,
+    exponent: Option<[f64; 2]>,
+}
+
+impl Block for Points {
+    fn push(&mut self, row: &Row) {
+        self.exponent = row.lyapunov.map(|exponent| [row.rpm, exponent]);
+        match row.seen {
+            Seen::Event(event) if event.kind == EventKind::Impact => {
+                self.places.push([row.rpm, event.cam_angle.to_degrees()]);
+            }
+            Seen::Event(_) => {}
+            Seen::Section(state) => self.places.push([row.rpm, state.position]),
+        }
+    }
+
+    fn is_full(&self) -> bool {
+        self.places.len() >= 1024
+    }
+}
+
+/// Nothing but the count of rows.
+#[derive(Default)]
+struct Counted;
+
+impl Block for Counted {
+    fn push(&mut self, _row: &Row) {}
+
+    fn is_full(&self) -> bool {
+        false
+    }
+}
+
+impl From<SweepError> for CommandError {
+    fn from(error: SweepError) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+/// Where the rows go.
+enum Target<'a> {
+    Nowhere,
+    Table(&'a Path),
+    Picture(&'a Path),
+}
+
+pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, CommandError> {
+    let target = match &arguments.out {
+        None => Target::Nowhere,
+        Some(path) if picture::kind(path).is_some() => Target::Picture(path),
+        Some(path) => Target::Table(path),
+    };
+    let to_standard = matches!(target, Target::Table(path) if path.as_os_str() == "-");
+    if to_standard && arguments.summary {
+        return Err(CommandError::Input("--out - and --summary both print to standard output".into()));
+    }
+    let model = Model::read(&arguments.model).map_err(CommandError::input)?;
+    let cam = Cam::new(&model).map_err(CommandError::input)?;
+    let corners = corner_marks(&cam);
+    let sweep = Sweep {
+        machine: Machine::new(cam, &model.follower, angular_velocity(arguments.rpm.low)),
+        speeds: arguments.rpm,
+        start: arguments.start.start(),
+        following: match arguments.following {
+            FollowingName::Fixed => Following::Nothing,
+            FollowingName::Up => Following::Up,
+            FollowingName::Down => Following::Down,
+        },
+        transient: arguments.transient,
+        record: arguments.record,
+        section: match arguments.section {
+            SectionName::Impact => Section::Impacts,
+            SectionName::Strobe => Section::Strobe(turn(arguments.strobe)),
+        },
+        lyapunov: arguments.lyapunov,
+    };
+    let threads = arguments.threads.map_or_else(
+        || std::thread::available_parallelism().map_or(1, usize::from),
+        usize::from,
+    );
+    let clock = Instant::now();
+    let tally = match target {
+        Target::Nowhere => {
+            let mut progress = Progress::new(sweep.speeds.count as u64);
+            sweep.run(Some(threads), |index, _: Counted| {
+                progress.set(index as u64);
+                Ok::<(), CommandError>(())
+            })?
+        }
+        Target::Table(path) => table(&sweep, threads, path, out)?,
+        Target::Picture(path) => {
+            let (points, exponents, tally) = points(&sweep, threads)?;
+            let title = format!("{}: {}", model.name, title(&sweep));
+            let diagram = Diagram {
+                title: &title,
+                points,
+                shown: None,
+                corners: &corners,
+                lyapunov: arguments.lyapunov.then_some(exponents.as_slice()),
+            };
+            let figure: Figure = match sweep.section {
+                Section::Impacts => impact_diagram(diagram),
+                Section::Strobe(_) => strobe_diagram(diagram),
+            };
+            picture::draw(&figure, path, out)?;
+            tally
+        }
+    };
+    let summary = SweepSummary::new(&model.name, tally, threads, clock.elapsed().as_secs_f64());
+    let page = if arguments.summary {
+        json::render(&summary).map_err(CommandError::report)?
+    } else if to_standard {
+        String::new()
+    } else {
+        summary.text().map_err(CommandError::report)?
+    };
+    out.write_all(page.as_bytes()).and_then(|()| out.flush()).map_err(CommandError::write)?;
+    Ok(Exit::Agrees)
+}
+
+fn title(sweep: &Sweep) -> String {
+    let what = match sweep.section {
+        Section::Impacts => "impacts".to_owned(),
+        Section::Strobe(angle) => format!("states at {:.4}°", angle.to_degrees()),
+    };
+    let how = match sweep.following {
+        Following::Nothing => "from one start",
+        Following::Up => "speed going up",
+        Following::Down => "speed going down",
+    };
+    format!("{what} of {} revolutions after {}, {how}", sweep.record, sweep.transient)
+}
+
+fn table(sweep: &Sweep, threads: usize, path: &Path, out: &mut dyn Write) -> Result<Tally, CommandError> {
+    let mut file = Output::create(path, out).map_err(CommandError::file)?;
+    let columns = match sweep.section {
+        Section::Impacts => csv::IMPACT_DIAGRAM,
+        Section::Strobe(_) => csv::STROBE_DIAGRAM,
+    };
+    let lyapunov = if sweep.lyapunov { csv::LYAPUNOV } else { "" };
+    writeln!(file, "{columns}{lyapunov}").map_err(CommandError::write)?;
+    let mut progress = Progress::new(sweep.speeds.count as u64);
+    let tally = sweep.run(Some(threads), |index, lines: csv::Lines| {
+        progress.set(index as u64);
+        file.write_all(lines.0.as_bytes()).map_err(CommandError::write)
+    })?;
+    file.commit().map_err(CommandError::file)?;
+    Ok(tally)
+}
+
+type Found = (crate::report::figure::Density, Vec<[f64; 2]>, Tally);
+
+fn points(sweep: &Sweep, threads: usize) -> Result<Found, CommandError> {
+    let Speeds { low, high, .. } = sweep.speeds;
+    let mut cloud = Cloud::new(if high > low { [low, high] } else { [0.99 * low, 1.01 * low] });
+    let mut exponents: Vec<[f64; 2]> = Vec::new();
+    let mut progress = Progress::new(sweep.speeds.count as u64);
+    let tally = sweep.run(Some(threads), |index, points: Points| {
+        progress.set(index as u64);
+        points.places.iter().for_each(|[rpm, place]| cloud.push(*rpm, *place));
+        if let Some(exponent) = points.exponent.filter(|new| exponents.last().is_none_or(|last| last[0] != new[0])) {
+            exponents.push(exponent);
+        }
+        Ok::<(), CommandError>(())
+    })?;
+    Ok((cloud.finish(), exponents, tally))
+}

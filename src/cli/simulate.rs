@@ -1,0 +1,252 @@
+//! `corner-impact simulate MODEL --rpm R`.
+
+use std::io::Write;
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use super::start::{StartArguments, finite, rpm, turn};
+use super::{CommandError, Exit, picture, progress::Progress};
+use crate::cam::Cam;
+use crate::diagram::growth;
+use crate::model::Model;
+use crate::report::figures::{Against, Trace, phase_plane, time_trace};
+use crate::report::file::Output;
+use crate::report::run::Exponent;
+use crate::report::{RunSummary, csv, json, run};
+use crate::section;
+use crate::simulate::{Event, EventKind, Goal, Machine, Motion, angular_velocity};
+
+/// Runs one motion of a model and says what happened.
+#[derive(clap::Args)]
+#[command(after_help = "Examples: corner-impact simulate models/osorio-2008.toml --rpm 183 --revolutions 10 --events -\n\
+    \x20         corner-impact simulate models/osorio-2008.toml --rpm 183 --trace trace.svg\n\n\
+    Exit code: 0 done, 2 bad model file, usage or file, or a run that cannot go on.")]
+pub(super) struct Arguments {
+    /// Model file (TOML).
+    model: PathBuf,
+    /// Speed of the cam.
+    #[arg(long, value_name = "R", value_parser = rpm, allow_hyphen_values = true)]
+    rpm: f64,
+    /// Turns of the cam.
+    #[arg(long, value_name = "N", default_value_t = 100, conflicts_with = "impacts")]
+    revolutions: u64,
+    /// Run up to this many impacts instead.
+    #[arg(long, value_name = "N")]
+    impacts: Option<u64>,
+    #[command(flatten)]
+    start: StartArguments,
+    /// Write impacts, sticks and releases as CSV; - is standard output.
+    #[arg(long, value_name = "FILE")]
+    events: Option<PathBuf>,
+    /// Write the state each time the cam passes this angle, rad, to the file of --strobe-out.
+    #[arg(long, value_name = "RAD", value_parser = finite, requires = "strobe_out", allow_hyphen_values = true)]
+    strobe: Option<f64>,
+    /// Where the states go, as CSV; - is standard output.
+    #[arg(long, value_name = "FILE", requires = "strobe")]
+    strobe_out: Option<PathBuf>,
+    /// Print the summary as one JSON document.
+    #[arg(long)]
+    summary: bool,
+    /// Add the growth of a small deviation per revolution to the summary.
+    #[arg(long, conflicts_with = "impacts")]
+    lyapunov: bool,
+    /// Draw follower, cam and gap over the last revolutions (.svg or .png).
+    #[arg(long, value_name = "FILE", value_parser = picture::picture, conflicts_with = "impacts")]
+    trace: Option<PathBuf>,
+    /// Draw the gap against its velocity over the last revolutions (.svg or .png).
+    #[arg(long, value_name = "FILE", value_parser = picture::picture, conflicts_with = "impacts")]
+    phase_plane: Option<PathBuf>,
+    /// How many revolutions are drawn.
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    drawn: u64,
+}
+
+/// Events that are kept before they are written.
+const KEPT: usize = 4096;
+/// Revolutions between two looks at the progress.
+const STRIDE: u64 = 4096;
+/// Revolutions without an impact after which none is waited for.
+const PATIENCE: u64 = 100_000;
+
+/// What has been counted and kept on the way.
+#[derive(Default)]
+struct Seen {
+    impacts: u64,
+    sticks: u64,
+    releases: u64,
+    kept: Vec<Event>,
+}
+
+impl Seen {
+    fn take(&mut self, event: &Event, keep: bool) -> bool {
+        match event.kind {
+            EventKind::Impact => self.impacts += 1,
+            EventKind::Stick => self.sticks += 1,
+            EventKind::Release => self.releases += 1,
+        }
+        if keep {
+            self.kept.push(*event);
+        }
+        self.kept.len() >= KEPT
+    }
+}
+
+pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, CommandError> {
+    let to_standard = |path: &Option<PathBuf>| path.as_deref().is_some_and(|path| path.as_os_str() == "-");
+    let streams = usize::from(to_standard(&arguments.events))
+        + usize::from(to_standard(&arguments.strobe_out))
+        + usize::from(arguments.summary);
+    if streams > 1 {
+        let words = "--events -, --strobe-out - and --summary all print to standard output: give the tables files";
+        return Err(CommandError::Input(words.into()));
+    }
+    let model = Model::read(&arguments.model).map_err(CommandError::input)?;
+    let cam = Cam::new(&model).map_err(CommandError::input)?;
+    let machine = Machine::new(cam, &model.follower, angular_velocity(arguments.rpm));
+    let start = arguments.start.start();
+    let first = start.motion(&machine).map_err(CommandError::input)?;
+    let drawn = first.after(arguments.revolutions.saturating_sub(arguments.drawn));
+
+    let (motion, seen, wall, before_drawn) = simulate(arguments, &machine, first, drawn, out)?;
+    let turned = (motion.revolution as f64) + (motion.cam_angle - first.cam_angle) / std::f64::consts::TAU;
+    let exponent = if arguments.lyapunov {
+        Some(Exponent(growth(&machine, first, arguments.revolutions).map_err(CommandError::input)?))
+    } else {
+        None
+    };
+    draw(arguments, &model, &machine, before_drawn, out)?;
+    let summary = RunSummary {
+        schema: "corner-impact/simulate/1",
+        model: model.name.clone(),
+        rpm: arguments.rpm,
+        revolutions: turned,
+        impacts: seen.impacts,
+        sticks: seen.sticks,
+        releases: seen.releases,
+        end: run::End::from(&motion),
+        lyapunov_per_revolution: exponent,
+        wall_s: wall.as_secs_f64(),
+    };
+    let page = if arguments.summary {
+        json::render(&summary).map_err(CommandError::report)?
+    } else if streams == 0 {
+        summary.text().map_err(CommandError::report)?
+    } else {
+        String::new()
+    };
+    out.write_all(page.as_bytes()).and_then(|()| out.flush()).map_err(CommandError::write)?;
+    Ok(Exit::Agrees)
+}
+
+/// The run itself, with its tables; and the motion at `drawn`, where the pictures begin.
+fn simulate(
+    arguments: &Arguments,
+    machine: &Machine,
+    first: Motion,
+    drawn: Goal,
+    out: &mut dyn Write,
+) -> Result<(Motion, Seen, Duration, Motion), CommandError> {
+    // At most one of the tables is standard output.
+    let mut nobody = std::io::sink();
+    let states_to_standard = arguments.strobe_out.as_deref().is_some_and(|path| path.as_os_str() == "-");
+    let (to_events, to_states): (&mut dyn Write, &mut dyn Write) =
+        if states_to_standard { (&mut nobody, out) } else { (out, &mut nobody) };
+    let open = |path: Option<&PathBuf>, standard| path.map(|path| Output::create(path, standard)).transpose();
+    let mut events = open(arguments.events.as_ref(), to_events).map_err(CommandError::file)?;
+    let mut states = open(arguments.strobe_out.as_ref(), to_states).map_err(CommandError::file)?;
+    write(&mut events, csv::EVENTS)?;
+    write(&mut states, csv::STROBE)?;
+    let strobe = arguments.strobe.map(turn);
+    let most = arguments.impacts.unwrap_or(u64::MAX);
+    let revolutions = if arguments.impacts.is_some() { u64::MAX } else { arguments.revolutions };
+    let end = first.after(revolutions);
+    let mut progress = Progress::new(arguments.impacts.unwrap_or(revolutions));
+
+    let (mut motion, mut before_drawn, mut seen) = (first, first, Seen::default());
+    let (mut wall, mut lines, mut last_impact) = (Duration::ZERO, String::new(), 0);
+    while seen.impacts < most {
+        let mut goal = earlier(end, motion.after(STRIDE));
+        goal = strobe.map_or(goal, |angle| earlier(goal, motion.next(angle)));
+        if (motion.revolution, motion.cam_angle) < (drawn.revolution, drawn.cam_angle) {
+            goal = earlier(goal, drawn);
+        }
+        let keep = events.is_some();
+        let impacts = seen.impacts;
+        let clock = Instant::now();
+        let flow = machine.advance(&mut motion, goal, &mut |event: &Event| {
+            let full = seen.take(event, keep);
+            if full || seen.impacts >= most { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        wall += clock.elapsed();
+        for event in seen.kept.drain(..) {
+            csv::event(&mut lines, &event, first.cam_angle, machine.angular_velocity());
+        }
+        write(&mut events, &lines)?;
+        lines.clear();
+        let flow = flow.map_err(CommandError::input)?;
+        if seen.impacts > impacts {
+            last_impact = motion.revolution;
+        } else if arguments.impacts.is_some() && motion.revolution - last_impact > PATIENCE {
+            let at = motion.cam_angle.to_degrees();
+            return Err(CommandError::Input(format!(
+                "simulate: no impact in {PATIENCE} revolutions after impact {impacts}; the cam is at {at:.4} deg of revolution {}",
+                motion.revolution
+            )));
+        }
+        if flow.is_break() {
+            continue;
+        }
+        if goal == drawn {
+            before_drawn = motion;
+        }
+        if strobe == Some(goal.cam_angle) {
+            csv::strobe(&mut lines, machine, &motion);
+            write(&mut states, &lines)?;
+            lines.clear();
+        }
+        progress.set(if arguments.impacts.is_some() { seen.impacts } else { motion.revolution });
+        if goal == end {
+            break;
+        }
+    }
+    for table in [events, states].into_iter().flatten() {
+        table.commit().map_err(CommandError::file)?;
+    }
+    Ok((motion, seen, wall, before_drawn))
+}
+
+fn earlier(one: Goal, other: Goal) -> Goal {
+    if (one.revolution, one.cam_angle) <= (other.revolution, other.cam_angle) { one } else { other }
+}
+
+fn write(output: &mut Option<Output<'_>>, text: &str) -> Result<(), CommandError> {
+    output.as_mut().map_or(Ok(()), |output| output.write_all(text.as_bytes()).map_err(CommandError::write))
+}
+
+/// The pictures, of the revolutions from `motion` on.
+fn draw(
+    arguments: &Arguments,
+    model: &Model,
+    machine: &Machine,
+    motion: Motion,
+    out: &mut dyn Write,
+) -> Result<(), CommandError> {
+    if arguments.trace.is_none() && arguments.phase_plane.is_none() {
+        return Ok(());
+    }
+    let revolutions = arguments.drawn.min(arguments.revolutions);
+    let (samples, events) =
+        section::trace(machine, motion, revolutions, run::TRACE_SAMPLES).map_err(CommandError::input)?;
+    let (points, impacts) = run::trace_points(&samples, &events, machine.angular_velocity());
+    let title = format!("{} at {} rpm", model.name, arguments.rpm);
+    if let Some(path) = &arguments.trace {
+        let against = Against::Revolutions;
+        let trace = Trace { title: &title, points: &points, impacts: &impacts, against, gap: true };
+        picture::draw(&time_trace(&trace), path, out)?;
+    }
+    if let Some(path) = &arguments.phase_plane {
+        picture::draw(&phase_plane(&title, &points), path, out)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,80 @@
+//! Arguments that more than one subcommand takes: speeds, and where a run starts.
+
+use std::f64::consts::TAU;
+
+use crate::diagram::{Placed, Speeds, Start};
+use crate::flight::State;
+
+/// Where the run starts.
+#[derive(clap::Args)]
+pub(super) struct StartArguments {
+    /// Cam angle at the start, rad.
+    #[arg(long, value_name = "RAD", default_value_t = 0.0, value_parser = finite, allow_hyphen_values = true)]
+    pub(super) start_angle: f64,
+    /// Position and velocity at the start, m and m/s.
+    #[arg(long, value_name = "Q,V", value_parser = state, allow_hyphen_values = true, conflicts_with = "relative_velocity")]
+    state: Option<State>,
+    /// Start on the cam and leave it at this velocity, m/s, 0 or more [default: 0].
+    #[arg(long, value_name = "U", value_parser = not_negative, allow_hyphen_values = true)]
+    relative_velocity: Option<f64>,
+}
+
+impl StartArguments {
+    pub(super) fn start(&self) -> Start {
+        let follower =
+            self.state.map_or(Placed::OnCam(self.relative_velocity.unwrap_or(0.0)), Placed::At);
+        Start { cam_angle: turn(self.start_angle), follower }
+    }
+}
+
+/// An angle in `[0, 2 pi)`.
+pub(super) fn turn(angle: f64) -> f64 {
+    let angle = angle.rem_euclid(TAU);
+    // A tiny negative angle rounds up to a whole turn.
+    if angle < TAU { angle } else { 0.0 }
+}
+
+pub(super) fn finite(text: &str) -> Result<f64, String> {
+    let number: f64 = text.trim().parse().map_err(|_| format!("\"{text}\" is not a number"))?;
+    if number.is_finite() { Ok(number) } else { Err("must be a finite number".into()) }
+}
+
+pub(super) fn positive(text: &str) -> Result<f64, String> {
+    let number = finite(text)?;
+    if number > 0.0 { Ok(number) } else { Err("must be a finite number above 0".into()) }
+}
+
+pub(super) fn not_negative(text: &str) -> Result<f64, String> {
+    let number = finite(text)?;
+    if number >= 0.0 { Ok(number) } else { Err("must be a finite number, 0 or more".into()) }
+}
+
+/// A speed that a simulation can turn at.
+pub(super) fn rpm(text: &str) -> Result<f64, String> {
+    let number = positive(text)?;
+    if number <= Speeds::FASTEST { Ok(number) } else { Err(format!("must be {:e} or less", Speeds::FASTEST)) }
+}
+
+/// `LO:HI:N`.
+pub(super) fn speeds(text: &str) -> Result<Speeds, String> {
+    let parts: Vec<&str> = text.split(':').collect();
+    let [low, high, count] = parts.as_slice() else {
+        return Err("must be LO:HI:N: lowest speed, highest speed, how many".into());
+    };
+    let (low, high) = (rpm(low)?, rpm(high)?);
+    let count: usize = count.trim().parse().map_err(|_| format!("\"{count}\" is not a number of speeds"))?;
+    match (high >= low, count) {
+        (false, _) => Err(format!("the highest speed, {high}, is below the lowest, {low}")),
+        (_, 0) => Err("must be 1 speed or more".into()),
+        (true, 1) if high > low => Err("1 speed needs LO and HI to be the same".into()),
+        _ if count > Speeds::MOST => Err(format!("must be {} speeds or fewer", Speeds::MOST)),
+        _ => Ok(Speeds { low, high, count }),
+    }
+}
+
+fn state(text: &str) -> Result<State, String> {
+    let Some((position, velocity)) = text.split_once(',') else {
+        return Err("must be Q,V: a position and a velocity".into());
+    };
+    Ok(State { position: finite(position)?, velocity: finite(velocity)? })
+}

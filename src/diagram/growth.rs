@@ -1,0 +1,35 @@
+//! Lyapunov exponents, from the variational flow.
+
+use nalgebra::{Matrix2, Vector2};
+
+use crate::simulate::{Machine, Motion, SimulateError, Variation};
+
+/// The mean growth of a small deviation per revolution, as a natural logarithm: the largest Lyapunov exponent in the limit
+/// of many `revolutions`.
+///
+/// Minus infinity where the follower sticks to the cam, which forgets every deviation.
+pub fn growth(machine: &Machine, mut motion: Motion, revolutions: u64) -> Result<f64, SimulateError> {
+    let omega = machine.angular_velocity();
+    let mut variation = Variation::new(machine, &motion);
+    // Any direction has a part along the one that grows most; velocity counts over the angle, in m/rad.
+    let mut direction = Vector2::new(0.6, 0.8);
+    let mut sum = 0.0;
+    for _ in 0..revolutions {
+        let goal = motion.after(1);
+        let _ = machine.advance(&mut motion, goal, &mut variation)?;
+        let matrix = variation.matrix();
+        let carried = Vector2::new(
+            matrix[(0, 0)] * direction[0] + matrix[(0, 1)] * omega * direction[1],
+            matrix[(1, 0)] / omega * direction[0] + matrix[(1, 1)] * direction[1],
+        );
+        let stretch = carried.norm();
+        if stretch == 0.0 {
+            return Ok(f64::NEG_INFINITY);
+        }
+        sum += stretch.ln();
+        direction = carried / stretch;
+        variation.reset(Matrix2::identity());
+    }
+    Ok(sum / revolutions as f64)
+}
+

@@ -1,0 +1,192 @@
+//! Brute-force bifurcation diagrams: what a machine settles on, speed by speed.
+//!
+//! Each speed runs through a transient and is then recorded. From a fixed start the speeds are independent and run side by
+//! side; followed up or down, each starts where the one before ended. What is recorded leaves in the order of the speeds
+//! whatever the number of threads, in blocks, so that memory does not grow with the length of a record.
+
+mod growth;
+mod pipeline;
+
+use std::ops::ControlFlow;
+
+use crate::flight::State;
+use crate::simulate::{Event, Goal, Machine, Motion, SimulateError};
+pub use growth::growth;
+pub use pipeline::{Block, Tally};
+
+/// What is recorded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Section {
+    /// Every event at the cam.
+    Impacts,
+    /// The state at one cam angle, rad, in `[0, 2 pi)`, once a revolution.
+    Strobe(f64),
+}
+
+/// Where each speed starts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Following {
+    /// From the same start.
+    Nothing,
+    /// From the end of the next lower speed.
+    Up,
+    /// From the end of the next higher speed.
+    Down,
+}
+
+/// The start of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Start {
+    /// Cam angle, rad, in `[0, 2 pi)`.
+    pub cam_angle: f64,
+    /// The follower there.
+    pub follower: Placed,
+}
+
+/// A follower at the start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Placed {
+    /// With this state.
+    At(State),
+    /// On the cam, leaving it at this velocity, m/s, zero or more.
+    OnCam(f64),
+}
+
+impl Start {
+    /// A motion of `machine` from here.
+    pub fn motion(&self, machine: &Machine) -> Result<Motion, SimulateError> {
+        match self.follower {
+            Placed::At(state) => machine.start(self.cam_angle, state),
+            Placed::OnCam(relative_velocity) => machine.start_on_cam(self.cam_angle, relative_velocity),
+        }
+    }
+}
+
+/// Speeds, evenly spaced.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Speeds {
+    /// Lowest, rpm, positive.
+    pub low: f64,
+    /// Highest, rpm.
+    pub high: f64,
+    /// How many, 1 or more.
+    pub count: usize,
+}
+
+impl Speeds {
+    /// The fastest that is turned, rpm: an angle keeps its digits only over times that a double resolves.
+    pub const FASTEST: f64 = 1e9;
+    /// The most speeds of one sweep.
+    pub const MOST: usize = 10_000_000;
+
+    /// The speed of an index below `count`, rpm; the last is `high` exactly.
+    pub fn rpm(&self, index: usize) -> f64 {
+        if index + 1 >= self.count && self.count > 1 {
+            return self.high;
+        }
+        self.low + (self.high - self.low) * (index as f64 / (self.count.max(2) - 1) as f64)
+    }
+}
+
+/// A sweep over speeds.
+#[derive(Clone, Debug)]
+pub struct Sweep {
+    /// The machine, at any speed.
+    pub machine: Machine,
+    /// The speeds.
+    pub speeds: Speeds,
+    /// Where each starts.
+    pub start: Start,
+    /// Whether each goes on from its neighbour.
+    pub following: Following,
+    /// Revolutions that are not recorded.
+    pub transient: u64,
+    /// Revolutions that are.
+    pub record: u64,
+    /// What of them.
+    pub section: Section,
+    /// Whether the Lyapunov exponent of each record is computed.
+    pub lyapunov: bool,
+}
+
+/// What a record consists of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row {
+    /// Speed, rpm.
+    pub rpm: f64,
+    /// How often the cam has passed angle 0 since the start at this speed.
+    pub revolution: u64,
+    /// What was seen.
+    pub seen: Seen,
+    /// The exponent of this speed per revolution, if asked for.
+    pub lyapunov: Option<f64>,
+}
+
+/// An event, or the state on the section.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Seen {
+    /// An impact, stick or release.
+    Event(Event),
+    /// The follower on the section.
+    Section(State),
+}
+
+/// Why a sweep stopped.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SweepError {
+    /// A run could not go on.
+    #[error("at {rpm} rpm: {error}")]
+    Simulate {
+        /// Speed, rpm.
+        rpm: f64,
+        /// Why.
+        error: SimulateError,
+    },
+    /// The threads could not be started.
+    #[error("threads: {0}")]
+    Threads(String),
+}
+
+impl Sweep {
+    fn machine_at(&self, rpm: f64) -> Machine {
+        self.machine.at_speed(crate::simulate::angular_velocity(rpm))
+    }
+
+    /// Records one speed from `motion`, row by row, and returns where it ended; stops early where `keep` breaks.
+    fn speed(
+        &self,
+        machine: &Machine,
+        rpm: f64,
+        mut motion: Motion,
+        mut keep: impl FnMut(Row) -> ControlFlow<()>,
+    ) -> Result<(Motion, ControlFlow<()>), SimulateError> {
+        let goal = motion.after(self.transient);
+        let _ = machine.advance(&mut motion, goal, &mut |_: &Event| ControlFlow::Continue(()))?;
+        let lyapunov = if self.lyapunov { Some(growth(machine, motion, self.record)?) } else { None };
+        let row = |revolution, seen| Row { rpm, revolution, seen, lyapunov };
+        let goal = motion.after(self.record);
+        let flow = match self.section {
+            Section::Impacts => {
+                machine.advance(&mut motion, goal, &mut |event: &Event| keep(row(event.revolution, Seen::Event(*event))))?
+            }
+            Section::Strobe(cam_angle) => loop {
+                let next = motion.next(cam_angle);
+                let last = is_later(&next, &goal);
+                let _ = machine.advance(&mut motion, if last { goal } else { next }, &mut |_: &Event| {
+                    ControlFlow::Continue(())
+                })?;
+                if last {
+                    break ControlFlow::Continue(());
+                }
+                if keep(row(motion.revolution, Seen::Section(motion.state))).is_break() {
+                    break ControlFlow::Break(());
+                }
+            },
+        };
+        Ok((motion, flow))
+    }
+}
+
+fn is_later(one: &Goal, other: &Goal) -> bool {
+    (one.revolution, one.cam_angle) > (other.revolution, other.cam_angle)
+}
