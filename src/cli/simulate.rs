@@ -19,9 +19,11 @@ use crate::simulate::{Event, EventKind, Goal, Machine, Motion, angular_velocity}
 
 /// Runs one motion of a model and says what happened.
 #[derive(clap::Args)]
-#[command(after_help = "Examples: corner-impact simulate models/osorio-2008.toml --rpm 183 --revolutions 10 --events -\n\
+#[command(
+    after_help = "Examples: corner-impact simulate models/osorio-2008.toml --rpm 183 --revolutions 10 --events -\n\
     \x20         corner-impact simulate models/osorio-2008.toml --rpm 183 --trace trace.svg\n\n\
-    Exit code: 0 done, 2 bad model file, usage or file, or a run that cannot go on.")]
+    Exit code: 0 done, 2 bad model file, usage or file, or a run that cannot go on."
+)]
 pub(super) struct Arguments {
     /// Model file (TOML).
     model: PathBuf,

@@ -21,8 +21,7 @@ pub(super) struct StartArguments {
 
 impl StartArguments {
     pub(super) fn start(&self) -> Start {
-        let follower =
-            self.state.map_or(Placed::OnCam(self.relative_velocity.unwrap_or(0.0)), Placed::At);
+        let follower = self.state.map_or(Placed::OnCam(self.relative_velocity.unwrap_or(0.0)), Placed::At);
         Start { cam_angle: turn(self.start_angle), follower }
     }
 }

@@ -1,15 +1,28 @@
 //! Lyapunov exponents, from the variational flow.
 
+use std::ops::ControlFlow;
+
 use nalgebra::{Matrix2, Vector2};
 
-use crate::simulate::{Machine, Motion, SimulateError, Variation};
+use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError, Variation};
 
 /// The mean growth of a small deviation per revolution, as a natural logarithm: the largest Lyapunov exponent in the limit
 /// of many `revolutions`.
 ///
-/// Minus infinity where the follower sticks to the cam, which forgets every deviation.
+/// Minus infinity where the follower sticks to the cam, which forgets every deviation; a start on the cam counts from its
+/// release on.
 pub fn growth(machine: &Machine, mut motion: Motion, revolutions: u64) -> Result<f64, SimulateError> {
     let omega = machine.angular_velocity();
+    if motion.contact {
+        let goal = motion.after(revolutions);
+        let released = machine.advance(&mut motion, goal, &mut |event: &Event| match event.kind {
+            EventKind::Release => ControlFlow::Break(()),
+            _ => ControlFlow::Continue(()),
+        })?;
+        if released.is_continue() {
+            return Ok(f64::NEG_INFINITY);
+        }
+    }
     let mut variation = Variation::new(machine, &motion);
     // Any direction has a part along the one that grows most; velocity counts over the angle, in m/rad.
     let mut direction = Vector2::new(0.6, 0.8);
@@ -32,4 +45,3 @@ pub fn growth(machine: &Machine, mut motion: Motion, revolutions: u64) -> Result
     }
     Ok(sum / revolutions as f64)
 }
-

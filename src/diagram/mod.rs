@@ -166,15 +166,13 @@ impl Sweep {
         let row = |revolution, seen| Row { rpm, revolution, seen, lyapunov };
         let goal = motion.after(self.record);
         let flow = match self.section {
-            Section::Impacts => {
-                machine.advance(&mut motion, goal, &mut |event: &Event| keep(row(event.revolution, Seen::Event(*event))))?
-            }
+            Section::Impacts => machine
+                .advance(&mut motion, goal, &mut |event: &Event| keep(row(event.revolution, Seen::Event(*event))))?,
             Section::Strobe(cam_angle) => loop {
                 let next = motion.next(cam_angle);
                 let last = is_later(&next, &goal);
-                let _ = machine.advance(&mut motion, if last { goal } else { next }, &mut |_: &Event| {
-                    ControlFlow::Continue(())
-                })?;
+                let _ = machine
+                    .advance(&mut motion, if last { goal } else { next }, &mut |_: &Event| ControlFlow::Continue(()))?;
                 if last {
                     break ControlFlow::Continue(());
                 }

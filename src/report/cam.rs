@@ -186,7 +186,7 @@ fn short(number: f64) -> String {
     match number.abs() {
         // Without the sign of a zero.
         0.0 => "0".into(),
-        1e-4..1e9 => significant(number, 9),
+        0.0001..1e9 => significant(number, 9),
         _ => format!("{number:.5e}"),
     }
 }

@@ -14,8 +14,7 @@ pub const EVENTS: &str =
 pub const STROBE: &str = "revolution,position_m,velocity_m_s,gap_m,contact\n";
 
 /// The columns of a diagram of impacts.
-pub const IMPACT_DIAGRAM: &str =
-    "rpm,revolution,cam_angle_rad,event,position_m,velocity_before_m_s,velocity_after_m_s";
+pub const IMPACT_DIAGRAM: &str = "rpm,revolution,cam_angle_rad,event,position_m,velocity_before_m_s,velocity_after_m_s";
 
 /// The columns of a stroboscopic diagram.
 pub const STROBE_DIAGRAM: &str = "rpm,revolution,position_m,velocity_m_s";

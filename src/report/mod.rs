@@ -1,5 +1,5 @@
 //! One document value, several renderers, and one figure value, two renderers. No renderer computes anything but how many
-//! digits to show; [`file`] is how any of it reaches a disk.
+//! digits to show; [`mod@file`] is how any of it reaches a disk.
 
 pub mod cam;
 pub mod claims;

@@ -118,7 +118,11 @@ impl SweepSummary {
     pub fn text(&self) -> Result<String, fmt::Error> {
         let mut page = String::new();
         let per_turn = self.wall_s / self.revolutions as f64 * 1e9;
-        writeln!(page, "{}: {} revolutions, {} rows, {} impacts", self.model, self.revolutions, self.points, self.impacts)?;
+        writeln!(
+            page,
+            "{}: {} revolutions, {} rows, {} impacts",
+            self.model, self.revolutions, self.points, self.impacts
+        )?;
         writeln!(page, "  {:.3} s on {} threads, {per_turn:.0} ns a revolution", self.wall_s, self.threads)?;
         Ok(page)
     }
@@ -128,7 +132,11 @@ impl SweepSummary {
 pub const TRACE_SAMPLES: u32 = 720;
 
 /// A trace as figures take it, from its own start on.
-pub fn trace_points(samples: &[Sample], events: &[Event], angular_velocity: f64) -> (Vec<TracePoint>, Vec<ImpactPoint>) {
+pub fn trace_points(
+    samples: &[Sample],
+    events: &[Event],
+    angular_velocity: f64,
+) -> (Vec<TracePoint>, Vec<ImpactPoint>) {
     let first = samples.first().map_or(0.0, |sample| sample.turned);
     let point = |sample: &Sample| TracePoint {
         turned_rad: sample.turned - first,
