@@ -8,7 +8,7 @@ import heyoka as hy
 
 import problem as common
 
-# Its default is machine precision already. Loosened, it is compared with the others' defaults nowhere.
+# Its default is machine precision already.
 OPTIONS = {"default": {}, "tightest": {"high_accuracy": True}}
 
 
@@ -25,7 +25,8 @@ class Peer:
         gap = q - (distance * hy.cos(phi) + hy.sqrt(radius * radius - across * across))
         motion = [(q, v), (v, -problem.omega0_squared * (q - problem.equilibrium))]
         event = hy.t_event(gap, direction=hy.event_direction.negative)
-        self.integrator = hy.taylor_adaptive(motion, list(problem.state), t_events=[event], pars=[0.0] * 5, **OPTIONS[tolerance])
+        options = {"t_events": [event], "pars": [0.0] * 5, **OPTIONS[tolerance]}
+        self.integrator = hy.taylor_adaptive(motion, list(problem.state), **options)
 
     def fly(self, t, state, end, arc):
         if arc is None:

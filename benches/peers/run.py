@@ -49,7 +49,7 @@ PEERS = [
 ]
 # The paper's x* on the cam's coordinates, to the digits that every program is given.
 START = 5.397, 0.0
-ROUNDS = 3
+ROUNDS = 5
 REVOLUTIONS, CHAOTIC_REVOLUTIONS = 100, 300
 # A run is lost, in chaos, once an impact is off by this much, rad.
 LOST = 1e-3
