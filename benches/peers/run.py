@@ -1,6 +1,6 @@
 """The same cam by every peer, on this machine, in one go: time beside accuracy.
 
-  python run.py [--quick] [--only NAME] [--markdown FILE]
+  python run.py [--quick] [--only NAME] [--question time|grazes|chattering] [--markdown FILE]
 
 Prints one table per question, in Markdown, with the machine and the versions above them; `--markdown` writes the same to a
 file. What is asked, and how each peer is started, is in README.md.
@@ -273,6 +273,13 @@ def chattering(peers, quick):
     return ["by", "how", "what it does", "impacts", "last jump of the velocity, m/s", "time"], rows
 
 
+QUESTIONS = {
+    "time": ("Time and accuracy", speed_and_accuracy),
+    "grazes": ("Grazes", grazes),
+    "chattering": ("Chattering at 183 rpm", chattering),
+}
+
+
 def machine():
     """What the numbers were measured on, without naming the machine."""
     cpu = next(line.split(":")[1].strip() for line in Path("/proc/cpuinfo").read_text().splitlines() if "model name" in line)
@@ -298,14 +305,16 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="fewer revolutions, rounds and starts: does it run?")
     parser.add_argument("--only", help="peers whose name contains this")
+    parser.add_argument("--question", choices=QUESTIONS, help="this one alone")
     parser.add_argument("--markdown", type=Path, help="write the tables to this file too")
     arguments = parser.parse_args()
     peers = [(name, how, tuple(command), *rest) for name, how, command, *rest in PEERS]
     peers = [peer for peer in peers if not arguments.only or arguments.only in peer[0]]
     parts = [machine()]
     print(parts[0], flush=True)
-    questions = {"Time and accuracy": speed_and_accuracy, "Grazes": grazes, "Chattering at 183 rpm": chattering}
-    for title, question in questions.items():
+    for name, (title, question) in QUESTIONS.items():
+        if arguments.question not in (None, name):
+            continue
         parts.append(f"### {title}\n\n{table(*question(peers, arguments.quick))}")
         print("\n" + parts[-1], flush=True)
     if arguments.markdown:
