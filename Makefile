@@ -6,7 +6,7 @@ CARGO ?= cargo
 RELEASE := --release --locked
 
 .DEFAULT_GOAL := help
-.PHONY: help verify test check derive derive-check claims review mutants bench bench-criterion bench-peers clean
+.PHONY: help verify test check derive derive-check claims review mutants bench bench-each bench-peers clean
 
 # Python and its packages, once; again when the list of packages changes.
 PYTHON ?= python3
@@ -55,7 +55,7 @@ mutants: ## change signs and factors in the formulas; each change must fail a te
 bench: ## time a revolution: the scan-and-bisect baseline and the simulator side by side, interleaved
 	$(CARGO) bench --locked --quiet --bench table
 
-bench-criterion: ## the same pieces of work one by one, with criterion's statistics
+bench-each: ## the same pieces of work one by one, with criterion's statistics
 	$(CARGO) bench --locked --bench simulate
 
 # Its own packages, apart from what the checks use.
