@@ -6,7 +6,7 @@ CARGO ?= cargo
 RELEASE := --release --locked
 
 .DEFAULT_GOAL := help
-.PHONY: help verify test check derive derive-check claims review mutants clean
+.PHONY: help verify test check derive derive-check claims review mutants bench bench-each bench-peers clean
 
 # Python and its packages, once; again when the list of packages changes.
 PYTHON ?= python3
@@ -52,6 +52,24 @@ mutants: ## change signs and factors in the formulas; each change must fail a te
 	@command -v cargo-mutants >/dev/null || $(CARGO) install cargo-mutants --locked
 	$(CARGO) mutants
 
+bench: ## time a revolution: the scan-and-bisect baseline and the simulator side by side, interleaved
+	$(CARGO) bench --locked --quiet --bench table
+
+bench-each: ## the same pieces of work one by one, with criterion's statistics
+	$(CARGO) bench --locked --bench simulate
+
+# Its own packages, apart from what the checks use.
+PEERS := benches/peers/.venv/.ready
+$(PEERS): benches/peers/requirements.txt
+	$(PYTHON) -m venv benches/peers/.venv
+	benches/peers/.venv/bin/python -m pip install --quiet --disable-pip-version-check -r benches/peers/requirements.txt
+	@touch $@
+
+bench-peers: $(PEERS) ## the same cam by other event-finding integrators: time beside accuracy (some minutes)
+	$(CARGO) build $(RELEASE) --quiet --bins --example baseline
+	$(CARGO) build $(RELEASE) --quiet --manifest-path benches/peers/diffsol/Cargo.toml
+	benches/peers/.venv/bin/python benches/peers/run.py
+
 clean: ## remove what the other targets made
 	$(CARGO) clean
-	rm -rf .venv
+	rm -rf .venv benches/peers/.venv benches/peers/diffsol/target
