@@ -118,15 +118,19 @@ fn derivatives_and_rises_against_sixty_digits() {
         }
         // However short the turn.
         for (turn, expected) in TURNS.into_iter().zip(rises) {
-            assert_relative_eq!(law.rise(angle, turn), expected, max_relative = 1e-14);
+            assert_relative_eq!(law.rise(angle, turn), expected, epsilon = 0.0, max_relative = 1e-14);
         }
     }
     // Off a dwell, where velocity and acceleration are 0: a third power of the turn.
     let cycloid =
         Law::Sinusoid(Sinusoid { start: 0.3, value: 0.1, tilt: 0.0, sine: 0.03, cosine: 0.0, frequency: 3.5 });
-    for (turn, expected) in [(1e-9, 2.1437500000000003e-28), (1e-3, 2.143748686953508e-10), (0.5, 0.022980421593781892)]
-    {
-        assert_relative_eq!(cycloid.rise(0.3, turn), expected, max_relative = 1e-14);
+    for (turn, expected) in [
+        (1e-9, 2.1437500000000003e-28),
+        (1e-3, 2.143748686953508e-10),
+        (0.28, 0.004485078885240887),
+        (0.5, 0.022980421593781892),
+    ] {
+        assert_relative_eq!(cycloid.rise(0.3, turn), expected, epsilon = 0.0, max_relative = 2e-15);
     }
 }
 
@@ -268,6 +272,20 @@ fn motions_have_the_peaks_of_the_handbooks() {
         }
     }
     assert_eq!(motion("dwell", 90.0, 0.0).lift(1.0).value, 0.05);
+}
+
+/// 0.1 + 0.2 - 0.3 is not 0 in doubles; the cam ends on its base all the same.
+#[test]
+fn the_last_return_ends_on_the_base_to_the_last_bit() {
+    let segments = [("poly345", 0.1), ("cycloidal", 0.2), ("poly4567", -0.3), ("dwell", 0.0)];
+    let segment =
+        |(motion, rise): (&str, f64)| format!("[[cam.segment]]\nmotion = \"{motion}\"\nspan_deg = 90\nrise = {rise}\n");
+    let segments: Vec<String> = segments.into_iter().map(segment).collect();
+    let cam = cam_of(&format!("law = \"program\"\nbase = 0.01\n{}", segments.concat()));
+    assert_eq!(cam.lift(6.0).value, 0.01);
+    let last = &cam.segments()[cam.segments().len() - 2];
+    let end = last.law.lift(last.end);
+    assert_eq!((end.value, end.slope, end.curvature), (0.01, 0.0, 0.0));
 }
 
 /// Within a motion nothing jumps below the acceleration's own derivatives, and the lift nowhere.
