@@ -25,9 +25,9 @@ table! {
     /// When one-sided derivatives of the lift differ enough to be a corner.
     CAM_JUMP = 1e-9, "of the largest derivative of that order on the two segments that meet: a thousand times what rounding \
         leaves between two laws that meet smoothly, and far below any jump that a machined cam would have by design";
-    /// What rounding of an angle may make of a derivative.
-    ANGLE_ROUNDING = 64.0 * f64::EPSILON, "rad, times the next derivative: a dozen ulps of a full turn, which would make a \
-        jump of a derivative that passes through 0 where a short segment begins";
+    /// What rounding may make of a derivative at the end of a segment.
+    JET_ROUNDING = 64.0 * f64::EPSILON, "of the terms that it is the sum of, which may cancel far from where a polynomial \
+        starts, and of the next derivative times a radian: the angle itself is known to a dozen ulps of a full turn";
     /// How closely a cam closes on itself: spans on 360 degrees, rises on 0, a last row on the first.
     CAM_CLOSURE = 1e-9, "of the sum of the sizes: what typing the numbers to ten digits leaves";
     /// How wide a gap between the rows of a table may be.

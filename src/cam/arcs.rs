@@ -92,8 +92,8 @@ impl Arc {
         let w4 = (4.0 * u2 + 8.0 * w1 * w3 + 6.0 * w2 * w2) * half;
         let everywhere = kappa * largest + w3;
         let from_middle = self.lift(middle).third.abs() + reach * (kappa + w4);
-        // The last bits of a dozen operations; no min, which would take a bound for one that is not a number.
-        let rounding = 64.0 * f64::EPSILON * everywhere;
+        // The last bits of a dozen operations and of the angle; no min, which would take a bound for one that is not a number.
+        let rounding = 64.0 * f64::EPSILON * (everywhere + kappa + w4);
         if from_middle < everywhere { from_middle + rounding } else { everywhere + rounding }
     }
 

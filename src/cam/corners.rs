@@ -53,10 +53,13 @@ impl Cam {
             // Two pieces that differ at all differ in the highest power, however little.
             Joint::Spline { degree } => (jump(degree) != 0.0).then_some(degree)?,
             Joint::Free => {
-                let scale = |order: usize| self.size(before, order).max(self.size(next, order));
+                let (minus_size, plus_size) = (sizes(before), sizes(next));
+                let size = |order: usize| minus_size[order].max(plus_size[order]);
+                let (minus_terms, plus_terms) = (before.law.terms(before.end), next.law.terms(next.start));
+                let terms = |order: usize| minus_terms.0[order].abs().max(plus_terms.0[order].abs());
                 (1..=Jet::HIGHEST_JUMP).find(|order| {
-                    let rounding = tolerance::ANGLE_ROUNDING.value * scale(order + 1);
-                    jump(*order).abs() > tolerance::CAM_JUMP.value * scale(*order) + rounding
+                    let rounding = tolerance::JET_ROUNDING.value * (size(order + 1) + terms(*order));
+                    jump(*order).abs() > tolerance::CAM_JUMP.value * size(*order) + rounding
                 })?
             }
         };
@@ -68,12 +71,6 @@ impl Cam {
             minus: before.law.lift(before.end),
             plus: next.law.lift(next.start),
         })
-    }
-
-    /// The largest derivative of an order at the ends and the middle of a segment.
-    fn size(&self, segment: &Segment, order: usize) -> f64 {
-        let at = [segment.start, 0.5 * (segment.start + segment.end), segment.end];
-        at.iter().fold(0.0, |size: f64, angle| size.max(segment.law.jet(*angle).0[order].abs()))
     }
 
     /// The cam with the law of one side of `corner` continued past it by `reach`, rad.
@@ -112,4 +109,18 @@ impl Cam {
         let reaches = |segment: &Segment| segment.law.third_bound(segment.start, segment.end).is_finite();
         segments.iter().all(reaches).then(|| Self::from_segments(segments))
     }
+}
+
+/// The largest derivative of each order over a segment: of eight samples, so that zeros in step with them hide none.
+fn sizes(segment: &Segment) -> [f64; Jet::ORDERS] {
+    const SAMPLES: usize = 8;
+    let mut sizes = [0.0_f64; Jet::ORDERS];
+    for sample in 0..SAMPLES {
+        let part = sample as f64 / (SAMPLES as f64 - 1.0);
+        let jet = segment.law.jet(segment.start + part * (segment.end - segment.start));
+        for (size, derivative) in sizes.iter_mut().zip(jet.0) {
+            *size = size.max(derivative.abs());
+        }
+    }
+    sizes
 }

@@ -93,6 +93,14 @@ impl Law {
         }
     }
 
+    /// The sizes of what the derivatives at `angle` are sums of; their own where nothing can cancel.
+    pub(super) fn terms(&self, angle: f64) -> Jet {
+        match self {
+            Self::Polynomial(polynomial) => polynomial.terms(angle),
+            law => law.jet(angle),
+        }
+    }
+
     /// The same law a revolution on: at `angle + turn` what this one is at `angle`, for `turn` of 2 pi or -2 pi.
     ///
     /// Where the two meet, at 0 and 2 pi, the distance from the law's start rounds to the same bits.

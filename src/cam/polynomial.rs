@@ -61,8 +61,9 @@ impl Polynomial {
     #[inline]
     pub fn third_bound(&self, start: f64, end: f64) -> f64 {
         let Some(above) = self.coefficients.get(3..) else { return 0.0 };
-        let middle = 0.5 * (start + end) - self.start;
-        let reach = 0.5 * (end - start);
+        // From the start first: the piece of a spline is short, and far from 0.
+        let (low, high) = (start - self.start, end - self.start);
+        let (middle, reach) = (0.5 * (low + high), 0.5 * (high - low));
         // c''' = sum (k+1)(k+2)(k+3) a_{k+3} u^k
         let mut third = [0.0; MOST_COEFFICIENTS];
         let count = above.len();
@@ -70,18 +71,30 @@ impl Polynomial {
             let k = k as f64;
             *slot = (k + 1.0) * (k + 2.0) * (k + 3.0) * a;
         }
+        let largest = |terms: &[f64], u: f64| terms.iter().rev().fold(0.0, |sum, term| sum * u + term.abs());
+        // Of what rounding may move the sum by: terms far from the start may cancel.
+        let terms = largest(&third[..count], middle.abs() + reach);
         shift(&mut third[..count], middle);
-        let bound = third[..count].iter().rev().fold(0.0, |bound, term| bound * reach + term.abs());
-        // Rounding of the sum itself.
-        bound * (1.0 + 64.0 * f64::EPSILON)
+        largest(&third[..count], reach) + 64.0 * f64::EPSILON * terms
     }
 
     /// Lift and high derivatives at `angle`, rad.
     pub fn jet(&self, angle: f64) -> Jet {
+        self.shifted(angle - self.start, |a| a)
+    }
+
+    /// The sizes of the terms that each derivative is the sum of: what its rounding is relative to.
+    pub(super) fn terms(&self, angle: f64) -> Jet {
+        self.shifted((angle - self.start).abs(), f64::abs)
+    }
+
+    fn shifted(&self, u: f64, of: fn(f64) -> f64) -> Jet {
         let mut shifted = [0.0; MOST_COEFFICIENTS];
         let count = self.coefficients.len();
-        shifted[..count].copy_from_slice(&self.coefficients);
-        shift(&mut shifted[..count], angle - self.start);
+        for (slot, a) in shifted.iter_mut().zip(self.coefficients.iter()) {
+            *slot = of(*a);
+        }
+        shift(&mut shifted[..count], u);
         let mut series = [0.0; Jet::ORDERS];
         for (slot, coefficient) in series.iter_mut().zip(shifted) {
             *slot = coefficient;

@@ -31,11 +31,6 @@ impl Placed {
         self.start + x * self.span
     }
 
-    /// `s = sum a_k x^k`.
-    fn powers(&self, unit: &[f64]) -> Law {
-        self.polynomial(0.0, self.from, unit)
-    }
-
     /// `value + rise sum a_k (x - at)^k`.
     fn polynomial(&self, at: f64, value: f64, unit: &[f64]) -> Law {
         let mut scale = self.rise();
@@ -85,7 +80,7 @@ fn laws(motion: Motion, placed: &Placed) -> Vec<(f64, Law)> {
         Motion::Dwell => vec![(start, Law::Dwell(placed.from))],
         // s = 2 x^2, then 1 - 2 (1 - x)^2
         Motion::Parabolic => vec![
-            (start, placed.powers(&[0.0, 0.0, 2.0])),
+            (start, placed.polynomial(0.0, placed.from, &[0.0, 0.0, 2.0])),
             (placed.angle(0.5), placed.polynomial(1.0, placed.to, &[0.0, 0.0, -2.0])),
         ],
         // s = (1 - cos(pi x))/2
@@ -101,10 +96,18 @@ fn laws(motion: Motion, placed: &Placed) -> Vec<(f64, Law)> {
         Motion::ModifiedTrapezoid => modified_trapezoid(placed),
         Motion::ModifiedSine => modified_sine(placed),
         // s = 10 x^3 - 15 x^4 + 6 x^5
-        Motion::Poly345 => vec![(start, placed.powers(&[0.0, 0.0, 0.0, 10.0, -15.0, 6.0]))],
+        Motion::Poly345 => halves(placed, [10.0, -15.0, 6.0, 0.0, 0.0]),
         // s = 35 x^4 - 84 x^5 + 70 x^6 - 20 x^7
-        Motion::Poly4567 => vec![(start, placed.powers(&[0.0, 0.0, 0.0, 0.0, 35.0, -84.0, 70.0, -20.0]))],
+        Motion::Poly4567 => halves(placed, [0.0, 35.0, -84.0, 70.0, -20.0]),
     }
+}
+
+/// `s = sum a_k x^k`, k from 3 to 7, and about the end, `s = 1 - sum a_k (1 - x)^k`: at rest to the last bit at both.
+fn halves(placed: &Placed, [a3, a4, a5, a6, a7]: [f64; 5]) -> Vec<(f64, Law)> {
+    vec![
+        (placed.start, placed.polynomial(0.0, placed.from, &[0.0, 0.0, 0.0, a3, a4, a5, a6, a7])),
+        (placed.angle(0.5), placed.polynomial(1.0, placed.to, &[0.0, 0.0, 0.0, a3, -a4, a5, -a6, a7])),
+    ]
 }
 
 /// Acceleration `C sin(4 pi x)` up to x = 1/8, C up to 3/8, `C cos(4 pi (x - 3/8))` up to 5/8, then antisymmetric.

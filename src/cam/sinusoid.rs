@@ -76,7 +76,8 @@ impl Sinusoid {
         let everywhere = frequency.powi(3) * self.sine.hypot(self.cosine);
         let from_middle = self.lift(0.5 * (start + end)).third.abs() + 0.5 * (end - start) * frequency * everywhere;
         // Rounding of the phase and of the sum.
-        everywhere.min(from_middle + 64.0 * f64::EPSILON * everywhere) * (1.0 + 8.0 * f64::EPSILON)
+        let rounding = 64.0 * f64::EPSILON * (1.0 + frequency) * everywhere;
+        everywhere.min(from_middle) + rounding
     }
 
     /// Lift and high derivatives at `angle`, rad.

@@ -224,7 +224,6 @@ impl Fields {
             if !is_table(self.fields.get(&item)) {
                 return Err(self.reject(&item, format!("must be a table under [[{path}]]")));
             }
-            self.known.insert(item);
         }
         Ok(length)
     }

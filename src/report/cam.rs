@@ -183,10 +183,10 @@ impl CamDocument {
 
 /// Nine digits, or six with an exponent where zeros would take their place.
 fn short(number: f64) -> String {
-    match number.abs() {
-        // Without the sign of a zero.
-        0.0 => "0".into(),
-        0.0001..1e9 => significant(number, 9),
-        _ => format!("{number:.5e}"),
+    // Without the sign of a zero.
+    if number == 0.0 {
+        return "0".into();
     }
+    let exponent = number.abs().log10();
+    if (-4.0..9.0).contains(&exponent) { significant(number, 9) } else { format!("{number:.5e}") }
 }
