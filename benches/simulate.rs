@@ -23,12 +23,20 @@ fn simulate(criterion: &mut Criterion) {
         group.throughput(Throughput::Elements(work.revolutions()));
         group.sample_size(10).warm_up_time(Duration::from_secs(1)).measurement_time(Duration::from_secs(5));
         group.bench_function("baseline", |bencher| bencher.iter(|| work.by_baseline()));
-        if work::SIMULATOR_IS_THERE {
-            group.bench_function("simulator", |bencher| bencher.iter(|| work.by_simulator()));
-        }
+        group.bench_function("simulator", |bencher| bencher.iter(|| work.by_simulator()));
         group.finish();
     }
 }
 
-criterion_group!(benches, latency, simulate);
+fn threads(criterion: &mut Criterion) {
+    let sweep = work::sweep();
+    let mut group = criterion.benchmark_group("diagram of 2000 speeds");
+    group.sample_size(10);
+    for threads in [1, 2] {
+        group.bench_function(format!("{threads} threads"), |bencher| bencher.iter(|| work::count(&sweep, threads)));
+    }
+    group.finish();
+}
+
+criterion_group!(benches, latency, simulate, threads);
 criterion_main!(benches);

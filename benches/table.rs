@@ -49,24 +49,25 @@ fn main() {
         for _ in 0..rounds {
             sin_cos.push(1e9 * time(|| work::chain(black_box(0.3))) / f64::from(work::CHAIN));
             baseline.push(1e9 * time(|| work.by_baseline()) / revolutions);
-            if work::SIMULATOR_IS_THERE {
-                ours.push(1e9 * time(|| work.by_simulator()) / revolutions);
-            }
+            ours.push(1e9 * time(|| work.by_simulator()) / revolutions);
         }
         let ratios = |over: &[f64], under: &[f64]| middle(over.iter().zip(under).map(|(a, b)| a / b).collect()).0;
         let ((unit, unit_spread), (slow, slow_spread)) = (middle(sin_cos.clone()), middle(baseline.clone()));
         let events = work.by_baseline() as f64 / revolutions;
         print!("| {} | {events:.2} | {unit:.1} ± {unit_spread:.1} | {slow:.0} ± {slow_spread:.0} |", work.name);
         print!(" {:.0} |", ratios(&baseline, &sin_cos));
-        if ours.is_empty() {
-            println!(" TO BE MEASURED | | |");
-        } else {
-            let (fast, fast_spread) = middle(ours.clone());
-            println!(
-                " {fast:.0} ± {fast_spread:.0} | {:.1} | {:.1} |",
-                ratios(&ours, &sin_cos),
-                ratios(&baseline, &ours)
-            );
-        }
+        let (fast, fast_spread) = middle(ours.clone());
+        println!(" {fast:.0} ± {fast_spread:.0} | {:.1} | {:.1} |", ratios(&ours, &sin_cos), ratios(&baseline, &ours));
     }
+    let sweep = work::sweep();
+    let (mut one, mut two) = (Vec::new(), Vec::new());
+    for _ in 0..rounds {
+        one.push(time(|| work::count(&sweep, 1)));
+        two.push(time(|| work::count(&sweep, 2)));
+    }
+    let ratio = middle(one.iter().zip(&two).map(|(one, two)| one / two).collect());
+    println!(
+        "\nA diagram of {} speeds on two threads is {:.2} ± {:.2} times as fast as on one.",
+        sweep.speeds.count, ratio.0, ratio.1
+    );
 }

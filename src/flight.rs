@@ -97,6 +97,14 @@ impl Flight {
         self.omega0_squared
     }
 
+    /// The frequency of the free oscillation, rad/s, or `None` if there is none.
+    pub fn damped_frequency(&self) -> Option<f64> {
+        match self.regime {
+            Regime::Undamped { omega } | Regime::Underdamped { omega } => Some(omega),
+            Regime::Monotone { .. } => None,
+        }
+    }
+
     /// `q''` in free flight, m/s^2.
     #[inline]
     pub fn acceleration(&self, state: State) -> f64 {

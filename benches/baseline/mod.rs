@@ -149,13 +149,14 @@ impl Baseline {
 
     /// c, m: the scan needs no derivative, and computes none.
     fn height(&self, cam_angle: f64) -> f64 {
-        match self.cam.segments()[self.cam.segment_at(cam_angle)].law {
-            Law::Dwell(height) => height,
+        match &self.cam.segments()[self.cam.segment_at(cam_angle)].law {
+            Law::Dwell(height) => *height,
             Law::Arc(arc) => {
                 let (sin, cos) = (cam_angle - arc.direction).sin_cos();
                 let across = arc.distance * sin;
                 arc.distance * cos + (arc.radius * arc.radius - across * across).sqrt()
             }
+            other => other.lift(cam_angle).value,
         }
     }
 

@@ -2,17 +2,18 @@
 
 use std::f64::consts::{PI, TAU};
 use std::hint::black_box;
+use std::ops::ControlFlow;
 
+use corner_impact::cam::Cam;
+use corner_impact::diagram::{Block, Following, Placed, Row, Section, Speeds, Start, Sweep, SweepError};
 use corner_impact::flight::State;
 use corner_impact::model::{Model, OSORIO_2008};
+use corner_impact::simulate::{Machine, angular_velocity};
 
 use crate::baseline::{Baseline, Place};
 
 /// Calls of `sin_cos` in one [`chain`], each of which needs the one before.
 pub const CHAIN: u32 = 1000;
-
-/// Whether [`Work::by_simulator`] does its work; until then its columns are left empty.
-pub const SIMULATOR_IS_THERE: bool = false;
 
 /// A chain of dependent `sin_cos`: its time over [`CHAIN`] is the latency of one, with one addition.
 pub fn chain(mut x: f64) -> f64 {
@@ -28,6 +29,7 @@ pub struct Work {
     /// What it stands for.
     pub name: &'static str,
     model: Model,
+    machine: Machine,
     /// Cam speeds, rpm, each with the place where its run starts.
     runs: Vec<(f64, Place)>,
     /// Revolutions at each speed.
@@ -56,7 +58,9 @@ impl Work {
             (rpm, settled)
         };
         let runs = speeds.iter().map(|rpm| settle(*rpm)).collect();
-        Self { name, model, runs, each }
+        let Ok(cam) = Cam::new(&model) else { unreachable!("the built-in cam") };
+        let machine = Machine::new(cam, &model.follower, 1.0);
+        Self { name, model, machine, runs, each }
     }
 
     /// Revolutions in one piece of work.
@@ -75,12 +79,58 @@ impl Work {
     }
 
     /// Does it by the project's own simulator; the number of events.
-    ///
-    /// PLACE OF THE SIMULATOR: one thread, every speed of `self.runs` from its start for `self.each` revolutions, counting
-    /// events as `by_baseline` does; then set [`SIMULATOR_IS_THERE`].
     pub fn by_simulator(&self) -> usize {
-        0
+        let mut events = 0;
+        for (rpm, start) in &self.runs {
+            let machine = self.machine.at_speed(angular_velocity(*rpm));
+            // The baseline may leave its follower a rounding below the cam.
+            let lift = machine.cam().lift(start.cam_angle).value;
+            let state = State { position: start.state.position.max(lift), ..start.state };
+            let end = machine.turn(start.cam_angle, state, TAU * f64::from(self.each), |_| {
+                events += 1;
+                ControlFlow::Continue(())
+            });
+            let Ok(end) = end else { unreachable!("the start is on or above the cam") };
+            black_box(end);
+        }
+        events
     }
+}
+
+/// The diagram's sweep at ten times as many speeds, for threads to share.
+pub fn sweep() -> Sweep {
+    let Ok(model) = Model::parse("osorio-2008.toml", OSORIO_2008) else { unreachable!("the built-in model") };
+    let Ok(cam) = Cam::new(&model) else { unreachable!("the built-in cam") };
+    let state = State { position: 0.3 + 5.09700788184262174, velocity: 0.0 };
+    Sweep {
+        machine: Machine::new(cam, &model.follower, 1.0),
+        speeds: Speeds { low: 660.0, high: 750.0, count: 2000 },
+        start: Start { cam_angle: 2.62112450116623235 + PI, follower: Placed::At(state) },
+        following: Following::Nothing,
+        transient: 300,
+        record: 100,
+        section: Section::Impacts,
+        lyapunov: false,
+    }
+}
+
+/// Nothing is kept of the rows.
+#[derive(Default)]
+struct Counted;
+
+impl Block for Counted {
+    fn push(&mut self, _row: &Row) {}
+
+    fn is_full(&self) -> bool {
+        false
+    }
+}
+
+/// Runs a sweep on so many threads; its rows.
+pub fn count(sweep: &Sweep, threads: usize) -> u64 {
+    let found = sweep.run(Some(threads), |_, _: Counted| Ok::<(), SweepError>(()));
+    let Ok(tally) = found else { unreachable!("the start is above the cam") };
+    tally.points
 }
 
 fn machine(model: &Model, rpm: f64) -> Baseline {

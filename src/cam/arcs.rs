@@ -34,9 +34,14 @@ impl Arc {
     #[inline]
     pub fn lift(&self, angle: f64) -> Lift {
         let (sin, cos) = (angle - self.direction).sin_cos();
+        self.lift_by(sin, cos, self.root_squared(sin).sqrt())
+    }
+
+    /// The same from the sine and cosine of phi, and w.
+    #[inline]
+    fn lift_by(&self, sin: f64, cos: f64, w: f64) -> Lift {
         let kappa = self.distance;
         // u = w^2 = rho^2 - kappa^2 sin^2 phi, u' = -kappa^2 sin 2 phi, u'' = -2 kappa^2 cos 2 phi, u''' = -4 u'
-        let w = self.root_squared(sin).sqrt();
         let u1 = -kappa * kappa * 2.0 * sin * cos;
         let u2 = -2.0 * kappa * kappa * (cos - sin) * (cos + sin);
         let u3 = -4.0 * u1;
@@ -52,6 +57,12 @@ impl Arc {
     /// `c(from + turn) - c(from)`, m, exact as `turn` goes to 0.
     #[inline]
     pub fn rise(&self, from: f64, turn: f64) -> f64 {
+        self.climb(from, turn).0
+    }
+
+    /// The same, and the lift where it ends.
+    #[inline]
+    pub fn climb(&self, from: f64, turn: f64) -> (f64, Lift) {
         let half = 0.5 * turn;
         let kappa = self.distance;
         let (half_sin, half_cos) = half.sin_cos();
@@ -60,9 +71,12 @@ impl Arc {
         let shift = -2.0 * kappa * sin * half_sin;
         // w1 - w0 = (u1 - u0)/(w1 + w0),  u1 - u0 = -kappa^2 sin(2 phi + d) sin d
         let difference = -4.0 * kappa * kappa * sin * cos * half_sin * half_cos;
-        // sin(phi + d/2 -+ d/2)
-        let (before, after) = (sin * half_cos - cos * half_sin, sin * half_cos + cos * half_sin);
-        shift + difference / (self.root_squared(before).sqrt() + self.root_squared(after).sqrt())
+        // sin and cos of phi + d/2 -+ d/2
+        let (along, across) = (sin * half_cos, cos * half_sin);
+        let (before, after) = (along - across, along + across);
+        let (w0, w1) = (self.root_squared(before).sqrt(), self.root_squared(after).sqrt());
+        let after_cos = cos * half_cos - sin * half_sin;
+        (shift + difference / (w0 + w1), self.lift_by(after, after_cos, w1))
     }
 
     /// A bound on `|c'''|` over `[start, end]`: its terms at their largest, or from the middle by `|c''''|` where less.

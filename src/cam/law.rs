@@ -70,6 +70,15 @@ impl Law {
         }
     }
 
+    /// [`Law::rise`], and [`Law::lift`] where it ends, with what the two share computed once.
+    #[inline]
+    pub fn climb(&self, from: f64, turn: f64) -> (f64, Lift) {
+        match self {
+            Self::Arc(arc) => arc.climb(from, turn),
+            _ => (self.rise(from, turn), self.lift(from + turn)),
+        }
+    }
+
     /// A bound on `|d^3c/dtheta^3|` over `[start, end]`, m/rad^3; infinite where the law does not reach.
     #[inline]
     pub fn third_bound(&self, start: f64, end: f64) -> f64 {

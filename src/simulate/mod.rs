@@ -5,6 +5,7 @@
 //! Time runs from the last event and the cam angle stays in `[0, 2 pi)`, so neither a short hop nor the hundred-millionth
 //! revolution loses digits.
 
+mod again;
 mod contact;
 mod event;
 mod sticking;
@@ -21,6 +22,7 @@ use crate::flight::{Flight, State};
 use crate::impact::rebound;
 use crate::model::Follower;
 use crate::tolerance;
+use again::Turn;
 pub use event::{Event, EventKind, Observer, SimulateError};
 pub use sticking::accumulation;
 use terrain::Terrain;
@@ -34,6 +36,7 @@ pub struct Machine {
     flight: Flight,
     restitution: f64,
     angular_velocity: f64,
+    turn: Turn,
 }
 
 /// Radians per second of a speed in revolutions per minute.
@@ -59,6 +62,8 @@ pub struct Motion {
     lift: Option<Lift>,
     /// Where the last impact was, rad, if the one before it was close by: the next is looked for there first.
     expected: Option<f64>,
+    /// Whether the last two impacts were at the same place to within the step that again takes.
+    settled: bool,
     last_impact: f64,
 }
 
@@ -102,17 +107,19 @@ impl Machine {
 
     /// A machine at `angular_velocity`, rad/s, positive.
     pub fn new(cam: Cam, follower: &Follower, angular_velocity: f64) -> Self {
+        let flight = Flight::new(follower);
         Self {
             terrain: Arc::new(Terrain::new(cam)),
-            flight: Flight::new(follower),
+            flight,
             restitution: follower.restitution,
             angular_velocity,
+            turn: Turn::new(&flight, angular_velocity),
         }
     }
 
     /// The same machine at another speed, rad/s, positive; the cam is shared.
     pub fn at_speed(&self, angular_velocity: f64) -> Self {
-        Self { angular_velocity, ..self.clone() }
+        Self { angular_velocity, turn: Turn::new(&self.flight, angular_velocity), ..self.clone() }
     }
 
     /// The lift profile.
@@ -157,6 +164,7 @@ impl Machine {
             gap: None,
             lift: None,
             expected: None,
+            settled: false,
             last_impact: f64::NAN,
         };
         if gap <= rounding {
@@ -265,7 +273,17 @@ impl Machine {
         let omega = self.angular_velocity;
         let top = self.terrain.top;
         let start = motion.state;
-        if start.position > top || self.clears(motion, top) {
+        let clears = self.clears(motion, top);
+        if let Some(again) = clears.filter(|_| motion.settled).and_then(|jerk| self.again(motion, jerk)) {
+            let left = left - omega * again.time;
+            if left > 0.0 {
+                observer.flight(&self.flight, start, again.time);
+                motion.revolution += 1;
+                motion.cam_angle = again.cam_angle;
+                return Ok(self.strike(motion, again.velocity, &again.lift, left, observer));
+            }
+        }
+        if start.position > top || clears.is_some() {
             let (time, state) = match self.flight.fall_to(top, start) {
                 Some((time, state)) if omega * time < left => (time, state),
                 _ => {
@@ -327,20 +345,22 @@ impl Machine {
         SimulateError::NotFinite { revolution: motion.revolution, cam_angle: motion.cam_angle }
     }
 
-    /// Whether a follower that leaves the cam is certain to rise above all of it without another contact.
-    fn clears(&self, motion: &Motion, top: f64) -> bool {
+    /// A follower that has just left the cam and is certain to rise above all of it without another contact, with the bound
+    /// of its jerk, m/s^3.
+    fn clears(&self, motion: &Motion, top: f64) -> Option<f64> {
         let (State { position, velocity }, omega) = (motion.state, self.angular_velocity);
         if motion.gap != Some(0.0) || !(velocity > 0.0) {
-            return false;
+            return None;
         }
-        let relative_velocity = velocity - omega * self.cam().segments()[motion.segment].bounds.slope[1];
+        let relative_velocity = velocity - motion.lift.map_or(f64::INFINITY, |lift| omega * lift.slope);
         // While it rises q >= q0 + v0 t + (a0 - J t) t^2/2, with |q'''| <= J: so much time is enough to be above the top,
         let time = 1.25 * (top - position) / velocity;
-        let slowest = self.flight.acceleration(motion.state) - self.flight.jerk_bound(motion.state) * time;
+        let jerk = self.flight.jerk_bound(motion.state);
+        let slowest = self.flight.acceleration(motion.state) - jerk * time;
         let rises = position + time * (velocity + 0.5 * slowest * time) > top;
         // and the gap, with g' >= u at the start and g'' >= a - w^2 max c'', stays open that long.
         let closing = slowest - omega * omega * self.terrain.largest_curvature;
-        rises && relative_velocity + 0.5 * closing * time > 0.0
+        (rises && relative_velocity + 0.5 * closing * time > 0.0).then_some(jerk)
     }
 
     /// Moves the cam on by `turn`, rad, over any number of segments.
@@ -391,7 +411,9 @@ impl Machine {
         let cam_velocity = self.angular_velocity * lift.slope;
         let velocity_after = rebound(self.restitution, velocity_before, cam_velocity);
         let angle = motion.cam_angle;
-        motion.expected = ((angle - motion.last_impact).abs() <= tolerance::REPEATED_IMPACT.value).then_some(angle);
+        let moved = (angle - motion.last_impact).abs();
+        motion.expected = (moved <= tolerance::REPEATED_IMPACT.value).then_some(angle);
+        motion.settled = moved <= 2.0 * tolerance::LAST_TURN.value;
         motion.last_impact = angle;
         self.leave(motion, lift, self.restitution * (cam_velocity - velocity_before));
         // What is left of the relative velocity is rounding: report what the follower does.

@@ -63,7 +63,7 @@ impl<'a> Window<'a> {
     }
 
     /// Flies up to `end`, s, or to the first contact; `expected` is where one is likely, s.
-    pub fn pass(&self, end: f64, expected: Option<f64>) -> Passage {
+    pub fn pass(mut self, end: f64, expected: Option<f64>) -> Passage {
         if !(end > 0.0) {
             return Passage::Free { state: self.start, gap: self.gap };
         }
@@ -74,11 +74,19 @@ impl<'a> Window<'a> {
         let bounds = &self.segment.bounds;
         if self.gap != Some(0.0) && fastest < self.omega * bounds.slope[0] {
             let first = expected.filter(|time| (0.0..=end).contains(time)).unwrap_or(0.0);
-            return self.only_contact(0.0, end, first).unwrap_or_else(|| self.free(end));
+            // So fast that the last bit of a position is less than that of an angle: one evaluation less.
+            self.gap = None;
+            return self.only_contact(0.0, end, first, end);
         }
         let now = self.at_start();
         if !(now.value.is_finite() && now.rate.is_finite() && now.curvature.is_finite()) {
             return Passage::NotFinite;
+        }
+        let third = jerk + self.omega.powi(3) * bounds.third;
+        // g >= g0 + g' t + g'' t^2/2 - |g'''| t^3/6, which from g' >= 0 rises and then falls: open at both ends is open.
+        let least = now.value + end * (now.rate + end * (0.5 * now.curvature - end * third / 6.0));
+        if now.value >= 0.0 && now.rate >= 0.0 && least > 0.0 {
+            return self.free(end);
         }
         if now.curvature < 0.0 && now.value >= 0.0 && (now.value > 0.0 || now.rate > 0.0) {
             // g + g' t + g'' t^2/2 = 0, as a first guess.
@@ -86,12 +94,13 @@ impl<'a> Window<'a> {
             let back =
                 if now.rate > 0.0 { (now.rate + root) / -now.curvature } else { 2.0 * now.value / (root - now.rate) };
             let reach = end.min(2.0 * back);
-            let third = jerk + self.omega.powi(3) * bounds.third;
+            if now.rate.abs() > self.omega * self.start.position.abs() {
+                self.gap = None;
+            }
             if now.curvature + third * reach < 0.0 {
                 // From the cam, g >= u t - (|g''| + third reach) t^2/2: the contact left behind is not found again.
                 let low = if now.value == 0.0 { 2.0 * now.rate / (third * reach - now.curvature) } else { 0.0 };
-                let found = self.only_contact(low.min(reach), reach, self.bent(&now, back));
-                return found.unwrap_or_else(|| if reach < end { self.advanced(reach) } else { self.free(end) });
+                return self.only_contact(low.min(reach), reach, self.bent(&now, back), end);
             }
         }
         self.march(end)
@@ -106,26 +115,31 @@ impl<'a> Window<'a> {
         back * (1.0 + third * back / (-3.0 * now.curvature))
     }
 
-    /// The contact of a gap that has at most one in `(low, end]`, by Halley's method inside a bracket; `None` if the gap is
-    /// open at the end.
-    fn only_contact(&self, low: f64, end: f64, first: f64) -> Option<Passage> {
-        let (mut low, mut high, mut high_is_closed) = (low, end, false);
-        let mut time = if low < first && first < end { first } else { low };
+    /// The contact of a gap that has at most one in `(low, reach]`, by Halley's method inside a bracket. `end` is the
+    /// window's.
+    fn only_contact(&self, low: f64, reach: f64, first: f64, end: f64) -> Passage {
+        let (mut low, mut high, mut high_is_closed) = (low, reach, false);
+        let mut time = if low < first && first < reach { first } else { low };
         // Each halving of the bracket gains a bit.
         for _ in 0..128 {
             let now = self.at(time);
             if now.value.is_nan() {
-                return Some(Passage::NotFinite);
+                return Passage::NotFinite;
             }
             // Halley: t = -g/g' / (1 - g g''/(2 g'^2))
             let newton = -now.value / now.rate;
             let step = newton / (1.0 + 0.5 * newton * now.curvature / now.rate);
-            if now.rate < 0.0 && self.is_small(step, time, &now.lift) && time + step <= end {
-                return Some(self.met(time, step, &now));
+            if now.rate < 0.0 && self.is_small(step, time, &now.lift) && time + step <= reach {
+                return self.met(time, step, &now);
             }
             if now.value > 0.0 {
-                if time >= end {
-                    return None;
+                if time >= reach {
+                    let (state, gap) = (now.state, self.gap.map(|_| now.value));
+                    return if reach < end {
+                        Passage::Advanced { time, state, gap }
+                    } else {
+                        Passage::Free { state, gap }
+                    };
                 }
                 low = time;
             } else {
@@ -135,15 +149,15 @@ impl<'a> Window<'a> {
             time = if low < next && next < high && now.rate < 0.0 {
                 next
             } else if !high_is_closed {
-                end
+                reach
             } else {
                 0.5 * (low + high)
             };
             if high - low <= f64::EPSILON * high {
-                return Some(self.met(high, 0.0, &self.at(high)));
+                break;
             }
         }
-        Some(self.met(high, 0.0, &self.at(high)))
+        self.met(high, 0.0, &self.at(high))
     }
 
     /// Whether the last step is so small that the follower and the cam go through it by their Taylor sums.
@@ -171,19 +185,9 @@ impl<'a> Window<'a> {
     }
 
     fn free(&self, end: f64) -> Passage {
-        let (state, gap) = self.moved(end);
+        let (displacement, state) = self.flight.fly(self.start, end);
+        let gap = self.gap.map(|gap| gap + displacement - self.segment.law.rise(self.angle, self.omega * end));
         Passage::Free { state, gap }
-    }
-
-    fn advanced(&self, time: f64) -> Passage {
-        let (state, gap) = self.moved(time);
-        Passage::Advanced { time, state, gap }
-    }
-
-    fn moved(&self, time: f64) -> (State, Option<f64>) {
-        let (displacement, state) = self.flight.fly(self.start, time);
-        let gap = self.gap.map(|gap| gap + displacement - self.segment.law.rise(self.angle, self.omega * time));
-        (state, gap)
     }
 
     fn at_start(&self) -> Seen {
@@ -195,12 +199,12 @@ impl<'a> Window<'a> {
     fn at(&self, time: f64) -> Seen {
         let (displacement, state) = self.flight.fly(self.start, time);
         let turn = self.omega * time;
+        if let Some(gap) = self.gap {
+            let (rise, lift) = self.segment.law.climb(self.angle, turn);
+            return self.seen(gap + displacement - rise, state, lift);
+        }
         let lift = self.segment.law.lift(self.angle + turn);
-        let value = match self.gap {
-            Some(gap) => gap + displacement - self.segment.law.rise(self.angle, turn),
-            None => state.position - lift.value,
-        };
-        self.seen(value, state, lift)
+        self.seen(state.position - lift.value, state, lift)
     }
 
     #[inline]

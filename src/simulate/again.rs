@@ -1,0 +1,79 @@
+//! A settled motion's next impact: one turn later, at the same place but for the last digits.
+//!
+//! The flight over one turn is the same linear map each time, and the cam is where it was: position and velocity one turn
+//! on cost a few products. What the general way finds by searching is here only checked.
+
+use std::f64::consts::{PI, TAU};
+
+use super::{Machine, Motion};
+use crate::cam::Lift;
+use crate::flight::{Flight, Response, State};
+use crate::tolerance;
+
+/// The flight over one turn of the cam.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Turn {
+    time: f64,
+    response: Response,
+    /// Whether a flight that starts upwards has only one turning point, its highest, in that time.
+    rises_once: bool,
+}
+
+impl Turn {
+    pub fn new(flight: &Flight, angular_velocity: f64) -> Self {
+        let time = TAU / angular_velocity;
+        // Turning points of an oscillation are half a period apart.
+        let rises_once = flight.damped_frequency().is_none_or(|frequency| frequency * time <= PI);
+        Self { time, response: flight.response(time), rises_once }
+    }
+}
+
+/// An impact one turn on.
+pub(super) struct Again {
+    pub time: f64,
+    pub cam_angle: f64,
+    pub velocity: f64,
+    pub lift: Lift,
+}
+
+impl Machine {
+    /// The next impact of a motion that has just left the cam and is certain to rise above its top, if that impact is one
+    /// turn on to within the last Taylor step, and certainly the first.
+    pub(super) fn again(&self, motion: &Motion, jerk: f64) -> Option<Again> {
+        let Turn { time, response, rises_once } = self.turn;
+        let (lift, start, omega) = (motion.lift?, motion.state, self.angular_velocity);
+        if !rises_once {
+            return None;
+        }
+        let force = self.flight.force(start.position);
+        let gap = start.velocity * response.impulse + force * response.step;
+        let end = State {
+            position: start.position + gap,
+            velocity: start.velocity * response.impulse_rate + force * response.impulse,
+        };
+        let rate = end.velocity - omega * lift.slope;
+        let acceleration = self.flight.acceleration(end);
+        // Halley's step from one turn on.
+        let newton = -gap / rate;
+        let step = newton / (1.0 + 0.5 * newton * (acceleration - omega * omega * lift.curvature) / rate);
+        let shift = omega * step;
+        if !(rate < 0.0 && shift.abs() <= tolerance::LAST_TURN.value) {
+            return None;
+        }
+        // It comes from above the top: so long before, it was there,
+        let segment = &self.cam().segments()[motion.segment];
+        let before = 1.25 * (self.terrain.top - end.position) / -end.velocity;
+        let steepest = acceleration.abs() + jerk * before;
+        let from_top = end.position + before * (-end.velocity - 0.5 * steepest * before) > self.terrain.top;
+        // and since then, over one segment, the gap only shrank. Before, one highest point lies between two above the top.
+        let shrinks = end.velocity + steepest * before < omega * segment.bounds.slope[0];
+        let cam_angle = motion.cam_angle + shift;
+        let inside = cam_angle - omega * before >= segment.start && cam_angle < segment.end;
+        (from_top && shrinks && inside).then(|| Again {
+            time: time + step,
+            cam_angle,
+            velocity: end.velocity + step * (acceleration + 0.5 * step * self.flight.jerk(end)),
+            lift: segment.law.lift(cam_angle),
+        })
+    }
+}
