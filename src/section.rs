@@ -3,8 +3,10 @@
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
+use nalgebra::Matrix2;
+
 use crate::flight::State;
-use crate::simulate::{Event, EventKind, Goal, Machine, Motion, SimulateError};
+use crate::simulate::{Event, EventKind, Goal, Machine, Motion, SimulateError, Variation};
 
 /// The map of one revolution, from the section at a cam angle back to it.
 #[derive(Clone, Debug)]
@@ -40,6 +42,18 @@ impl StroboscopicMap {
             ControlFlow::Continue(())
         })?;
         Ok(Return { state, events })
+    }
+
+    /// The map's derivative at `state`, 2x2: `d(q, v)` one revolution later by `d(q, v)` now. Its eigenvalues at a fixed
+    /// point are the multipliers of the orbit.
+    ///
+    /// Not finite where the revolution grazes the cam; 0 where it sticks to it.
+    pub fn derivative(&self, state: State) -> Result<Matrix2<f64>, SimulateError> {
+        let mut motion = self.machine.start(self.cam_angle, state)?;
+        let mut variation = Variation::new(&self.machine, &motion);
+        let goal = motion.after(1);
+        let _ = self.machine.advance(&mut motion, goal, &mut variation)?;
+        Ok(variation.matrix())
     }
 }
 
@@ -82,9 +96,9 @@ pub fn trace(
     };
     let mut found = vec![sample(&motion)];
     let mut events = Vec::new();
-    let (first, step) = (motion.cam_angle, TAU / f64::from(samples));
+    let (begun, first, step) = (motion.revolution, motion.cam_angle, TAU / f64::from(samples));
     for index in 1..=revolutions * u64::from(samples) {
-        let turns = index / u64::from(samples);
+        let turns = begun + index / u64::from(samples);
         let angle = first + (index % u64::from(samples)) as f64 * step;
         let (revolution, cam_angle) = if angle < TAU { (turns, angle) } else { (turns + 1, angle - TAU) };
         let before = events.len();

@@ -1,16 +1,19 @@
 //! `corner-impact cam MODEL`.
 
+use std::io::Write;
 use std::path::PathBuf;
 
-use super::{CommandError, Exit};
+use super::{CommandError, Exit, picture};
 use crate::cam::{Cam, Jet};
 use crate::model::Model;
+use crate::report::figures::cam_figure;
 use crate::report::{CamDocument, json};
 
 /// Lists the segments of a model's cam and the corners where they meet.
 #[derive(clap::Args)]
-#[command(after_help = "Example: corner-impact cam models/osorio-2008.toml\n\n\
-    Exit code: 0 done, 2 bad model file.")]
+#[command(after_help = "Examples: corner-impact cam models/osorio-2008.toml\n\
+    \x20         corner-impact cam models/osorio-2008.toml --out cam.svg\n\n\
+    Exit code: 0 done, 2 bad model file, usage or file.")]
 pub(super) struct Arguments {
     /// Model file (TOML).
     model: PathBuf,
@@ -20,18 +23,22 @@ pub(super) struct Arguments {
     /// Leave out corners where only a derivative above this order jumps.
     #[arg(long, value_name = "N", default_value_t = Jet::HIGHEST_JUMP)]
     order: usize,
+    /// Draw lift, velocity and acceleration against the cam angle (.svg or .png).
+    #[arg(long, value_name = "FILE", value_parser = picture::picture)]
+    out: Option<PathBuf>,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<(String, Exit), CommandError> {
-    let input = |error: &dyn std::fmt::Display| CommandError::Input(error.to_string());
-    let report = |error: &dyn std::fmt::Display| CommandError::Report(error.to_string());
-    let model = Model::read(&arguments.model).map_err(|error| input(&error))?;
-    let cam = Cam::new(&model).map_err(|error| input(&error))?;
+pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(String, Exit), CommandError> {
+    let model = Model::read(&arguments.model).map_err(CommandError::input)?;
+    let cam = Cam::new(&model).map_err(CommandError::input)?;
+    if let Some(path) = &arguments.out {
+        picture::draw(&cam_figure(&cam, &model.name), path, out)?;
+    }
     let document = CamDocument::new(&model, &cam, arguments.order);
     let page = if arguments.json {
-        json::render(&document).map_err(|error| report(&error))?
+        json::render(&document).map_err(CommandError::report)?
     } else {
-        document.text().map_err(|error| report(&error))?
+        document.text().map_err(CommandError::report)?
     };
     Ok((page, Exit::Agrees))
 }

@@ -11,7 +11,8 @@ use super::{CommandError, Exit, picture, progress::Progress};
 use crate::cam::Cam;
 use crate::diagram::{Block, Following, Row, Section, Seen, Speeds, Sweep, SweepError, Tally};
 use crate::model::Model;
-use crate::report::figure::{Cloud, Figure};
+use crate::report::figure::layout::widened;
+use crate::report::figure::{Cloud, Density, Figure};
 use crate::report::figures::{Diagram, corner_marks, impact_diagram, strobe_diagram};
 use crate::report::file::Output;
 use crate::report::{SweepSummary, csv, json};
@@ -168,8 +169,8 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Co
             let title = format!("{}: {}", model.name, title(&sweep));
             let diagram = Diagram {
                 title: &title,
+                shown: shown(&points, sweep.section),
                 points,
-                shown: None,
                 corners: &corners,
                 lyapunov: arguments.lyapunov.then_some(exponents.as_slice()),
             };
@@ -223,7 +224,13 @@ fn table(sweep: &Sweep, threads: usize, path: &Path, out: &mut dyn Write) -> Res
     Ok(tally)
 }
 
-type Found = (crate::report::figure::Density, Vec<[f64; 2]>, Tally);
+/// The range that the points take up, with a little room; of impacts no more than the whole cam.
+fn shown(points: &Density, section: Section) -> Option<[f64; 2]> {
+    let [low, high] = widened(points.extent()?, 0.02);
+    Some(if section == Section::Impacts { [low.max(0.0), high.min(360.0)] } else { [low, high] })
+}
+
+type Found = (Density, Vec<[f64; 2]>, Tally);
 
 fn points(sweep: &Sweep, threads: usize) -> Result<Found, CommandError> {
     let Speeds { low, high, .. } = sweep.speeds;

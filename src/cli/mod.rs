@@ -96,7 +96,10 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
     let result = match &arguments.command {
         Command::Verify(arguments) => print(verify::run(arguments, err), out),
         Command::Claims(arguments) => print(claims::run(arguments), out),
-        Command::Cam(arguments) => print(cam::run(arguments), out),
+        Command::Cam(arguments) => {
+            let page = cam::run(arguments, out);
+            print(page, out)
+        }
         Command::Simulate(arguments) => simulate::run(arguments, out),
         Command::Diagram(arguments) => diagram::run(arguments, out),
     };

@@ -128,8 +128,8 @@ impl SweepSummary {
     }
 }
 
-/// Moments of each revolution in a picture: half a degree.
-pub const TRACE_SAMPLES: u32 = 720;
+/// Moments of each revolution in a picture: a tenth of a degree, so that short hops are curves too.
+pub const TRACE_SAMPLES: u32 = 3600;
 
 /// A trace as figures take it, from its own start on.
 pub fn trace_points(
