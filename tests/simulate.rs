@@ -228,3 +228,55 @@ fn a_continued_cam_keeps_one_law_past_the_corner() {
     // The nose circle, continued backwards, ends where its tangent runs through the axis.
     assert!(cam.continued(&corner, Side::Plus, 0.4).is_none());
 }
+
+/// The impact of a settled motion is the same to an ulp or two after two million revolutions as after two thousand.
+#[test]
+fn no_digit_is_lost_to_the_number_of_revolutions() {
+    let model = common::osorio();
+    let machine = machine(&model, 700.0);
+    let mut motion = machine.start(5.76, State { position: 2.7, velocity: 3.4 }).unwrap();
+    let mut last = None;
+    let mut after = |revolutions: u64| {
+        let goal = motion.after(revolutions);
+        let _ = machine.advance(&mut motion, goal, &mut |event: &Event| {
+            last = Some(*event);
+            ControlFlow::Continue(())
+        });
+        last.unwrap()
+    };
+    let (early, late) = (after(2000), after(2_000_000));
+    assert_abs_diff_eq!(early.cam_angle, late.cam_angle, epsilon = 2e-15);
+    assert_relative_eq!(early.velocity_after, late.velocity_after, max_relative = 1e-13, epsilon = 0.0);
+    assert_eq!(late.revolution - early.revolution, 2_000_000);
+}
+
+/// A settled motion's shortcut finds what the general way finds: a run that is stopped at every revolution never takes it.
+#[test]
+fn one_turn_on_is_where_the_search_finds_it() {
+    let model = common::osorio();
+    for rpm in [680.0, 700.0, 720.0] {
+        let machine = machine(&model, rpm);
+        let (mut whole, mut stopped) = (Vec::new(), Vec::new());
+        let start = State { position: 5.397, velocity: 0.0 };
+        let mut motion = machine.start(5.76, start).unwrap();
+        let goal = motion.after(1500);
+        let _ = machine.advance(&mut motion, goal, &mut |event: &Event| {
+            whole.push(*event);
+            ControlFlow::Continue(())
+        });
+        let mut motion = machine.start(5.76, start).unwrap();
+        for _ in 0..1500 {
+            let goal = motion.after(1);
+            let _ = machine.advance(&mut motion, goal, &mut |event: &Event| {
+                stopped.push(*event);
+                ControlFlow::Continue(())
+            });
+        }
+        // The way to the orbit may be chaotic; on it, both are the same.
+        for (one, other) in whole.iter().rev().zip(stopped.iter().rev()).take(500) {
+            assert_eq!(one.revolution, other.revolution);
+            assert_abs_diff_eq!(one.cam_angle, other.cam_angle, epsilon = 1e-13);
+            assert_abs_diff_eq!(one.velocity_before, other.velocity_before, epsilon = 1e-11);
+        }
+    }
+}

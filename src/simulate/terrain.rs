@@ -28,7 +28,9 @@ impl Terrain {
     pub fn new(cam: Cam) -> Self {
         let segments = cam.segments();
         let before = segments.last().into_iter().chain(segments);
-        let entries: Vec<Entry> = before.zip(segments).map(|(before, after)| entry(before, after)).collect();
+        let size = |segment: &Segment| segment.bounds.lift[0].abs().max(segment.bounds.lift[1].abs());
+        let size = segments.iter().map(size).fold(0.0, f64::max);
+        let entries: Vec<Entry> = before.zip(segments).map(|(before, after)| entry(before, after, size)).collect();
         let kicks = entries.iter().any(|entry| entry.slope_jump > 0.0 || entry.lift_step > 0.0);
         let curvatures = segments.iter().map(|segment| segment.bounds.curvature[1]);
         let largest_curvature = if kicks { f64::INFINITY } else { curvatures.fold(f64::NEG_INFINITY, f64::max) };
@@ -37,14 +39,15 @@ impl Terrain {
     }
 }
 
-fn entry(before: &Segment, after: &Segment) -> Entry {
+/// `size`: the largest lift of the cam, m.
+fn entry(before: &Segment, after: &Segment, size: f64) -> Entry {
     let (minus, plus) = (before.law.lift(before.end), after.law.lift(after.start));
     let jump = |minus: f64, plus: f64, rounding: f64| {
         if (plus - minus).abs() <= rounding { 0.0 } else { plus - minus }
     };
     // Where segments meet, two evaluations of one lift differ by rounding, which a follower that has just left the cam
     // there must not be measured by.
-    let lift_rounding = tolerance::GAP_ROUNDING.value * (minus.value.abs() + plus.value.abs());
+    let lift_rounding = tolerance::GAP_ROUNDING.value * (size + minus.value.abs() + plus.value.abs());
     let scale = [minus, plus]
         .iter()
         .fold(0.0_f64, |scale, lift| scale.max(lift.value.abs()).max(lift.slope.abs()).max(lift.curvature.abs()));
