@@ -207,6 +207,35 @@ fn a_perfectly_elastic_and_a_perfectly_plastic_follower() {
     assert_eq!(end.unwrap().position, plastic.cam().lift(2.5).value);
 }
 
+/// Where segments meet at lift 0, or at one typed to ten digits, what the two laws differ by is no step: neither a follower
+/// that sticks nor one that flies close by is told that it is below the cam.
+#[test]
+fn a_cam_that_closes_to_its_digits_is_closed() {
+    // A parabola over the first half, the next digit of its lift at the end, and down again.
+    for end in ["0.0", "0.3000000001", "0.2999999999"] {
+        let lift: f64 = end.parse().unwrap();
+        let text = format!(
+            "[follower]\nmass = 1.0\ndamping = 0.0\nstiffness = 0.0\ngravity = 9.81\nrest_position = 0.0\n\
+             restitution = 0.5\n[cam]\nlaw = \"polynomial\"\n\
+             [[cam.segment]]\nstart_deg = 26.9\ncoefficients = [0.0, {:?}, -0.3, -0.1]\n\
+             [[cam.segment]]\nstart_deg = 206.9\ncoefficients = [{lift:?}, {:?}, -0.3, 0.1]\n",
+            (if lift > 0.0 { 0.3 } else { 0.0 }) / PI + PI * (0.3 + 0.1 * PI),
+            -lift / PI + PI * (0.3 - 0.1 * PI)
+        );
+        let machine = machine(&Model::parse("closed.toml", &text).unwrap(), 0.001);
+        let angle = 206.9_f64.to_radians() - 1e-12;
+        let motion = machine.start_on_cam(3.0, 0.0).unwrap();
+        assert!(motion.contact);
+        for height in [0.0, 1e-12, 2e-11, 1e-9] {
+            // At rest on the cam, or so close above it that it comes down at the joint.
+            let lift = machine.cam().lift(angle);
+            let velocity = machine.angular_velocity() * lift.slope;
+            let start = State { position: lift.value + height, velocity };
+            run(&machine, angle, start, TAU).0.unwrap_or_else(|error| panic!("{end}, {height} m: {error}"));
+        }
+    }
+}
+
 /// Past the corner the continued cam is the law of one side, before it the cam as it was.
 #[test]
 fn a_continued_cam_keeps_one_law_past_the_corner() {

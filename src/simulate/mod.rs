@@ -373,9 +373,12 @@ impl Machine {
         }
         motion.cam_angle = segments[motion.segment].start;
         motion.lift = None;
-        let step = self.terrain.entries[motion.segment].lift_step;
-        if step != 0.0 {
-            motion.gap = motion.gap.map(|gap| gap - step);
+        let entry = self.terrain.entries[motion.segment];
+        if entry.lift_step != 0.0 {
+            motion.gap = motion.gap.map(|gap| gap - entry.lift_step);
+        } else if let Some(lift) = entry.seam {
+            // The gap goes on as it was.
+            motion.gap.get_or_insert(motion.state.position - lift);
         }
     }
 

@@ -20,6 +20,9 @@ pub(super) struct Terrain {
 pub(super) struct Entry {
     /// m. Only a continued law leaves a step at its far end.
     pub lift_step: f64,
+    /// The lift before it, m, where the two differ by more than rounding and are the same for all that: a cam whose numbers
+    /// were typed to ten digits, or whose lift is 0 there.
+    pub seam: Option<f64>,
     /// m/rad.
     pub slope_jump: f64,
 }
@@ -28,7 +31,9 @@ impl Terrain {
     pub fn new(cam: Cam) -> Self {
         let segments = cam.segments();
         let before = segments.last().into_iter().chain(segments);
-        let entries: Vec<Entry> = before.zip(segments).map(|(before, after)| entry(before, after)).collect();
+        let largest = segments.iter().flat_map(|segment| segment.bounds.lift).map(f64::abs).fold(0.0, f64::max);
+        let closed = tolerance::CAM_CLOSURE.value * largest;
+        let entries: Vec<Entry> = before.zip(segments).map(|(before, after)| entry(before, after, closed)).collect();
         let kicks = entries.iter().any(|entry| entry.slope_jump > 0.0 || entry.lift_step > 0.0);
         let curvatures = segments.iter().map(|segment| segment.bounds.curvature[1]);
         let largest_curvature = if kicks { f64::INFINITY } else { curvatures.fold(f64::NEG_INFINITY, f64::max) };
@@ -37,7 +42,8 @@ impl Terrain {
     }
 }
 
-fn entry(before: &Segment, after: &Segment) -> Entry {
+/// What changes between two segments of a cam on which lifts closer than `closed`, m, are one.
+fn entry(before: &Segment, after: &Segment, closed: f64) -> Entry {
     let (minus, plus) = (before.law.lift(before.end), after.law.lift(after.start));
     let jump = |minus: f64, plus: f64, rounding: f64| {
         if (plus - minus).abs() <= rounding { 0.0 } else { plus - minus }
@@ -45,11 +51,14 @@ fn entry(before: &Segment, after: &Segment) -> Entry {
     // Where segments meet, two evaluations of one lift differ by rounding, which a follower that has just left the cam
     // there must not be measured by.
     let lift_rounding = tolerance::GAP_ROUNDING.value * (minus.value.abs() + plus.value.abs());
+    let lift_step = jump(minus.value, plus.value, lift_rounding.max(closed));
+    let differ = lift_step == 0.0 && jump(minus.value, plus.value, lift_rounding) != 0.0;
     let scale = [minus, plus]
         .iter()
         .fold(0.0_f64, |scale, lift| scale.max(lift.value.abs()).max(lift.slope.abs()).max(lift.curvature.abs()));
     Entry {
-        lift_step: jump(minus.value, plus.value, lift_rounding),
+        lift_step,
+        seam: differ.then_some(minus.value),
         slope_jump: jump(minus.slope, plus.slope, tolerance::CAM_JUMP.value * scale),
     }
 }
