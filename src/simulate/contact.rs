@@ -61,10 +61,11 @@ pub(super) fn first_contact(gap_at: impl Fn(f64) -> Gap, third_bound: impl Fn(f6
     }
 }
 
-/// One Newton step from a contact known to rounding.
+/// One Newton step from a contact known to rounding; not past the bottom of a graze, where the follower moves away already.
 fn polish(gap_at: impl Fn(f64) -> Gap, time: f64, gap: &Gap, end: f64) -> f64 {
     let better = (time - gap.value / gap.rate).clamp(0.0, end);
-    if gap_at(better).value.abs() <= gap.value.abs() { better } else { time }
+    let there = gap_at(better);
+    if there.rate < 0.0 && there.value.abs() <= gap.value.abs() { better } else { time }
 }
 
 /// A time ahead, at most `end`, before which the gap is certainly open.

@@ -182,7 +182,8 @@ impl Machine {
                 if free >= 0.5 * reach {
                     break;
                 }
-                reach = 2.0 * free;
+                // Not at once: where the bound itself grows with the reach, far less would be found free than is.
+                reach = (2.0 * free).max(0.25 * reach);
             }
             time += safe.max(f64::EPSILON * end);
         }
