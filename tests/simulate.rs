@@ -10,7 +10,7 @@ use approx::{assert_abs_diff_eq, assert_relative_eq};
 use corner_impact::cam::Side;
 use corner_impact::flight::State;
 use corner_impact::model::Model;
-use corner_impact::simulate::{Event, EventKind, Machine, SimulateError};
+use corner_impact::simulate::{Event, EventKind, Goal, Machine, SimulateError};
 use corner_impact::verify::{External, verify};
 
 fn machine(model: &Model, rpm: f64) -> Machine {
@@ -233,6 +233,34 @@ fn a_cam_that_closes_to_its_digits_is_closed() {
             let start = State { position: lift.value + height, velocity };
             run(&machine, angle, start, TAU).0.unwrap_or_else(|error| panic!("{end}, {height} m: {error}"));
         }
+    }
+}
+
+/// An impact at a whole turn is one at angle 0: for the observer, for the motion that is stopped there, and for the one
+/// whose goal is there; what the corner does then is not lost.
+#[test]
+fn an_impact_at_a_whole_turn_is_at_angle_0() {
+    let text = "[follower]\nmass = 1.0\ndamping = 0.0\nstiffness = 1000.0\ngravity = 0.0\nrest_position = 0.0\n\
+                restitution = 0.0\n[cam]\nlaw = \"rectified-sine\"\noffset = 0.0\namplitude = 1.0\n";
+    let machine = machine(&Model::parse("turn.toml", text).unwrap(), 1e-9);
+    for stop in [true, false] {
+        let mut motion = machine.start_on_cam(0.0, 0.0).unwrap();
+        let mut at_0 = 0;
+        for revolution in 1..=4 {
+            let goal = Goal { revolution, cam_angle: 0.0 };
+            while (motion.revolution, motion.cam_angle) < (revolution, 0.0) {
+                let _ = machine
+                    .advance(&mut motion, goal, &mut |event: &Event| {
+                        assert!((0.0..TAU).contains(&event.cam_angle), "{event:?}");
+                        at_0 += u32::from(event.kind == EventKind::Impact && event.cam_angle == 0.0);
+                        if stop { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+                    })
+                    .unwrap();
+                assert!((0.0..TAU).contains(&motion.cam_angle), "{motion:?}");
+            }
+        }
+        // Carried down and kicked up once a revolution, in the last instant or in the first of the next run.
+        assert!(at_0 >= 3, "{at_0}");
     }
 }
 

@@ -30,6 +30,8 @@ pub(super) enum Outcome {
     Resting(f64),
     /// Inside the cam already.
     Below { depth: f64, time: f64 },
+    /// More steps than a window may take; s after the start.
+    NoProgress(f64),
     /// The gap is not a number; s after the start.
     NotFinite(f64),
 }
@@ -38,7 +40,7 @@ pub(super) enum Outcome {
 /// `[time, time + reach]`.
 pub(super) fn first_contact(gap_at: impl Fn(f64) -> Gap, third_bound: impl Fn(f64, f64) -> f64, end: f64) -> Outcome {
     let mut time = 0.0;
-    loop {
+    for _ in 0..super::MOST_STEPS {
         let gap = gap_at(time);
         if !(gap.value.is_finite() && gap.rate.is_finite() && gap.curvature.is_finite()) {
             return Outcome::NotFinite(time);
@@ -59,6 +61,7 @@ pub(super) fn first_contact(gap_at: impl Fn(f64) -> Gap, third_bound: impl Fn(f6
         }
         time += step;
     }
+    Outcome::NoProgress(time)
 }
 
 /// One Newton step from a contact known to rounding; not past the bottom of a graze, where the follower moves away already.

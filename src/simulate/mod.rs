@@ -27,6 +27,10 @@ use terrain::Terrain;
 pub use variation::Variation;
 use window::{Passage, Window};
 
+/// Steps of one search for a contact or a release after which a run is given up: a follower that swings a million times
+/// over one segment, or is pressed against it with a ten-millionth of the forces at work.
+const MOST_STEPS: u32 = 10_000_000;
+
 /// A cam, a follower over it, and the speed at which the cam turns.
 #[derive(Clone, Debug)]
 pub struct Machine {
@@ -220,7 +224,8 @@ impl Machine {
         let (mut revolution, mut events) = (motion.revolution, 0);
         loop {
             let left = motion.left(&goal);
-            if !(left > 0.0) {
+            // At the end of the last segment a corner is still to be passed.
+            if !(left > 0.0) && motion.cam_angle < TAU {
                 return Ok(ControlFlow::Continue(()));
             }
             let step =
@@ -233,7 +238,10 @@ impl Machine {
                     motion.segment = self.cam().segment_at(goal.cam_angle);
                     return Ok(ControlFlow::Continue(()));
                 }
-                Step::Broken => return Ok(ControlFlow::Break(())),
+                Step::Broken => {
+                    self.wrap(motion);
+                    return Ok(ControlFlow::Break(()));
+                }
             }
             if motion.revolution != revolution {
                 (revolution, events) = (motion.revolution, 0);
@@ -319,6 +327,7 @@ impl Machine {
                 revolution: motion.revolution,
                 cam_angle: motion.cam_angle + omega * time,
             }),
+            Passage::NoProgress { time } => Err(no_progress(motion, omega * time)),
             Passage::NotFinite => Err(self.not_finite(motion)),
         }
     }
@@ -382,6 +391,16 @@ impl Machine {
         }
     }
 
+    /// Brings a motion that an observer has stopped at a whole turn to the start of the next.
+    fn wrap(&self, motion: &mut Motion) {
+        if motion.cam_angle >= TAU {
+            self.enter_next(motion);
+            let entry = self.terrain.entries[motion.segment];
+            // What the corner does to a follower that sticks is found when it goes on.
+            motion.contact &= entry.slope_jump == 0.0 && entry.lift_step == 0.0;
+        }
+    }
+
     /// An impact at the motion's angle, where `lift` holds, `left` rad before the end of the run.
     fn strike(
         &self,
@@ -432,6 +451,12 @@ impl Machine {
         let event = self.event(motion, kind, velocity, velocity);
         if observer.event(&event).is_break() { Step::Broken } else { Step::Event }
     }
+}
+
+/// The error of a search that took all its steps and is `turn`, rad, further on.
+fn no_progress(motion: &Motion, turn: f64) -> SimulateError {
+    let (revolution, cam_angle) = (motion.revolution, motion.cam_angle + turn);
+    SimulateError::NoProgress { events: MOST_STEPS, revolution, cam_angle }
 }
 
 /// What one step of the loop came to.

@@ -36,6 +36,8 @@ pub(super) enum Passage {
     Resting { time: f64 },
     /// Inside the cam.
     Below { depth: f64, time: f64 },
+    /// More steps than a window may take; s after the start.
+    NoProgress { time: f64 },
     /// Something is not a number.
     NotFinite,
 }
@@ -239,6 +241,7 @@ impl<'a> Window<'a> {
             }
             Outcome::Resting(time) => Passage::Resting { time },
             Outcome::Below { depth, time } => Passage::Below { depth, time },
+            Outcome::NoProgress(time) => Passage::NoProgress { time },
             Outcome::NotFinite(_) => Passage::NotFinite,
         }
     }
