@@ -37,12 +37,12 @@ table! {
     RANGE_WIDTH = 1e-3, "of the range, which is halved into pieces until what is added for what lies between the samples is \
         below this: closer ranges would save a search for contacts less than they cost";
     /// Rounding of the gap between follower and cam.
-    GAP_ROUNDING = 4.0 * f64::EPSILON, "of the distances that the gap is the difference of: a handful of roundings, so that \
+    GAP_ROUNDING = 4.0 * f64::EPSILON, "of the follower's position and the cam's largest lift: a handful of roundings, so that \
         a dip deeper than this is an impact";
     /// Where the series of the follower's responses ends.
     SERIES_END = 0.25 * f64::EPSILON, "of the response s', which starts at 1: a smaller term changes no digit of the sum";
     /// Relative velocity after an impact that is none.
-    RELATIVE_VELOCITY_ROUNDING = 4.0 * f64::EPSILON, "of the cam's velocity: below it the difference of the two velocities \
+    RELATIVE_VELOCITY_ROUNDING = 4.0 * f64::EPSILON, "of the cam's largest velocity: below it the difference of the two velocities \
         is rounding, and a chattering follower would go on bouncing in it";
     /// The last step to a contact, of the time flown.
     LAST_STEP = 1e-5, "of the flight over a window: Halley's step errs by the cube of it, below an ulp of that time";

@@ -10,7 +10,7 @@ use approx::{assert_abs_diff_eq, assert_relative_eq};
 use corner_impact::cam::Side;
 use corner_impact::flight::State;
 use corner_impact::model::Model;
-use corner_impact::simulate::{Event, EventKind, Machine, SimulateError};
+use corner_impact::simulate::{Event, EventKind, Goal, Machine, SimulateError};
 use corner_impact::verify::{External, verify};
 
 fn machine(model: &Model, rpm: f64) -> Machine {
@@ -258,6 +258,63 @@ fn a_perfectly_elastic_and_a_perfectly_plastic_follower() {
     assert_eq!(impacts.len(), 1);
     assert_eq!(impacts[0].event.velocity_after, impacts[0].event.cam_velocity);
     assert_eq!(end.unwrap().position, plastic.cam().lift(2.5).value);
+}
+
+/// Where segments meet at lift 0, or at one typed to ten digits, what the two laws differ by is no step: neither a follower
+/// that sticks nor one that flies close by is told that it is below the cam.
+#[test]
+fn a_cam_that_closes_to_its_digits_is_closed() {
+    // A parabola over the first half, the next digit of its lift at the end, and down again.
+    for end in ["0.0", "0.3000000001", "0.2999999999"] {
+        let lift: f64 = end.parse().unwrap();
+        let text = format!(
+            "[follower]\nmass = 1.0\ndamping = 0.0\nstiffness = 0.0\ngravity = 9.81\nrest_position = 0.0\n\
+             restitution = 0.5\n[cam]\nlaw = \"polynomial\"\n\
+             [[cam.segment]]\nstart_deg = 26.9\ncoefficients = [0.0, {:?}, -0.3, -0.1]\n\
+             [[cam.segment]]\nstart_deg = 206.9\ncoefficients = [{lift:?}, {:?}, -0.3, 0.1]\n",
+            (if lift > 0.0 { 0.3 } else { 0.0 }) / PI + PI * (0.3 + 0.1 * PI),
+            -lift / PI + PI * (0.3 - 0.1 * PI)
+        );
+        let machine = machine(&Model::parse("closed.toml", &text).unwrap(), 0.001);
+        let angle = 206.9_f64.to_radians() - 1e-12;
+        let motion = machine.start_on_cam(3.0, 0.0).unwrap();
+        assert!(motion.contact);
+        for height in [0.0, 1e-12, 2e-11, 1e-9] {
+            // At rest on the cam, or so close above it that it comes down at the joint.
+            let lift = machine.cam().lift(angle);
+            let velocity = machine.angular_velocity() * lift.slope;
+            let start = State { position: lift.value + height, velocity };
+            run(&machine, angle, start, TAU).0.unwrap_or_else(|error| panic!("{end}, {height} m: {error}"));
+        }
+    }
+}
+
+/// An impact at a whole turn is one at angle 0: for the observer, for the motion that is stopped there, and for the one
+/// whose goal is there; what the corner does then is not lost.
+#[test]
+fn an_impact_at_a_whole_turn_is_at_angle_0() {
+    let text = "[follower]\nmass = 1.0\ndamping = 0.0\nstiffness = 1000.0\ngravity = 0.0\nrest_position = 0.0\n\
+                restitution = 0.0\n[cam]\nlaw = \"rectified-sine\"\noffset = 0.0\namplitude = 1.0\n";
+    let machine = machine(&Model::parse("turn.toml", text).unwrap(), 1e-9);
+    for stop in [true, false] {
+        let mut motion = machine.start_on_cam(0.0, 0.0).unwrap();
+        let mut at_0 = 0;
+        for revolution in 1..=4 {
+            let goal = Goal { revolution, cam_angle: 0.0 };
+            while (motion.revolution, motion.cam_angle) < (revolution, 0.0) {
+                let _ = machine
+                    .advance(&mut motion, goal, &mut |event: &Event| {
+                        assert!((0.0..TAU).contains(&event.cam_angle), "{event:?}");
+                        at_0 += u32::from(event.kind == EventKind::Impact && event.cam_angle == 0.0);
+                        if stop { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+                    })
+                    .unwrap();
+                assert!((0.0..TAU).contains(&motion.cam_angle), "{motion:?}");
+            }
+        }
+        // Carried down and kicked up once a revolution, in the last instant or in the first of the next run.
+        assert!(at_0 >= 3, "{at_0}");
+    }
 }
 
 /// Past the corner the continued cam is the law of one side, before it the cam as it was.

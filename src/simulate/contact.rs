@@ -13,6 +13,8 @@ pub(super) struct Gap {
     pub rounding: f64,
     /// g', m/s.
     pub rate: f64,
+    /// How far rounding may have moved `rate`, m/s.
+    pub rate_rounding: f64,
     /// g'', m/s^2.
     pub curvature: f64,
     /// A guess at `|g'''|` from here on, m/s^3: it sets which step is tried first, never which is certain.
@@ -30,6 +32,8 @@ pub(super) enum Outcome {
     Resting(f64),
     /// Inside the cam already.
     Below { depth: f64, time: f64 },
+    /// More steps than a window may take; s after the start.
+    NoProgress(f64),
     /// The gap is not a number; s after the start.
     NotFinite(f64),
 }
@@ -38,7 +42,7 @@ pub(super) enum Outcome {
 /// `[time, time + reach]`.
 pub(super) fn first_contact(gap_at: impl Fn(f64) -> Gap, third_bound: impl Fn(f64, f64) -> f64, end: f64) -> Outcome {
     let mut time = 0.0;
-    loop {
+    for _ in 0..super::MOST_STEPS {
         let gap = gap_at(time);
         if !(gap.value.is_finite() && gap.rate.is_finite() && gap.curvature.is_finite()) {
             return Outcome::NotFinite(time);
@@ -46,7 +50,7 @@ pub(super) fn first_contact(gap_at: impl Fn(f64) -> Gap, third_bound: impl Fn(f6
         if gap.value < -gap.rounding && (time == 0.0 || gap.rate >= 0.0) {
             return Outcome::Below { depth: -gap.value, time };
         }
-        if gap.value <= gap.rounding && gap.rate < 0.0 {
+        if gap.value <= gap.rounding && gap.rate < -gap.rate_rounding {
             return Outcome::Contact(polish(&gap_at, time, &gap, end));
         }
         let step = free_time(&gap, |reach| third_bound(time, reach), end - time);
@@ -59,12 +63,14 @@ pub(super) fn first_contact(gap_at: impl Fn(f64) -> Gap, third_bound: impl Fn(f6
         }
         time += step;
     }
+    Outcome::NoProgress(time)
 }
 
-/// One Newton step from a contact known to rounding.
+/// One Newton step from a contact known to rounding; not past the bottom of a graze, where the follower moves away already.
 fn polish(gap_at: impl Fn(f64) -> Gap, time: f64, gap: &Gap, end: f64) -> f64 {
     let better = (time - gap.value / gap.rate).clamp(0.0, end);
-    if gap_at(better).value.abs() <= gap.value.abs() { better } else { time }
+    let there = gap_at(better);
+    if there.rate < 0.0 && there.value.abs() <= gap.value.abs() { better } else { time }
 }
 
 /// A time ahead, at most `end`, before which the gap is certainly open.

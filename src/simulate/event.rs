@@ -87,9 +87,9 @@ pub enum SimulateError {
         /// Where, rad.
         cam_angle: f64,
     },
-    /// More events in one revolution than a run may have.
+    /// More events in one revolution, or steps from one event to the next, than a run may have.
     #[error(
-        "simulate: no progress: {events} events in revolution {revolution}, and still at cam angle {:.6} deg",
+        "simulate: no progress: {events} events or steps in revolution {revolution}, and still at cam angle {:.6} deg",
         cam_angle.to_degrees()
     )]
     NoProgress {

@@ -29,6 +29,10 @@ use terrain::Terrain;
 pub use variation::Variation;
 use window::{Passage, Window};
 
+/// Steps of one search for a contact or a release after which a run is given up: a follower that swings a million times
+/// over one segment, or is pressed against it with a ten-millionth of the forces at work.
+const MOST_STEPS: u32 = 10_000_000;
+
 /// A cam, a follower over it, and the speed at which the cam turns.
 #[derive(Clone, Debug)]
 pub struct Machine {
@@ -151,7 +155,7 @@ impl Machine {
         let segment = self.cam().segment_at(cam_angle);
         let lift = self.cam().segments()[segment].law.lift(cam_angle);
         let gap = state.position - lift.value;
-        let rounding = tolerance::GAP_ROUNDING.value * (state.position.abs() + lift.value.abs());
+        let rounding = self.gap_rounding(state.position);
         if gap < -rounding {
             return Err(SimulateError::BelowCam { depth: -gap, revolution: 0, cam_angle });
         }
@@ -201,12 +205,22 @@ impl Machine {
         let cam_velocity = self.angular_velocity * lift.slope;
         (motion.gap, motion.lift) = (Some(0.0), Some(*lift));
         motion.contact = false;
-        if relative_velocity.abs() <= tolerance::RELATIVE_VELOCITY_ROUNDING.value * cam_velocity.abs() {
+        if relative_velocity.abs() <= self.velocity_rounding() {
             motion.state = State { position: lift.value, velocity: cam_velocity };
             motion.contact = self.lifting(lift) <= 0.0;
         } else {
             motion.state = State { position: lift.value, velocity: cam_velocity + relative_velocity };
         }
+    }
+
+    /// How far rounding may move the gap of a follower at `position`, m.
+    fn gap_rounding(&self, position: f64) -> f64 {
+        tolerance::GAP_ROUNDING.value * (position.abs() + self.terrain.size)
+    }
+
+    /// The relative velocity at the cam that may be rounding, m/s.
+    fn velocity_rounding(&self) -> f64 {
+        tolerance::RELATIVE_VELOCITY_ROUNDING.value * self.angular_velocity * self.terrain.steepest
     }
 
     /// The gap between follower and cam, m.
@@ -228,7 +242,8 @@ impl Machine {
         let (mut revolution, mut events) = (motion.revolution, 0);
         loop {
             let left = motion.left(&goal);
-            if !(left > 0.0) {
+            // At the end of the last segment a corner is still to be passed.
+            if !(left > 0.0) && motion.cam_angle < TAU {
                 return Ok(ControlFlow::Continue(()));
             }
             let step =
@@ -241,7 +256,10 @@ impl Machine {
                     motion.segment = self.cam().segment_at(goal.cam_angle);
                     return Ok(ControlFlow::Continue(()));
                 }
-                Step::Broken => return Ok(ControlFlow::Break(())),
+                Step::Broken => {
+                    self.wrap(motion);
+                    return Ok(ControlFlow::Break(()));
+                }
             }
             if motion.revolution != revolution {
                 (revolution, events) = (motion.revolution, 0);
@@ -337,6 +355,7 @@ impl Machine {
                 revolution: motion.revolution,
                 cam_angle: motion.cam_angle + omega * time,
             }),
+            Passage::NoProgress { time } => Err(no_progress(motion, omega * time)),
             Passage::NotFinite => Err(self.not_finite(motion)),
         }
     }
@@ -393,9 +412,22 @@ impl Machine {
         }
         motion.cam_angle = segments[motion.segment].start;
         motion.lift = None;
-        let step = self.terrain.entries[motion.segment].lift_step;
-        if step != 0.0 {
-            motion.gap = motion.gap.map(|gap| gap - step);
+        let entry = self.terrain.entries[motion.segment];
+        if entry.lift_step != 0.0 {
+            motion.gap = motion.gap.map(|gap| gap - entry.lift_step);
+        } else if let Some(lift) = entry.seam {
+            // The gap goes on as it was.
+            motion.gap.get_or_insert(motion.state.position - lift);
+        }
+    }
+
+    /// Brings a motion that an observer has stopped at a whole turn to the start of the next.
+    fn wrap(&self, motion: &mut Motion) {
+        if motion.cam_angle >= TAU {
+            self.enter_next(motion);
+            let entry = self.terrain.entries[motion.segment];
+            // What the corner does to a follower that sticks is found when it goes on.
+            motion.contact &= entry.slope_jump == 0.0 && entry.lift_step == 0.0;
         }
     }
 
@@ -451,6 +483,12 @@ impl Machine {
         let event = self.event(motion, kind, velocity, velocity);
         if observer.event(&event).is_break() { Step::Broken } else { Step::Event }
     }
+}
+
+/// The error of a search that took all its steps and is `turn`, rad, further on.
+fn no_progress(motion: &Motion, turn: f64) -> SimulateError {
+    let (revolution, cam_angle) = (motion.revolution, motion.cam_angle + turn);
+    SimulateError::NoProgress { events: MOST_STEPS, revolution, cam_angle }
 }
 
 /// What one step of the loop came to.

@@ -1,6 +1,6 @@
 //! Following the cam: where infinitely many impacts end, and where the cam lets go.
 
-use super::{EventKind, Machine, Motion, Observer, SimulateError, Step};
+use super::{EventKind, MOST_STEPS, Machine, Motion, Observer, SimulateError, Step, no_progress};
 use crate::cam::{Lift, Segment};
 use crate::flight::State;
 use crate::tolerance;
@@ -89,7 +89,7 @@ impl Machine {
         let segment = &self.cam().segments()[motion.segment];
         let within = segment.end - motion.cam_angle;
         let (last, span) = if left < within { (true, left) } else { (false, within) };
-        if let Some(turn) = self.release(segment, motion.cam_angle, span) {
+        if let Some(turn) = self.release(motion, segment, span)? {
             motion.cam_angle += turn;
             let lift = segment.law.lift(motion.cam_angle);
             return Ok(self.let_go(motion, &lift, on_cam(&lift, omega), observer));
@@ -139,7 +139,8 @@ impl Machine {
     ///
     /// With `|d lifting/dt| <= L` over a stretch, `lifting` stays below 0 for `-lifting/L`: marching so never passes a
     /// release, and as the stretches shrink, L becomes the slope itself.
-    fn release(&self, segment: &Segment, angle: f64, span: f64) -> Option<f64> {
+    fn release(&self, motion: &Motion, segment: &Segment, span: f64) -> Result<Option<f64>, SimulateError> {
+        let angle = motion.cam_angle;
         let omega = self.angular_velocity;
         let (w, zeta) = (self.flight.omega0_squared(), self.flight.zeta());
         let bounds = &segment.bounds;
@@ -148,11 +149,14 @@ impl Machine {
             - 2.0 * zeta * omega * bounds.slope[0]
             - omega * omega * bounds.curvature[0];
         if largest < 0.0 {
-            return None;
+            return Ok(None);
         }
         let end = span / omega;
-        let (mut time, mut hover) = (0.0, 0.0);
-        while time < end {
+        let (mut time, mut hover, mut widest) = (0.0, 0.0, end);
+        for _ in 0..MOST_STEPS {
+            if !(time < end) {
+                return Ok(None);
+            }
             let lift = segment.law.lift(angle + omega * time);
             let lifting = self.lifting(&lift);
             let (_, rounding) = self.lifting_rate(&lift);
@@ -165,7 +169,7 @@ impl Machine {
                 2.0 * zeta * omega * omega * curvature + w * omega * slope + omega.powi(3) * third
             };
             if lifting > rounding {
-                return Some(omega * time);
+                return Ok(Some(omega * time));
             }
             if lifting > -rounding {
                 // Where rounding decides, look ahead, further each time: it may only touch 0, or stay there.
@@ -174,7 +178,7 @@ impl Machine {
                 continue;
             }
             hover = 0.0;
-            let mut reach = end - time;
+            let mut reach = widest.min(end - time);
             let mut safe: f64 = 0.0;
             for _ in 0..32 {
                 let free = -lifting / steepest(reach);
@@ -182,11 +186,14 @@ impl Machine {
                 if free >= 0.5 * reach {
                     break;
                 }
-                reach = 2.0 * free;
+                // Not at once: where the bound itself grows with the reach, far less would be found free than is.
+                reach = (2.0 * free).max(0.25 * reach);
             }
+            // Tried first the next time: what was free here says what may be there.
+            widest = 4.0 * reach;
             time += safe.max(f64::EPSILON * end);
         }
-        None
+        Err(no_progress(motion, omega * time))
     }
 }
 

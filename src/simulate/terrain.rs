@@ -11,6 +11,10 @@ pub(super) struct Terrain {
     pub entries: Vec<Entry>,
     /// No lift is above it, m.
     pub top: f64,
+    /// No lift is further from 0, m: what the rounding of any lift is measured by, also where it passes 0.
+    pub size: f64,
+    /// No `|dc/dtheta|` is larger, m/rad: the same for slopes.
+    pub steepest: f64,
     /// No `d^2c/dtheta^2` is above it, m/rad^2; infinite where a velocity jumps upwards.
     pub largest_curvature: f64,
 }
@@ -20,6 +24,9 @@ pub(super) struct Terrain {
 pub(super) struct Entry {
     /// m. Only a continued law leaves a step at its far end.
     pub lift_step: f64,
+    /// The lift before it, m, where the two differ by more than rounding and are the same for all that: a cam whose numbers
+    /// were typed to ten digits, or whose lift is 0 there.
+    pub seam: Option<f64>,
     /// m/rad.
     pub slope_jump: f64,
 }
@@ -28,31 +35,35 @@ impl Terrain {
     pub fn new(cam: Cam) -> Self {
         let segments = cam.segments();
         let before = segments.last().into_iter().chain(segments);
-        let size = |segment: &Segment| segment.bounds.lift[0].abs().max(segment.bounds.lift[1].abs());
-        let size = segments.iter().map(size).fold(0.0, f64::max);
-        let entries: Vec<Entry> = before.zip(segments).map(|(before, after)| entry(before, after, size)).collect();
+        let size = segments.iter().flat_map(|segment| segment.bounds.lift).map(f64::abs).fold(0.0, f64::max);
+        let steepest = segments.iter().flat_map(|segment| segment.bounds.slope).map(f64::abs).fold(0.0, f64::max);
+        let closed = tolerance::CAM_CLOSURE.value * size;
+        let entries: Vec<Entry> = before.zip(segments).map(|(before, after)| entry(before, after, closed)).collect();
         let kicks = entries.iter().any(|entry| entry.slope_jump > 0.0 || entry.lift_step > 0.0);
         let curvatures = segments.iter().map(|segment| segment.bounds.curvature[1]);
         let largest_curvature = if kicks { f64::INFINITY } else { curvatures.fold(f64::NEG_INFINITY, f64::max) };
         let top = cam.top();
-        Self { cam, entries, top, largest_curvature }
+        Self { cam, entries, top, size, steepest, largest_curvature }
     }
 }
 
-/// `size`: the largest lift of the cam, m.
-fn entry(before: &Segment, after: &Segment, size: f64) -> Entry {
+/// What changes between two segments of a cam on which lifts closer than `closed`, m, are one.
+fn entry(before: &Segment, after: &Segment, closed: f64) -> Entry {
     let (minus, plus) = (before.law.lift(before.end), after.law.lift(after.start));
     let jump = |minus: f64, plus: f64, rounding: f64| {
         if (plus - minus).abs() <= rounding { 0.0 } else { plus - minus }
     };
     // Where segments meet, two evaluations of one lift differ by rounding, which a follower that has just left the cam
     // there must not be measured by.
-    let lift_rounding = tolerance::GAP_ROUNDING.value * (size + minus.value.abs() + plus.value.abs());
+    let lift_rounding = tolerance::GAP_ROUNDING.value * (minus.value.abs() + plus.value.abs());
+    let lift_step = jump(minus.value, plus.value, lift_rounding.max(closed));
+    let differ = lift_step == 0.0 && jump(minus.value, plus.value, lift_rounding) != 0.0;
     let scale = [minus, plus]
         .iter()
         .fold(0.0_f64, |scale, lift| scale.max(lift.value.abs()).max(lift.slope.abs()).max(lift.curvature.abs()));
     Entry {
-        lift_step: jump(minus.value, plus.value, lift_rounding),
+        lift_step,
+        seam: differ.then_some(minus.value),
         slope_jump: jump(minus.slope, plus.slope, tolerance::CAM_JUMP.value * scale),
     }
 }

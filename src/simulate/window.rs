@@ -13,6 +13,7 @@ use crate::tolerance;
 
 /// A flight over a segment, from the angle where it is now.
 pub(super) struct Window<'a> {
+    machine: &'a Machine,
     flight: &'a Flight,
     segment: &'a Segment,
     omega: f64,
@@ -36,6 +37,8 @@ pub(super) enum Passage {
     Resting { time: f64 },
     /// Inside the cam.
     Below { depth: f64, time: f64 },
+    /// More steps than a window may take; s after the start.
+    NoProgress { time: f64 },
     /// Something is not a number.
     NotFinite,
 }
@@ -52,6 +55,7 @@ struct Seen {
 impl<'a> Window<'a> {
     pub fn new(machine: &'a Machine, motion: &Motion) -> Self {
         Self {
+            machine,
             flight: &machine.flight,
             segment: &machine.cam().segments()[motion.segment],
             omega: machine.angular_velocity,
@@ -227,8 +231,9 @@ impl<'a> Window<'a> {
             let now = if time == 0.0 { self.at_start() } else { self.at(time) };
             let third = 2.0 * (self.flight.jerk(now.state) - omega.powi(3) * now.lift.third).abs();
             // Of the two positions, however well their difference is known: no dip below that is an impact.
-            let rounding = tolerance::GAP_ROUNDING.value * (now.state.position.abs() + now.lift.value.abs());
-            Gap { value: now.value, rounding, rate: now.rate, curvature: now.curvature, third }
+            let rounding = self.machine.gap_rounding(now.state.position);
+            let rate_rounding = self.machine.velocity_rounding();
+            Gap { value: now.value, rounding, rate: now.rate, rate_rounding, curvature: now.curvature, third }
         };
         let third_bound = |time: f64, reach: f64| {
             let state = if time == 0.0 { self.start } else { self.flight.fly(self.start, time).1 };
@@ -243,6 +248,7 @@ impl<'a> Window<'a> {
             }
             Outcome::Resting(time) => Passage::Resting { time },
             Outcome::Below { depth, time } => Passage::Below { depth, time },
+            Outcome::NoProgress(time) => Passage::NoProgress { time },
             Outcome::NotFinite(_) => Passage::NotFinite,
         }
     }
