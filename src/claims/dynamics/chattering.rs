@@ -32,7 +32,8 @@ fn listed(numbers: &[f64], places: usize) -> String {
     numbers.iter().map(|number| format!("{number:.places$}")).collect::<Vec<_>>().join(", ")
 }
 
-/// The lowest speed with a release, by simulation; and where the nose would first have to pull: `c'' w^2 = a(c)` right after P.
+/// The lowest speed with a release, by simulation; and where the nose would first have to pull, right after P:
+/// `c'' w^2 = a(c)`.
 pub(in crate::claims) fn detachment(context: &Context<'_>) -> Found {
     let decision = || {
         let machine = machine(context, 100.0);
@@ -123,8 +124,8 @@ pub(in crate::claims) fn impact_diagram_of_slow_cams(context: &Context<'_>) -> F
         let above = at(200.0)?.period != 1;
         let evidence = format!(
             "at each of 115, 116, ..., 198 rpm one revolution from release to release at P, with more than {SEVERAL} impacts that \
-             accumulate: {all}; above 1e-6 m/s are {}, {} and {} of them at 115, 120 and 198 rpm; up to {one_release:.3} rpm it is released a second time, on the nose; \
-             the accumulation reaches P ({reach:.2} deg, a revolution on) at {end:.6} rpm and this motion ends; at 200 rpm it \
+             accumulate: {all}; above 1e-6 m/s are {}, {} and {} of them at 115, 120 and 198 rpm; up to \
+             {one_release:.3} rpm it is released a second time, on the nose; the accumulation reaches P ({reach:.2} deg, a revolution on) at {end:.6} rpm and this motion ends; at 200 rpm it \
              takes longer to return: {above}",
             felt[0], felt[1], felt[2]
         );

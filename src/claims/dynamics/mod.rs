@@ -1,7 +1,7 @@
 //! Statements about runs: what the follower does at a speed, decided by the simulator.
 //!
-//! `chattering` is about slow cams, where the follower comes to rest on the cam once a revolution; `transition` about fast
-//! ones, around the corner impact. Evidence must not depend on the machine: of a chaotic run it says only what any run shows.
+//! `chattering` is about slow cams, where the follower comes to rest on the cam once a revolution; `transition` about
+//! fast ones, around the corner impact. Evidence must not depend on the machine: of a chaotic run it says only what any run shows.
 
 mod chattering;
 mod transition;

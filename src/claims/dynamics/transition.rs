@@ -1,4 +1,4 @@
-//! Fast cams, 660 to 750 rpm: the motion of one impact a revolution, how it is lost on either side, and what there is beside it.
+//! Fast cams, 660 to 750 rpm: the motion of one impact a revolution, how it is lost on either side, what is beside it.
 
 use std::ops::ControlFlow;
 
