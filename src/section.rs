@@ -3,10 +3,11 @@
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
-use nalgebra::Matrix2;
+use nalgebra::{Matrix2, Vector2};
 
 use crate::flight::State;
 use crate::simulate::{Event, EventKind, Goal, Machine, Motion, SimulateError, Variation};
+use crate::tolerance;
 
 /// The map of one revolution, from the section at a cam angle back to it.
 #[derive(Clone, Debug)]
@@ -44,16 +45,54 @@ impl StroboscopicMap {
         Ok(Return { state, events })
     }
 
-    /// The map's derivative at `state`, 2x2: `d(q, v)` one revolution later by `d(q, v)` now. Its eigenvalues at a fixed
-    /// point are the multipliers of the orbit.
-    ///
-    /// Not finite where the revolution grazes the cam; 0 where it sticks to it.
-    pub fn derivative(&self, state: State) -> Result<Matrix2<f64>, SimulateError> {
+    /// `revolutions` from `state`: the state after them, and how they carry a small deviation, `d(q, v)/d(q0, v0)`, 2x2.
+    pub fn carry(&self, state: State, revolutions: u64) -> Result<(State, Matrix2<f64>), SimulateError> {
         let mut motion = self.machine.start(self.cam_angle, state)?;
         let mut variation = Variation::new(&self.machine, &motion);
-        let goal = motion.after(1);
+        let goal = motion.after(revolutions);
         let _ = self.machine.advance(&mut motion, goal, &mut variation)?;
-        Ok(variation.matrix())
+        Ok((motion.state, variation.matrix()))
+    }
+
+    /// The motion near `guess` that repeats after `revolutions`, stable or not, by Newton's method; `None` where that finds
+    /// none.
+    pub fn periodic(&self, guess: State, revolutions: u64) -> Result<Option<Periodic>, SimulateError> {
+        /// Newton's method doubles the digits: a guess that is any good needs six steps or so.
+        const STEPS: usize = 20;
+        let omega = self.machine.angular_velocity();
+        let size = |dx: Vector2<f64>| Vector2::new(dx[0], dx[1] / omega).norm();
+        let mut state = guess;
+        for _ in 0..STEPS {
+            let (end, matrix) = match self.carry(state, revolutions) {
+                Ok(carried) => carried,
+                // A step that led below the cam leads nowhere.
+                Err(SimulateError::BelowCam { revolution: 0, .. }) => return Ok(None),
+                Err(error) => return Err(error),
+            };
+            let miss = Vector2::new(end.position - state.position, end.velocity - state.velocity);
+            let Some(step) = (Matrix2::identity() - matrix).lu().solve(&miss) else { return Ok(None) };
+            if size(step) <= tolerance::ORBIT_CLOSURE.value * size(Vector2::new(state.position, state.velocity)) {
+                return Ok(Some(Periodic { state, matrix }));
+            }
+            state = State { position: state.position + step[0], velocity: state.velocity + step[1] };
+        }
+        Ok(None)
+    }
+}
+
+/// A motion that repeats.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Periodic {
+    /// Its state on the section.
+    pub state: State,
+    /// How one period carries a small deviation: its eigenvalues are the multipliers.
+    pub matrix: Matrix2<f64>,
+}
+
+impl Periodic {
+    /// det(I + A): 0 where a multiplier is -1, and the motion flips to one of twice the period.
+    pub fn flip(&self) -> f64 {
+        1.0 + self.matrix.trace() + self.matrix.determinant()
     }
 }
 

@@ -83,6 +83,18 @@ table! {
     ABOUT_RPM = 1.0, "rpm, absolute: the last digit that is given";
     /// From which growth of a small deviation per revolution a motion counts as chaotic.
     CHAOTIC_GROWTH = 0.1, "absolute, a logarithm: sampling over thousands of revolutions leaves a few hundredths";
+    /// How closely a speed is found by halving a bracket in which runs change their kind, rpm.
+    SPEED_FOUND = 1e-9, "rpm, absolute: ten thousand ulps of a speed, and what the rounding of an angle moves a contact by";
+    /// The bracket around a speed at which a motion ends, rpm.
+    SPEED_BRACKETED = 1e-4, "rpm, absolute: each halving takes thousands of revolutions, and three decimals are given";
+    /// The relative velocity after an impact from which on it counts as one that can be felt, m/s.
+    FELT_IMPACT = 1e-6, "m/s, absolute: of infinitely many impacts a number must end somewhere, and far above where the \
+        simulator takes the sum of the rest";
+    /// How closely the impacts before an accumulation fall off by the coefficient of restitution.
+    GEOMETRIC = 1e-3, "of one: what the cam's slope changes between two impacts, in the last that are flown one by one";
+    /// How closely an angle that a line of a diagram ends at is that of a corner, degrees.
+    DRAWN_DEGREES = 0.02, "degrees, absolute: a line of a printed diagram is ten times as wide, and the ends of lines are as \
+        steep as the root of a speed";
     /// How closely an identity between computed matrices is met.
     IDENTITY = 1e-12, "of the terms: a few hundred roundings";
     /// How little a settled motion may move from one revolution to the next, m.

@@ -1,11 +1,9 @@
 //! One check for each statement of the ledger: its id, and what decides it.
 
 use super::context::{Context, Found, Residuals};
+use super::dynamics::*;
 use super::statements::*;
 use crate::published::Verdict;
-
-/// Why the dynamics from detachment to chattering is not decided.
-const STICKING: &str = "needs a simulation of chattering and sticking, which the event loop refuses";
 
 /// Why some figures have nothing to decide.
 const DRAWING: &str = "a drawing: it states nothing that a computation could contradict";
@@ -87,15 +85,17 @@ pub static CHECKS: &[(&str, Check)] = &[
     ("figure: camprofileeq", Check::Any(drawn_circles)),
     ("appendix B", Check::Any(appendix_b)),
     ("detachment", Check::Paper(detachment)),
-    ("chattering at 183 rpm", Check::Open(STICKING)),
-    ("chattering at 175 rpm", Check::Open(STICKING)),
-    ("impact diagram 115 to 200 rpm", Check::Open(STICKING)),
-    ("resonant peaks", Check::Open(STICKING)),
-    ("period adding", Check::Open(STICKING)),
+    ("chattering at 183 rpm", Check::Paper(chattering_at_183)),
+    ("chattering at 175 rpm", Check::Paper(chattering_at_175)),
+    ("impact diagram 115 to 200 rpm", Check::Paper(impact_diagram_of_slow_cams)),
+    ("resonant peaks", Check::Paper(resonant_peaks)),
+    ("period adding", Check::Paper(period_adding)),
     ("period one above 673.23 rpm", Check::Paper(period_one_above)),
     ("chaos at 670 rpm", Check::Paper(chaos_below)),
     ("transition at the corner", Check::Paper(transition)),
-    ("coexisting attractor", Check::Open("needs a search over starts above 673.23 rpm for a second attractor")),
+    ("transitions at the corners", Check::Paper(transitions_at_corners)),
+    ("coexisting attractor", Check::Paper(coexisting)),
+    ("chaotic for good", Check::Paper(chaos_for_good)),
     ("figure: orbit at 700 rpm", Check::Paper(orbit_at_700)),
     ("x* at rest", Check::Paper(at_rest)),
     ("one impact", Check::Paper(one_impact)),

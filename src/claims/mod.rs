@@ -6,6 +6,7 @@
 
 pub mod checks;
 pub mod context;
+mod dynamics;
 pub mod ledger;
 pub mod statements;
 

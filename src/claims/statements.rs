@@ -1,6 +1,5 @@
 //! The statements in words and the figures: each decided by a computation of its own.
 
-use std::f64::consts::TAU;
 use std::fmt;
 
 use nalgebra::Vector2;
@@ -11,8 +10,6 @@ use crate::corner;
 use crate::flight::{Flight, State};
 use crate::impact::rebound;
 use crate::published::Verdict;
-use crate::section::StroboscopicMap;
-use crate::simulate::{Machine, SimulateError};
 use crate::tolerance;
 
 /// A number with ten significant digits, zero where rounding made it.
@@ -31,7 +28,7 @@ impl fmt::Display for Shown {
 }
 
 /// `holds` or `otherwise`, with the numbers.
-fn decide(holds: bool, otherwise: Verdict, evidence: String) -> Found {
+pub(super) fn decide(holds: bool, otherwise: Verdict, evidence: String) -> Found {
     Found { verdict: if holds { Verdict::Holds } else { otherwise }, evidence }
 }
 
@@ -118,166 +115,6 @@ pub(super) fn profile_is_continuous(context: &Context<'_>) -> Found {
     let orders: Vec<_> = corners.iter().map(|corner| corner.jump_order.to_string()).collect();
     let evidence = format!("first derivative to jump at each of the {} corners: {}", corners.len(), orders.join(", "));
     decide(!continuous, Verdict::Misprint, evidence)
-}
-
-/// The lowest speed at which the cam would have to pull the follower: `c'' w^2 < a(c)`.
-pub(super) fn detachment(context: &Context<'_>) -> Found {
-    const SAMPLES: usize = 2000;
-    let flight = Flight::new(&context.model.follower);
-    let mut lowest = (f64::INFINITY, 0.0);
-    for segment in context.cam.segments() {
-        for sample in 0..=SAMPLES {
-            let angle = segment.start + (segment.end - segment.start) * sample as f64 / SAMPLES as f64;
-            let lift = segment.law.lift(angle);
-            // Undamped: a = f(c), and the cam leaves the follower behind from w^2 = f/c'' on.
-            let squared = flight.force(lift.value) / lift.curvature;
-            if lift.curvature < 0.0 && squared < lowest.0 {
-                lowest = (squared, angle);
-            }
-        }
-    }
-    let (speed, angle) = (lowest.0.sqrt() * 60.0 / TAU, lowest.1.to_degrees());
-    let evidence = format!("contact force first vanishes at {speed:.2} rpm, at cam angle {angle:.2} deg");
-    decide((speed - 114.0).abs() <= tolerance::ABOUT_RPM.value, Verdict::Refuted, evidence)
-}
-
-/// A run of the stroboscopic map from x*, at another speed.
-struct Run {
-    /// Impacts of each revolution, over the last hundred.
-    impacts: Vec<usize>,
-    /// Largest move of the state from one revolution to the next, over the last hundred, in metres.
-    move_per_revolution: f64,
-    /// Cam angle of the last impact, rad.
-    last_impact: f64,
-    /// Mean growth of a small deviation per revolution, as a logarithm.
-    growth: f64,
-}
-
-/// Runs `revolutions` from x* at `rpm`, beside a second run that starts a hair off and is brought back every time.
-fn run(context: &Context<'_>, rpm: f64, revolutions: usize) -> Result<Run, SimulateError> {
-    const HAIR: f64 = 1e-8;
-    let at = &context.findings.at;
-    let follower = &context.model.follower;
-    let omega = rpm * TAU / 60.0;
-    let machine = Machine::new(context.cam.clone(), follower, omega);
-    let map = StroboscopicMap { machine, cam_angle: at.section_angle() };
-    let mut state = at.state;
-    let mut beside = State { position: state.position + HAIR, ..state };
-    let mut result = Run { impacts: Vec::new(), move_per_revolution: 0.0, last_impact: 0.0, growth: 0.0 };
-    for revolution in 0..revolutions {
-        let (back, other) = (map.apply(state)?, map.apply(beside)?);
-        let apart = Vector2::new(
-            other.state.position - back.state.position,
-            (other.state.velocity - back.state.velocity) / omega,
-        );
-        let distance = apart.norm().max(f64::MIN_POSITIVE);
-        result.growth += (distance / HAIR).ln() / revolutions as f64;
-        if revolution + 100 >= revolutions {
-            result.impacts.push(back.impacts().count());
-            result.move_per_revolution = result.move_per_revolution.max((back.state.position - state.position).abs());
-        }
-        result.last_impact = back.impacts().last().map_or(result.last_impact, |impact| impact.cam_angle);
-        state = back.state;
-        let scale = HAIR / distance;
-        beside =
-            State { position: state.position + apart[0] * scale, velocity: state.velocity + apart[1] * omega * scale };
-    }
-    Ok(result)
-}
-
-impl Run {
-    fn is_period_one(&self) -> bool {
-        self.impacts.iter().all(|impacts| *impacts == 1) && self.move_per_revolution < tolerance::SETTLED.value
-    }
-}
-
-/// A statement about runs; one that the simulator gives up leaves it open.
-fn by_runs(decision: Result<Found, SimulateError>) -> Found {
-    decision.unwrap_or_else(|error| Found { verdict: Verdict::Open, evidence: error.to_string() })
-}
-
-/// The speeds between 660 and 750 rpm at which runs are held against the paper's diagrams.
-const ABOVE: [f64; 5] = [673.3, 680.0, 700.0, 720.0, 735.0];
-
-pub(super) fn period_one_above(context: &Context<'_>) -> Found {
-    let decision = || {
-        let mut settled = Vec::new();
-        for rpm in ABOVE {
-            if run(context, rpm, 3000)?.is_period_one() {
-                settled.push(format!("{rpm}"));
-            }
-        }
-        let evidence = format!(
-            "of 3000 revolutions from x* each, those at {} rpm end on one impact a revolution, in one state",
-            settled.join(", ")
-        );
-        Ok(decide(settled.len() == ABOVE.len(), Verdict::Refuted, evidence))
-    };
-    by_runs(decision())
-}
-
-/// One impact line from 673.23 up, many impacts below; and what the diagram's upper end does.
-pub(super) fn impact_diagram(context: &Context<'_>) -> Found {
-    let decision = || {
-        let mut one_line = true;
-        for rpm in ABOVE {
-            one_line &= run(context, rpm, 3000)?.is_period_one();
-        }
-        let mut scattered = true;
-        for rpm in [661.0, 665.0, 670.0, 673.0] {
-            scattered &= !run(context, rpm, 3000)?.is_period_one();
-        }
-        let end = if run(context, 745.0, 3000)?.is_period_one() { "still one line" } else { "no longer one line" };
-        let evidence = format!(
-            "one impact, in one place, at all of 673.3, 680, 700, 720, 735 rpm: {one_line}; none such at 661, 665, 670, 673 rpm: {scattered}; at 745 rpm {end}"
-        );
-        Ok(decide(one_line && scattered, Verdict::Refuted, evidence))
-    };
-    by_runs(decision())
-}
-
-pub(super) fn chaos_below(context: &Context<'_>) -> Found {
-    let decision = || {
-        // A chaotic mean moves in its second digit with the machine's sine: the evidence says what it is compared with.
-        let threshold = tolerance::CHAOTIC_GROWTH.value;
-        let chaotic_at_670 = run(context, 670.0, 4000)?.growth > threshold;
-        let chaotic_at_680 = run(context, 680.0, 4000)?.growth > threshold;
-        let evidence = format!(
-            "largest Lyapunov exponent over 4000 revolutions above {threshold} a revolution: {chaotic_at_670} at 670 rpm, \
-             {chaotic_at_680} at 680 rpm"
-        );
-        let chaotic = chaotic_at_670 && !chaotic_at_680;
-        Ok(decide(chaotic, Verdict::Refuted, evidence))
-    };
-    by_runs(decision())
-}
-
-pub(super) fn transition(context: &Context<'_>) -> Found {
-    let speed = context.findings.at.speed_rpm();
-    let decision = || {
-        let above = run(context, speed + 0.01, 6000)?.is_period_one();
-        let below = run(context, speed - 0.01, 6000)?.is_period_one();
-        let evidence = format!(
-            "one impact a revolution after 6000 from x*: {above} at 0.01 rpm above {speed:.6} rpm, {below} at 0.01 rpm below"
-        );
-        Ok(decide(above && !below, Verdict::Refuted, evidence))
-    };
-    by_runs(decision())
-}
-
-pub(super) fn orbit_at_700(context: &Context<'_>) -> Found {
-    let decision = || {
-        let at_700 = run(context, 700.0, 1000)?;
-        let corner = context.findings.at.corner.angle;
-        let evidence = format!(
-            "at 700 rpm the impact is at {:.2} deg, the corner at {:.2} deg; they meet at {:.6} rpm",
-            at_700.last_impact.to_degrees(),
-            corner.to_degrees(),
-            context.findings.at.speed_rpm()
-        );
-        Ok(decide((at_700.last_impact - corner).abs() <= tolerance::CORNER_ANGLE.value, Verdict::Misprint, evidence))
-    };
-    by_runs(decision())
 }
 
 /// By symmetry in time of the undamped flight only: with a little damping it is not so.

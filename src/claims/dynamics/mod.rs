@@ -1,0 +1,124 @@
+//! Statements about runs: what the follower does at a speed, decided by the simulator.
+//!
+//! `chattering` is about slow cams, where the follower comes to rest on the cam once a revolution; `transition` about
+//! fast ones, around the corner impact. Evidence must not depend on the machine: of a chaotic run it says only what any run shows.
+
+mod chattering;
+mod transition;
+
+use std::ops::ControlFlow;
+
+use super::context::{Context, Found};
+use crate::flight::State;
+use crate::published::Verdict;
+use crate::section::StroboscopicMap;
+use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError, angular_velocity};
+use crate::tolerance;
+pub(super) use chattering::{
+    chattering_at_175, chattering_at_183, detachment, impact_diagram_of_slow_cams, period_adding, resonant_peaks,
+};
+pub(super) use transition::{
+    chaos_below, chaos_for_good, coexisting, impact_diagram, orbit_at_700, period_one_above, transition,
+    transitions_at_corners,
+};
+
+/// A statement about runs; one that the simulator gives up leaves it open.
+fn by_runs(decision: Result<Found, SimulateError>) -> Found {
+    decision.unwrap_or_else(|error| Found { verdict: Verdict::Open, evidence: error.to_string() })
+}
+
+/// The paper's machine at a speed.
+fn machine(context: &Context<'_>, rpm: f64) -> Machine {
+    Machine::new(context.cam.clone(), &context.model.follower, angular_velocity(rpm))
+}
+
+/// The angles of the corners R, P, Q, Q', P', R', rad; NaN where the cam has fewer.
+fn corners(context: &Context<'_>) -> [f64; 6] {
+    let corners = context.cam.corners();
+    std::array::from_fn(|index| corners.get(index).map_or(f64::NAN, |corner| corner.angle))
+}
+
+fn unobserved(_: &Event) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+/// Turns the cam `revolutions` on.
+fn turn(machine: &Machine, motion: &mut Motion, revolutions: u64) -> Result<(), SimulateError> {
+    let goal = motion.after(revolutions);
+    let _ = machine.advance(motion, goal, &mut unobserved)?;
+    Ok(())
+}
+
+/// Whether `motion` settles, within `transient` revolutions, on one impact a revolution, in one state.
+fn settles(machine: &Machine, motion: &mut Motion, transient: u64) -> Result<bool, SimulateError> {
+    const LOOKED_AT: u64 = 100;
+    turn(machine, motion, transient)?;
+    for _ in 0..LOOKED_AT {
+        let (before, mut impacts) = (motion.state, 0);
+        let goal = motion.after(1);
+        let _ = machine.advance(motion, goal, &mut |event: &Event| {
+            impacts += usize::from(event.kind == EventKind::Impact);
+            ControlFlow::Continue(())
+        })?;
+        let moved = (motion.state.position - before.position).abs();
+        if motion.contact || impacts != 1 || moved > tolerance::SETTLED.value {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+/// Where the last impact of the revolution from `state` on is, rad.
+fn last_impact(map: &StroboscopicMap, state: State) -> Result<f64, SimulateError> {
+    Ok(map.apply(state)?.impacts().last().map_or(f64::NAN, |impact| impact.cam_angle))
+}
+
+/// What follows the release at P of a follower that came up the flank on the cam: the speed alone decides it.
+struct Round {
+    /// The impacts up to the first stick: the angle turned since P, rad, and the relative velocity after it, m/s.
+    impacts: Vec<[f64; 2]>,
+    /// Where the impacts accumulate: the angle turned since P, rad; NaN where they never do.
+    accumulation: f64,
+    /// Releases on the way to the next at P.
+    releases: usize,
+    /// Revolutions from the release at P to the next one there: the period, if it is not 0.
+    period: u64,
+}
+
+impl Round {
+    /// Revolutions after which a release at P is no longer waited for.
+    const LONGEST: u64 = 50;
+
+    /// From `corner`, P, on.
+    fn new(machine: &Machine, corner: f64) -> Result<Self, SimulateError> {
+        /// Where it starts, rad before P: on the flank the cam presses against the follower at any speed.
+        const BEFORE: f64 = 0.05;
+        let mut motion = machine.start_on_cam(corner - BEFORE, 0.0)?;
+        let goal = motion.after(Self::LONGEST);
+        let mut round = Self { impacts: Vec::new(), accumulation: f64::NAN, releases: 0, period: 0 };
+        let mut released = false;
+        let _ = machine.advance(&mut motion, goal, &mut |event: &Event| {
+            let turned = event.turned_since(corner);
+            match event.kind {
+                EventKind::Release if event.cam_angle == corner && !released => released = true,
+                EventKind::Release if event.cam_angle == corner => {
+                    round.period = event.revolution;
+                    return ControlFlow::Break(());
+                }
+                EventKind::Release => round.releases += 1,
+                EventKind::Impact if round.accumulation.is_nan() => {
+                    round.impacts.push([turned, event.velocity_after - event.cam_velocity]);
+                }
+                EventKind::Stick if round.accumulation.is_nan() => round.accumulation = turned,
+                EventKind::Impact | EventKind::Stick => {}
+            }
+            ControlFlow::Continue(())
+        })?;
+        Ok(round)
+    }
+
+    /// How many impacts can be felt.
+    fn felt(&self) -> usize {
+        self.impacts.iter().filter(|[_, velocity]| *velocity > tolerance::FELT_IMPACT.value).count()
+    }
+}
