@@ -180,7 +180,8 @@ fn rows_are_the_same_for_every_number_of_threads() {
         assert_eq!(table("2"), one, "{start}");
         assert_eq!(table("5"), one, "{start}");
         let speeds: Vec<f64> = rows(&one, IMPACTS).iter().map(|row| number(&row[0])).collect();
-        let ordered = speeds.windows(2).all(|pair| if start == "down" { pair[0] >= pair[1] } else { pair[0] <= pair[1] });
+        let ordered =
+            speeds.windows(2).all(|pair| if start == "down" { pair[0] >= pair[1] } else { pair[0] <= pair[1] });
         assert!(ordered, "{start}");
     }
 }
@@ -300,7 +301,9 @@ fn the_examples_of_the_help_run() {
     for command in ["simulate", "diagram", "cam"] {
         let help = prints(&[command, "--help"]);
         for line in help.lines().filter_map(|line| line.split_once("corner-impact ").map(|(_, rest)| rest.trim())) {
-            let Some(arguments) = line.strip_prefix(command).filter(|rest| rest.starts_with(" models/")) else { continue };
+            let Some(arguments) = line.strip_prefix(command).filter(|rest| rest.starts_with(" models/")) else {
+                continue;
+            };
             let mut program = Command::new(env!("CARGO_BIN_EXE_corner-impact"));
             let output = program.arg(command).args(arguments.split_whitespace()).current_dir(&folder).output().unwrap();
             assert_eq!(output.status.code(), Some(0), "{line}: {}", String::from_utf8_lossy(&output.stderr));

@@ -121,7 +121,9 @@ impl<'a> Window<'a> {
             }
             // Halley: t = -g/g' / (1 - g g''/(2 g'^2))
             let newton = -now.value / now.rate;
-            let step = newton / (1.0 + 0.5 * newton * now.curvature / now.rate);
+            let bend = 0.5 * newton * now.curvature / now.rate;
+            // Where the gap hardly changes, Halley's step is short however far the contact is.
+            let step = if bend.abs() <= 0.5 { newton / (1.0 + bend) } else { newton };
             if now.rate < 0.0 && self.is_small(step, time, &now.lift) && time + step <= end {
                 return Some(self.met(time, step, &now));
             }
@@ -141,11 +143,12 @@ impl<'a> Window<'a> {
             } else {
                 0.5 * (low + high)
             };
-            if high - low <= f64::EPSILON * high {
+            if high_is_closed && high - low <= f64::EPSILON * high {
                 return Some(self.met(high, 0.0, &self.at(high)));
             }
         }
-        Some(self.met(high, 0.0, &self.at(high)))
+        let last = self.at(high);
+        (high_is_closed || last.value <= 0.0).then(|| self.met(high, 0.0, &last))
     }
 
     /// Whether the last step is so small that the follower and the cam go through it by their Taylor sums.
