@@ -317,6 +317,25 @@ fn an_impact_at_a_whole_turn_is_at_angle_0() {
     }
 }
 
+/// An overdamped follower has come to rest far above the lowest point of the cam when that passes under it: there the gap
+/// hardly changes, which is no contact.
+#[test]
+fn a_gap_that_hardly_changes_is_no_contact() {
+    let text = "[follower]\nrest_position = 0.21079897832828612\nmass = 0.2798945362602364\ndamping = 396.8274379876629\n\
+                stiffness = 63.11216516375282\ngravity = 11.197473414932588\nrestitution = 0.0\n\
+                [cam]\nlaw = \"program\"\nbase = 0.18730873583238372\n\
+                [[cam.segment]]\nmotion = \"parabolic\"\nspan_deg = 72.0\nrise = -0.2\n\
+                [[cam.segment]]\nmotion = \"parabolic\"\nspan_deg = 288.0\nrise = 0.2\n";
+    let machine = machine(&Model::parse("rest.toml", text).unwrap(), 0.03678030500275241);
+    let start = State { position: machine.cam().lift(0.0).value, velocity: 0.0 };
+    let (end, impacts) = run(&machine, 0.0, start, TAU);
+    end.unwrap();
+    // It settles at 0.161 m, 0.17 m above the lowest point; the cam comes up to it again in the second half.
+    for Impact { turned, event } in impacts {
+        assert!(turned > PI && event.position > 0.1, "{event:?}");
+    }
+}
+
 /// Past the corner the continued cam is the law of one side, before it the cam as it was.
 #[test]
 fn a_continued_cam_keeps_one_law_past_the_corner() {

@@ -53,11 +53,12 @@ impl Machine {
         };
         let rate = end.velocity - omega * lift.slope;
         let acceleration = self.flight.acceleration(end);
-        // Halley's step from one turn on.
+        // Halley's step from one turn on; where the gap hardly changes it would be short however far the contact is.
         let newton = -gap / rate;
-        let step = newton / (1.0 + 0.5 * newton * (acceleration - omega * omega * lift.curvature) / rate);
+        let bend = 0.5 * newton * (acceleration - omega * omega * lift.curvature) / rate;
+        let step = newton / (1.0 + bend);
         let shift = omega * step;
-        if !(rate < 0.0 && shift.abs() <= tolerance::LAST_TURN.value) {
+        if !(rate < 0.0 && bend.abs() <= 0.5 && shift.abs() <= tolerance::LAST_TURN.value) {
             return None;
         }
         // It comes from above the top: so long before, it was there,

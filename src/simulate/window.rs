@@ -132,7 +132,9 @@ impl<'a> Window<'a> {
             }
             // Halley: t = -g/g' / (1 - g g''/(2 g'^2))
             let newton = -now.value / now.rate;
-            let step = newton / (1.0 + 0.5 * newton * now.curvature / now.rate);
+            let bend = 0.5 * newton * now.curvature / now.rate;
+            // Where the gap hardly changes, Halley's step is short however far the contact is.
+            let step = if bend.abs() <= 0.5 { newton / (1.0 + bend) } else { newton };
             if now.rate < 0.0 && self.is_small(step, time, &now.lift) && time + step <= reach {
                 return self.met(time, step, &now);
             }
@@ -157,11 +159,18 @@ impl<'a> Window<'a> {
             } else {
                 0.5 * (low + high)
             };
-            if high - low <= f64::EPSILON * high {
-                break;
+            if high_is_closed && high - low <= f64::EPSILON * high {
+                return self.met(high, 0.0, &self.at(high));
             }
         }
-        self.met(high, 0.0, &self.at(high))
+        let last = self.at(high);
+        if high_is_closed || last.value <= 0.0 {
+            self.met(high, 0.0, &last)
+        } else if reach < end {
+            self.advanced(reach)
+        } else {
+            self.free(end)
+        }
     }
 
     /// Whether the last step is so small that the follower and the cam go through it by their Taylor sums.
@@ -189,9 +198,19 @@ impl<'a> Window<'a> {
     }
 
     fn free(&self, end: f64) -> Passage {
-        let (displacement, state) = self.flight.fly(self.start, end);
-        let gap = self.gap.map(|gap| gap + displacement - self.segment.law.rise(self.angle, self.omega * end));
+        let (state, gap) = self.moved(end);
         Passage::Free { state, gap }
+    }
+
+    fn advanced(&self, time: f64) -> Passage {
+        let (state, gap) = self.moved(time);
+        Passage::Advanced { time, state, gap }
+    }
+
+    fn moved(&self, time: f64) -> (State, Option<f64>) {
+        let (displacement, state) = self.flight.fly(self.start, time);
+        let gap = self.gap.map(|gap| gap + displacement - self.segment.law.rise(self.angle, self.omega * time));
+        (state, gap)
     }
 
     fn at_start(&self) -> Seen {
