@@ -268,13 +268,19 @@ impl Flight {
         // On the circle (x, v/w0) about the equilibrium, from (x0, y0) to (l, -h), h^2 = x0^2 + y0^2 - l^2.
         let offset = self.rest_position - self.gravity / self.omega0_squared;
         let (x, y, l) = (start.position - offset, start.velocity / omega, level - offset);
-        let height_squared = (x - l) * (x + l) + y * y;
+        // Not x - l: a weak spring puts the equilibrium far away.
+        let drop = start.position - level;
+        let descent = drop * (x + l);
+        let height_squared = descent + y * y;
         // Above the level at all times, or, below the equilibrium, at none.
         if !(height_squared > 0.0) {
             return None;
         }
         let height = height_squared.sqrt();
-        let angle = (y * l + x * height).atan2(x * l - y * height);
+        // y + h, without cancellation on the way down.
+        let sum = if y < 0.0 { descent / (height - y) } else { height + y };
+        // y l + x h = l (y + h) + h (x - l)
+        let angle = (l * sum + height * drop).atan2(x * l - y * height);
         let time = if angle < 0.0 { angle + TAU } else { angle } / omega;
         Some((time, State { position: level, velocity: -omega * height }))
     }

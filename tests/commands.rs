@@ -310,7 +310,7 @@ fn the_examples_of_the_help_run() {
             examples += 1;
         }
     }
-    assert_eq!(examples, 5);
+    assert_eq!(examples, 6);
 }
 
 /// What is resident at most while most of the output is still to be read, in kB: the pipe holds the program up.

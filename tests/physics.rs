@@ -68,6 +68,33 @@ fn flight_solves_the_equation_of_motion() {
     }
 }
 
+/// A spring so weak that it is slack kilometres away: the way down to a level is still that of the flight.
+#[test]
+fn the_fall_to_a_level_keeps_its_digits() {
+    for stiffness in [1e-12, 1e-6, 1e-3, 0.1, 1.0, 100.0] {
+        for gravity in [9.81, 0.5] {
+            let follower =
+                Follower { mass: 1.0, damping: 0.0, stiffness, gravity, rest_position: REST, restitution: 0.8 };
+            let flight = Flight::new(&follower);
+            for (position, velocity) in
+                [(0.5, 0.0), (0.5, 3.0), (0.5, -3.0), (0.45, 1e-3), (0.4500001, -1e-3), (0.45, 8.0)]
+            {
+                let Some((time, state)) = flight.fall_to(0.45, State { position, velocity }) else { continue };
+                let there = flight.fly(State { position, velocity }, time).1;
+                let case = format!("{stiffness} {gravity} {position} {velocity}: {time} {there:?} {state:?}");
+                // The rounding of the time, times the velocity; and that of the height that is flown through.
+                let height = 0.5 + velocity * velocity / gravity;
+                assert!(
+                    (there.position - 0.45).abs() <= 1e-15 * (height + 10.0 * time * state.velocity.abs()),
+                    "{case}"
+                );
+                let most = gravity * time + velocity.abs() + stiffness.sqrt();
+                assert!((there.velocity - state.velocity).abs() <= 4e-15 * most, "{case}");
+            }
+        }
+    }
+}
+
 /// Two flights are one: the responses hold their digits through every switch of formula.
 #[test]
 fn flights_compose() {

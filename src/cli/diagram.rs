@@ -165,6 +165,8 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Co
         }
         Target::Table(path) => table(&sweep, threads, path, out)?,
         Target::Picture(path) => {
+            let mut nobody = std::io::sink();
+            let canvas = picture::Canvas::create(path, &mut nobody)?;
             let (points, exponents, tally) = points(&sweep, threads)?;
             let title = format!("{}: {}", model.name, title(&sweep));
             let diagram = Diagram {
@@ -178,7 +180,7 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Co
                 Section::Impacts => impact_diagram(diagram),
                 Section::Strobe(_) => strobe_diagram(diagram),
             };
-            picture::draw(&figure, path, out)?;
+            super::commit(vec![canvas.draw(&figure)?])?;
             tally
         }
     };
@@ -190,7 +192,7 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Co
     } else {
         summary.text().map_err(CommandError::report)?
     };
-    out.write_all(page.as_bytes()).and_then(|()| out.flush()).map_err(CommandError::write)?;
+    out.write_all(page.as_bytes()).and_then(|()| out.flush()).map_err(CommandError::standard)?;
     Ok(Exit::Agrees)
 }
 

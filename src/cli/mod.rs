@@ -14,7 +14,7 @@ use std::io::Write;
 
 use clap::{Parser, Subcommand};
 
-use crate::report::file::FileError;
+use crate::report::file::{FileError, Output};
 
 /// How a command ended; the process's exit code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,13 +71,23 @@ impl CommandError {
     fn write(error: std::io::Error) -> Self {
         Self::Write(error.to_string())
     }
+
+    fn standard(error: std::io::Error) -> Self {
+        Self::Write(format!("standard output: {error}"))
+    }
+}
+
+/// Gives files their names, when every one of them is on the disk as far as can be told.
+fn commit(mut files: Vec<Output<'_>>) -> Result<(), CommandError> {
+    files.iter_mut().try_for_each(Write::flush).map_err(CommandError::write)?;
+    files.into_iter().try_for_each(Output::commit).map_err(CommandError::file)
 }
 
 /// Prints a page whole.
 fn print(page: Result<(String, Exit), CommandError>, out: &mut dyn Write) -> Result<Exit, CommandError> {
     let (text, exit) = page?;
     let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
-    written.map_err(|error| CommandError::Write(format!("standard output: {error}")))?;
+    written.map_err(CommandError::standard)?;
     Ok(exit)
 }
 

@@ -33,14 +33,26 @@ pub(super) fn picture(text: &str) -> Result<PathBuf, String> {
     if kind(&path).is_some() { Ok(path) } else { Err("must end in .svg or .png".into()) }
 }
 
-/// Writes `figure` to `path`, whole or not at all.
-pub(super) fn draw(figure: &Figure, path: &Path, out: &mut dyn Write) -> Result<(), CommandError> {
-    let report = |error: &dyn std::fmt::Display| CommandError::Report(error.to_string());
-    let bytes = match kind(path) {
-        Some(Kind::Png) => png::render(figure, PNG_WIDTH).map_err(|error| report(&error))?,
-        _ => svg::render(figure).map_err(|error| report(&error))?.into_bytes(),
-    };
-    let mut file = Output::create(path, out).map_err(CommandError::file)?;
-    file.write_all(&bytes).map_err(CommandError::write)?;
-    file.commit().map_err(CommandError::file)
+/// A file that a figure goes to, whole or not at all; opened before the work that the figure shows.
+pub(super) struct Canvas<'a> {
+    file: Output<'a>,
+    kind: Kind,
+}
+
+impl<'a> Canvas<'a> {
+    /// Begins to write `path`, which names a kind of picture; `nobody` stands for a standard output that is not meant.
+    pub(super) fn create(path: &Path, nobody: &'a mut dyn Write) -> Result<Self, CommandError> {
+        let file = Output::create(path, nobody).map_err(CommandError::file)?;
+        Ok(Self { file, kind: kind(path).unwrap_or(Kind::Svg) })
+    }
+
+    /// The figure, written but not yet a file of that name.
+    pub(super) fn draw(mut self, figure: &Figure) -> Result<Output<'a>, CommandError> {
+        let bytes = match self.kind {
+            Kind::Png => png::render(figure, PNG_WIDTH).map_err(CommandError::report)?,
+            Kind::Svg => svg::render(figure).map_err(CommandError::report)?.into_bytes(),
+        };
+        self.file.write_all(&bytes).map_err(CommandError::write)?;
+        Ok(self.file)
+    }
 }

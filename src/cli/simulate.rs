@@ -2,7 +2,7 @@
 
 use std::io::Write;
 use std::ops::ControlFlow;
-use std::path::PathBuf;
+use std::path::{Component, PathBuf};
 use std::time::{Duration, Instant};
 
 use super::start::{StartArguments, finite, rpm, turn};
@@ -103,6 +103,8 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Co
         let words = "--events -, --strobe-out - and --summary all print to standard output: give the tables files";
         return Err(CommandError::Input(words.into()));
     }
+    distinct([("--events", &arguments.events), ("--strobe-out", &arguments.strobe_out)])?;
+    distinct([("--trace", &arguments.trace), ("--phase-plane", &arguments.phase_plane)])?;
     let model = Model::read(&arguments.model).map_err(CommandError::input)?;
     let cam = Cam::new(&model).map_err(CommandError::input)?;
     let machine = Machine::new(cam, &model.follower, angular_velocity(arguments.rpm));
@@ -110,14 +112,21 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Co
     let first = start.motion(&machine).map_err(CommandError::input)?;
     let drawn = first.after(arguments.revolutions.saturating_sub(arguments.drawn));
 
-    let (motion, seen, wall, before_drawn) = simulate(arguments, &machine, first, drawn, out)?;
+    // Every file is begun before the run: a name that cannot be is told at once.
+    let mut nobody = [std::io::sink(), std::io::sink(), std::io::sink()];
+    let [of_trace, of_plane, of_tables] = &mut nobody;
+    let trace = arguments.trace.as_deref().map(|path| picture::Canvas::create(path, of_trace)).transpose()?;
+    let plane = arguments.phase_plane.as_deref().map(|path| picture::Canvas::create(path, of_plane)).transpose()?;
+    let (run, mut files) = simulate(arguments, &machine, first, drawn, [&mut *out, of_tables])?;
+    let Run { motion, seen, wall, before_drawn } = run;
     let turned = (motion.revolution as f64) + (motion.cam_angle - first.cam_angle) / std::f64::consts::TAU;
     let exponent = if arguments.lyapunov {
         Some(Exponent(growth(&machine, first, arguments.revolutions).map_err(CommandError::input)?))
     } else {
         None
     };
-    draw(arguments, &model, &machine, before_drawn, out)?;
+    files.extend(draw(arguments, &model, &machine, before_drawn, [trace, plane])?);
+    super::commit(files)?;
     let summary = RunSummary {
         schema: "corner-impact/simulate/1",
         model: model.name.clone(),
@@ -137,23 +146,40 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Co
     } else {
         String::new()
     };
-    out.write_all(page.as_bytes()).and_then(|()| out.flush()).map_err(CommandError::write)?;
+    out.write_all(page.as_bytes()).and_then(|()| out.flush()).map_err(CommandError::standard)?;
     Ok(Exit::Agrees)
 }
 
-/// The run itself, with its tables; and the motion at `drawn`, where the pictures begin.
-fn simulate(
+/// Refuses two files of one name: the second would be all that is left.
+fn distinct(files: [(&str, &Option<PathBuf>); 2]) -> Result<(), CommandError> {
+    let [(one, Some(first)), (other, Some(second))] = files else { return Ok(()) };
+    // As far as names tell: ./x is x.
+    let parts = |path: &PathBuf| path.components().filter(|part| *part != Component::CurDir).collect::<PathBuf>();
+    if parts(first) == parts(second) && first.as_os_str() != "-" {
+        return Err(CommandError::Input(format!("{one} and {other} are both {}", first.display())));
+    }
+    Ok(())
+}
+
+/// What a run came to, and the motion where the pictures begin.
+struct Run {
+    motion: Motion,
+    seen: Seen,
+    wall: Duration,
+    before_drawn: Motion,
+}
+
+/// The run itself, with its tables, written but not yet files of their names; pictures begin at `drawn`.
+fn simulate<'a>(
     arguments: &Arguments,
     machine: &Machine,
     first: Motion,
     drawn: Goal,
-    out: &mut dyn Write,
-) -> Result<(Motion, Seen, Duration, Motion), CommandError> {
+    [out, nobody]: [&'a mut dyn Write; 2],
+) -> Result<(Run, Vec<Output<'a>>), CommandError> {
     // At most one of the tables is standard output.
-    let mut nobody = std::io::sink();
     let states_to_standard = arguments.strobe_out.as_deref().is_some_and(|path| path.as_os_str() == "-");
-    let (to_events, to_states): (&mut dyn Write, &mut dyn Write) =
-        if states_to_standard { (&mut nobody, out) } else { (out, &mut nobody) };
+    let (to_events, to_states) = if states_to_standard { (nobody, out) } else { (out, nobody) };
     let open = |path: Option<&PathBuf>, standard| path.map(|path| Output::create(path, standard)).transpose();
     let mut events = open(arguments.events.as_ref(), to_events).map_err(CommandError::file)?;
     let mut states = open(arguments.strobe_out.as_ref(), to_states).map_err(CommandError::file)?;
@@ -212,10 +238,7 @@ fn simulate(
             break;
         }
     }
-    for table in [events, states].into_iter().flatten() {
-        table.commit().map_err(CommandError::file)?;
-    }
-    Ok((motion, seen, wall, before_drawn))
+    Ok((Run { motion, seen, wall, before_drawn }, [events, states].into_iter().flatten().collect()))
 }
 
 fn earlier(one: Goal, other: Goal) -> Goal {
@@ -227,28 +250,29 @@ fn write(output: &mut Option<Output<'_>>, text: &str) -> Result<(), CommandError
 }
 
 /// The pictures, of the revolutions from `motion` on.
-fn draw(
+fn draw<'a>(
     arguments: &Arguments,
     model: &Model,
     machine: &Machine,
     motion: Motion,
-    out: &mut dyn Write,
-) -> Result<(), CommandError> {
-    if arguments.trace.is_none() && arguments.phase_plane.is_none() {
-        return Ok(());
+    [trace, plane]: [Option<picture::Canvas<'a>>; 2],
+) -> Result<Vec<Output<'a>>, CommandError> {
+    let mut files = Vec::new();
+    if trace.is_none() && plane.is_none() {
+        return Ok(files);
     }
     let revolutions = arguments.drawn.min(arguments.revolutions);
     let (samples, events) =
         section::trace(machine, motion, revolutions, run::TRACE_SAMPLES).map_err(CommandError::input)?;
     let (points, impacts) = run::trace_points(&samples, &events, machine.angular_velocity());
     let title = format!("{} at {} rpm", model.name, arguments.rpm);
-    if let Some(path) = &arguments.trace {
+    if let Some(canvas) = trace {
         let against = Against::Revolutions;
         let trace = Trace { title: &title, points: &points, impacts: &impacts, against, gap: true };
-        picture::draw(&time_trace(&trace), path, out)?;
+        files.push(canvas.draw(&time_trace(&trace))?);
     }
-    if let Some(path) = &arguments.phase_plane {
-        picture::draw(&phase_plane(&title, &points), path, out)?;
+    if let Some(canvas) = plane {
+        files.push(canvas.draw(&phase_plane(&title, &points))?);
     }
-    Ok(())
+    Ok(files)
 }

@@ -75,7 +75,7 @@ impl RunSummary {
     pub fn text(&self) -> Result<String, fmt::Error> {
         let mut page = String::new();
         let End { cam_angle_rad, position_m, velocity_m_s, contact } = self.end;
-        let (degrees, per_turn) = (cam_angle_rad.to_degrees(), self.wall_s / self.revolutions * 1e9);
+        let degrees = cam_angle_rad.to_degrees();
         writeln!(page, "{} at {} rpm, {} revolutions", self.model, self.rpm, self.revolutions)?;
         writeln!(page, "  impacts {}, sticks {}, releases {}", self.impacts, self.sticks, self.releases)?;
         let place = if contact { ", on the cam" } else { "" };
@@ -83,7 +83,7 @@ impl RunSummary {
         if let Some(Exponent(exponent)) = self.lyapunov_per_revolution {
             writeln!(page, "  Lyapunov exponent {exponent:.4} per revolution")?;
         }
-        writeln!(page, "  {:.3} s, {per_turn:.0} ns a revolution", self.wall_s)?;
+        writeln!(page, "  {:.3} s{}", self.wall_s, per_turn(self.wall_s, self.revolutions))?;
         Ok(page)
     }
 }
@@ -117,15 +117,20 @@ impl SweepSummary {
     /// For people.
     pub fn text(&self) -> Result<String, fmt::Error> {
         let mut page = String::new();
-        let per_turn = self.wall_s / self.revolutions as f64 * 1e9;
+        let per_turn = per_turn(self.wall_s, self.revolutions as f64);
         writeln!(
             page,
             "{}: {} revolutions, {} rows, {} impacts",
             self.model, self.revolutions, self.points, self.impacts
         )?;
-        writeln!(page, "  {:.3} s on {} threads, {per_turn:.0} ns a revolution", self.wall_s, self.threads)?;
+        writeln!(page, "  {:.3} s on {} threads{per_turn}", self.wall_s, self.threads)?;
         Ok(page)
     }
+}
+
+/// The time that a revolution took, where there was one.
+fn per_turn(wall_s: f64, revolutions: f64) -> String {
+    if revolutions > 0.0 { format!(", {:.0} ns a revolution", wall_s / revolutions * 1e9) } else { String::new() }
 }
 
 /// Moments of each revolution in a picture: a tenth of a degree, so that short hops are curves too.

@@ -11,8 +11,9 @@ pub const SHADES: u8 = 5;
 /// How many points are kept before a range is chosen for them.
 const KEPT: usize = 4096;
 
-/// The grid never covers more than this many times the range that it started with.
-const GROWTH: f64 = 1024.0;
+/// The grid never covers more than this many times the range that it started with: a first speed's points may all be one,
+/// to rounding, and any later range shows all of them; only what would make a range overflow is left out.
+const GROWTH: f64 = 1e18;
 
 /// How many points fell into each cell of a grid over fixed ranges; points may be pushed for ever.
 ///
