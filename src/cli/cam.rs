@@ -32,7 +32,8 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(String,
     let model = Model::read(&arguments.model).map_err(CommandError::input)?;
     let cam = Cam::new(&model).map_err(CommandError::input)?;
     if let Some(path) = &arguments.out {
-        picture::draw(&cam_figure(&cam, &model.name), path, out)?;
+        let drawn = picture::Canvas::create(path, out)?.draw(&cam_figure(&cam, &model.name))?;
+        drawn.commit().map_err(CommandError::file)?;
     }
     let document = CamDocument::new(&model, &cam, arguments.order);
     let page = if arguments.json {
