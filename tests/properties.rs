@@ -138,7 +138,7 @@ fn the_follower_is_never_below_the_cam_and_the_cam_never_pulls() {
         let omega = machine.angular_velocity();
         let mut last = 0.0;
         for index in 1..=500 {
-            let turn = 5.0 * TAU * f64::from(index) / 500.0;
+            let turn = case.turns(5.0) * f64::from(index) / 500.0;
             let before = log.events.len();
             let flow = match machine.advance(&mut motion, goal(&first, turn), &mut log) {
                 Ok(flow) => flow,
@@ -176,7 +176,7 @@ fn events_obey_their_laws() {
         let (machine, mut motion) = (&case.machine, case.motion().unwrap());
         let (mut log, r, omega) = (Log::default(), machine.restitution(), machine.angular_velocity());
         let mut sticks = motion.contact;
-        let goal = motion.after(20);
+        let goal = goal(&motion, case.turns(20.0));
         if let Err(error) = machine.advance(&mut motion, goal, &mut log) {
             only_no_progress(case, error)?;
         }
@@ -272,7 +272,7 @@ fn the_first_contact_is_the_first() {
         let omega = machine.angular_velocity();
         let mut from = (!motion.contact).then_some((case.angle, motion.state));
         let (mut turned, mut log) = (case.angle, Log::default());
-        let goal = motion.after(3);
+        let goal = goal(&motion, case.turns(3.0));
         if let Err(error) = machine.advance(&mut motion, goal, &mut log) {
             return only_no_progress(case, error);
         }
@@ -376,19 +376,20 @@ fn depth(machine: &Machine, event: &Event) -> f64 {
 fn a_run_may_be_split_anywhere() {
     check(2000, |case| {
         let (machine, first) = (&case.machine, case.motion().unwrap());
+        let whole_turn = case.turns(6.0);
         let (mut whole, mut growth) = (first, Growth::new(case, &first));
-        if let Err(error) = machine.advance(&mut whole, first.after(6), &mut growth) {
+        if let Err(error) = machine.advance(&mut whole, goal(&first, whole_turn), &mut growth) {
             return only_no_progress(case, error);
         }
         let (mut split, mut log) = (first, Log::default());
         // Places that the case decides on, without a second source of chance.
         let share = (case.rpm * 1e3).fract();
-        for turn in [share * 3.0 * TAU, (3.0 + 2.0 * share) * TAU] {
+        for turn in [0.5 * share * whole_turn, (0.5 + 0.4 * share) * whole_turn] {
             if machine.advance(&mut split, goal(&first, turn), &mut log).unwrap().is_break() {
                 return Ok(());
             }
         }
-        let flow = machine.advance(&mut split, first.after(6), &mut log).unwrap();
+        let flow = machine.advance(&mut split, goal(&first, whole_turn), &mut log).unwrap();
         for ((one, two), error) in growth.log.events.iter().zip(&log.events).zip(&growth.at_events) {
             if one.kind != EventKind::Impact || two.kind != EventKind::Impact {
                 return Ok(());
@@ -426,7 +427,7 @@ fn the_same_run_is_the_same() {
     check(300, |case| {
         let run = || {
             let (mut motion, mut log) = (case.motion().unwrap(), Log::default());
-            let goal = motion.after(10);
+            let goal = goal(&motion, case.turns(10.0));
             let end = case.machine.advance(&mut motion, goal, &mut log);
             (end, motion, log.events)
         };
@@ -443,7 +444,7 @@ fn the_variational_flow_is_the_derivative_of_the_end() {
     static COMPARED: AtomicU32 = AtomicU32::new(0);
     check(3000, |case| {
         let (machine, first) = (&case.machine, case.motion().unwrap());
-        let turn = (0.3 + 2.0 * (case.rpm * 1e3).fract()) * TAU;
+        let turn = case.turns(0.3 + 2.0 * (case.rpm * 1e3).fract());
         let end = |state: State| -> Option<(State, Vec<Event>)> {
             let (mut motion, mut log) = (machine.start(case.angle, state).ok()?, Log::default());
             let goal = goal(&motion, turn);

@@ -60,6 +60,12 @@ impl Case {
         (omega * self.stroke).max((acceleration * self.stroke).sqrt())
     }
 
+    /// So many turns, rad, but no more than the follower takes for a few thousand swings.
+    pub fn turns(&self, count: f64) -> f64 {
+        let swings = 2000.0 * self.machine.angular_velocity() / self.machine.flight().omega0_squared().sqrt();
+        TAU * count.min(swings)
+    }
+
     fn sizes(&self) -> State {
         let flight = self.machine.flight();
         let acceleration = flight.omega0_squared() * self.stroke + flight.force(self.machine.cam().top()).abs();
