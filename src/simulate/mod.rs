@@ -8,6 +8,7 @@
 mod again;
 mod contact;
 mod event;
+mod motion;
 mod sticking;
 mod terrain;
 mod variation;
@@ -24,6 +25,7 @@ use crate::model::Follower;
 use crate::tolerance;
 use again::Turn;
 pub use event::{Event, EventKind, Observer, SimulateError};
+pub use motion::{Goal, Motion};
 pub use sticking::accumulation;
 use terrain::Terrain;
 pub use variation::Variation;
@@ -46,62 +48,6 @@ pub struct Machine {
 /// Radians per second of a speed in revolutions per minute.
 pub fn angular_velocity(rpm: f64) -> f64 {
     rpm * TAU / 60.0
-}
-
-/// Where cam and follower are.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Motion {
-    /// How often the cam has passed angle 0 since the start.
-    pub revolution: u64,
-    /// Cam angle, rad, in `[0, 2 pi)`.
-    pub cam_angle: f64,
-    /// The follower.
-    pub state: State,
-    /// Whether the follower sticks to the cam.
-    pub contact: bool,
-    segment: usize,
-    /// The gap, m, where it is known better than as a difference of two positions.
-    gap: Option<f64>,
-    /// The lift under the follower, where it is known.
-    lift: Option<Lift>,
-    /// Where the last impact was, rad, if the one before it was close by: the next is looked for there first.
-    expected: Option<f64>,
-    /// Whether the last two impacts were at the same place to within the step that again takes.
-    settled: bool,
-    last_impact: f64,
-}
-
-/// Where a run ends.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Goal {
-    /// As [`Motion::revolution`].
-    pub revolution: u64,
-    /// Cam angle, rad, in `[0, 2 pi)`.
-    pub cam_angle: f64,
-}
-
-impl Motion {
-    /// The goal `revolutions` further on, at the angle where the cam is now.
-    pub fn after(&self, revolutions: u64) -> Goal {
-        Goal { revolution: self.revolution.saturating_add(revolutions), cam_angle: self.cam_angle }
-    }
-
-    /// The next passage of `cam_angle`, rad, in `[0, 2 pi)`; a whole turn if the cam is there now.
-    pub fn next(&self, cam_angle: f64) -> Goal {
-        Goal { revolution: self.revolution + u64::from(cam_angle <= self.cam_angle), cam_angle }
-    }
-
-    /// The angle still to turn, rad; not above 0 when the goal is passed.
-    fn left(&self, goal: &Goal) -> f64 {
-        let turns = goal.revolution as f64 - self.revolution as f64;
-        let within = goal.cam_angle - self.cam_angle;
-        if turns == 0.0 { within } else { turns * TAU + within }
-    }
-
-    /// Moves the cam on by `turn`, rad, within the same segment.
-    fn turn(&mut self, turn: f64) {
-        self.cam_angle += turn;
-    }
 }
 
 impl Machine {
