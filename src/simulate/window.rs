@@ -1,9 +1,9 @@
 //! A stretch of flight over one segment of the cam: does it meet the cam, and where first?
 //!
-//! Two shapes of the gap have at most one contact to find, so that any way of finding it is certain: a gap that only
-//! shrinks (`g' < 0`), and one that is bent downwards (`g'' < 0`). Which shape a window has is decided from bounds of the
-//! flight's jerk and of the segment, before the gap is evaluated anywhere. All others go to [`super::contact`], which
-//! marches.
+//! Three shapes of the gap need no search. Two have at most one contact, so that any way of finding it is certain: a gap that
+//! only shrinks (`g' < 0`), and one that is bent downwards (`g'' < 0`). One has none: a gap that grows at first, and whose
+//! cubic minorant is still open at the end. Which shape a window has follows from bounds of the flight's jerk and of the
+//! segment, and from the gap at the start. All others go to [`super::contact`], which marches.
 
 use super::contact::{self, Gap, Outcome};
 use super::{Machine, Motion};
@@ -76,10 +76,10 @@ impl<'a> Window<'a> {
         // v <= v0 + max(a) t, and c' >= the segment's least slope.
         let fastest = self.start.velocity + (acceleration + jerk * end).max(0.0) * end;
         let bounds = &self.segment.bounds;
-        if self.gap != Some(0.0) && fastest < self.omega * bounds.slope[0] {
+        let closing = self.omega * bounds.slope[0] - fastest;
+        if self.gap != Some(0.0) && closing > 0.0 {
             let first = expected.filter(|time| (0.0..=end).contains(time)).unwrap_or(0.0);
-            // So fast that the last bit of a position is less than that of an angle: one evaluation less.
-            self.gap = None;
+            self.forget_gap(closing);
             return self.only_contact(0.0, end, first, end);
         }
         let now = self.at_start();
@@ -98,9 +98,7 @@ impl<'a> Window<'a> {
             let back =
                 if now.rate > 0.0 { (now.rate + root) / -now.curvature } else { 2.0 * now.value / (root - now.rate) };
             let reach = end.min(2.0 * back);
-            if now.rate.abs() > self.omega * self.start.position.abs() {
-                self.gap = None;
-            }
+            self.forget_gap(now.rate.abs());
             if now.curvature + third * reach < 0.0 {
                 // From the cam, g >= u t - (|g''| + third reach) t^2/2: the contact left behind is not found again.
                 let low = if now.value == 0.0 { 2.0 * now.rate / (third * reach - now.curvature) } else { 0.0 };
@@ -108,6 +106,14 @@ impl<'a> Window<'a> {
             }
         }
         self.march(end)
+    }
+
+    /// Where the gap changes so fast that the last bit of a position is less than that of an angle, the difference of two
+    /// positions is as good, and cheaper.
+    fn forget_gap(&mut self, rate: f64) {
+        if rate > self.omega * self.start.position.abs() {
+            self.gap = None;
+        }
     }
 
     /// The guess of a parabola with its cubic term: from the cam, `t = 2u/A (1 + 2 J u/(3 A^2))`.
