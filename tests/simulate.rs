@@ -336,6 +336,25 @@ fn a_gap_that_hardly_changes_is_no_contact() {
     }
 }
 
+/// At a graze that rounding makes a contact of, the follower still comes down: one that moves away already would be thrown
+/// into the cam.
+#[test]
+fn a_follower_that_moves_away_is_not_hit() {
+    let text = "[follower]\nrest_position = 0.8086010220201013\nmass = 9.606224356706088\ndamping = 0.0\n\
+                stiffness = 43.83745378635442\ngravity = -1.0\nrestitution = 0.0\n\
+                [cam]\nlaw = \"arcs\"\nbase_radius = 0.806906262403807\nflank_radius = 1.6474476824952322\n\
+                nose_radius = 0.2865811425529196\nflank_start_deg = 111.46156407317888\n\
+                nose_end_deg = 121.46156407317888\n";
+    let machine = machine(&Model::parse("graze.toml", text).unwrap(), 0.09181440618078734);
+    let start = State { position: machine.cam().lift(0.0).value, velocity: 0.0 };
+    let (end, impacts) = run(&machine, 0.0, start, 20.0 * TAU);
+    end.unwrap();
+    assert!(impacts.len() > 10, "{}", impacts.len());
+    for Impact { event, .. } in impacts {
+        assert!(event.velocity_before < event.cam_velocity, "{event:?}");
+    }
+}
+
 /// Past the corner the continued cam is the law of one side, before it the cam as it was.
 #[test]
 fn a_continued_cam_keeps_one_law_past_the_corner() {
