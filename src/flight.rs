@@ -277,10 +277,13 @@ impl Flight {
             return None;
         }
         let height = height_squared.sqrt();
-        // y + h, without cancellation on the way down.
-        let sum = if y < 0.0 { descent / (height - y) } else { height + y };
-        // y l + x h = l (y + h) + h (x - l)
-        let angle = (l * sum + height * drop).atan2(x * l - y * height);
+        let sine = if y < 0.0 && x * l > 0.0 {
+            // y l + x h = l (y + h) + h (x - l), with y + h = (x^2 - l^2)/(h - y): nothing cancels on the way down.
+            l * descent / (height - y) + height * drop
+        } else {
+            y * l + x * height
+        };
+        let angle = sine.atan2(x * l - y * height);
         let time = if angle < 0.0 { angle + TAU } else { angle } / omega;
         Some((time, State { position: level, velocity: -omega * height }))
     }
