@@ -268,8 +268,9 @@ impl Flight {
         // On the circle (x, v/w0) about the equilibrium, from (x0, y0) to (l, -h), h^2 = x0^2 + y0^2 - l^2.
         let offset = self.rest_position - self.gravity / self.omega0_squared;
         let (x, y, l) = (start.position - offset, start.velocity / omega, level - offset);
-        // Not x - l: a weak spring puts the equilibrium far away.
-        let drop = start.position - level;
+        // A weak spring puts the equilibrium far away, from where x - l has lost the digits of the two positions.
+        let is_far = l.abs() > 2.0 * (start.position.abs() + level.abs());
+        let drop = if is_far { start.position - level } else { x - l };
         let descent = drop * (x + l);
         let height_squared = descent + y * y;
         // Above the level at all times, or, below the equilibrium, at none.

@@ -5,7 +5,7 @@ use std::hint::black_box;
 use std::ops::ControlFlow;
 
 use corner_impact::cam::Cam;
-use corner_impact::diagram::{Block, Following, Placed, Row, Section, Speeds, Start, Sweep, SweepError};
+use corner_impact::diagram::{Counted, Following, Placed, Section, Speeds, Start, Sweep, SweepError};
 use corner_impact::flight::State;
 use corner_impact::model::{Model, OSORIO_2008};
 use corner_impact::simulate::{Machine, angular_velocity};
@@ -111,18 +111,6 @@ pub fn sweep() -> Sweep {
         record: 100,
         section: Section::Impacts,
         lyapunov: false,
-    }
-}
-
-/// Nothing is kept of the rows.
-#[derive(Default)]
-struct Counted;
-
-impl Block for Counted {
-    fn push(&mut self, _row: &Row) {}
-
-    fn is_full(&self) -> bool {
-        false
     }
 }
 

@@ -9,7 +9,7 @@ use clap::ValueEnum;
 use super::start::{StartArguments, finite, speeds, turn};
 use super::{CommandError, Exit, picture, progress::Progress};
 use crate::cam::Cam;
-use crate::diagram::{Block, Following, Row, Section, Seen, Speeds, Sweep, SweepError, Tally};
+use crate::diagram::{Block, Counted, Following, Row, Section, Seen, Speeds, Sweep, SweepError, Tally};
 use crate::model::Model;
 use crate::report::figure::layout::widened;
 use crate::report::figure::{Cloud, Density, Figure};
@@ -94,18 +94,6 @@ impl Block for Points {
 
     fn is_full(&self) -> bool {
         self.places.len() >= 1024
-    }
-}
-
-/// Nothing but the count of rows.
-#[derive(Default)]
-struct Counted;
-
-impl Block for Counted {
-    fn push(&mut self, _row: &Row) {}
-
-    fn is_full(&self) -> bool {
-        false
     }
 }
 

@@ -242,7 +242,7 @@ fn simulate<'a>(
 }
 
 fn earlier(one: Goal, other: Goal) -> Goal {
-    if (one.revolution, one.cam_angle) <= (other.revolution, other.cam_angle) { one } else { other }
+    if one <= other { one } else { other }
 }
 
 fn write(output: &mut Option<Output<'_>>, text: &str) -> Result<(), CommandError> {

@@ -110,13 +110,12 @@ impl<'a> OneSidedMap<'a> {
         Vector3::new(approach * period / TAU, approach, time) * (Self::PERTURBATION * self.reach)
     }
 
-    /// How far rounding may move the end of a revolution: a few ulps of the largest position and velocity on the way, one more
-    /// for each segment of the cam that the flight is led over.
+    /// How far rounding may move the end of a revolution: a few ulps of the largest position and velocity on the way.
     pub fn rounding(&self) -> Vector2<f64> {
         let CornerImpact { state, velocity_before, velocity_after, .. } = *self.at;
         let position = state.position.abs().max(self.at.corner.plus.value);
         let velocity = state.velocity.abs().max(velocity_before.abs()).max(velocity_after.abs());
-        Vector2::new(position, velocity) * (8.0 * f64::EPSILON)
+        Vector2::new(position, velocity) * (4.0 * f64::EPSILON)
     }
 
     /// One revolution from about `x* + (dx1, dx2)` at a period of about `T* + dT`; the sample says from where exactly.

@@ -10,9 +10,9 @@ mod pipeline;
 use std::ops::ControlFlow;
 
 use crate::flight::State;
-use crate::simulate::{Event, Goal, Machine, Motion, SimulateError};
+use crate::simulate::{Event, Machine, Motion, SimulateError};
 pub use growth::growth;
-pub use pipeline::{Block, Tally};
+pub use pipeline::{Block, Counted, Tally};
 
 /// What is recorded.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -170,7 +170,7 @@ impl Sweep {
                 .advance(&mut motion, goal, &mut |event: &Event| keep(row(event.revolution, Seen::Event(*event))))?,
             Section::Strobe(cam_angle) => loop {
                 let next = motion.next(cam_angle);
-                let last = is_later(&next, &goal);
+                let last = next > goal;
                 let _ = machine
                     .advance(&mut motion, if last { goal } else { next }, &mut |_: &Event| ControlFlow::Continue(()))?;
                 if last {
@@ -183,8 +183,4 @@ impl Sweep {
         };
         Ok((motion, flow))
     }
-}
-
-fn is_later(one: &Goal, other: &Goal) -> bool {
-    (one.revolution, one.cam_angle) > (other.revolution, other.cam_angle)
 }

@@ -19,6 +19,18 @@ pub trait Block: Default + Send {
     fn is_full(&self) -> bool;
 }
 
+/// A block that keeps nothing: for a sweep that is only counted.
+#[derive(Debug, Default)]
+pub struct Counted;
+
+impl Block for Counted {
+    fn push(&mut self, _row: &Row) {}
+
+    fn is_full(&self) -> bool {
+        false
+    }
+}
+
 /// What a sweep came to.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tally {

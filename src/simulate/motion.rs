@@ -29,7 +29,9 @@ pub struct Motion {
 }
 
 /// Where a run ends.
-#[derive(Clone, Copy, Debug, PartialEq)]
+///
+/// Later goals are greater.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct Goal {
     /// As [`Motion::revolution`].
     pub revolution: u64,
