@@ -11,6 +11,8 @@
 //!    ▼
 //!  section · diagram     the stroboscopic map and traces; sweeps over speeds, Lyapunov exponents
 //!    ▼
+//!  orbit                 periodic orbits, their multipliers, branches of them and the points where these change
+//!    ▼
 //!  python                runs one script of `derivations/`
 //!    ▼
 //!  corner                where the corner impact is (x*, T*), and its map {A∓, B∓, C, D} by several routes
@@ -57,6 +59,8 @@ pub mod simulate;
 pub mod section;
 
 pub mod diagram;
+
+pub mod orbit;
 
 pub mod python;
 

@@ -68,6 +68,13 @@ table! {
     /// How far the located orbit may miss its own start after one simulated revolution.
     ORBIT_CLOSURE = 1e-9, "of the orbit's size: rounding grows with the multipliers, about 1e-13 for the paper's orbit; a \
         wrong orbit misses by its amplitude";
+    /// The last correction of Newton's method to the impacts of a cycle.
+    CYCLE_CLOSED = 1e-9, "of a radian and of the cam's lift: the correction after one this small is rounding, and only the \
+        rounding stops the iteration";
+    /// How near two impacts are that are the same, rad.
+    SAME_ORBIT = 1e-6, "absolute, rad: a cycle is known to ten digits, or half of them near a graze or a fold";
+    /// How nearly a run must repeat for Newton's method to be tried on it.
+    NEARLY_REPEATS = 1e-2, "of the cam's lift: a guess, that Newton's method and one simulated period confirm or refute";
     /// How far from the corner the impact of a located orbit may be simulated, rad.
     CORNER_ANGLE = 1e-9, "absolute, rad: twenty thousand times the rounding of an angle and far below any segment of a cam";
     /// When an eigenvalue counts as on the boundary that Feigin's counts divide at.

@@ -3,6 +3,8 @@
 use nalgebra::{Matrix2, RowVector2, Vector2};
 
 use crate::cam::Side;
+pub use crate::orbit::Eigenvalue;
+use crate::orbit::eigenvalues;
 
 /// One side of the map: `dx' = A dx + B dT`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,29 +15,12 @@ pub struct SideMap {
     pub b: Vector2<f64>,
 }
 
-/// An eigenvalue, real and imaginary part.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Eigenvalue {
-    /// Real part.
-    pub re: f64,
-    /// Imaginary part; exactly 0 for a real one.
-    pub im: f64,
-}
-
 impl SideMap {
     /// Both eigenvalues of A, the one with the larger real part first, of a pair the one with positive imaginary part.
     ///
     /// Not a number where A is not finite.
     pub fn eigenvalues(&self) -> [Eigenvalue; 2] {
-        let a = faer::Mat::from_fn(2, 2, |row, column| self.a[(row, column)]);
-        let unknown = Eigenvalue { re: f64::NAN, im: f64::NAN };
-        let finite = self.a.iter().all(|entry| entry.is_finite());
-        let Some(values) = finite.then(|| a.eigenvalues().ok()).flatten() else {
-            return [unknown; 2];
-        };
-        let mut pair = [values[0], values[1]].map(|value| Eigenvalue { re: value.re, im: value.im });
-        pair.sort_by(|x, y| y.re.total_cmp(&x.re).then(y.im.total_cmp(&x.im)));
-        pair
+        eigenvalues(&self.a)
     }
 }
 

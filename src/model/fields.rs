@@ -183,6 +183,28 @@ impl Fields {
         &self.file
     }
 
+    /// Path and value of every number in `tables`.
+    pub(super) fn numbers_in<'a>(&'a self, tables: &'a [&str]) -> impl Iterator<Item = (&'a str, f64)> {
+        let inside = |path: &str| path.split_once('.').is_some_and(|(table, _)| tables.contains(&table));
+        self.fields.iter().filter_map(move |(path, field)| match field.value {
+            Value::Number(number) if inside(path) => Some((path.as_str(), number)),
+            _ => None,
+        })
+    }
+
+    /// The same fields with another number in one of them.
+    pub(super) fn with_number(&self, path: &str, number: f64) -> Result<Self, ModelError> {
+        let mut fields = self.clone();
+        match fields.fields.get_mut(path) {
+            Some(field @ Field { value: Value::Number(_), .. }) => {
+                field.value = Value::Number(number);
+                field.written = number.to_string();
+                Ok(fields)
+            }
+            _ => Err(self.reject(path, "is not a number of this model")),
+        }
+    }
+
     pub(super) fn has(&self, path: &str) -> bool {
         self.fields.contains_key(path)
     }

@@ -74,7 +74,10 @@ impl Model {
 
     /// Checks the text of a model file; `file` is the name that complaints carry.
     pub fn parse(file: &str, text: &str) -> Result<Self, ModelError> {
-        let mut fields = Fields::parse(file, text)?;
+        Self::from_fields(Fields::parse(file, text)?)
+    }
+
+    fn from_fields(mut fields: Fields) -> Result<Self, ModelError> {
         let name = fields.text_or("name", "unnamed")?;
         let source = fields.text_or("source", "")?;
         let follower = Follower {
@@ -98,6 +101,16 @@ impl Model {
         };
         fields.finish()?;
         Ok(Self { name, source, follower, cam, study, fields })
+    }
+
+    /// The fields that hold a number and shape the motion, by dotted path, with their values: what a study may vary.
+    pub fn numbers(&self) -> impl Iterator<Item = (&str, f64)> {
+        self.fields.numbers_in(&["follower", "cam"])
+    }
+
+    /// The same model with another number in `field`, a dotted path, checked as the file is.
+    pub fn with_number(&self, field: &str, number: f64) -> Result<Self, ModelError> {
+        Self::from_fields(self.fields.with_number(field, number)?)
     }
 
     /// Whether follower and cam are the paper's, whatever the model is called.

@@ -1,0 +1,432 @@
+//! A periodic orbit as the sequence of its impacts, and the equations that close it.
+//!
+//! Impact i is on a known segment of the cam, at angle `t_i` with velocity `v_i` before it. It is left with
+//! `w_i = (1 + r) c'_i - r v_i`, and the flight to the next one, over `t_{i+1} - t_i`, must end there:
+//!
+//! ```text
+//! q(t_{i+1}) = c_{i+1}        v(t_{i+1}) = v_{i+1}        the last is followed by the first, n revolutions on
+//! ```
+//!
+//! Each segment's law goes on smoothly past its ends, so the equations are smooth wherever an impact is: an orbit can be
+//! followed through a corner as if its law went on, and the corner is where an angle passes it. Whether the orbit is one of
+//! the cam as it is, is for the simulator to say ([`Cycle::departure`]).
+
+use std::f64::consts::TAU;
+use std::ops::ControlFlow;
+
+use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
+
+use crate::cam::Lift;
+use crate::flight::State;
+use crate::impact::{ImpactRates, rebound};
+use crate::simulate::{Event, EventKind, Goal, Machine, SimulateError};
+use crate::tolerance;
+
+/// One impact of a cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact {
+    /// How often the cam has passed angle 0 since the cycle's start.
+    pub revolution: u64,
+    /// Index of the segment of the cam whose law holds.
+    pub segment: usize,
+    /// Cam angle, rad; outside of the segment where its law is continued.
+    pub cam_angle: f64,
+    /// v-, m/s.
+    pub velocity_before: f64,
+}
+
+/// A motion that repeats, as its impacts in order: at least one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cycle {
+    /// Turns of the cam in one period.
+    pub revolutions: u64,
+    /// Its impacts.
+    pub contacts: Vec<Contact>,
+}
+
+/// A cycle that the equations of no machine are met by: Newton's method found none from the guess.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "no periodic orbit near the guess: after {steps} Newton steps the equations are off by {residual:e} of their size"
+)]
+pub struct NotClosed {
+    /// Steps taken.
+    pub steps: usize,
+    /// What is left.
+    pub residual: f64,
+}
+
+/// How the motion of the cam as it is leaves a cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Departure {
+    /// An impact lies outside of its segment.
+    Beyond {
+        /// Index of the contact.
+        contact: usize,
+    },
+    /// The follower would come out of the cam at an impact, or touches it only.
+    Tangent {
+        /// Index of the contact.
+        contact: usize,
+    },
+    /// The flight that starts at this contact meets the cam before it should.
+    Earlier {
+        /// Index of the contact that the flight starts at.
+        contact: usize,
+        /// What it meets.
+        event: Event,
+    },
+    /// The flight that starts at this contact does not come to the next; or there is none, since the follower sticks.
+    Elsewhere {
+        /// Index of the contact that the flight starts at.
+        contact: usize,
+    },
+}
+
+/// What the equations need of one impact.
+struct Impact {
+    lift: Lift,
+    /// c', m/s.
+    cam_velocity: f64,
+    /// Right after.
+    leaving: State,
+}
+
+impl Cycle {
+    /// The cycle that the impacts of `revolutions` suggest.
+    pub fn of_events(revolutions: u64, events: &[Event]) -> Self {
+        let contact = |event: &Event| Contact {
+            revolution: event.revolution,
+            segment: event.segment,
+            cam_angle: event.cam_angle,
+            velocity_before: event.velocity_before,
+        };
+        let impacts = events.iter().filter(|event| event.kind == EventKind::Impact);
+        Self { revolutions, contacts: impacts.map(contact).collect() }
+    }
+
+    fn impact(&self, machine: &Machine, index: usize) -> Impact {
+        let contact = &self.contacts[index];
+        let lift = machine.cam().segments()[contact.segment].law.lift(contact.cam_angle);
+        let cam_velocity = machine.angular_velocity() * lift.slope;
+        let velocity = rebound(machine.restitution(), contact.velocity_before, cam_velocity);
+        Impact { lift, cam_velocity, leaving: State { position: lift.value, velocity } }
+    }
+
+    /// How fast follower and cam approach one another at an impact, m/s: `c' - v-`.
+    pub fn approach(&self, machine: &Machine, index: usize) -> f64 {
+        self.impact(machine, index).cam_velocity - self.contacts[index].velocity_before
+    }
+
+    /// The angle turned from one contact to the next, rad.
+    pub fn turn(&self, index: usize) -> f64 {
+        let next = (index + 1) % self.contacts.len();
+        let (from, to) = (&self.contacts[index], &self.contacts[next]);
+        let later = if next == 0 { self.revolutions as f64 } else { 0.0 };
+        (later + to.revolution as f64 - from.revolution as f64) * TAU + (to.cam_angle - from.cam_angle)
+    }
+
+    /// The state right after an impact, and the time of the flight that begins there, s.
+    pub fn flight(&self, machine: &Machine, index: usize) -> (State, f64) {
+        (self.impact(machine, index).leaving, self.turn(index) / machine.angular_velocity())
+    }
+
+    /// What the equations are off by: for each flight the position, m, and the velocity over omega, m/rad.
+    pub fn residual(&self, machine: &Machine) -> DVector<f64> {
+        let (count, omega) = (self.contacts.len(), machine.angular_velocity());
+        let mut rows = DVector::zeros(2 * count);
+        for index in 0..count {
+            let next = (index + 1) % count;
+            let (from, to) = (self.impact(machine, index), self.impact(machine, next));
+            let (displacement, end) = machine.flight().fly(from.leaving, self.turn(index) / omega);
+            rows[2 * index] = displacement - (to.lift.value - from.lift.value);
+            rows[2 * index + 1] = (end.velocity - self.contacts[next].velocity_before) / omega;
+        }
+        rows
+    }
+
+    /// The derivative of [`Cycle::residual`] by angle, rad, and velocity over omega, m/rad, of each contact in turn.
+    pub fn jacobian(&self, machine: &Machine) -> DMatrix<f64> {
+        let (count, omega, r) = (self.contacts.len(), machine.angular_velocity(), machine.restitution());
+        let mut rows = DMatrix::zeros(2 * count, 2 * count);
+        for index in 0..count {
+            let next = (index + 1) % count;
+            let (from, to) = (self.impact(machine, index), self.impact(machine, next));
+            let time = self.turn(index) / omega;
+            let end = machine.flight().fly(from.leaving, time).1;
+            let propagator = machine.flight().propagator(time);
+            let moving = Vector2::new(end.velocity, machine.flight().acceleration(end)) / omega;
+            // The start moves along the cam, and the flight is as much shorter.
+            let by_angle = propagator * Vector2::new(from.lift.slope, (1.0 + r) * omega * from.lift.curvature) - moving;
+            let by_velocity = propagator * Vector2::new(0.0, -r * omega);
+            let mut add = |column: usize, by: Vector2<f64>| {
+                rows[(2 * index, column)] += by[0];
+                rows[(2 * index + 1, column)] += by[1] / omega;
+            };
+            add(2 * index, by_angle);
+            add(2 * index + 1, by_velocity);
+            add(2 * next, moving - Vector2::new(to.lift.slope, 0.0));
+            add(2 * next + 1, Vector2::new(0.0, -omega));
+        }
+        rows
+    }
+
+    /// The cycle moved by `step`: angle, rad, and velocity over omega, m/rad, of each contact in turn.
+    pub fn moved(&self, machine: &Machine, step: &[f64]) -> Self {
+        let mut moved = self.clone();
+        for (contact, step) in moved.contacts.iter_mut().zip(step.chunks_exact(2)) {
+            contact.cam_angle += step[0];
+            contact.velocity_before += step[1] * machine.angular_velocity();
+        }
+        moved
+    }
+
+    /// The cycle near this one that closes, by Newton's method, and the last correction over the orbit's size.
+    pub fn closed(&self, machine: &Machine) -> Result<(Self, f64), NotClosed> {
+        /// Newton's method doubles the digits once it is near; a guess far away takes longer.
+        const STEPS: usize = 40;
+        /// The farthest that an impact is moved in one step, rad.
+        const REACH: f64 = 0.3;
+        let size = lift_size(machine);
+        let mut cycle = self.clone();
+        let mut last = f64::INFINITY;
+        for step in 0..STEPS {
+            let Some(mut correction) = cycle.jacobian(machine).lu().solve(&-cycle.residual(machine)) else {
+                return Err(NotClosed { steps: step, residual: last });
+            };
+            let length = relative_length(&correction, size);
+            if !length.is_finite() {
+                return Err(NotClosed { steps: step, residual: length });
+            }
+            // Rounding is reached where a correction is no smaller than the one before it.
+            if length <= tolerance::CYCLE_CLOSED.value && (length >= 0.5 * last || length == 0.0) {
+                return Ok((cycle, length));
+            }
+            if length > REACH {
+                correction *= REACH / length;
+            }
+            cycle = cycle.moved(machine, correction.as_slice());
+            last = length;
+        }
+        if last <= tolerance::CYCLE_CLOSED.value {
+            return Ok((cycle, last));
+        }
+        Err(NotClosed { steps: STEPS, residual: last })
+    }
+
+    /// Angles moved into their segments' own revolution and names: an angle past the end of a revolution or of a segment
+    /// that meets the next smoothly belongs to the next.
+    ///
+    /// An angle past a corner stays where it is.
+    pub fn renamed(&self, machine: &Machine, is_corner: impl Fn(usize) -> bool) -> Self {
+        let segments = machine.cam().segments();
+        let mut renamed = self.clone();
+        for contact in &mut renamed.contacts {
+            // As many moves as there are segments lead once round.
+            for _ in 0..segments.len() {
+                let segment = &segments[contact.segment];
+                if contact.cam_angle < segment.start && !is_corner(contact.segment) {
+                    if contact.segment == 0 {
+                        contact.segment = segments.len() - 1;
+                        contact.cam_angle += TAU;
+                        contact.revolution = contact.revolution.wrapping_sub(1);
+                    } else {
+                        contact.segment -= 1;
+                    }
+                } else if contact.cam_angle >= segment.end && !is_corner((contact.segment + 1) % segments.len()) {
+                    if contact.segment + 1 == segments.len() {
+                        contact.segment = 0;
+                        contact.cam_angle -= TAU;
+                        contact.revolution = contact.revolution.wrapping_add(1);
+                    } else {
+                        contact.segment += 1;
+                    }
+                } else {
+                    break;
+                }
+            }
+        }
+        renamed.in_order()
+    }
+
+    /// The same cycle with its revolutions counted from 0, and its contacts in order.
+    fn in_order(mut self) -> Self {
+        let revolutions = self.revolutions.max(1);
+        for contact in &mut self.contacts {
+            contact.revolution = (contact.revolution as i64).rem_euclid(revolutions as i64) as u64;
+        }
+        self.contacts.sort_by(|one, other| {
+            one.revolution.cmp(&other.revolution).then(one.cam_angle.total_cmp(&other.cam_angle))
+        });
+        self
+    }
+
+    /// The same cycle begun `revolutions` later.
+    pub fn begun_later(&self, revolutions: u64) -> Self {
+        let mut later = self.clone();
+        for contact in &mut later.contacts {
+            contact.revolution =
+                (contact.revolution + self.revolutions - revolutions % self.revolutions) % self.revolutions;
+        }
+        later.in_order()
+    }
+
+    /// Whether two cycles are the same motion, whichever revolution they begin with.
+    pub fn is_same(&self, other: &Self) -> bool {
+        let near = |one: &Contact, other: &Contact| {
+            let turns = one.revolution as f64 - other.revolution as f64;
+            (one.cam_angle - other.cam_angle + TAU * turns).abs() <= tolerance::SAME_ORBIT.value
+        };
+        let same = |other: &Self| self.contacts.iter().zip(&other.contacts).all(|(one, other)| near(one, other));
+        self.revolutions == other.revolutions
+            && self.contacts.len() == other.contacts.len()
+            && (0..self.revolutions).any(|later| same(&other.begun_later(later)))
+    }
+
+    /// Whether the motion repeats sooner than after `revolutions`.
+    pub fn repeats_sooner(&self) -> bool {
+        let divides = |sooner: &u64| self.revolutions.is_multiple_of(*sooner);
+        (1..self.revolutions).filter(divides).any(|sooner| {
+            let later = self.begun_later(sooner);
+            self.contacts.iter().zip(&later.contacts).all(|(one, other)| {
+                one.revolution == other.revolution
+                    && (one.cam_angle - other.cam_angle).abs() <= tolerance::SAME_ORBIT.value
+            })
+        })
+    }
+
+    /// The contacts in the order that a cam meets them from `cam_angle`, rad, in `[0, 2 pi)`, each with the angle turned.
+    fn turned_from(&self, cam_angle: f64) -> Vec<(f64, usize)> {
+        let period = self.revolutions as f64 * TAU;
+        let turned = |contact: &Contact| {
+            let turned = contact.revolution as f64 * TAU + (contact.cam_angle - cam_angle);
+            if turned < 0.0 { turned + period } else { turned }
+        };
+        let mut order: Vec<(f64, usize)> =
+            self.contacts.iter().enumerate().map(|(index, contact)| (turned(contact), index)).collect();
+        order.sort_by(|one, other| one.0.total_cmp(&other.0));
+        order
+    }
+
+    /// The state when the cam is at `cam_angle`, rad, in `[0, 2 pi)`, in revolution 0; and the matrix that carries a small
+    /// deviation of it once around the orbit, 2x2: propagators of flights, saltation matrices of impacts.
+    pub fn at_section(&self, machine: &Machine, cam_angle: f64) -> (State, Matrix2<f64>) {
+        let order = self.turned_from(cam_angle);
+        let (omega, count) = (machine.angular_velocity(), order.len());
+        // From the last impact before the section.
+        let (turned, last) = order[count - 1];
+        let since = (self.revolutions as f64 * TAU - turned) / omega;
+        let (_, state) = machine.flight().fly(self.impact(machine, last).leaving, since);
+        let (mut matrix, mut from) = (Matrix2::identity(), 0.0);
+        for (turned, index) in order {
+            matrix = self.saltation(machine, index) * machine.flight().propagator((turned - from) / omega) * matrix;
+            from = turned;
+        }
+        (state, machine.flight().propagator(since) * matrix)
+    }
+
+    /// What an impact's saltation matrix is made of.
+    pub fn rates(&self, machine: &Machine, index: usize) -> ImpactRates {
+        let impact = self.impact(machine, index);
+        let omega = machine.angular_velocity();
+        let velocity_before = self.contacts[index].velocity_before;
+        let before = State { velocity: velocity_before, ..impact.leaving };
+        ImpactRates {
+            restitution: machine.restitution(),
+            velocity_before,
+            acceleration_before: machine.flight().acceleration(before),
+            acceleration_after: machine.flight().acceleration(impact.leaving),
+            cam_velocity: impact.cam_velocity,
+            cam_acceleration: omega * omega * impact.lift.curvature,
+        }
+    }
+
+    fn saltation(&self, machine: &Machine, index: usize) -> Matrix2<f64> {
+        self.rates(machine, index).saltation()
+    }
+
+    /// The impacts as events.
+    pub fn events(&self, machine: &Machine) -> Vec<Event> {
+        let event = |(index, contact): (usize, &Contact)| {
+            let impact = self.impact(machine, index);
+            Event {
+                kind: EventKind::Impact,
+                revolution: contact.revolution,
+                cam_angle: contact.cam_angle,
+                position: impact.lift.value,
+                velocity_before: contact.velocity_before,
+                velocity_after: impact.leaving.velocity,
+                cam_velocity: impact.cam_velocity,
+                segment: contact.segment,
+            }
+        };
+        self.contacts.iter().enumerate().map(event).collect()
+    }
+
+    /// Where the cam as it is leaves this cycle, flight by flight, by simulation; `None` where it does not.
+    pub fn departure(&self, machine: &Machine) -> Result<Option<Departure>, SimulateError> {
+        let segments = machine.cam().segments();
+        let count = self.contacts.len();
+        for (index, contact) in self.contacts.iter().enumerate() {
+            let segment = &segments[contact.segment];
+            let slack = tolerance::CORNER_ANGLE.value;
+            if !(contact.cam_angle >= segment.start - slack && contact.cam_angle <= segment.end + slack) {
+                return Ok(Some(Departure::Beyond { contact: index }));
+            }
+            let impact = self.impact(machine, index);
+            let scale = impact.cam_velocity.abs() + contact.velocity_before.abs();
+            if !(impact.cam_velocity - contact.velocity_before > tolerance::GRAZING.value * scale) {
+                return Ok(Some(Departure::Tangent { contact: index }));
+            }
+        }
+        for index in 0..count {
+            let turn = self.turn(index);
+            if !(turn > 0.0) {
+                return Ok(Some(Departure::Elsewhere { contact: index }));
+            }
+            let Some((met, turned)) = self.next_event(machine, index, turn)? else {
+                return Ok(Some(Departure::Elsewhere { contact: index }));
+            };
+            if turned < turn - tolerance::SAME_ORBIT.value {
+                return Ok(Some(Departure::Earlier { contact: index, event: met }));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The first event after a contact, and the angle turned to it, rad; `None` where there is none for somewhat longer than
+    /// `turn`.
+    fn next_event(&self, machine: &Machine, index: usize, turn: f64) -> Result<Option<(Event, f64)>, SimulateError> {
+        let contact = &self.contacts[index];
+        let impact = self.impact(machine, index);
+        // A contact that rounding puts outside of its revolution is at the end of it.
+        let cam_angle = if contact.cam_angle >= TAU || contact.cam_angle < 0.0 { 0.0 } else { contact.cam_angle };
+        let relative = impact.leaving.velocity - machine.angular_velocity() * machine.cam().lift(cam_angle).slope;
+        if relative <= 0.0 {
+            return Ok(None);
+        }
+        let mut motion = machine.start_on_cam(cam_angle, relative)?;
+        let end = cam_angle + turn + tolerance::SAME_ORBIT.value;
+        let goal = Goal { revolution: (end / TAU) as u64, cam_angle: end % TAU };
+        let mut met = None;
+        let _ = machine.advance(&mut motion, goal, &mut |event: &Event| {
+            met = Some((*event, event.turned_since(cam_angle)));
+            ControlFlow::Break(())
+        })?;
+        Ok(met)
+    }
+}
+
+/// The size of the cam's lift, m: what lengths of an orbit are measured by.
+pub fn lift_size(machine: &Machine) -> f64 {
+    let segments = machine.cam().segments();
+    let low = segments.iter().fold(f64::INFINITY, |low, segment| low.min(segment.bounds.lift[0]));
+    let span = machine.cam().top() - low;
+    if span > 0.0 { span } else { machine.cam().top().abs().max(f64::MIN_POSITIVE) }
+}
+
+/// The length of a step: angles as they are, velocities over omega by `size`.
+fn relative_length(step: &DVector<f64>, size: f64) -> f64 {
+    let square = |(index, entry): (usize, &f64)| (if index % 2 == 0 { *entry } else { *entry / size }).powi(2);
+    step.iter().enumerate().map(square).sum::<f64>().sqrt()
+}

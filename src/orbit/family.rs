@@ -1,0 +1,127 @@
+//! Machines that differ in a few numbers: what a branch of orbits is followed through.
+
+use crate::cam::Cam;
+use crate::model::{Model, ModelError};
+use crate::simulate::{Machine, angular_velocity};
+
+/// A number that may be varied.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Parameter {
+    /// The speed of the cam, rpm.
+    Speed,
+    /// A field of the model file, by dotted path.
+    Field(String),
+}
+
+/// Why there is no machine with these numbers.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum FamilyError {
+    /// The model does not allow them.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// The cam would not turn.
+    #[error("{rpm} rpm: the speed must be a finite number above 0")]
+    Speed {
+        /// What was asked for, rpm.
+        rpm: f64,
+    },
+    /// Nothing in the model has this name.
+    #[error("no number called \"{name}\" to vary; there are: {there}")]
+    Unknown {
+        /// The name.
+        name: String,
+        /// Those that there are.
+        there: String,
+    },
+    /// A name that more than one field has.
+    #[error("\"{name}\" may be any of {fields}: write the whole path")]
+    Ambiguous {
+        /// The name.
+        name: String,
+        /// Those fields.
+        fields: String,
+    },
+}
+
+impl Parameter {
+    /// The parameter that a user calls `name`: `rpm`, a dotted path, or the end of one that no other field has.
+    pub fn named(model: &Model, name: &str) -> Result<Self, FamilyError> {
+        if name == "rpm" {
+            return Ok(Self::Speed);
+        }
+        let ends = |path: &str| path == name || path.strip_suffix(name).is_some_and(|head| head.ends_with('.'));
+        let fields: Vec<&str> = model.numbers().map(|(path, _)| path).filter(|path| ends(path)).collect();
+        match fields.as_slice() {
+            [field] => Ok(Self::Field((*field).into())),
+            [] => {
+                let there = model.numbers().map(|(path, _)| path).collect::<Vec<_>>().join(", ");
+                Err(FamilyError::Unknown { name: name.into(), there: format!("rpm, {there}") })
+            }
+            _ => Err(FamilyError::Ambiguous { name: name.into(), fields: fields.join(", ") }),
+        }
+    }
+
+    /// Its name in tables and messages.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Speed => "rpm",
+            Self::Field(path) => path,
+        }
+    }
+
+    /// Its value in `model` turning at `rpm`.
+    pub fn value(&self, model: &Model, rpm: f64) -> Option<f64> {
+        match self {
+            Self::Speed => Some(rpm),
+            Self::Field(path) => model.numbers().find(|(name, _)| name == path).map(|(_, value)| value),
+        }
+    }
+}
+
+/// The machines of one model, at one speed, with some numbers free.
+#[derive(Clone, Debug)]
+pub struct Family {
+    model: Model,
+    machine: Machine,
+    rpm: f64,
+    free: Vec<Parameter>,
+}
+
+impl Family {
+    /// `model` at `rpm`, with `free` to be chosen.
+    pub fn new(model: &Model, rpm: f64, free: Vec<Parameter>) -> Result<Self, FamilyError> {
+        let machine = Machine::new(Cam::new(model)?, &model.follower, speed(rpm)?);
+        Ok(Self { model: model.clone(), machine, rpm, free })
+    }
+
+    /// What is free.
+    pub fn free(&self) -> &[Parameter] {
+        &self.free
+    }
+
+    /// The machine with these values of the free numbers, and its speed, rpm.
+    pub fn machine(&self, values: &[f64]) -> Result<(Machine, f64), FamilyError> {
+        let (mut rpm, mut model) = (self.rpm, None);
+        for (parameter, value) in self.free.iter().zip(values) {
+            match parameter {
+                Parameter::Speed => rpm = *value,
+                Parameter::Field(path) => {
+                    model = Some(model.as_ref().unwrap_or(&self.model).with_number(path, *value)?);
+                }
+            }
+        }
+        let omega = speed(rpm)?;
+        let machine = match model {
+            None => self.machine.at_speed(omega),
+            Some(model) if model.cam == self.model.cam => {
+                Machine::new(self.machine.cam().clone(), &model.follower, omega)
+            }
+            Some(model) => Machine::new(Cam::new(&model)?, &model.follower, omega),
+        };
+        Ok((machine, rpm))
+    }
+}
+
+fn speed(rpm: f64) -> Result<f64, FamilyError> {
+    if rpm > 0.0 && rpm.is_finite() { Ok(angular_velocity(rpm)) } else { Err(FamilyError::Speed { rpm }) }
+}

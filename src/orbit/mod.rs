@@ -1,0 +1,121 @@
+//! Periodic orbits, stable or not: their impacts, their multipliers, and the branches that they form when a number of the
+//! model changes.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`cycle`] | an orbit as its impacts, the equations that close it, Newton's method |
+//! | [`search`] | orbits of one machine: exhaustively those of one impact, by many starts the others |
+//! | [`family`] | machines that differ in a speed or a number of the model |
+//! | [`curve`] | pseudo-arclength steps along the solutions of one equation fewer than unknowns |
+//! | [`branch`] | branches of orbits through corners, folds, flips and grazes, with those points located |
+
+pub mod cycle;
+pub mod family;
+mod multipliers;
+pub mod search;
+pub mod sticking;
+
+use std::f64::consts::TAU;
+
+use nalgebra::Matrix2;
+
+use crate::flight::State;
+use crate::simulate::{Event, EventKind, Machine, SimulateError};
+pub use cycle::{Contact, Cycle, Departure, NotClosed};
+pub use family::{Family, FamilyError, Parameter};
+pub use multipliers::{Eigenvalue, eigenvalues};
+pub use search::{Search, search};
+
+/// A motion that repeats after a number of revolutions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PeriodicOrbit {
+    /// Turns of the cam in one period, the smallest number.
+    pub revolutions: u64,
+    /// Impacts, sticks and releases of one period, from cam angle 0 on.
+    pub events: Vec<Event>,
+    /// The follower when the cam is at angle 0.
+    pub state: State,
+    /// How one period carries a small deviation of that state, 2x2; 0 where the follower sticks on the way.
+    pub matrix: Matrix2<f64>,
+    /// How far the orbit is from closing, over its size.
+    pub residual: f64,
+    /// What kind of motion it is.
+    pub course: Course,
+}
+
+/// The kinds of periodic motion.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Course {
+    /// Impacts, and flights from one to the next.
+    Impacts(Cycle),
+    /// The follower sticks to the cam when this is at an angle, rad: what comes after follows from that alone.
+    Sticking(f64),
+    /// The follower never meets the cam.
+    Free,
+}
+
+impl PeriodicOrbit {
+    /// The orbit of a cycle that closes, `residual` off.
+    pub fn of_cycle(machine: &Machine, cycle: Cycle, residual: f64) -> Self {
+        let (state, matrix) = cycle.at_section(machine, 0.0);
+        let events = cycle.events(machine);
+        Self { revolutions: cycle.revolutions, events, state, matrix, residual, course: Course::Impacts(cycle) }
+    }
+
+    /// The impacts of one period.
+    pub fn impacts(&self) -> impl Iterator<Item = &Event> {
+        self.events.iter().filter(|event| event.kind == EventKind::Impact)
+    }
+
+    /// The multipliers: eigenvalues of the matrix.
+    pub fn multipliers(&self) -> [Eigenvalue; 2] {
+        eigenvalues(&self.matrix)
+    }
+
+    /// Whether small deviations die out.
+    pub fn is_stable(&self) -> bool {
+        self.multipliers().iter().all(|multiplier| multiplier.modulus() < 1.0)
+    }
+
+    /// Whether two orbits are the same motion.
+    pub fn is_same(&self, other: &Self) -> bool {
+        match (&self.course, &other.course) {
+            (Course::Impacts(one), Course::Impacts(other)) => one.is_same(other),
+            (Course::Sticking(_), Course::Sticking(_)) => {
+                // One motion at most goes through a state in contact.
+                let angles = |orbit: &Self| {
+                    let mut angles: Vec<f64> = orbit
+                        .events
+                        .iter()
+                        .filter(|event| event.kind != EventKind::Impact)
+                        .map(|e| e.cam_angle)
+                        .collect();
+                    angles.sort_by(f64::total_cmp);
+                    angles
+                };
+                let (one, two) = (angles(self), angles(other));
+                let near = |(one, two): (&f64, &f64)| {
+                    let apart = (one - two).abs();
+                    apart.min(TAU - apart) <= crate::tolerance::SAME_ORBIT.value
+                };
+                self.revolutions == other.revolutions && one.len() == two.len() && one.iter().zip(&two).all(near)
+            }
+            (Course::Free, Course::Free) => true,
+            _ => false,
+        }
+    }
+}
+
+/// Why an orbit could not be looked for or followed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum OrbitError {
+    /// A run could not go on.
+    #[error(transparent)]
+    Simulate(#[from] SimulateError),
+    /// No such machine.
+    #[error(transparent)]
+    Family(#[from] FamilyError),
+    /// Newton's method did not settle.
+    #[error(transparent)]
+    NotClosed(#[from] NotClosed),
+}

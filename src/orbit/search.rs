@@ -1,0 +1,254 @@
+//! Orbits of one machine, stable or not.
+//!
+//! Three ways, each of which finds what the others may miss: one-impact orbits are the roots of one function of the impact's
+//! angle, taken one and all; long runs settle on stable ones; and short runs from many starts on the cam give Newton's
+//! method the guesses from which it finds unstable ones.
+
+use std::f64::consts::TAU;
+use std::ops::ControlFlow;
+
+use super::{Contact, Course, Cycle, PeriodicOrbit, sticking};
+use crate::flight::State;
+use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError};
+use crate::tolerance;
+
+/// Which orbits are looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Search {
+    /// Turns of the cam in one period, the smallest number.
+    pub revolutions: u64,
+    /// Impacts in one period; any number where there is none given.
+    pub impacts: Option<usize>,
+}
+
+impl Search {
+    /// The most revolutions that an orbit is looked for over.
+    pub const MOST_REVOLUTIONS: u64 = 1000;
+    /// Most impacts of an orbit whose equations are solved together: beyond, a follower chatters.
+    pub const MOST_IMPACTS: usize = 64;
+}
+
+/// Cam angles that short runs start at, and velocities at each.
+const START_ANGLES: usize = 60;
+const START_VELOCITIES: usize = 20;
+/// Starts of long runs, and revolutions that they settle in.
+const LONG_RUNS: usize = 6;
+const SETTLING: u64 = 600;
+/// Samples of a segment in which roots are told apart.
+const SAMPLES: usize = 512;
+
+/// Every orbit that was found, in order of impacts, then of where its first impact is.
+///
+/// An error only where no run could go on.
+pub fn search(machine: &Machine, wanted: &Search) -> Result<Vec<PeriodicOrbit>, SimulateError> {
+    let mut found = Found { machine, wanted, orbits: Vec::new() };
+    let mut error = None;
+    if wanted.impacts.is_none_or(|impacts| impacts == 1) {
+        for guess in one_impact(machine, wanted.revolutions) {
+            found.close(&guess);
+        }
+    }
+    for start in 0..LONG_RUNS {
+        let angle = TAU * start as f64 / LONG_RUNS as f64;
+        let speed = start as f64 / LONG_RUNS as f64 * velocity_scale(machine);
+        error = found.settle(angle, speed).err().or(error);
+    }
+    if wanted.impacts != Some(1) {
+        for angle in 0..START_ANGLES {
+            for velocity in 0..START_VELOCITIES {
+                // The middle of each cell, in angle and in the square of the velocity's part.
+                let angle = TAU * (angle as f64 + 0.5) / START_ANGLES as f64;
+                let part = (velocity as f64 + 0.5) / START_VELOCITIES as f64;
+                error = found.shoot(angle, part * part * velocity_scale(machine)).err().or(error);
+            }
+        }
+    }
+    let Found { mut orbits, .. } = found;
+    if let (true, Some(error)) = (orbits.is_empty(), error) {
+        return Err(error);
+    }
+    let key = |orbit: &PeriodicOrbit| (orbit.impacts().count(), orbit.impacts().next().map_or(0.0, |e| e.cam_angle));
+    orbits.sort_by(|one, two| key(one).0.cmp(&key(two).0).then(key(one).1.total_cmp(&key(two).1)));
+    Ok(orbits)
+}
+
+/// A velocity that few impacts of the machine are faster than, m/s: a fall from rest over the size of its motion.
+fn velocity_scale(machine: &Machine) -> f64 {
+    let cam = machine.cam();
+    let omega = machine.angular_velocity();
+    let steepest = cam.segments().iter().flat_map(|segment| segment.bounds.slope).fold(0.0_f64, |s, b| s.max(b.abs()));
+    let force = machine.flight().force(cam.top()).abs();
+    // A flight of one revolution under that force, or the cam's own velocity.
+    4.0 * omega * steepest + force * TAU / omega
+}
+
+struct Found<'a> {
+    machine: &'a Machine,
+    wanted: &'a Search,
+    orbits: Vec<PeriodicOrbit>,
+}
+
+impl Found<'_> {
+    fn keep(&mut self, orbit: PeriodicOrbit) {
+        let wanted = self.wanted.impacts.is_none_or(|impacts| orbit.impacts().count() == impacts);
+        if wanted && !self.orbits.iter().any(|known| known.is_same(&orbit)) {
+            self.orbits.push(orbit);
+        }
+    }
+
+    /// Newton's method from a guess; keeps what it leads to if that is an orbit of the cam as it is.
+    fn close(&mut self, guess: &Cycle) {
+        if let Some(orbit) = close(self.machine, guess) {
+            self.keep(orbit);
+        }
+    }
+
+    /// A long run, which settles on something stable.
+    fn settle(&mut self, cam_angle: f64, relative_velocity: f64) -> Result<(), SimulateError> {
+        let motion = self.machine.start_on_cam(cam_angle, relative_velocity)?;
+        if let Some(orbit) = settled(self.machine, motion, SETTLING, self.wanted.revolutions)? {
+            self.keep(orbit);
+        }
+        Ok(())
+    }
+
+    /// One period from the cam: its impacts are a guess.
+    fn shoot(&mut self, cam_angle: f64, relative_velocity: f64) -> Result<(), SimulateError> {
+        let mut motion = self.machine.start_on_cam(cam_angle, relative_velocity)?;
+        let (_, events) = period(self.machine, &mut motion, self.wanted.revolutions)?;
+        let count = events.iter().filter(|event| event.kind == EventKind::Impact).count();
+        let sticks = events.iter().any(|event| event.kind == EventKind::Stick);
+        let most = self.wanted.impacts.unwrap_or(Search::MOST_IMPACTS);
+        if sticks || count == 0 || count > most + 1 {
+            return Ok(());
+        }
+        let mut guess = Cycle::of_events(self.wanted.revolutions, &events);
+        for contact in &mut guess.contacts {
+            contact.revolution %= self.wanted.revolutions;
+        }
+        let whole = guess.begun_later(0);
+        self.close(&whole);
+        Ok(())
+    }
+}
+
+/// The orbit near a guess, by Newton's method; `None` where that leads nowhere, or to no motion of the cam as it is, or to
+/// one that repeats sooner.
+pub fn close(machine: &Machine, guess: &Cycle) -> Option<PeriodicOrbit> {
+    let (cycle, residual) = guess.closed(machine).ok()?;
+    let mut corners = machine.cam().corners().into_iter().map(|corner| corner.segment).collect::<Vec<_>>();
+    corners.sort_unstable();
+    let cycle = cycle.renamed(machine, |segment| corners.binary_search(&segment).is_ok());
+    let is_orbit = cycle.departure(machine).is_ok_and(|departure| departure.is_none()) && !cycle.repeats_sooner();
+    is_orbit.then(|| PeriodicOrbit::of_cycle(machine, cycle, residual))
+}
+
+/// What a run from `motion` settles on within `revolutions`, if that repeats after at most `longest` revolutions.
+pub fn settled(
+    machine: &Machine,
+    mut motion: Motion,
+    revolutions: u64,
+    longest: u64,
+) -> Result<Option<PeriodicOrbit>, SimulateError> {
+    let ignore = &mut |_: &Event| ControlFlow::Continue(());
+    let goal = motion.after(revolutions);
+    let _ = machine.advance(&mut motion, goal, ignore)?;
+    let goal = motion.next(0.0);
+    let _ = machine.advance(&mut motion, goal, ignore)?;
+    let first = motion;
+    let size = super::cycle::lift_size(machine);
+    let mut events = Vec::new();
+    for turns in 1..=longest {
+        let (_, more) = period(machine, &mut motion, 1)?;
+        events.extend(more.into_iter().map(|event| Event { revolution: turns - 1, ..event }));
+        let (position, velocity) =
+            (motion.state.position - first.state.position, motion.state.velocity - first.state.velocity);
+        let apart = position.hypot(velocity / machine.angular_velocity());
+        if apart > tolerance::NEARLY_REPEATS.value * size {
+            continue;
+        }
+        let sticks = events.iter().any(|event| event.kind != EventKind::Impact);
+        let impacts = events.iter().any(|event| event.kind == EventKind::Impact);
+        let orbit = if sticks {
+            match sticking::anchor(&events, turns) {
+                Some(anchor) => sticking::through(machine, anchor, turns)?,
+                None => None,
+            }
+        } else if motion.contact && !impacts {
+            sticking::through(machine, 0.0, turns)?
+        } else if impacts {
+            close(machine, &Cycle::of_events(turns, &events))
+        } else {
+            Some(free(machine, motion.state))
+        };
+        if orbit.is_some() {
+            return Ok(orbit);
+        }
+    }
+    Ok(None)
+}
+
+/// The follower at rest above the cam.
+fn free(machine: &Machine, state: State) -> PeriodicOrbit {
+    let matrix = machine.flight().propagator(TAU / machine.angular_velocity());
+    let rest = State { velocity: 0.0, ..state };
+    let residual = machine.flight().acceleration(rest).abs() / machine.angular_velocity().powi(2);
+    let course = Course::Free;
+    PeriodicOrbit { revolutions: 1, events: Vec::new(), state, matrix, residual, course }
+}
+
+/// Runs `revolutions` and returns the events on the way, with the state at their end.
+fn period(machine: &Machine, motion: &mut Motion, revolutions: u64) -> Result<(State, Vec<Event>), SimulateError> {
+    let mut events = Vec::new();
+    let goal = motion.after(revolutions);
+    let _ = machine.advance(motion, goal, &mut |event: &Event| {
+        events.push(*event);
+        // A follower that chatters has no use for a table of all its impacts.
+        if events.len() > 4096 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    })?;
+    Ok((motion.state, events))
+}
+
+/// Guesses for every orbit of one impact in `revolutions`.
+///
+/// A flight of `T = 2 pi n/omega` from the cam at angle t back to it, with the responses s(T), p(T) and the force f at c(t),
+/// leaves with `v+ = -f p/s` and comes back with `v- = v+ s' + f s`; the restitution law leaves one equation for t:
+///
+/// ```text
+/// -f p (1 + r s') + r f s^2 - (1 + r) c' s = 0
+/// ```
+fn one_impact(machine: &Machine, revolutions: u64) -> Vec<Cycle> {
+    let (omega, r) = (machine.angular_velocity(), machine.restitution());
+    let response = machine.flight().response(revolutions as f64 * TAU / omega);
+    let (p, s, s1) = (response.step, response.impulse, response.impulse_rate);
+    let mut guesses = Vec::new();
+    for (index, segment) in machine.cam().segments().iter().enumerate() {
+        let equation = |angle: f64| {
+            let lift = segment.law.lift(angle);
+            let f = machine.flight().force(lift.value);
+            -f * p * (1.0 + r * s1) + r * f * s * s - (1.0 + r) * omega * lift.slope * s
+        };
+        let at = |sample: usize| segment.start + (segment.end - segment.start) * sample as f64 / SAMPLES as f64;
+        let mut before = equation(at(0));
+        for sample in 1..=SAMPLES {
+            let after = equation(at(sample));
+            if (before < 0.0) != (after < 0.0) {
+                let (mut low, mut high) = (at(sample - 1), at(sample));
+                // Newton's method goes on from here: a guess is enough.
+                for _ in 0..20 {
+                    let middle = 0.5 * (low + high);
+                    if (equation(middle) < 0.0) == (before < 0.0) { low = middle } else { high = middle }
+                }
+                let cam_angle = 0.5 * (low + high);
+                let f = machine.flight().force(segment.law.lift(cam_angle).value);
+                let velocity_before = -f * p / s * s1 + f * s;
+                if velocity_before.is_finite() {
+                    let contact = Contact { revolution: 0, segment: index, cam_angle, velocity_before };
+                    guesses.push(Cycle { revolutions, contacts: vec![contact] });
+                }
+            }
+            before = after;
+        }
+    }
+    guesses
+}

@@ -1,0 +1,85 @@
+//! Orbits on which the follower sticks to the cam for a while: everything after follows from the cam alone.
+
+use std::f64::consts::TAU;
+use std::ops::ControlFlow;
+
+use nalgebra::Matrix2;
+
+use super::{Course, PeriodicOrbit};
+use crate::flight::State;
+use crate::simulate::{Event, EventKind, Machine, SimulateError};
+
+/// The orbit of `revolutions` that sticks to the cam at `anchor`, rad, in `[0, 2 pi)`; `None` where the follower that is
+/// put on the cam there does not stick, or is not there again.
+pub fn through(machine: &Machine, anchor: f64, revolutions: u64) -> Result<Option<PeriodicOrbit>, SimulateError> {
+    let mut motion = machine.start_on_cam(anchor, 0.0)?;
+    if !motion.contact {
+        return Ok(None);
+    }
+    let state = motion.state;
+    let goal = motion.after(revolutions);
+    let mut events = Vec::new();
+    let _ = machine.advance(&mut motion, goal, &mut |event: &Event| {
+        events.push(*event);
+        ControlFlow::Continue(())
+    })?;
+    if !motion.contact {
+        return Ok(None);
+    }
+    let closing = (motion.state.position - state.position).abs();
+    // Counted from angle 0 on, as every orbit is.
+    for event in &mut events {
+        event.revolution %= revolutions;
+    }
+    events.sort_by(|one, two| one.revolution.cmp(&two.revolution).then(one.cam_angle.total_cmp(&two.cam_angle)));
+    let at_zero = at_zero(machine, anchor)?;
+    Ok(Some(PeriodicOrbit {
+        revolutions,
+        events,
+        state: at_zero,
+        matrix: Matrix2::zeros(),
+        residual: closing / super::cycle::lift_size(machine),
+        course: Course::Sticking(anchor),
+    }))
+}
+
+/// The follower at the next passage of angle 0.
+fn at_zero(machine: &Machine, anchor: f64) -> Result<State, SimulateError> {
+    let mut motion = machine.start_on_cam(anchor, 0.0)?;
+    if anchor == 0.0 {
+        return Ok(motion.state);
+    }
+    let goal = motion.next(0.0);
+    let _ = machine.advance(&mut motion, goal, &mut |_: &Event| ControlFlow::Continue(()))?;
+    Ok(motion.state)
+}
+
+/// The middle of the longest stretch on the cam among the events of one period, rad, in `[0, 2 pi)`; for a follower that
+/// never leaves the cam, angle 0.
+pub fn anchor(events: &[Event], revolutions: u64) -> Option<f64> {
+    let period = revolutions as f64 * TAU;
+    let sticks: Vec<f64> = turned(events, EventKind::Stick);
+    let releases: Vec<f64> = turned(events, EventKind::Release);
+    let after = |stick: f64| {
+        let later = |release: &f64| if *release < stick { *release + period } else { *release };
+        releases.iter().map(later).fold(f64::INFINITY, f64::min)
+    };
+    let stretches = sticks.iter().map(|stick| (*stick, after(*stick))).filter(|(_, end)| end.is_finite());
+    let longest = stretches.max_by(|one, two| (one.1 - one.0).total_cmp(&(two.1 - two.0)))?;
+    Some((0.5 * (longest.0 + longest.1)).rem_euclid(TAU)).filter(|angle| *angle < TAU)
+}
+
+fn turned(events: &[Event], kind: EventKind) -> Vec<f64> {
+    events.iter().filter(|event| event.kind == kind).map(|event| event.turned_since(0.0)).collect()
+}
+
+/// How long the follower sticks in one period, rad.
+pub fn time_on_cam(orbit: &PeriodicOrbit) -> f64 {
+    let period = orbit.revolutions as f64 * TAU;
+    let (sticks, releases) = (turned(&orbit.events, EventKind::Stick), turned(&orbit.events, EventKind::Release));
+    if sticks.is_empty() && releases.is_empty() {
+        return if matches!(orbit.course, Course::Sticking(_)) { period } else { 0.0 };
+    }
+    let on: f64 = releases.iter().sum::<f64>() - sticks.iter().sum::<f64>();
+    on.rem_euclid(period)
+}
