@@ -73,6 +73,9 @@ table! {
         rounding stops the iteration";
     /// How near two impacts are that are the same, rad.
     SAME_ORBIT = 1e-6, "absolute, rad: a cycle is known to ten digits, or half of them near a graze or a fold";
+    /// How closely a point is located where sticking begins or ends on a branch.
+    SPECIAL_POINT = 1e-14, "of the range of the parameter: ten digits of its value are asked for, and each one more costs three \
+        simulated periods";
     /// How nearly a run must repeat for Newton's method to be tried on it.
     NEARLY_REPEATS = 1e-2, "of the cam's lift: a guess, that Newton's method and one simulated period confirm or refute";
     /// How far from the corner the impact of a located orbit may be simulated, rad.

@@ -25,8 +25,8 @@ use crate::tolerance;
 /// One impact of a cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
-    /// How often the cam has passed angle 0 since the cycle's start.
-    pub revolution: u64,
+    /// How often the cam has passed angle 0 since the cycle's start; counted modulo the cycle's revolutions.
+    pub revolution: i64,
     /// Index of the segment of the cam whose law holds.
     pub segment: usize,
     /// Cam angle, rad; outside of the segment where its law is continued.
@@ -96,7 +96,7 @@ impl Cycle {
     /// The cycle that the impacts of `revolutions` suggest.
     pub fn of_events(revolutions: u64, events: &[Event]) -> Self {
         let contact = |event: &Event| Contact {
-            revolution: event.revolution,
+            revolution: event.revolution as i64,
             segment: event.segment,
             cam_angle: event.cam_angle,
             velocity_before: event.velocity_before,
@@ -229,7 +229,7 @@ impl Cycle {
                     if contact.segment == 0 {
                         contact.segment = segments.len() - 1;
                         contact.cam_angle += TAU;
-                        contact.revolution = contact.revolution.wrapping_sub(1);
+                        contact.revolution -= 1;
                     } else {
                         contact.segment -= 1;
                     }
@@ -237,7 +237,7 @@ impl Cycle {
                     if contact.segment + 1 == segments.len() {
                         contact.segment = 0;
                         contact.cam_angle -= TAU;
-                        contact.revolution = contact.revolution.wrapping_add(1);
+                        contact.revolution += 1;
                     } else {
                         contact.segment += 1;
                     }
@@ -246,14 +246,14 @@ impl Cycle {
                 }
             }
         }
-        renamed.in_order()
+        renamed
     }
 
     /// The same cycle with its revolutions counted from 0, and its contacts in order.
-    fn in_order(mut self) -> Self {
-        let revolutions = self.revolutions.max(1);
+    pub fn in_order(mut self) -> Self {
+        let revolutions = self.revolutions.max(1) as i64;
         for contact in &mut self.contacts {
-            contact.revolution = (contact.revolution as i64).rem_euclid(revolutions as i64) as u64;
+            contact.revolution = contact.revolution.rem_euclid(revolutions);
         }
         self.contacts.sort_by(|one, other| {
             one.revolution.cmp(&other.revolution).then(one.cam_angle.total_cmp(&other.cam_angle))
@@ -265,8 +265,7 @@ impl Cycle {
     pub fn begun_later(&self, revolutions: u64) -> Self {
         let mut later = self.clone();
         for contact in &mut later.contacts {
-            contact.revolution =
-                (contact.revolution + self.revolutions - revolutions % self.revolutions) % self.revolutions;
+            contact.revolution -= revolutions as i64;
         }
         later.in_order()
     }
@@ -300,7 +299,7 @@ impl Cycle {
         let period = self.revolutions as f64 * TAU;
         let turned = |contact: &Contact| {
             let turned = contact.revolution as f64 * TAU + (contact.cam_angle - cam_angle);
-            if turned < 0.0 { turned + period } else { turned }
+            if (0.0..period).contains(&turned) { turned } else { turned.rem_euclid(period) }
         };
         let mut order: Vec<(f64, usize)> =
             self.contacts.iter().enumerate().map(|(index, contact)| (turned(contact), index)).collect();
@@ -351,7 +350,7 @@ impl Cycle {
             let impact = self.impact(machine, index);
             Event {
                 kind: EventKind::Impact,
-                revolution: contact.revolution,
+                revolution: contact.revolution.rem_euclid(self.revolutions.max(1) as i64) as u64,
                 cam_angle: contact.cam_angle,
                 position: impact.lift.value,
                 velocity_before: contact.velocity_before,

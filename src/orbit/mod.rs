@@ -9,6 +9,8 @@
 //! | [`curve`] | pseudo-arclength steps along the solutions of one equation fewer than unknowns |
 //! | [`branch`] | branches of orbits through corners, folds, flips and grazes, with those points located |
 
+pub mod branch;
+pub mod curve;
 pub mod cycle;
 pub mod family;
 mod multipliers;
@@ -57,6 +59,7 @@ pub enum Course {
 impl PeriodicOrbit {
     /// The orbit of a cycle that closes, `residual` off.
     pub fn of_cycle(machine: &Machine, cycle: Cycle, residual: f64) -> Self {
+        let cycle = cycle.in_order();
         let (state, matrix) = cycle.at_section(machine, 0.0);
         let events = cycle.events(machine);
         Self { revolutions: cycle.revolutions, events, state, matrix, residual, course: Course::Impacts(cycle) }

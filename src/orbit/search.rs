@@ -122,12 +122,7 @@ impl Found<'_> {
         if sticks || count == 0 || count > most + 1 {
             return Ok(());
         }
-        let mut guess = Cycle::of_events(self.wanted.revolutions, &events);
-        for contact in &mut guess.contacts {
-            contact.revolution %= self.wanted.revolutions;
-        }
-        let whole = guess.begun_later(0);
-        self.close(&whole);
+        self.close(&Cycle::of_events(self.wanted.revolutions, &events).in_order());
         Ok(())
     }
 }
@@ -138,7 +133,7 @@ pub fn close(machine: &Machine, guess: &Cycle) -> Option<PeriodicOrbit> {
     let (cycle, residual) = guess.closed(machine).ok()?;
     let mut corners = machine.cam().corners().into_iter().map(|corner| corner.segment).collect::<Vec<_>>();
     corners.sort_unstable();
-    let cycle = cycle.renamed(machine, |segment| corners.binary_search(&segment).is_ok());
+    let cycle = cycle.renamed(machine, |segment| corners.binary_search(&segment).is_ok()).in_order();
     let is_orbit = cycle.departure(machine).is_ok_and(|departure| departure.is_none()) && !cycle.repeats_sooner();
     is_orbit.then(|| PeriodicOrbit::of_cycle(machine, cycle, residual))
 }

@@ -1,0 +1,414 @@
+//! One direction of a branch: steps along the curve, cut where something changes.
+
+use nalgebra::DVector;
+
+use super::problem::{Problem, Units};
+use super::switch::{self, Exit};
+use super::{BranchPoint, End, Following, Kind, Special, gap};
+use crate::orbit::curve::{self, CurvePoint, Equations, NoPoint};
+use crate::orbit::cycle::lift_size;
+use crate::orbit::{Cycle, Departure, Family, FamilyError, OrbitError, PeriodicOrbit};
+use crate::simulate::Machine;
+use crate::tolerance;
+
+/// Impacts in a revolution beyond which a follower is said to chatter.
+const MOST_IMPACTS: usize = 24;
+/// The first step, and the one after each change of the cycle, of the longest.
+const FIRST: f64 = 0.02;
+/// The shortest step, of the longest.
+const SHORTEST: f64 = 1e-6;
+/// How far the curve may turn in one step: the cosine.
+const STRAIGHT: f64 = 0.985;
+
+/// A cut of the step at hand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Cut {
+    /// The parameter reaches a bound.
+    Range(f64),
+    /// The orbit leaves its cycle.
+    Exit(Exit),
+    /// A multiplier passes 1.
+    Fold,
+    /// A multiplier passes -1.
+    Flip,
+}
+
+/// A cut, located.
+struct Located {
+    /// The step to it.
+    step: f64,
+    cut: Cut,
+    point: CurvePoint,
+    /// Values of the parameter on either side.
+    bracket: [f64; 2],
+    residual: f64,
+}
+
+/// The branch in one direction: the sign of the parameter's first change.
+pub(super) fn half(
+    family: &Family,
+    value: f64,
+    cycle: &Cycle,
+    following: &Following,
+    direction: f64,
+) -> Result<(Vec<BranchPoint>, End), OrbitError> {
+    let machine = family.machine(&[value])?.0;
+    let spans = [following.range[1] - following.range[0]];
+    let units = Units::of(cycle, &machine);
+    let problem = Problem::new(family, cycle, units, &spans, None);
+    let unknowns = problem.unknowns(cycle, &machine, &[value]);
+    let Ok(tangent) = curve::first_tangent(&problem, &unknowns) else { return Ok((Vec::new(), End::Lost)) };
+    let ahead = tangent[problem.column(0)] * direction >= 0.0;
+    let walk = Walk {
+        family,
+        following,
+        units,
+        spans,
+        pattern: cycle.clone(),
+        from: CurvePoint { unknowns, tangent: if ahead { tangent } else { -tangent }, steps: 0 },
+        step: FIRST * following.longest_step,
+        fresh: None,
+        points: Vec::new(),
+    };
+    walk.run()
+}
+
+struct Walk<'a> {
+    family: &'a Family,
+    following: &'a Following,
+    units: Units,
+    spans: [f64; 1],
+    pattern: Cycle,
+    from: CurvePoint,
+    step: f64,
+    /// What the cycle was changed for, until a step has been made with the new one.
+    fresh: Option<Exit>,
+    points: Vec<BranchPoint>,
+}
+
+impl Walk<'_> {
+    fn run(mut self) -> Result<(Vec<BranchPoint>, End), OrbitError> {
+        let begin = (self.pattern.clone(), self.from.clone());
+        loop {
+            if self.points.len() >= self.following.most_points {
+                return Ok((self.points, End::MostPoints));
+            }
+            match self.advance() {
+                Ok(None) => {}
+                Ok(Some(end)) => return Ok((self.points, end)),
+                Err(error) => {
+                    if matches!(error, NoPoint::Outside(_))
+                        && let Some(last) = self.at_bound()
+                    {
+                        self.points.push(last);
+                        return Ok((self.points, End::Range));
+                    }
+                    self.step *= 0.5;
+                    if self.step < SHORTEST * self.following.longest_step {
+                        let end = match (error, self.fresh) {
+                            (NoPoint::Outside(error), _) => End::Edge(error.to_string()),
+                            (_, Some(Exit::Touch { .. } | Exit::Tangent { .. })) => End::Graze,
+                            _ => End::Lost,
+                        };
+                        return Ok((self.points, end));
+                    }
+                }
+            }
+            let home = &begin.1.unknowns;
+            let alike = begin.0.contacts.len() == self.pattern.contacts.len()
+                && begin.0.contacts.iter().zip(&self.pattern.contacts).all(|(one, other)| one.segment == other.segment);
+            if alike && self.points.len() > 20 {
+                let away = &self.from.unknowns - home;
+                if away.norm() < self.step && away.dot(&begin.1.tangent) <= 0.0 {
+                    return Ok((self.points, End::Closed));
+                }
+            }
+        }
+    }
+
+    /// The orbit at the bound of the range that the branch runs into, where the model allows nothing beyond.
+    fn at_bound(&self) -> Option<BranchPoint> {
+        let from = &self.from.unknowns;
+        let (value, slope) = (self.value(from), self.value(&self.from.tangent));
+        let bound = self.following.range[usize::from(slope > 0.0)];
+        let step = (bound - value) / slope;
+        if !(step.is_finite() && (0.0..=self.step).contains(&step)) {
+            return None;
+        }
+        let (machine, rpm) = self.family.machine(&[bound]).ok()?;
+        let problem = self.problem();
+        let mut unknowns = from + &self.from.tangent * step;
+        unknowns[problem.column(0)] = bound / self.spans[0];
+        let (guess, _, _) = problem.unpack(&unknowns).ok()?;
+        let (cycle, residual) = guess.closed(&machine).ok()?;
+        let is_orbit = matches!(cycle.departure(&machine), Ok(None));
+        let orbit = PeriodicOrbit::of_cycle(&machine, cycle, residual);
+        is_orbit.then_some(BranchPoint { rpm, value: bound, orbit, special: None })
+    }
+
+    fn problem(&self) -> Problem<'_> {
+        Problem::new(self.family, &self.pattern, self.units, &self.spans, None)
+    }
+
+    fn value(&self, unknowns: &DVector<f64>) -> f64 {
+        unknowns[unknowns.len() - 1] * self.spans[0]
+    }
+
+    /// One step, or the part of it up to where the cycle changes.
+    fn advance(&mut self) -> Result<Option<End>, NoPoint<FamilyError>> {
+        let problem = self.problem();
+        let next = curve::step(&problem, &self.from.unknowns, &self.from.tangent, self.step)?;
+        if next.tangent.dot(&self.from.tangent) < STRAIGHT {
+            return Err(NoPoint::NotClosed);
+        }
+        // The first that cuts the step short, of those that the equations tell.
+        let mut first: Option<Located> = None;
+        let mut keep = |located: Located| {
+            if first.as_ref().is_none_or(|first| located.step < first.step) {
+                first = Some(located);
+            }
+        };
+        for cut in self.cuts(&problem, &next.unknowns)? {
+            keep(self.locate(&problem, cut, self.step)?);
+        }
+        // And those that only the simulator sees, on the way there.
+        let (mut clear, mut reach) = match &first {
+            Some(located) => {
+                let reach = located.step * (1.0 - 1e-3);
+                (curve::step(&problem, &self.from.unknowns, &self.from.tangent, reach)?, reach)
+            }
+            None => (next.clone(), self.step),
+        };
+        let (cycle, at, _) = problem.unpack(&clear.unknowns)?;
+        match cycle.departure(&at) {
+            Ok(None) => {}
+            Ok(Some(Departure::Earlier { contact, event })) => {
+                let turned = (event.revolution as f64) * std::f64::consts::TAU + event.cam_angle
+                    - cycle.contacts[contact].cam_angle.rem_euclid(std::f64::consts::TAU);
+                let touch = Exit::Touch { contact, turned };
+                let located = self.locate(&problem, Cut::Exit(touch), reach)?;
+                reach = located.step;
+                clear = located.point.clone();
+                first = Some(located);
+            }
+            // So near to a cut that the simulator sees it already, or nothing that a shorter step would not show better.
+            Ok(Some(_)) if first.is_some() => {}
+            Ok(Some(_)) | Err(_) => return Err(NoPoint::NotClosed),
+        }
+        let end_point = first.as_ref().map_or(next, |located| located.point.clone());
+        let mut points = Vec::new();
+        for cut in [Cut::Fold, Cut::Flip] {
+            let at = |point: &CurvePoint| self.measure(&problem, cut, point);
+            // Just short of a graze, where the matrix has a pole.
+            if (at(&self.from)? > 0.0) != (at(&clear)? > 0.0) && self.fresh.is_none() {
+                let located = self.locate(&problem, cut, reach)?;
+                // A sign that changes through infinity is no root.
+                if located.residual > tolerance::SAME_ORBIT.value {
+                    continue;
+                }
+                points.push((
+                    located.step,
+                    self.branch_point(&problem, &located.point, self.special(&problem, &located)?)?,
+                ));
+            }
+        }
+        points.sort_by(|one, two| one.0.total_cmp(&two.0));
+        let special = match &first {
+            Some(located) => self.special(&problem, located)?,
+            None => None,
+        };
+        let mut last = self.branch_point(&problem, &end_point, special)?;
+        if let Some(Located { cut: Cut::Exit(exit @ Exit::Tangent { .. }), .. }) = first {
+            // The impact that is none has no saltation matrix; the orbit without it has one.
+            let (cycle, machine, _) = problem.unpack(&end_point.unknowns)?;
+            if let Some(without) = switch::beyond(exit, &cycle, &machine) {
+                last.orbit = PeriodicOrbit::of_cycle(&machine, without, last.orbit.residual);
+            }
+        }
+        let grown = if end_point.steps <= 4 { 1.5 } else { 1.0 };
+        drop(problem);
+        self.points.extend(points.into_iter().map(|(_, point)| point));
+        // A seam of the cam that is no corner is passed without a word.
+        let silent = matches!(&first, Some(Located { cut: Cut::Exit(Exit::Corner { .. }), .. })) && special.is_none();
+        if !silent {
+            self.points.push(last);
+        }
+        self.from = end_point;
+        match first {
+            Some(Located { cut: Cut::Range(_), .. }) => Ok(Some(End::Range)),
+            Some(Located { cut: Cut::Exit(exit), .. }) => self.go_over(exit),
+            _ => {
+                self.fresh = None;
+                self.step = (self.step * grown).min(self.following.longest_step);
+                Ok(None)
+            }
+        }
+    }
+
+    /// What the equations show to have been passed at `unknowns`.
+    fn cuts(&self, problem: &Problem<'_>, unknowns: &DVector<f64>) -> Result<Vec<Cut>, NoPoint<FamilyError>> {
+        let (cycle, machine, _) = problem.unpack(unknowns)?;
+        let mut cuts = Vec::new();
+        let value = self.value(unknowns);
+        let [low, high] = self.following.range;
+        if value < low {
+            cuts.push(Cut::Range(low));
+        }
+        if value > high {
+            cuts.push(Cut::Range(high));
+        }
+        for (index, contact) in cycle.contacts.iter().enumerate() {
+            let segment = &machine.cam().segments()[contact.segment];
+            if contact.cam_angle > segment.end {
+                cuts.push(Cut::Exit(Exit::Corner { contact: index, past_end: true }));
+            }
+            if contact.cam_angle < segment.start {
+                cuts.push(Cut::Exit(Exit::Corner { contact: index, past_end: false }));
+            }
+            if cycle.approach(&machine, index) <= 0.0 {
+                cuts.push(Cut::Exit(Exit::Tangent { contact: index }));
+            }
+        }
+        Ok(cuts)
+    }
+
+    /// A quantity that is positive before a cut and passes 0 at it; of a fold and a flip the sign before is any.
+    fn measure(&self, problem: &Problem<'_>, cut: Cut, at: &CurvePoint) -> Result<f64, NoPoint<FamilyError>> {
+        let (cycle, machine, _) = problem.unpack(&at.unknowns)?;
+        Ok(match cut {
+            Cut::Range(bound) => {
+                let value = self.value(&at.unknowns);
+                if bound == self.following.range[0] { value - bound } else { bound - value }
+            }
+            Cut::Exit(Exit::Corner { contact, past_end }) => {
+                let contact = &cycle.contacts[contact];
+                let segment = &machine.cam().segments()[contact.segment];
+                if past_end { segment.end - contact.cam_angle } else { contact.cam_angle - segment.start }
+            }
+            Cut::Exit(Exit::Tangent { contact }) => cycle.approach(&machine, contact),
+            Cut::Exit(Exit::Touch { contact, turned }) => {
+                gap::least(&cycle, &machine, contact, turned).ok_or(NoPoint::NotClosed)?.0
+            }
+            Cut::Fold => at.tangent[problem.column(0)],
+            Cut::Flip => {
+                let (_, matrix) = cycle.at_section(&machine, 0.0);
+                1.0 + matrix.trace() + matrix.determinant()
+            }
+        })
+    }
+
+    /// Where in `[0, step]` a cut is: by secants that keep the bracket.
+    fn locate(&self, problem: &Problem<'_>, cut: Cut, step: f64) -> Result<Located, NoPoint<FamilyError>> {
+        /// Secants that halve the weight of an end that stays twice gain digits fast; bisection would take fifty.
+        const STEPS: usize = 60;
+        let at = |step: f64| -> Result<(CurvePoint, f64), NoPoint<FamilyError>> {
+            let point = curve::step(problem, &self.from.unknowns, &self.from.tangent, step)?;
+            let measure = self.measure(problem, cut, &point)?;
+            Ok((point, measure))
+        };
+        let (mut low, mut high) = (0.0, step);
+        let mut at_low = self.measure(problem, cut, &self.from)?;
+        let (mut point, mut at_high) = at(high)?;
+        let mut bracket = [self.value(&self.from.unknowns), self.value(&point.unknowns)];
+        let sign = at_high < 0.0;
+        if (at_low < 0.0) == sign && at_high != 0.0 {
+            return Err(NoPoint::NotClosed);
+        }
+        let (mut best, mut residual, mut moved_high) = (high, at_high.abs(), None);
+        for _ in 0..STEPS {
+            if residual == 0.0 || high - low <= tolerance::ROOT_WIDTH.value * step {
+                break;
+            }
+            let secant = low + (high - low) * at_low / (at_low - at_high);
+            let middle = if secant > low && secant < high { secant } else { 0.5 * (low + high) };
+            let (found, measure) = at(middle)?;
+            if measure.abs() < residual {
+                (best, residual, point) = (middle, measure.abs(), found.clone());
+            }
+            if (measure < 0.0) == sign {
+                (high, at_high) = (middle, measure);
+                at_low *= if moved_high == Some(true) { 0.5 } else { 1.0 };
+                moved_high = Some(true);
+                bracket[1] = self.value(&found.unknowns);
+            } else {
+                (low, at_low) = (middle, measure);
+                at_high *= if moved_high == Some(false) { 0.5 } else { 1.0 };
+                moved_high = Some(false);
+                bracket[0] = self.value(&found.unknowns);
+            }
+        }
+        if bracket[0] > bracket[1] {
+            bracket.swap(0, 1);
+        }
+        Ok(Located { step: best, cut, point, bracket, residual })
+    }
+
+    fn special(&self, problem: &Problem<'_>, located: &Located) -> Result<Option<Special>, NoPoint<FamilyError>> {
+        let (cycle, machine, _) = problem.unpack(&located.point.unknowns)?;
+        let kind = match located.cut {
+            Cut::Range(_) => return Ok(None),
+            Cut::Fold => Kind::Fold,
+            Cut::Flip => Kind::Flip,
+            Cut::Exit(exit) => match (exit, self.order(exit, &cycle, &machine)) {
+                (Exit::Corner { .. }, None) => return Ok(None),
+                (_, order) => switch::kind(exit, &cycle, &machine, order.unwrap_or(0)),
+            },
+        };
+        Ok(Some(Special { kind, bracket: located.bracket, residual: located.residual }))
+    }
+
+    /// The order of the corner that a contact leaves its segment by, if it is one.
+    fn order(&self, exit: Exit, cycle: &Cycle, machine: &Machine) -> Option<usize> {
+        let Exit::Corner { contact, past_end } = exit else { return None };
+        let segment = cycle.contacts[contact].segment;
+        let meeting = if past_end { (segment + 1) % machine.cam().segments().len() } else { segment };
+        machine.cam().corners().iter().find(|corner| corner.segment == meeting).map(|corner| corner.jump_order)
+    }
+
+    fn branch_point(
+        &self,
+        problem: &Problem<'_>,
+        point: &CurvePoint,
+        special: Option<Special>,
+    ) -> Result<BranchPoint, NoPoint<FamilyError>> {
+        let (cycle, machine, rpm) = problem.unpack(&point.unknowns)?;
+        let residual = cycle.residual(&machine).amax() / lift_size(&machine);
+        let orbit = PeriodicOrbit::of_cycle(&machine, cycle, residual);
+        Ok(BranchPoint { rpm, value: self.value(&point.unknowns), orbit, special })
+    }
+
+    /// Goes over to the cycle beyond an exit.
+    fn go_over(&mut self, exit: Exit) -> Result<Option<End>, NoPoint<FamilyError>> {
+        let values = [self.value(&self.from.unknowns)];
+        let machine = self.family.machine(&values)?.0;
+        let (cycle, _, _) = self.problem().unpack(&self.from.unknowns)?;
+        let exit = match exit {
+            Exit::Touch { contact, turned } => match gap::least(&cycle, &machine, contact, turned) {
+                Some((_, turned)) => Exit::Touch { contact, turned },
+                None => return Ok(Some(End::Lost)),
+            },
+            other => other,
+        };
+        let exhausted = if matches!(exit, Exit::Corner { .. }) { End::Lost } else { End::Graze };
+        // Straight back where it came from: the direction could not be told.
+        if self.fresh.is_some() {
+            return Ok(Some(exhausted));
+        }
+        let Some(beyond) = switch::beyond(exit, &cycle, &machine) else { return Ok(Some(End::Graze)) };
+        if beyond.contacts.len() > MOST_IMPACTS * beyond.revolutions as usize {
+            return Ok(Some(End::Chatter));
+        }
+        self.pattern = beyond.clone();
+        let problem = self.problem();
+        let unknowns = problem.unknowns(&beyond, &machine, &values);
+        if problem.residual(&unknowns)?.amax() > tolerance::SAME_ORBIT.value {
+            return Ok(Some(End::Gap));
+        }
+        let Ok(tangent) = switch::direction(exit, &cycle, &problem, &unknowns) else { return Ok(Some(exhausted)) };
+        drop(problem);
+        self.from = CurvePoint { unknowns, tangent, steps: 0 };
+        self.step = FIRST * self.following.longest_step;
+        self.fresh = Some(exit);
+        Ok(None)
+    }
+}

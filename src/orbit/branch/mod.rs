@@ -1,0 +1,123 @@
+//! Branches: periodic orbits followed in one number of the model, round folds and through corners, with the points located
+//! where something changes.
+//!
+//! An orbit that hits a corner goes over to the law behind it; one whose flight touches the cam gains the impact, one whose
+//! impact becomes a touch loses it. Beyond either the equations are those of another cycle, and the branch goes on with
+//! these: a branch is continuous, its direction is not.
+
+mod chatter;
+mod follow;
+mod gap;
+mod problem;
+mod special;
+mod switch;
+
+use super::{Family, OrbitError, Parameter, PeriodicOrbit};
+use crate::model::Model;
+pub use problem::{Pinned, Problem, Units};
+pub use special::{Kind, Special};
+
+/// What is followed, and how far.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Following {
+    /// What changes.
+    pub parameter: Parameter,
+    /// Its lowest and highest value.
+    pub range: [f64; 2],
+    /// The longest step, of the range or of a radian of an impact's angle.
+    pub longest_step: f64,
+    /// Points in one direction after which the branch is given up.
+    pub most_points: usize,
+}
+
+/// An orbit on a branch.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BranchPoint {
+    /// The speed, rpm.
+    pub rpm: f64,
+    /// What the parameter is.
+    pub value: f64,
+    /// The orbit.
+    pub orbit: PeriodicOrbit,
+    /// What changes here, if anything.
+    pub special: Option<Special>,
+}
+
+/// Why a branch goes no further in one direction.
+#[derive(Clone, Debug, PartialEq)]
+pub enum End {
+    /// The end of the range.
+    Range,
+    /// It came back to where it started.
+    Closed,
+    /// The model allows no further value.
+    Edge(String),
+    /// As many points as were asked for.
+    MostPoints,
+    /// Impacts without number: the follower begins to chatter there, or ceases to.
+    Chatter,
+    /// A graze beyond which no orbit nearby continues the branch.
+    Graze,
+    /// An impact at a corner where the cam's velocity jumps: the map has a gap there.
+    Gap,
+    /// No orbit was found nearby.
+    Lost,
+}
+
+impl End {
+    /// In words, for a message.
+    pub fn words(&self) -> String {
+        match self {
+            Self::Range => "the end of the range".into(),
+            Self::Closed => "its own start: the branch is closed".into(),
+            Self::Edge(why) => format!("the edge of what the model allows: {why}"),
+            Self::MostPoints => "the number of points that was asked for".into(),
+            Self::Chatter => "the onset of chattering".into(),
+            Self::Graze => "a graze, beyond which no orbit continues it".into(),
+            Self::Gap => "a corner where the cam's velocity jumps, beyond which no orbit continues it".into(),
+            Self::Lost => "a place from which Newton's method finds no orbit nearby".into(),
+        }
+    }
+}
+
+/// A branch, from one end to the other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Branch {
+    /// The orbits in order along it.
+    pub points: Vec<BranchPoint>,
+    /// Why it starts and ends where it does.
+    pub ends: [End; 2],
+}
+
+impl Branch {
+    /// The branch through `orbit`, an orbit of `model` at `rpm`.
+    pub fn through(model: &Model, rpm: f64, orbit: &PeriodicOrbit, following: &Following) -> Result<Self, OrbitError> {
+        let family = Family::new(model, rpm, vec![following.parameter.clone()])?;
+        let value = following.parameter.value(model, rpm).unwrap_or(f64::NAN);
+        let halves = [-1.0, 1.0].map(|direction| match &orbit.course {
+            super::Course::Impacts(cycle) => follow::half(&family, value, cycle, following, direction),
+            super::Course::Sticking(anchor) => {
+                chatter::half(&family, value, (*anchor, orbit.revolutions), following, direction)
+            }
+            super::Course::Free => Ok((Vec::new(), End::Graze)),
+        });
+        let [backward, forward] = halves;
+        let ((mut points, first), (onward, last)) = (backward?, forward?);
+        points.reverse();
+        points.push(BranchPoint { rpm, value, orbit: orbit.clone(), special: None });
+        if first != End::Closed {
+            points.extend(onward);
+        }
+        Ok(Self { points, ends: [first, last] })
+    }
+
+    /// Whether an orbit at `value` of the parameter is on the branch.
+    pub fn holds(&self, value: f64, orbit: &PeriodicOrbit) -> bool {
+        let spans = |pair: &&[BranchPoint]| (pair[0].value - value) * (pair[1].value - value) <= 0.0;
+        self.points.windows(2).filter(spans).any(|pair| {
+            let nearest =
+                if (pair[0].value - value).abs() < (pair[1].value - value).abs() { &pair[0] } else { &pair[1] };
+            special::is_near(&nearest.orbit, orbit)
+        })
+    }
+}

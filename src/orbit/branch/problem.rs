@@ -1,0 +1,151 @@
+//! The equations of a cycle with numbers of the model free, in units in which a curve of solutions is followed.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::orbit::curve::Equations;
+use crate::orbit::cycle::lift_size;
+use crate::orbit::{Cycle, Family, FamilyError};
+use crate::simulate::Machine;
+
+/// An impact that stays at an end of its segment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Pinned {
+    /// Index of the contact.
+    pub contact: usize,
+    /// Whether it stays at the end of its segment; at the start otherwise.
+    pub at_end: bool,
+}
+
+/// What lengths are measured by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Units {
+    /// The size of the cam's lift, m.
+    pub lift: f64,
+    /// The size of the follower's velocities over omega, m/rad.
+    pub velocity: f64,
+}
+
+impl Units {
+    /// Those of a cycle.
+    pub fn of(cycle: &Cycle, machine: &Machine) -> Self {
+        let lift = lift_size(machine);
+        let fastest =
+            cycle.contacts.iter().fold(0.0_f64, |fastest, contact| fastest.max(contact.velocity_before.abs()));
+        Self { lift, velocity: lift.max(fastest / machine.angular_velocity()) }
+    }
+}
+
+/// Unknowns: angle (rad) and velocity over omega (by its unit) of each contact, then the free numbers (by `spans`).
+pub struct Problem<'a> {
+    family: &'a Family,
+    /// Revolutions and segments; its angles and velocities are replaced.
+    pattern: Cycle,
+    /// Of the cam's lift, m, and of velocities over omega, m/rad.
+    units: Units,
+    spans: Vec<f64>,
+    pinned: Option<Pinned>,
+}
+
+impl<'a> Problem<'a> {
+    /// The cycle of the pattern's revolutions and segments.
+    pub fn new(family: &'a Family, pattern: &Cycle, units: Units, spans: &[f64], pinned: Option<Pinned>) -> Self {
+        Self { family, pattern: pattern.clone(), units, spans: spans.to_vec(), pinned }
+    }
+
+    /// The unknowns of `cycle` with these numbers.
+    pub fn unknowns(&self, cycle: &Cycle, machine: &Machine, values: &[f64]) -> DVector<f64> {
+        let contacts = cycle.contacts.iter();
+        let of_contacts = contacts.flat_map(|contact| {
+            [contact.cam_angle, contact.velocity_before / machine.angular_velocity() / self.units.velocity]
+        });
+        let of_values = values.iter().zip(&self.spans).map(|(value, span)| value / span);
+        let all: Vec<f64> = of_contacts.chain(of_values).collect();
+        DVector::from_vec(all)
+    }
+
+    /// The free numbers among the unknowns.
+    pub fn values(&self, unknowns: &DVector<f64>) -> Vec<f64> {
+        let count = 2 * self.pattern.contacts.len();
+        unknowns.iter().skip(count).zip(&self.spans).map(|(value, span)| value * span).collect()
+    }
+
+    /// Where the unknown of the free number `index` stands.
+    pub fn column(&self, index: usize) -> usize {
+        2 * self.pattern.contacts.len() + index
+    }
+
+    /// The cycle and the machine that unknowns stand for, and its speed, rpm.
+    pub fn unpack(&self, unknowns: &DVector<f64>) -> Result<(Cycle, Machine, f64), FamilyError> {
+        let (machine, rpm) = self.family.machine(&self.values(unknowns))?;
+        let cycle = self.cycle(unknowns, &machine);
+        Ok((cycle, machine, rpm))
+    }
+
+    fn cycle(&self, unknowns: &DVector<f64>, machine: &Machine) -> Cycle {
+        let mut cycle = self.pattern.clone();
+        for (index, contact) in cycle.contacts.iter_mut().enumerate() {
+            contact.cam_angle = unknowns[2 * index];
+            contact.velocity_before = unknowns[2 * index + 1] * self.units.velocity * machine.angular_velocity();
+        }
+        cycle
+    }
+
+    /// How far the pinned contact is from its corner, rad, if one is pinned.
+    fn off_corner(&self, unknowns: &DVector<f64>, machine: &Machine) -> Option<f64> {
+        let Pinned { contact, at_end } = self.pinned?;
+        let segment = &machine.cam().segments()[self.pattern.contacts[contact].segment];
+        Some(unknowns[2 * contact] - if at_end { segment.end } else { segment.start })
+    }
+
+    fn residual_on(&self, unknowns: &DVector<f64>, machine: &Machine) -> DVector<f64> {
+        let residual = self.cycle(unknowns, machine).residual(machine) / self.units.lift;
+        match self.off_corner(unknowns, machine) {
+            Some(off) => residual.push(off),
+            None => residual,
+        }
+    }
+}
+
+impl Equations for Problem<'_> {
+    type Error = FamilyError;
+
+    fn residual(&self, unknowns: &DVector<f64>) -> Result<DVector<f64>, FamilyError> {
+        let (machine, _) = self.family.machine(&self.values(unknowns))?;
+        Ok(self.residual_on(unknowns, &machine))
+    }
+
+    fn jacobian(&self, unknowns: &DVector<f64>) -> Result<DMatrix<f64>, FamilyError> {
+        /// Of the span of a free number: its column steers Newton's method and the tangent, and needs six digits.
+        const DIFFERENCE: f64 = 1e-5;
+        let count = 2 * self.pattern.contacts.len();
+        let (machine, _) = self.family.machine(&self.values(unknowns))?;
+        let by_contacts = self.cycle(unknowns, &machine).jacobian(&machine);
+        let rows = count + usize::from(self.pinned.is_some());
+        let mut jacobian = DMatrix::zeros(rows, unknowns.len());
+        for column in 0..count {
+            let unit = if column % 2 == 0 { 1.0 } else { self.units.velocity } / self.units.lift;
+            for row in 0..count {
+                jacobian[(row, column)] = by_contacts[(row, column)] * unit;
+            }
+        }
+        if let Some(pinned) = self.pinned {
+            jacobian[(count, 2 * pinned.contact)] = 1.0;
+        }
+        for column in count..unknowns.len() {
+            let moved = |step: f64| {
+                let mut moved = unknowns.clone();
+                moved[column] += step;
+                self.residual(&moved)
+            };
+            // At the edge of what the model allows the difference is one-sided.
+            let derivative = match (moved(DIFFERENCE), moved(-DIFFERENCE)) {
+                (Ok(ahead), Ok(behind)) => (ahead - behind) / (2.0 * DIFFERENCE),
+                (Ok(ahead), Err(_)) => (ahead - self.residual(unknowns)?) / DIFFERENCE,
+                (Err(_), Ok(behind)) => (self.residual(unknowns)? - behind) / DIFFERENCE,
+                (Err(error), Err(_)) => return Err(error),
+            };
+            jacobian.set_column(column, &derivative);
+        }
+        Ok(jacobian)
+    }
+}

@@ -1,0 +1,118 @@
+//! How a branch goes on beyond a corner or a graze: the cycle there, and the direction that leads away from it.
+
+use nalgebra::DVector;
+
+use super::problem::Problem;
+use super::{gap, special::Kind};
+use crate::orbit::curve::{NoPoint, first_tangent};
+use crate::orbit::{Contact, Cycle, FamilyError};
+use crate::simulate::Machine;
+
+/// What an orbit leaves its cycle by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Exit {
+    /// A contact goes past the end of its segment, or the start.
+    Corner { contact: usize, past_end: bool },
+    /// A contact is left without relative velocity.
+    Tangent { contact: usize },
+    /// The flight from a contact touches the cam at an angle turned, rad.
+    Touch { contact: usize, turned: f64 },
+}
+
+/// What the exit is called, on a cam whose corner there has this order.
+pub(super) fn kind(exit: Exit, cycle: &Cycle, machine: &Machine, order: usize) -> Kind {
+    let count = cycle.contacts.len();
+    match exit {
+        Exit::Corner { contact, past_end } => {
+            let segment = cycle.contacts[contact].segment;
+            let next = (segment + 1) % machine.cam().segments().len();
+            Kind::Corner { contact, segment: if past_end { next } else { segment }, jump_order: order }
+        }
+        Exit::Tangent { .. } => Kind::Graze { before: count, after: count - 1 },
+        Exit::Touch { .. } => Kind::Graze { before: count, after: count + 1 },
+    }
+}
+
+/// The cycle on the other side of `exit`, at the same angles; `None` where no impact would be left.
+pub(super) fn beyond(exit: Exit, cycle: &Cycle, machine: &Machine) -> Option<Cycle> {
+    let segments = machine.cam().segments();
+    let mut beyond = cycle.clone();
+    match exit {
+        Exit::Corner { contact, past_end } => {
+            let contact = &mut beyond.contacts[contact];
+            let (last, turn) = (segments.len() - 1, std::f64::consts::TAU);
+            match (past_end, contact.segment) {
+                (true, segment) if segment == last => {
+                    (contact.segment, contact.cam_angle) = (0, contact.cam_angle - turn);
+                    contact.revolution += 1;
+                }
+                (true, _) => contact.segment += 1,
+                (false, 0) => {
+                    (contact.segment, contact.cam_angle) = (last, contact.cam_angle + turn);
+                    contact.revolution -= 1;
+                }
+                (false, _) => contact.segment -= 1,
+            }
+        }
+        Exit::Tangent { contact } => {
+            beyond.contacts.remove(contact);
+        }
+        Exit::Touch { contact, turned } => {
+            let from = &cycle.contacts[contact];
+            let angle = from.cam_angle + turned;
+            let turns = (angle / std::f64::consts::TAU).floor();
+            let cam_angle = angle - turns * std::f64::consts::TAU;
+            let segment = machine.cam().segment_at(cam_angle.clamp(0.0, std::f64::consts::TAU));
+            let slope = segments[segment].law.lift(cam_angle).slope;
+            let revolution = from.revolution + turns as i64;
+            let velocity_before = machine.angular_velocity() * slope;
+            beyond.contacts.insert(contact + 1, Contact { revolution, segment, cam_angle, velocity_before });
+        }
+    }
+    (!beyond.contacts.is_empty()).then_some(beyond)
+}
+
+/// Where the contact that `exit` is about stands in the cycle beyond, if it is in it.
+fn moved_contact(exit: Exit) -> Option<usize> {
+    match exit {
+        Exit::Corner { contact, .. } => Some(contact),
+        Exit::Touch { contact, .. } => Some(contact + 1),
+        Exit::Tangent { .. } => None,
+    }
+}
+
+/// The unit direction in which the solutions of `problem`, the cycle beyond `exit`, lead away from it; `from` is the cycle
+/// before.
+pub(super) fn direction(
+    exit: Exit,
+    from: &Cycle,
+    problem: &Problem<'_>,
+    unknowns: &DVector<f64>,
+) -> Result<DVector<f64>, NoPoint<FamilyError>> {
+    /// A small step, to see in which direction the orbit leaves.
+    const TRIAL: f64 = 1e-6;
+    let tangent = first_tangent(problem, unknowns)?;
+    let measure = |step: f64| -> Result<f64, NoPoint<FamilyError>> {
+        let (cycle, machine, _) = problem.unpack(&(unknowns + &tangent * step))?;
+        Ok(match exit {
+            Exit::Corner { contact, past_end } => {
+                let angle = cycle.contacts[contact].cam_angle;
+                if past_end { angle } else { -angle }
+            }
+            // An impact needs an approach, a flight a gap.
+            Exit::Touch { .. } => moved_contact(exit).map_or(f64::NAN, |contact| cycle.approach(&machine, contact)),
+            Exit::Tangent { contact } => {
+                let count = from.contacts.len();
+                let before = (contact + count - 1) % count;
+                // In the cycle without the contact the one before it has this index.
+                let index = if contact == 0 { count - 2 } else { before };
+                gap::least(&cycle, &machine, index, from.turn(before)).map_or(f64::NAN, |(gap, _)| gap)
+            }
+        })
+    };
+    let (ahead, behind) = (measure(TRIAL)?, measure(-TRIAL)?);
+    if !(ahead - behind).is_finite() || ahead == behind {
+        return Err(NoPoint::NotClosed);
+    }
+    Ok(if ahead > behind { tangent } else { -tangent })
+}

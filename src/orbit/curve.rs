@@ -1,0 +1,115 @@
+//! Curves of solutions: n - 1 equations in n unknowns, followed by pseudo-arclength (Keller 1977).
+//!
+//! From a point u with unit tangent t, the next one solves the equations together with `t (u' - u) = h`, which has one
+//! solution nearby even where the curve folds over in the parameter.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::tolerance;
+
+/// Equations whose solutions form a curve; unknowns are in units in which their changes are of one size.
+pub trait Equations {
+    /// Why they cannot be evaluated somewhere.
+    type Error;
+
+    /// What n - 1 equations are off by at n unknowns.
+    fn residual(&self, unknowns: &DVector<f64>) -> Result<DVector<f64>, Self::Error>;
+
+    /// Its derivative, (n - 1) x n.
+    fn jacobian(&self, unknowns: &DVector<f64>) -> Result<DMatrix<f64>, Self::Error>;
+}
+
+/// Why there is no next point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NoPoint<E> {
+    /// The equations cannot be evaluated.
+    Outside(E),
+    /// Newton's method does not settle.
+    NotClosed,
+}
+
+impl<E> From<E> for NoPoint<E> {
+    fn from(error: E) -> Self {
+        Self::Outside(error)
+    }
+}
+
+/// A point of the curve, its unit tangent, and what Newton's method took to get there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CurvePoint {
+    /// The unknowns.
+    pub unknowns: DVector<f64>,
+    /// The direction in which the curve goes on.
+    pub tangent: DVector<f64>,
+    /// Steps of Newton's method.
+    pub steps: usize,
+}
+
+/// The unit tangent at `unknowns` that goes on along `along`.
+pub fn tangent<E: Equations>(
+    equations: &E,
+    unknowns: &DVector<f64>,
+    along: &DVector<f64>,
+) -> Result<DVector<f64>, NoPoint<E::Error>> {
+    let jacobian = equations.jacobian(unknowns)?;
+    // [J; along] t = (0, 1): the tangent, as long as it is not across `along`.
+    let count = unknowns.len();
+    let right = DVector::from_fn(count, |row, _| if row + 1 == count { 1.0 } else { 0.0 });
+    let solved = bordered(jacobian, along).lu().solve(&right).ok_or(NoPoint::NotClosed)?;
+    let length = solved.norm();
+    if length.is_finite() && length > 0.0 { Ok(solved / length) } else { Err(NoPoint::NotClosed) }
+}
+
+/// A tangent at `unknowns` where none is known, of either sign.
+pub fn first_tangent<E: Equations>(equations: &E, unknowns: &DVector<f64>) -> Result<DVector<f64>, NoPoint<E::Error>> {
+    let jacobian = equations.jacobian(unknowns)?;
+    let count = unknowns.len();
+    // The direction that the equations see least; a row of zeros makes the matrix square.
+    let square = jacobian.insert_row(count - 1, 0.0);
+    let svd = square.svd(false, true);
+    let rows = svd.v_t.ok_or(NoPoint::NotClosed)?;
+    let least =
+        svd.singular_values.iter().enumerate().min_by(|one, two| one.1.total_cmp(two.1)).map(|(index, _)| index);
+    let direction = rows.row(least.unwrap_or(count - 1)).transpose();
+    if direction.iter().all(|entry| entry.is_finite()) { Ok(direction) } else { Err(NoPoint::NotClosed) }
+}
+
+/// The point of the curve in the plane across `tangent` at a distance `step` from `from`.
+pub fn step<E: Equations>(
+    equations: &E,
+    from: &DVector<f64>,
+    along: &DVector<f64>,
+    step: f64,
+) -> Result<CurvePoint, NoPoint<E::Error>> {
+    /// A step that needs more is too long.
+    const STEPS: usize = 12;
+    let mut unknowns = from + along * step;
+    let mut last = f64::INFINITY;
+    for steps in 1..=STEPS {
+        let residual = equations.residual(&unknowns)?;
+        let off_plane = along.dot(&(&unknowns - from)) - step;
+        let right = -residual.push(off_plane);
+        let correction =
+            bordered(equations.jacobian(&unknowns)?, along).lu().solve(&right).ok_or(NoPoint::NotClosed)?;
+        let length = correction.norm();
+        // Away from the solution, or twice as far as the step itself.
+        if !(length < 2.0 * last.min(step.abs().max(tolerance::CYCLE_CLOSED.value) * 4.0)) {
+            return Err(NoPoint::NotClosed);
+        }
+        unknowns += correction;
+        // The next correction would be of the size of this one's square.
+        if length <= tolerance::CYCLE_CLOSED.value {
+            let tangent = tangent(equations, &unknowns, along)?;
+            return Ok(CurvePoint { unknowns, tangent, steps });
+        }
+        last = length;
+    }
+    Err(NoPoint::NotClosed)
+}
+
+fn bordered(jacobian: DMatrix<f64>, row: &DVector<f64>) -> DMatrix<f64> {
+    let last = jacobian.nrows();
+    let mut square = jacobian.insert_row(last, 0.0);
+    square.set_row(last, &row.transpose());
+    square
+}
