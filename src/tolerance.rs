@@ -76,6 +76,9 @@ table! {
     /// How closely a point is located where sticking begins or ends on a branch.
     SPECIAL_POINT = 1e-14, "of the range of the parameter: ten digits of its value are asked for, and each one more costs three \
         simulated periods";
+    /// How far a minimum of the gap may move when it is found once more by its slope.
+    SAME_MINIMUM = 1e-3, "of a four-hundredth of the flight: half the digits of an angle are known before, and a step to \
+        another minimum is as long as the whole";
     /// How nearly a run must repeat for Newton's method to be tried on it.
     NEARLY_REPEATS = 1e-2, "of the cam's lift: a guess, that Newton's method and one simulated period confirm or refute";
     /// How far from the corner the impact of a located orbit may be simulated, rad.

@@ -2,7 +2,9 @@
 
 mod cam;
 mod claims;
+mod continuation;
 mod diagram;
+mod orbit;
 mod picture;
 mod progress;
 mod simulate;
@@ -42,6 +44,8 @@ enum Command {
     Cam(cam::Arguments),
     Simulate(simulate::Arguments),
     Diagram(diagram::Arguments),
+    Orbit(orbit::Arguments),
+    Continue(continuation::Arguments),
 }
 
 /// Why a command has no result.
@@ -112,6 +116,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         }
         Command::Simulate(arguments) => simulate::run(arguments, out),
         Command::Diagram(arguments) => diagram::run(arguments, out),
+        Command::Orbit(arguments) => print(orbit::run(arguments), out),
+        Command::Continue(arguments) => continuation::run(arguments, out, err),
     };
     result.unwrap_or_else(|error| {
         let _ = writeln!(err, "error: {error}");

@@ -71,7 +71,7 @@ pub(super) fn speeds(text: &str) -> Result<Speeds, String> {
     }
 }
 
-fn state(text: &str) -> Result<State, String> {
+pub(super) fn state(text: &str) -> Result<State, String> {
     let Some((position, velocity)) = text.split_once(',') else {
         return Err("must be Q,V: a position and a velocity".into());
     };
