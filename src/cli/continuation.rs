@@ -55,7 +55,7 @@ pub(super) struct Arguments {
 }
 
 /// `NAME=LO:HI`.
-fn parameter(text: &str) -> Result<(String, [f64; 2]), String> {
+pub(super) fn parameter(text: &str) -> Result<(String, [f64; 2]), String> {
     let parts = text.split_once('=').and_then(|(name, range)| Some((name, range.split_once(':')?)));
     let Some((name, (low, high))) = parts else {
         return Err("must be NAME=LO:HI: what changes, and from where to where".into());

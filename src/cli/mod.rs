@@ -3,6 +3,7 @@
 mod cam;
 mod claims;
 mod continuation;
+mod curve;
 mod diagram;
 mod orbit;
 mod picture;
@@ -46,6 +47,7 @@ enum Command {
     Diagram(diagram::Arguments),
     Orbit(orbit::Arguments),
     Continue(continuation::Arguments),
+    Curve(curve::Arguments),
 }
 
 /// Why a command has no result.
@@ -117,6 +119,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         Command::Simulate(arguments) => simulate::run(arguments, out),
         Command::Diagram(arguments) => diagram::run(arguments, out),
         Command::Orbit(arguments) => print(orbit::run(arguments), out),
+        Command::Curve(arguments) => curve::run(arguments, out, err),
         Command::Continue(arguments) => continuation::run(arguments, out, err),
     };
     result.unwrap_or_else(|error| {

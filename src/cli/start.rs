@@ -54,6 +54,13 @@ pub(super) fn rpm(text: &str) -> Result<f64, String> {
     if number <= Speeds::FASTEST { Ok(number) } else { Err(format!("must be {:e} or less", Speeds::FASTEST)) }
 }
 
+/// `LO:HI`, speeds.
+pub(super) fn range(text: &str) -> Result<[f64; 2], String> {
+    let (low, high) = text.split_once(':').ok_or("must be LO:HI: lowest speed, highest speed")?;
+    let (low, high) = (rpm(low)?, rpm(high)?);
+    if low < high { Ok([low, high]) } else { Err(format!("the highest speed, {high}, is not above the lowest, {low}")) }
+}
+
 /// `LO:HI:N`.
 pub(super) fn speeds(text: &str) -> Result<Speeds, String> {
     let parts: Vec<&str> = text.split(':').collect();

@@ -11,7 +11,7 @@ pub const COLUMNS: &str = "rpm,parameter,value,revolutions,impacts,cam_angle_rad
 /// Appends one orbit of a branch: of its impacts the first, where the state is that right after it; of an orbit without
 /// any, the state at angle 0.
 pub fn line(lines: &mut String, parameter: &str, index: usize, point: &BranchPoint) {
-    let BranchPoint { rpm, value, orbit, special } = point;
+    let BranchPoint { rpm, value, orbit, special, .. } = point;
     let impacts = orbit.impacts().count();
     let (angle, position, velocity) =
         orbit.impacts().next().map_or((0.0, orbit.state.position, orbit.state.velocity), |impact| {
@@ -59,6 +59,10 @@ pub fn account(branch: &Branch, parameter: &str, index: usize) -> Result<String,
                 format!("corner impact: impact {} at {angle:.4} deg, jump of order {jump_order}", contact + 1)
             }
             Kind::Graze { before, after } => format!("graze: from {before} to {after} impacts"),
+            Kind::Type { after_corner, multiplier } => {
+                let side = if *after_corner { "after" } else { "before" };
+                format!("a multiplier with the law {side} the corner is {multiplier}")
+            }
             Kind::Chatter => "chatter: the follower ceases to stick to the cam".into(),
             Kind::Detachment => "detachment: the follower leaves the cam for the first time".into(),
         };

@@ -5,6 +5,7 @@ pub mod branch;
 pub mod cam;
 pub mod claims;
 pub mod csv;
+pub mod curve;
 pub mod document;
 pub mod figure;
 pub mod figures;

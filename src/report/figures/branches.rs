@@ -36,6 +36,8 @@ fn mark(kind: &Kind) -> usize {
         Kind::Flip => 2,
         Kind::Graze { .. } => 3,
         Kind::Chatter | Kind::Detachment => 4,
+        // Of another figure.
+        Kind::Type { .. } => MARKED.len(),
     }
 }
 
