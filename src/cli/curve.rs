@@ -10,6 +10,7 @@ use crate::model::Model;
 use crate::orbit::branch::{Branch, BranchPoint, Following, Kind, Special, corner_impacts, survey};
 use crate::orbit::{Parameter, Search};
 use crate::report::curve::{self, AtCorner};
+use crate::report::figure::layout::widened;
 use crate::report::figures::curve_figure;
 use crate::report::file::Output;
 
@@ -107,7 +108,8 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write, err: &mut dyn Writ
     if let Some(canvas) = canvas {
         let title = format!("{}: corner impacts against {}", model.name, parameter.name());
         let speeds = curves.iter().flat_map(|(found, _)| &found.points).map(|point| point.rpm);
-        let shown = speeds.fold(arguments.rpm, |[low, high], rpm| [low.min(rpm), high.max(rpm)]);
+        let extent = speeds.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], rpm| [low.min(rpm), high.max(rpm)]);
+        let shown = if extent[0] < extent[1] { widened(extent, 0.04) } else { arguments.rpm };
         let figure = curve_figure(&title, (parameter.name(), *range), shown, &curves);
         super::commit(vec![canvas.draw(&figure)?])?;
     }

@@ -9,6 +9,7 @@ mod orbit;
 mod picture;
 mod progress;
 mod simulate;
+mod speeds;
 mod start;
 mod verify;
 
@@ -48,6 +49,7 @@ enum Command {
     Orbit(orbit::Arguments),
     Continue(continuation::Arguments),
     Curve(curve::Arguments),
+    Speeds(speeds::Arguments),
 }
 
 /// Why a command has no result.
@@ -119,6 +121,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         Command::Simulate(arguments) => simulate::run(arguments, out),
         Command::Diagram(arguments) => diagram::run(arguments, out),
         Command::Orbit(arguments) => print(orbit::run(arguments), out),
+        Command::Speeds(arguments) => print(speeds::run(arguments), out),
         Command::Curve(arguments) => curve::run(arguments, out, err),
         Command::Continue(arguments) => continuation::run(arguments, out, err),
     };

@@ -12,6 +12,7 @@ pub mod figures;
 pub mod file;
 pub mod json;
 pub mod orbit;
+pub mod regimes;
 pub mod run;
 pub mod text;
 
@@ -19,4 +20,5 @@ pub use cam::CamDocument;
 pub use claims::ClaimsDocument;
 pub use document::Verification;
 pub use orbit::OrbitDocument;
+pub use regimes::RegimesDocument;
 pub use run::{RunSummary, SweepSummary};
