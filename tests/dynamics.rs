@@ -10,7 +10,7 @@ use approx::{assert_abs_diff_eq, assert_relative_eq};
 use corner_impact::diagram::growth;
 use corner_impact::flight::State;
 use corner_impact::section::StroboscopicMap;
-use corner_impact::simulate::{Event, EventKind, Machine, Motion, angular_velocity};
+use corner_impact::simulate::{Event, EventKind, Machine, Motion, Unobserved, angular_velocity};
 
 /// The corners R, P, Q, Q', P', R' by index.
 const P: usize = 1;
@@ -56,7 +56,7 @@ fn events(machine: &Machine, motion: &mut Motion, revolutions: u64) -> Vec<Event
 /// Goes on without a look.
 fn skip(machine: &Machine, motion: &mut Motion, revolutions: u64) {
     let goal = motion.after(revolutions);
-    let _ = machine.advance(motion, goal, &mut |_: &Event| ControlFlow::Continue(())).unwrap();
+    let _ = machine.advance(motion, goal, &mut Unobserved).unwrap();
 }
 
 /// Whether the next revolutions have one impact each, and end in the same state.
@@ -202,7 +202,7 @@ fn are_there_cascades_of_periods_that_go_up_by_one() {
     let machine = machine(speeds[6]);
     let mut motion = machine.start_on_cam(corner(&machine, P) - 0.05, 0.0).unwrap();
     let goal = motion.next(0.0);
-    let _ = machine.advance(&mut motion, goal, &mut |_: &Event| ControlFlow::Continue(())).unwrap();
+    let _ = machine.advance(&mut motion, goal, &mut Unobserved).unwrap();
     skip(&machine, &mut motion, 3);
     let map = StroboscopicMap { machine, cam_angle: 0.0 };
     let unstable = map.periodic(motion.state, 1).unwrap().unwrap();
