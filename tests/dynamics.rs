@@ -319,6 +319,22 @@ fn does_the_chaotic_motion_ever_forget() {
     );
 }
 
+/// One stick in thousands of revolutions wipes out every deviation; without its revolution the motion is chaotic as ever.
+#[test]
+fn what_does_a_rare_stick_do_to_the_exponent() {
+    let machine = machine(664.0);
+    let mut start = machine.start_on_cam(0.0, 0.0).unwrap();
+    skip(&machine, &mut start, 1);
+    // Turn by turn, as the exponent is computed: chaos makes another motion of other roundings.
+    let mut motion = start;
+    let flies = |_: &u64| kinds(&events(&machine, &mut motion, 1), EventKind::Stick).is_empty();
+    let before = (0..200_000_u64).take_while(flies).count() as u64;
+    assert!(before > 100, "{before}: rare");
+    assert!(growth(&machine, start, before).unwrap() > 0.3);
+    assert_eq!(growth(&machine, start, before + 1).unwrap(), f64::NEG_INFINITY);
+    assert_eq!(growth(&machine, start, 0).unwrap(), 0.0);
+}
+
 /// A multiplier passes -1 at 739.31978 rpm: two impact angles branch off, apart by the root of the distance. The later one
 /// reaches Q at 739.378 rpm, where chaos begins.
 #[test]

@@ -10,7 +10,7 @@ mod start;
 mod verify;
 
 use std::ffi::OsString;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 
 use clap::{Parser, Subcommand};
 
@@ -53,6 +53,8 @@ enum CommandError {
     Report(String),
     #[error("{0}")]
     Write(String),
+    #[error("standard output: nobody reads it any more")]
+    Unread,
 }
 
 impl CommandError {
@@ -65,15 +67,21 @@ impl CommandError {
     }
 
     fn file(error: FileError) -> Self {
-        Self::Write(error.to_string())
+        if error.is_unread() { Self::Unread } else { Self::Write(error.to_string()) }
     }
 
     fn write(error: std::io::Error) -> Self {
-        Self::Write(error.to_string())
+        match error.downcast::<FileError>() {
+            Ok(error) => Self::file(error),
+            Err(error) => Self::Write(error.to_string()),
+        }
     }
 
     fn standard(error: std::io::Error) -> Self {
-        Self::Write(format!("standard output: {error}"))
+        match error.kind() {
+            ErrorKind::BrokenPipe => Self::Unread,
+            _ => Self::Write(format!("standard output: {error}")),
+        }
     }
 }
 
@@ -114,7 +122,10 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         Command::Diagram(arguments) => diagram::run(arguments, out),
     };
     result.unwrap_or_else(|error| {
-        let _ = writeln!(err, "error: {error}");
+        // Whoever closes a pipe early, as `head` does, wants no more, nor a complaint.
+        if !matches!(error, CommandError::Unread) {
+            let _ = writeln!(err, "error: {error}");
+        }
         Exit::BadInput
     })
 }
