@@ -128,3 +128,26 @@ fn a_flight_of_two_peaks_is_not_taken_for_one() {
     assert_abs_diff_eq!(last.turned_since(angle) - 2.0 * TAU, phase / 1.5, epsilon = 1e-9);
     assert_eq!(last.position, 1.0);
 }
+
+/// Each turn the impact is a little later, until it is past a corner: there the other law holds, which bends the other way.
+#[test]
+fn an_impact_past_a_corner_is_on_the_next_segment() {
+    let cam = "law = \"program\"\nbase = 1.0\n\
+        [[cam.segment]]\nmotion = \"parabolic\"\nspan_deg = 90.0\nrise = 0.1\n\
+        [[cam.segment]]\nmotion = \"parabolic\"\nspan_deg = 90.0\nrise = -0.1\n\
+        [[cam.segment]]\nmotion = \"dwell\"\nspan_deg = 180.0\nrise = 0.0";
+    // A half swing is shorter than a turn by 6e-8: some 4e-7 rad a turn, less what the cam's slope takes off.
+    let machine = machine(0.5 * (1.0 - 6e-8), 0.0, 1.05, 0.9, cam);
+    let corner =
+        machine.cam().corners().iter().map(|corner| corner.angle).find(|angle| (angle - PI / 4.0).abs() < 1e-9);
+    let corner = corner.unwrap();
+    let found = impacts(&machine, machine.start_on_cam(corner - 1e-6, 2.0).unwrap(), 8);
+    let crossing = found.windows(2).position(|two| two[0].cam_angle < corner && two[1].cam_angle > corner).unwrap();
+    assert!(crossing >= 1, "two impacts before, for the motion to be settled: {found:?}");
+    for (turn, impact) in found.iter().enumerate() {
+        assert_eq!(impact.revolution, turn as u64 + 1);
+        let lift = machine.cam().lift(impact.cam_angle);
+        assert_relative_eq!(impact.cam_velocity, OMEGA * lift.slope, max_relative = 1e-14);
+        assert_eq!(impact.segment, machine.cam().segment_at(impact.cam_angle));
+    }
+}
