@@ -14,7 +14,7 @@ mod start;
 mod verify;
 
 use std::ffi::OsString;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 
 use clap::{Parser, Subcommand};
 
@@ -61,6 +61,8 @@ enum CommandError {
     Report(String),
     #[error("{0}")]
     Write(String),
+    #[error("standard output: nobody reads it any more")]
+    Unread,
 }
 
 impl CommandError {
@@ -73,15 +75,21 @@ impl CommandError {
     }
 
     fn file(error: FileError) -> Self {
-        Self::Write(error.to_string())
+        if error.is_unread() { Self::Unread } else { Self::Write(error.to_string()) }
     }
 
     fn write(error: std::io::Error) -> Self {
-        Self::Write(error.to_string())
+        match error.downcast::<FileError>() {
+            Ok(error) => Self::file(error),
+            Err(error) => Self::Write(error.to_string()),
+        }
     }
 
     fn standard(error: std::io::Error) -> Self {
-        Self::Write(format!("standard output: {error}"))
+        match error.kind() {
+            ErrorKind::BrokenPipe => Self::Unread,
+            _ => Self::Write(format!("standard output: {error}")),
+        }
     }
 }
 
@@ -126,7 +134,10 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         Command::Continue(arguments) => continuation::run(arguments, out, err),
     };
     result.unwrap_or_else(|error| {
-        let _ = writeln!(err, "error: {error}");
+        // Whoever closes a pipe early, as `head` does, wants no more, nor a complaint.
+        if !matches!(error, CommandError::Unread) {
+            let _ = writeln!(err, "error: {error}");
+        }
         Exit::BadInput
     })
 }

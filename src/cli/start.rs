@@ -48,6 +48,11 @@ pub(super) fn not_negative(text: &str) -> Result<f64, String> {
     if number >= 0.0 { Ok(number) } else { Err("must be a finite number, 0 or more".into()) }
 }
 
+/// How many of something.
+pub(super) fn count(text: &str) -> Result<u64, String> {
+    text.trim().parse().map_err(|_| format!("must be a whole number from 0 to {}, written in digits", u64::MAX))
+}
+
 /// A speed that a simulation can turn at.
 pub(super) fn rpm(text: &str) -> Result<f64, String> {
     let number = positive(text)?;
