@@ -127,7 +127,9 @@ pub(super) fn order_of_the_jump(_: &Context<'_>) -> Found {
         let exponents = velocities(order).map(|row| row.measured.exponent.value);
         exponents.fold(expected, |furthest, found| if off(found) > off(furthest) { found } else { furthest })
     };
-    let parts: Vec<_> = (1..=4).map(|order| format!("{:.3} for order {order}", furthest(order).abs())).collect();
+    // Rounding decides the sign of a zero, and adding 0 takes it off.
+    let shown = |exponent: f64| (exponent * 1e3).round() / 1e3 + 0.0;
+    let parts: Vec<_> = (1..=4).map(|order| format!("{:.3} for order {order}", shown(furthest(order)))).collect();
     let rows = compared.iter().map(|one| one.rows.len()).sum::<usize>();
     let agree = compared.iter().filter(|one| one.agrees()).count();
     let ways = [Hits::Once, Hits::NeverAfter, Hits::TwiceBefore];

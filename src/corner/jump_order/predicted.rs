@@ -39,16 +39,6 @@ pub struct Difference {
     pub velocity: PowerLaw,
 }
 
-/// The kind of map that a jump of each order makes.
-pub fn kind(order: usize) -> &'static str {
-    match order {
-        1 => "a gap",
-        2 => "continuous, piecewise linear",
-        3 => "a continuous derivative, a jump in its second",
-        _ => "continuous derivatives below the order less one",
-    }
-}
-
 /// J, m/s^j: what the j-th derivative of the lift in time jumps by.
 pub fn jump(approach: &Approach) -> f64 {
     approach.corner.jump * approach.angular_velocity.powi(approach.corner.jump_order as i32)
