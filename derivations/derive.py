@@ -18,6 +18,7 @@ import closed_forms
 import corner_map
 import flight
 import impact
+import jump_order
 import normal_form
 import points
 import printed_equations
@@ -54,6 +55,7 @@ def run():
     stage("impact", impact.proofs())
     stage("corner map", corner_map.proofs())
     stage("normal form", normal_form.proofs())
+    stage("jump order", jump_order.proofs())
     verdicts, results = printed_equations.examined()
     stage("printed", results)
     stage("recovered", recover.proofs())
