@@ -270,8 +270,59 @@ fn at_the_corner_impact_itself_the_map_shrinks_or_grows() {
         outcome.fates.iter().map(|fate| kind(&fate.end)).collect::<Vec<_>>()
     };
     assert_eq!(fate([0.5, -0.4], [0.3, 0.5]), ["corner"]);
-    assert_eq!(fate([1.99, 0.4], [0.991, 0.5]), ["corner"], "slowly");
+    assert_eq!(fate([1.899, 0.4], [0.9, 0.5]), ["corner"], "slowly, along L");
     assert_eq!(fate([-2.0, -2.0], [0.5, 0.5]), ["escapes"]);
     // A saddle on L only: what lies on the other side of its stable direction comes to R and may come back.
     assert!(fate([1.5, 0.2], [0.2, 0.1]).contains(&"escapes".to_owned()));
+}
+
+/// A motion that is said to follow a word for ever does so as far as it is run, from any point.
+#[test]
+fn what_follows_a_word_for_ever_follows_it() {
+    let (mut said, mut silent) = (0, 0);
+    for (traces, determinants, text) in [
+        ([2.02, 0.5], [1.0195, 0.3], "L"),
+        ([2.3, 0.5], [1.2, 0.3], "L"),
+        ([0.4, 2.05], [0.3, 1.048], "R"),
+        ([-1.5, -1.9], [0.3, 0.4], "LR"),
+        ([0.5, -3.4], [1.3, -1.2], "LR"),
+    ] {
+        let map = LocalMap::normal_form(traces, determinants);
+        let word = word(text);
+        for (x, y) in grid([-41.3, 39.7], 82).flat_map(|x| grid([-60.1, 58.9], 60).map(move |y| (x, y))) {
+            for mu in [1.0, -1.0] {
+                let mut point = Vector2::new(x, y);
+                let follows = (0..600).all(|step| {
+                    let side = map.side(point, mu);
+                    point = map.apply(point, mu);
+                    side == word.sides()[step % word.sides().len()]
+                });
+                match map.follows_for_ever(&word, Vector2::new(x, y), mu) {
+                    Some(_) => {
+                        assert!(follows, "{text} from {x} {y} at mu = {mu}, traces {traces:?}");
+                        said += 1;
+                    }
+                    None => silent += usize::from(follows),
+                }
+            }
+        }
+    }
+    // Sufficient, not necessary; and not so narrow that it says nothing.
+    assert!(said > 2000 && silent < said, "{said} {silent}");
+}
+
+/// 1/4 is a double and the unstable fixed point of R: rounding alone would keep the motion there.
+#[test]
+fn a_motion_does_not_rest_on_an_unstable_orbit() {
+    let map = LocalMap::of_the_line([0.25, -3.0]);
+    assert_eq!(map.apply(Vector2::new(0.25, 0.0), 1.0)[0], 0.25);
+    assert_eq!(kind(&map.end(Vector2::new(0.25, 0.0), 1.0)), "LR");
+}
+
+/// A thousand steps on L towards a stable fixed point that lies on the other side are no settled motion.
+#[test]
+fn a_motion_does_not_settle_on_an_orbit_of_the_other_side() {
+    let map = LocalMap::of_the_line([0.999, 0.5]);
+    let end = map.end(Vector2::new(-1e6, 0.0), 1.0);
+    assert_eq!(kind(&end), "R", "{end:?}");
 }

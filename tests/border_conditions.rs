@@ -106,6 +106,29 @@ fn each_condition_fails_where_it_must_and_alone() {
     assert!(!named(&all, "det [e; e A-]").holds());
 }
 
+/// The values are those of their formulas: over `det(I - A)` of a side, beta is where that side's fixed point lies.
+#[test]
+fn values_are_what_the_names_say() {
+    let (map, border) = planted([0.4, -1.6], [0.3, 0.2], [1.0, 1.0]);
+    let all = conditions(&LocalMap::new(&map, border));
+    let value = |name: &str| named(&all, name).value;
+    for (side, name) in [(&map.minus, "det(I - A-)"), (&map.plus, "det(I - A+)")] {
+        let whole = Matrix2::identity() - side.a;
+        let point = whole.lu().solve(&side.b).unwrap();
+        assert_relative_eq!(value(name), whole.determinant(), max_relative = 1e-12);
+        let height = (border.0 * point)[0] + border.1;
+        assert_relative_eq!(value("e adj(I - A-) B- + f det(I - A-)") / value(name), height, max_relative = 1e-12);
+    }
+    let (e, a) = (border.0, map.minus.a);
+    assert_relative_eq!(value("det [e; e A-]"), Matrix2::from_rows(&[e, e * a]).determinant(), max_relative = 1e-12);
+    let both = (Matrix2::identity() - map.plus.a * map.minus.a).determinant();
+    assert_relative_eq!(value("det(I - A+ A-)"), both, max_relative = 1e-12);
+    assert_relative_eq!(value("det(I + A+)"), (Matrix2::identity() + map.plus.a).determinant(), max_relative = 1e-12);
+    // Traces 0.4 and -1.6 with determinants 0.3 and 0.2: a pair of modulus sqrt 0.3; -1.463 and -0.137.
+    assert_relative_eq!(value("|eigenvalue| - 1 of A-"), 0.3_f64.sqrt() - 1.0, max_relative = 1e-12);
+    assert_relative_eq!(value("|eigenvalue| - 1 of A+"), 0.8 + 0.44_f64.sqrt() - 1.0, max_relative = 1e-12);
+}
+
 /// A distance is no matter of metres or millimetres.
 #[test]
 fn distances_from_failing_have_no_units() {

@@ -6,10 +6,11 @@ mod common;
 use approx::assert_relative_eq;
 use corner_impact::border_collision::local_map::PeriodicOrbit;
 use corner_impact::border_collision::long_run::{End, Escape, Exponent};
-use corner_impact::border_collision::validity::{Compared, Ends};
+use corner_impact::border_collision::validity::{Compared, Ends, ranges};
 use corner_impact::border_collision::word::Word;
-use corner_impact::border_collision::{Degenerate, Refusal};
+use corner_impact::border_collision::{Degenerate, LocalMap, Refusal};
 use corner_impact::cam::Side;
+use corner_impact::flight::State;
 use corner_impact::report::{Verification, text};
 use corner_impact::verify::{External, Findings, verify};
 use nalgebra::{Matrix2, Vector2};
@@ -178,6 +179,28 @@ fn sticking_is_refused_with_its_reason() {
     assert!(found.classification.is_none() && found.outcomes.is_empty() && found.ranges.is_empty());
     let page = text::render(&Verification::new(&plastic, &found)).unwrap();
     assert!(page.contains("verdict             none") && page.contains("sticking: next to the corner"), "{page}");
+}
+
+/// Where the machine does not do what the orbit does, there is no range and the reason is said: from below the cam, and from
+/// so little above it that there are other impacts.
+#[test]
+fn another_motion_ends_the_range_at_once() {
+    let model = common::osorio();
+    let found = paper();
+    let cam = common::cam(&model);
+    let map = LocalMap::new(&found.closed_form().map, found.border);
+    let lift = cam.lift(found.at.section_angle()).value;
+    for position in [lift - 0.1, lift + 1e-3] {
+        let mut at = found.at.clone();
+        at.state = State { position, velocity: 0.0 };
+        for range in ranges(&model, &cam, &at, &map).iter().filter(|range| range.compared == Compared::Revolution) {
+            assert_eq!(
+                (range.ends, range.period_change, range.difference),
+                (Ends::OtherMotion, 0.0, None),
+                "{position}"
+            );
+        }
+    }
 }
 
 /// A document without a verdict says why, and which condition failed.

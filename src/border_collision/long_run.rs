@@ -97,13 +97,13 @@ impl LocalMap {
                 x = map.a * x + map.b * mu;
                 tangent.carry(&map.a);
                 if escaped(x) {
-                    return End::Escapes(self.follows_for_ever(&sides, x, mu).unwrap_or(Escape::Grown));
+                    return End::Escapes(self.escape(&sides, x, mu).unwrap_or(Escape::Grown));
                 }
             }
             if mu == 0.0 && size(x) < tolerance::ESCAPED.value {
                 return End::Corner;
             }
-            if let Some(escape) = self.follows_for_ever(&sides, x, mu) {
+            if let Some(escape) = self.escape(&sides, x, mu) {
                 return End::Escapes(escape);
             }
             // At mu = 0 the only orbit is the corner impact itself, which is on no side.
@@ -126,18 +126,15 @@ impl LocalMap {
         if known && exponent.value > 0.0 { End::Chaotic(exponent) } else { End::Undecided(exponent) }
     }
 
-    /// Whether a motion that has repeated a word and is at `x` now provably goes on with it and grows.
+    /// The factor by which a motion at `x` grows with each repetition of `word`, if it provably repeats it for ever.
     ///
     /// After m repetitions a point is `c + l1^m d1 + l2^m d2` with the word's fixed point c and the parts of x - c along the
-    /// eigenvectors. With l1 > 1 and l1 >= |l2| it stays on the side s = -1, 1 for every m where
-    /// `s e d1 > |e d2| + max(0, -s (e c + f mu))`.
-    fn follows_for_ever(&self, sides: &[Side], x: Vector2<f64>, mu: f64) -> Option<Escape> {
-        // What follows is proved, so that a word seen twice is worth trying.
-        let word = Word::repeated(&sides[sides.len() / 2..], 2)?;
-        let (mut point, mut growth) = (x, 0.0);
-        for by in 0..word.sides().len() {
-            let turned = word.turned(by);
-            let round = self.along(&turned);
+    /// eigenvectors. With l1 > 1 and l1 > |l2| it stays on the side s = -1, 1 for every m where
+    /// `s e d1 > |e d2| + max(0, -s (e c + f mu))`, which is asked of each rotation of the word.
+    pub fn follows_for_ever(&self, word: &Word, x: Vector2<f64>, mu: f64) -> Option<f64> {
+        let (mut point, mut growth) = (x, None);
+        for (by, side) in word.sides().iter().enumerate() {
+            let round = self.along(&word.turned(by));
             let [Eigenvalue { re: l1, im }, Eigenvalue { re: l2, .. }] = round.eigenvalues();
             if !(im == 0.0 && l1 > 1.0 + tolerance::UNIT_EIGENVALUE.value && l1 > l2.abs()) {
                 return None;
@@ -146,16 +143,24 @@ impl LocalMap {
             // d1 = (A_W - l2 I)/(l1 - l2) d
             let deviation = point - center;
             let first = (round.a * deviation - deviation * l2) / (l1 - l2);
-            let (e, sign) = (self.border.0, if word.sides()[by] == Side::Minus { -1.0 } else { 1.0 });
+            let (e, sign) = (self.border.0, if *side == Side::Minus { -1.0 } else { 1.0 });
             let against = (-sign * self.height(center, mu).0).max(0.0);
             if !(sign * (e * first)[0] > (e * (deviation - first))[0].abs() + against) {
                 return None;
             }
-            growth = l1;
-            let map = self.of(word.sides()[by]);
+            growth = Some(l1);
+            let map = self.of(*side);
             point = map.a * point + map.b * mu;
         }
-        Some(Escape::Follows { word: word.least_rotation().0, multiplier: growth })
+        growth
+    }
+
+    /// The escape of a motion that has visited `sides` and is at `x` now, if it provably goes on like that.
+    fn escape(&self, sides: &[Side], x: Vector2<f64>, mu: f64) -> Option<Escape> {
+        // What follows is proved, so that a word seen twice is worth trying.
+        let word = Word::repeated(&sides[sides.len() / 2..], 2)?;
+        let multiplier = self.follows_for_ever(&word, x, mu)?;
+        Some(Escape::Follows { word: word.least_rotation().0, multiplier })
     }
 }
 

@@ -4,7 +4,7 @@
 //! displacement from x* is compared with the one that A and B predict; |dT| grows from almost nothing until they differ by a
 //! tenth of the prediction. Velocities count over the cam's angle, `|(q, v/omega)|`.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 use nalgebra::Vector2;
 
@@ -15,6 +15,7 @@ use crate::corner::CornerImpact;
 use crate::flight::State;
 use crate::model::Model;
 use crate::section::StroboscopicMap;
+use crate::simulate::{Event, EventKind};
 use crate::tolerance;
 
 /// What is compared.
@@ -42,7 +43,7 @@ impl Compared {
 pub enum Ends {
     /// The two differ by a tenth.
     Tenth,
-    /// The real motion is none with one impact on that side any more.
+    /// The real motion is not there any more, or has not one impact.
     OtherMotion,
     /// Nothing, up to half and twice the speed.
     Nothing,
@@ -86,14 +87,14 @@ pub fn ranges(model: &Model, cam: &Cam, at: &CornerImpact, map: &LocalMap) -> Ve
     for sign in [-1.0, 1.0] {
         let side = map.side(Vector2::zeros(), sign);
         let image = map.of(side).b * sign;
-        found.push(machine.range(Compared::Revolution, sign, |dt, _| machine.revolution(dt, image * dt.abs(), side)));
+        found.push(machine.range(Compared::Revolution, sign, |dt, _| machine.revolution(dt, image * dt.abs())));
         for (name, side) in [("L", Side::Minus), ("R", Side::Plus)] {
             let orbit = Word::read(name).and_then(|word| map.orbit(&word, sign)).filter(|orbit| orbit.admissible());
             let Some(point) = orbit.and_then(|orbit| orbit.points.first().copied()) else { continue };
             found.push(machine.range(Compared::FixedPoint(side), sign, |dt, before| {
                 // The real one where it was, moved on as the prediction is.
                 let guess = before.map_or(point * dt.abs(), |(real, at): (Vector2<f64>, f64)| real * (dt / at));
-                machine.fixed_point(dt, point * dt.abs(), guess, side)
+                machine.fixed_point(dt, point * dt.abs(), guess)
             }));
         }
     }
@@ -125,27 +126,23 @@ impl Real<'_> {
         State { position: self.at.state.position + dx[0], velocity: self.at.state.velocity + dx[1] }
     }
 
-    /// The displacement after a revolution from `x* + dx`, if it has one impact and that on `side` of the corner.
-    fn image(&self, map: &StroboscopicMap, dx: Vector2<f64>, side: Side) -> Option<Vector2<f64>> {
+    /// The displacement after a revolution from `x* + dx`, if it has one impact.
+    fn image(&self, map: &StroboscopicMap, dx: Vector2<f64>) -> Option<Vector2<f64>> {
         let back = map.apply(self.displaced(dx)).ok()?;
-        let [impact] = back.events.as_slice() else { return None };
-        let past = impact.turned_since(map.cam_angle) - PI;
-        let found = if past < 0.0 { Side::Minus } else { Side::Plus };
-        // Rounding puts an impact that is on the corner on either side of it.
-        let here = found == side || past.abs() <= tolerance::CORNER_ANGLE.value;
+        let [Event { kind: EventKind::Impact, .. }] = back.events.as_slice() else { return None };
         let State { position, velocity } = back.state;
-        here.then(|| Vector2::new(position - self.at.state.position, velocity - self.at.state.velocity))
+        Some(Vector2::new(position - self.at.state.position, velocity - self.at.state.velocity))
     }
 
-    fn revolution(&self, dt: f64, predicted: Vector2<f64>, side: Side) -> Difference {
-        self.difference(self.image(&self.map(dt), Vector2::zeros(), side)?, predicted)
+    fn revolution(&self, dt: f64, predicted: Vector2<f64>) -> Difference {
+        self.difference(self.image(&self.map(dt), Vector2::zeros())?, predicted)
     }
 
-    fn fixed_point(&self, dt: f64, predicted: Vector2<f64>, guess: Vector2<f64>, side: Side) -> Difference {
+    fn fixed_point(&self, dt: f64, predicted: Vector2<f64>, guess: Vector2<f64>) -> Difference {
         let map = self.map(dt);
         let State { position, velocity } = map.periodic(self.displaced(guess), 1).ok()??.state;
         let real = Vector2::new(position - self.at.state.position, velocity - self.at.state.velocity);
-        self.image(&map, real, side)?;
+        self.image(&map, real)?;
         self.difference(real, predicted)
     }
 
