@@ -131,6 +131,27 @@ fn maps_of_the_line_end_where_the_known_partition_says() {
     }
 }
 
+/// The boundaries of the stable orbits L^{n-1} R, a millionth to either side.
+#[test]
+fn stable_orbits_of_the_line_begin_and_end_where_they_must() {
+    let mut both = 0;
+    for n in 2..=5 {
+        let text = "L".repeat(n - 1) + "R";
+        for a in [0.15_f64, 0.3, 0.45, 0.6] {
+            let power = a.powi(n as i32 - 1);
+            let (exists, stable) = ((1.0 - (1.0 - a.powi(n as i32)) / (1.0 - a)) / power, -1.0 / power);
+            let orbit = |b: f64| LocalMap::of_the_line([a, b]).orbit(&word(&text), 1.0).unwrap();
+            assert!(
+                orbit(exists * (1.0 + 1e-6)).admissible() && !orbit(exists * (1.0 - 1e-6)).admissible(),
+                "{text} {a}"
+            );
+            assert!(orbit(stable * (1.0 - 1e-6)).stable() && !orbit(stable * (1.0 + 1e-6)).stable(), "{text} {a}");
+            both += usize::from(stable < exists);
+        }
+    }
+    assert!(both > 10 && both < 16, "some have a range and some have none: {both}");
+}
+
 /// `x -> a x + 1, b x + 1` with `a = -b/(b^2 - 1)`: 0 goes to 1, b + 1 and then to the fixed point of R, so that the intervals
 /// between these points map onto one another (Markov) and the invariant density is constant on each.
 #[test]
@@ -270,7 +291,7 @@ fn at_the_corner_impact_itself_the_map_shrinks_or_grows() {
         outcome.fates.iter().map(|fate| kind(&fate.end)).collect::<Vec<_>>()
     };
     assert_eq!(fate([0.5, -0.4], [0.3, 0.5]), ["corner"]);
-    assert_eq!(fate([1.899, 0.4], [0.9, 0.5]), ["corner"], "slowly, along L");
+    assert_eq!(fate([1.899, 1.898], [0.9, 0.899]), ["corner"], "slowly, without turning");
     assert_eq!(fate([-2.0, -2.0], [0.5, 0.5]), ["escapes"]);
     // A saddle on L only: what lies on the other side of its stable direction comes to R and may come back.
     assert!(fate([1.5, 0.2], [0.2, 0.1]).contains(&"escapes".to_owned()));

@@ -3,6 +3,9 @@
 
 mod common;
 
+use std::f64::consts::{PI, TAU};
+use std::path::Path;
+
 use approx::assert_relative_eq;
 use corner_impact::border_collision::local_map::PeriodicOrbit;
 use corner_impact::border_collision::long_run::{End, Escape, Exponent};
@@ -10,8 +13,11 @@ use corner_impact::border_collision::validity::{Compared, Ends, ranges};
 use corner_impact::border_collision::word::Word;
 use corner_impact::border_collision::{Degenerate, LocalMap, Refusal};
 use corner_impact::cam::Side;
+use corner_impact::diagram::growth;
 use corner_impact::flight::State;
+use corner_impact::model::Model;
 use corner_impact::report::{Verification, text};
+use corner_impact::section::StroboscopicMap;
 use corner_impact::verify::{External, Findings, verify};
 use nalgebra::{Matrix2, Vector2};
 
@@ -74,7 +80,7 @@ fn the_local_map_is_a_tenth_off_where_its_range_ends() {
     let model = common::osorio();
     let found = paper();
     let (at, map) = (&found.at, found.closed_form().map);
-    let omega = std::f64::consts::TAU / at.period;
+    let omega = TAU / at.period;
     let size = |x: Vector2<f64>| x[0].hypot(x[1] / omega);
     let compared: Vec<_> = found.ranges.iter().map(|range| (range.compared.name(), range.sign)).collect();
     let expected =
@@ -84,7 +90,7 @@ fn the_local_map_is_a_tenth_off_where_its_range_ends() {
         assert_eq!(range.ends, Ends::Tenth, "{range:?}");
         assert_relative_eq!(range.speed_rpm, 60.0 / (at.period + range.period_change), max_relative = 1e-14);
         let off = |dt: f64| {
-            let section = at.map(&model, common::cam(&model), std::f64::consts::TAU / (at.period + dt));
+            let section = section_at(&model, &found, dt);
             let mut state = at.state;
             let predicted = match range.compared {
                 // Faster, the corner passes before the follower is there.
@@ -121,12 +127,21 @@ fn the_local_map_is_a_tenth_off_where_its_range_ends() {
     }
 }
 
+fn read(name: &str) -> Model {
+    common::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("models/{name}.toml")))
+}
+
+/// The machine at a period `dt` from T*.
+fn section_at(model: &Model, found: &Findings, dt: f64) -> StroboscopicMap {
+    found.at.map(model, common::cam(model), TAU / (found.at.period + dt))
+}
+
 /// The sides of the impacts of `count` revolutions after a long run from x*, at a period `dt` from T*; `?` where a revolution
 /// has another number of impacts than one.
 fn real_word(name: &str, dt: f64, count: usize) -> (String, Findings) {
-    let model = common::read(&std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("models/{name}.toml")));
+    let model = read(name);
     let found = verify(&model, External::LeftOut).unwrap();
-    let section = found.at.map(&model, common::cam(&model), std::f64::consts::TAU / (found.at.period + dt));
+    let section = section_at(&model, &found, dt);
     let mut state = found.at.state;
     for _ in 0..20_000 {
         state = section.apply(state).unwrap().state;
@@ -135,7 +150,7 @@ fn real_word(name: &str, dt: f64, count: usize) -> (String, Findings) {
         let back = section.apply(state).unwrap();
         state = back.state;
         match back.events.as_slice() {
-            [impact] if impact.turned_since(section.cam_angle) < std::f64::consts::PI => 'L',
+            [impact] if impact.turned_since(section.cam_angle) < PI => 'L',
             [_] => 'R',
             _ => '?',
         }
@@ -158,16 +173,35 @@ fn the_follower_does_what_the_local_map_predicts_where_it_is_periodic() {
 /// And in chaos: the exponent of the simulated follower's own variational flow is the local map's.
 #[test]
 fn the_follower_does_what_the_local_map_predicts_where_it_is_chaotic() {
-    let (real, found) = real_word("damped-heavy", -1e-9, 4000);
-    let local = exponent(&found.outcomes[0].fates[0].end);
-    assert!(real.chars().all(|letter| letter != '?') && real.contains('L') && real.contains('R'));
-    // An exponent is the mean of a function of the side here: how often each comes, and in which order.
-    let model = common::read(&std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("models/damped-heavy.toml"));
-    let section = found.at.map(&model, common::cam(&model), std::f64::consts::TAU / (found.at.period - 1e-9));
-    let motion = section.machine.start(section.cam_angle, found.at.state).unwrap();
-    let grown = corner_impact::diagram::growth(&section.machine, motion, 40_000).unwrap();
-    // Both are means over about as many turns.
-    assert!((grown - local.value).abs() < 5.0 * 2.0_f64.sqrt() * local.error, "{grown} {local:?}");
+    const DT: f64 = -1e-9;
+    for name in ["damped-heavy", "overdamped"] {
+        let (real, found) = real_word(name, DT, 4000);
+        let local = exponent(&found.outcomes[0].fates[0].end);
+        assert!(real.chars().all(|letter| letter != '?') && real.contains('L') && real.contains('R'), "{name}");
+        let section = section_at(&read(name), &found, DT);
+        let motion = section.machine.start(section.cam_angle, found.at.state).unwrap();
+        let grown = growth(&section.machine, motion, 40_000).unwrap();
+        // Both are means over about as many turns.
+        assert!((grown - local.value).abs() < 5.0 * 2.0_f64.sqrt() * local.error, "{name}: {grown} {local:?}");
+    }
+}
+
+/// Below the paper's speed the follower leaves x* as the local map does, by A-'s eigenvalue above 1 a revolution, and on the
+/// flank's side.
+#[test]
+fn the_follower_leaves_the_papers_corner_impact_as_the_local_map_predicts() {
+    let found = paper();
+    let section = section_at(&common::osorio(), &found, 1e-9);
+    let mut state = found.at.state;
+    let mut steps = Vec::new();
+    // Far enough for the other eigenvalue to be gone, and too near for terms of second order.
+    for _ in 0..200 {
+        let back = section.apply(state).unwrap();
+        assert!(matches!(back.events.as_slice(), [impact] if impact.turned_since(section.cam_angle) < PI));
+        steps.push(back.state.position - state.position);
+        state = back.state;
+    }
+    assert_relative_eq!(steps[199] / steps[198], 1.00514740546535501, max_relative = 1e-5);
 }
 
 /// A follower without restitution sticks to the flank: there is no map of two linear sides, so there is no verdict on it.
@@ -201,6 +235,53 @@ fn another_motion_ends_the_range_at_once() {
             );
         }
     }
+}
+
+/// The document says what was found, in the fields of the contract's `verify` and more.
+#[test]
+fn the_document_carries_the_local_map_unchanged() {
+    let model = read("damped-heavy");
+    let found = verify(&model, External::LeftOut).unwrap();
+    let document = serde_json::to_value(Verification::new(&model, &found)).unwrap();
+    assert!(document["refusal"].is_null());
+    for (entry, condition) in document["conditions"].as_array().unwrap().iter().zip(&found.conditions) {
+        assert_eq!(entry["name"], condition.name);
+        assert_eq!(entry["value"].as_f64().unwrap(), condition.value);
+        assert_eq!(entry["distance"].as_f64().unwrap(), condition.distance);
+        assert_eq!((entry["holds"].as_bool(), entry["decides"].as_str()), (Some(true), Some(condition.decides.name())));
+    }
+    for ((entry, outcome), speeds) in
+        document["local_map"].as_array().unwrap().iter().zip(&found.outcomes).zip(["faster", "slower", "at"])
+    {
+        assert_eq!((entry["speeds"].as_str(), entry["starts"].as_u64()), (Some(speeds), Some(outcome.starts() as u64)));
+        assert_eq!(entry["period_two"].is_null(), outcome.mu == 0.0);
+        assert_eq!(entry["fixed_points"].as_array().unwrap().len(), outcome.fixed_points.len());
+        for (entry, orbit) in entry["periodic_orbits"].as_array().unwrap().iter().zip(&outcome.orbits) {
+            assert_eq!(entry["word"], orbit.word.to_string());
+            assert_eq!(entry["points"][0][1].as_f64().unwrap(), orbit.points[0][1]);
+            assert_eq!(entry["multipliers"][0]["re"].as_f64().unwrap(), orbit.multipliers[0].re);
+            assert_eq!(entry["stable"], orbit.stable());
+        }
+        for (entry, fate) in entry["ends"].as_array().unwrap().iter().zip(&outcome.fates) {
+            assert_eq!(
+                (entry["end"].as_str(), entry["starts"].as_u64()),
+                (Some(fate.end.name()), Some(fate.starts as u64))
+            );
+        }
+    }
+    let chaotic = exponent(&found.outcomes[0].fates[0].end);
+    assert_eq!(document["local_map"][0]["ends"][0]["exponent"].as_f64().unwrap(), chaotic.value);
+    assert_eq!(document["local_map"][0]["ends"][0]["standard_error"].as_f64().unwrap(), chaotic.error);
+    for (entry, range) in document["linear_range"].as_array().unwrap().iter().zip(&found.ranges) {
+        assert_eq!(
+            (entry["compared"].as_str(), entry["ends"].as_str()),
+            (Some(range.compared.name()), Some(range.ends.name()))
+        );
+        assert_eq!(entry["speeds"], if range.sign < 0.0 { "faster" } else { "slower" });
+        assert_eq!(entry["period_change_s"].as_f64().unwrap(), range.period_change);
+        assert_eq!(entry["difference"].as_f64(), range.difference);
+    }
+    assert_eq!(document["linear_range"].as_array().unwrap().len(), found.ranges.len());
 }
 
 /// A document without a verdict says why, and which condition failed.

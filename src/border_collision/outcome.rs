@@ -18,6 +18,8 @@ pub struct LocalOutcome {
     pub mu: f64,
     /// The fixed points of both sides, admissible or not; none where mu is 0.
     pub fixed_points: Vec<PeriodicOrbit>,
+    /// The orbit LR, admissible or not; none where mu is 0 or where it is not alone.
+    pub period_two: Option<PeriodicOrbit>,
     /// Every admissible periodic orbit of [`LONGEST_WORD`] steps or fewer, fixed points included.
     pub orbits: Vec<PeriodicOrbit>,
     /// Where motions end, each kind once; first the one that x = 0 has, the state of the corner impact.
@@ -46,9 +48,9 @@ impl LocalMap {
     pub fn outcome(&self, mu: f64) -> LocalOutcome {
         const DIRECTIONS: u32 = 8;
         const CIRCLES: [f64; 3] = [0.1, 1.0, 10.0];
-        let [left, right] = ["L", "R"].map(Word::read);
-        let fixed = |word: &Word| if mu == 0.0 { None } else { self.orbit(word, mu) };
-        let fixed_points: Vec<_> = [left, right].iter().flatten().filter_map(fixed).collect();
+        let [left, right, two] = ["L", "R", "LR"].map(Word::read);
+        let orbit = |word: &Word| if mu == 0.0 { None } else { self.orbit(word, mu) };
+        let fixed_points: Vec<_> = [left, right].iter().flatten().filter_map(orbit).collect();
         let there = fixed_points.iter().filter(|orbit| orbit.admissible()).flat_map(|orbit| orbit.points.clone());
         let scales = there.fold(self.scales(), |scales, point| scales.sup(&point.abs()));
         let around = CIRCLES.iter().flat_map(|radius| {
@@ -70,6 +72,7 @@ impl LocalMap {
         LocalOutcome {
             mu,
             fixed_points,
+            period_two: two.as_ref().and_then(orbit),
             orbits: if mu == 0.0 { Vec::new() } else { self.admissible_orbits(mu, LONGEST_WORD) },
             fates,
         }

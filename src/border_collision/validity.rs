@@ -173,8 +173,8 @@ impl Real<'_> {
             }
             dt *= Self::GROWTH;
         }
-        if ends != Ends::Nothing {
-            let mut low = last.map_or(0.0, |(dt, ..)| dt);
+        // Where nothing held there is no range to close in.
+        if let (Some((mut low, ..)), false) = (last, ends == Ends::Nothing) {
             let mut high = dt;
             while (high - low).abs() > tolerance::LINEAR_BRACKET.value * high.abs() {
                 let middle = 0.5 * (low + high);

@@ -86,6 +86,8 @@ pub struct OutcomeEntry {
     pub speeds: &'static str,
     /// Of both sides, admissible or not.
     pub fixed_points: Vec<OrbitEntry>,
+    /// The orbit of period two with a point on each side, admissible or not.
+    pub period_two: Option<OrbitEntry>,
     /// Admissible ones, of a few steps.
     pub periodic_orbits: Vec<OrbitEntry>,
     /// How many motions were run.
@@ -203,6 +205,7 @@ impl OutcomeEntry {
         Self {
             speeds: speeds(outcome.mu),
             fixed_points: outcome.fixed_points.iter().map(OrbitEntry::new).collect(),
+            period_two: outcome.period_two.as_ref().map(OrbitEntry::new),
             periodic_orbits: outcome.orbits.iter().map(OrbitEntry::new).collect(),
             starts: outcome.starts(),
             ends: outcome.fates.iter().map(EndEntry::new).collect(),
