@@ -14,6 +14,7 @@ from pathlib import Path
 
 from mpmath import mpf
 
+import border_collision
 import closed_forms
 import corner_map
 import flight
@@ -56,6 +57,7 @@ def run():
     stage("corner map", corner_map.proofs())
     stage("normal form", normal_form.proofs())
     stage("jump order", jump_order.proofs())
+    stage("border collision", border_collision.proofs())
     verdicts, results = printed_equations.examined()
     stage("printed", results)
     stage("recovered", recover.proofs())

@@ -7,6 +7,8 @@
 use nalgebra::{Matrix2, RowVector2, Vector2};
 
 use super::Degenerate;
+use super::conditions::{Condition, Decides, conditions};
+use super::local_map::LocalMap;
 use crate::corner::map::{CornerMap, Eigenvalue, SideMap};
 use crate::tolerance;
 
@@ -88,6 +90,11 @@ pub struct Classification {
 pub fn classify(map: &CornerMap, border: (RowVector2<f64>, f64)) -> Result<Classification, Degenerate> {
     let minus = side_counts("minus", &map.minus, border, -1.0)?;
     let plus = side_counts("plus", &map.plus, border, 1.0)?;
+    let all = conditions(&LocalMap::new(map, border));
+    let failing = all.iter().find(|condition| condition.decides == Decides::Classification && !condition.holds());
+    if let Some(&Condition { name, meaning, value, distance, .. }) = failing {
+        return Err(Degenerate::Fails { name, value, distance, meaning });
+    }
     let fold = (minus.above_one + plus.above_one) % 2 == 1;
     let flip = (minus.below_minus_one + plus.below_minus_one) % 2 == 1;
     let scenario = match (fold, flip) {
