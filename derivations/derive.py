@@ -18,6 +18,7 @@ import closed_forms
 import corner_map
 import flight
 import impact
+import impact_oscillator
 import normal_form
 import points
 import printed_equations
@@ -54,6 +55,7 @@ def run():
     stage("impact", impact.proofs())
     stage("corner map", corner_map.proofs())
     stage("normal form", normal_form.proofs())
+    stage("impact oscillator", impact_oscillator.proofs())
     verdicts, results = printed_equations.examined()
     stage("printed", results)
     stage("recovered", recover.proofs())
@@ -75,6 +77,7 @@ def run():
             "lines": [{"name": name, "expression": text} for name, text in closed_forms.CLOSED_FORMS.items()],
         }),
         "corner_map.json": pretty({"note": note, "inputs": closed_forms.INPUTS, "expressions": expressions}),
+        "impact_oscillator.json": pretty({"note": note, **impact_oscillator.document()}),
         "points.json": lines({"note": note, "seed": points.SEED, "digits": points.DIGITS, "points": [points.entry(row) for row in rows]}, "points"),
         "printed_equations.json": pretty({"note": note, "equations": verdicts}),
         "recovery.json": pretty({"note": note, **recover.document()}),

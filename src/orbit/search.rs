@@ -90,7 +90,9 @@ struct Found<'a> {
 
 impl Found<'_> {
     fn keep(&mut self, orbit: PeriodicOrbit) {
-        let wanted = self.wanted.impacts.is_none_or(|impacts| orbit.impacts().count() == impacts);
+        // A long run may settle on what repeats sooner.
+        let wanted = orbit.revolutions == self.wanted.revolutions
+            && self.wanted.impacts.is_none_or(|impacts| orbit.impacts().count() == impacts);
         if wanted && !self.orbits.iter().any(|known| known.is_same(&orbit)) {
             self.orbits.push(orbit);
         }

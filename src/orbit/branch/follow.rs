@@ -337,6 +337,10 @@ impl Walk<'_> {
                 bracket[0] = self.value(&found.unknowns);
             }
         }
+        // Met exactly, while the other end of the bracket is still far.
+        if residual == 0.0 {
+            bracket = [self.value(&point.unknowns); 2];
+        }
         if bracket[0] > bracket[1] {
             bracket.swap(0, 1);
         }
