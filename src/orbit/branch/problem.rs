@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::orbit::curve::Equations;
+use crate::orbit::curve::{CurvePoint, Equations};
 use crate::orbit::cycle::lift_size;
 use crate::orbit::{Cycle, Family, FamilyError};
 use crate::simulate::Machine;
@@ -32,6 +32,16 @@ impl Units {
         let fastest =
             cycle.contacts.iter().fold(0.0_f64, |fastest, contact| fastest.max(contact.velocity_before.abs()));
         Self { lift, velocity: lift.max(fastest / machine.angular_velocity()) }
+    }
+
+    /// A point of a curve in these units, in those of `other`; its last unknown is a free number.
+    pub fn convert(&self, point: &mut CurvePoint, other: Self) {
+        let factor = self.velocity / other.velocity;
+        for index in (1..point.unknowns.len().saturating_sub(1)).step_by(2) {
+            point.unknowns[index] *= factor;
+            point.tangent[index] *= factor;
+        }
+        point.tangent /= point.tangent.norm();
     }
 }
 
