@@ -19,6 +19,7 @@ import corner_map
 import flight
 import impact
 import impact_oscillator
+import jump_order
 import normal_form
 import points
 import printed_equations
@@ -56,6 +57,7 @@ def run():
     stage("corner map", corner_map.proofs())
     stage("normal form", normal_form.proofs())
     stage("impact oscillator", impact_oscillator.proofs())
+    stage("jump order", jump_order.proofs())
     verdicts, results = printed_equations.examined()
     stage("printed", results)
     stage("recovered", recover.proofs())

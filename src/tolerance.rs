@@ -79,6 +79,9 @@ table! {
     /// How closely a point is located where sticking begins or ends on a branch.
     SPECIAL_POINT = 1e-14, "of the range of the parameter: ten digits of its value are asked for, and each one more costs three \
         simulated periods";
+    /// How far a minimum of the gap may move when it is found once more by its slope.
+    SAME_MINIMUM = 1e-3, "of a four-hundredth of the flight: half the digits of an angle are known before, and a step to \
+        another minimum is as long as the whole";
     /// How nearly a run must repeat for Newton's method to be tried on it.
     NEARLY_REPEATS = 1e-2, "of the cam's lift: a guess, that Newton's method and one simulated period confirm or refute";
     /// How far from the corner the impact of a located orbit may be simulated, rad.
@@ -108,6 +111,13 @@ table! {
     /// How closely an angle that a line of a diagram ends at is that of a corner, degrees.
     DRAWN_DEGREES = 0.02, "degrees, absolute: a line of a printed diagram is ten times as wide, and the ends of lines are as \
         steep as the root of a speed";
+    /// How much of a difference of two runs may be rounding where its logarithm is fitted.
+    JUMP_RESOLVED = 1e-5, "of the difference: an exponent fitted over four octaves then keeps four digits";
+    /// How closely a measured exponent meets the whole number that it stands for.
+    JUMP_EXPONENT = 1e-4, "absolute: exponents differ by whole numbers, and what rounding and the powers that the fit leaves out \
+        move them by is a tenth of this";
+    /// How closely a measured coefficient meets the formula.
+    JUMP_COEFFICIENT = 1e-6, "of the formula's: six digits, of which a jump of the fourth derivative leaves seven above rounding";
     /// How closely an identity between computed matrices is met.
     IDENTITY = 1e-12, "of the terms: a few hundred roundings";
     /// How little a settled motion may move from one revolution to the next, m.

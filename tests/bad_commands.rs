@@ -86,13 +86,25 @@ fn numbers_that_cannot_be() {
             place.refuses(&diagram(&format!("--rpm 600:700:3 {name}={count}")), &[name, count]);
         }
     }
+    for count in ["-1", "1e6", "1_000"] {
+        for name in ["--revolutions", "--impacts"] {
+            place.refuses(&simulate(&format!("--rpm 700 {name} {count}")), &[name, count, "whole number", "digits"]);
+        }
+        for name in ["--transient", "--record"] {
+            place.refuses(
+                &diagram(&format!("--rpm 600:700:3 {name} {count}")),
+                &[name, count, "whole number", "digits"],
+            );
+        }
+    }
     place.refuses(&simulate("--rpm 700 --drawn 0"), &["--drawn <N>", "1..=1000"]);
     place.refuses(&diagram("--rpm 600:700:3 --threads 0"), &["--threads <N>", "1..=1024"]);
     place.refuses(&diagram("--rpm 600:700:3 --threads 4000"), &["--threads <N>", "1..=1024"]);
     for number in ["nan", "inf", "-inf", "up"] {
         place.refuses(&simulate(&format!("--rpm 700 --start-angle={number}")), &["--start-angle <RAD>", number]);
         place.refuses(&simulate(&format!("--rpm 700 --strobe={number} --strobe-out s.csv")), &["--strobe <RAD>"]);
-        place.refuses(&diagram(&format!("--rpm 600:700:3 --strobe={number}")), &["--strobe <RAD>", number]);
+        let strobe = format!("--rpm 600:700:3 --section strobe --strobe={number}");
+        place.refuses(&diagram(&strobe), &["--strobe <RAD>", number]);
         place.refuses(&simulate(&format!("--rpm 700 --relative-velocity={number}")), &["--relative-velocity <U>"]);
         for state in [format!("{number},0"), format!("0.5,{number}")] {
             place.refuses(&simulate(&format!("--rpm 700 --state={state}")), &["--state <Q,V>"]);
@@ -132,18 +144,35 @@ fn arguments_that_exclude_or_need_each_other() {
         ("--trace x", ["x.pdf", ".svg or .png"]),
         ("--trace -", ["--trace <FILE>", ".svg or .png"]),
         ("--phase-plane x.csv", ["--phase-plane <FILE>", ".svg or .png"]),
+        ("--drawn 5", ["--drawn", "--trace and --phase-plane"]),
     ] {
         let says: Vec<&str> = says.into_iter().filter(|part| *part != "x.pdf").collect();
         place.refuses(&format!("simulate MODEL --rpm 700 {line}"), &says);
     }
     place.refuses("diagram MODEL --rpm 600:700:3 --out - --summary", &["--out -", "--summary", "standard output"]);
-    // Two tables of one name would leave the second alone.
-    let twice = "simulate MODEL --rpm 700 --events out.csv --strobe 1 --strobe-out out.csv";
-    place.refuses(twice, &["--events", "--strobe-out", "out.csv"]);
-    place.refuses(
-        "simulate MODEL --rpm 700 --trace out.svg --phase-plane ./out.svg",
-        &["--trace", "--phase-plane", "out.svg"],
-    );
+    for (line, says) in [
+        ("--strobe 1 --out out.csv", ["--strobe", "--section strobe"]),
+        ("--lyapunov", ["--out <FILE>", "not provided"]),
+        ("--lyapunov --summary", ["--out <FILE>", "not provided"]),
+    ] {
+        place.refuses(&format!("diagram MODEL --rpm 600:700:3 {line}"), &says);
+    }
+    // A table is not to be taken for a picture.
+    for name in ["out.pdf", "out.jpg", "out.svg.gz", "out.csv.png.tiff"] {
+        let line = format!("diagram MODEL --rpm 600:700:3 --out {name}");
+        place.refuses(&line, &["--out <FILE>", name, ".csv, .svg or .png"]);
+    }
+    // Of two files of one name the second alone would be left.
+    for [(one, first), (other, second)] in [
+        [("--events", "out.csv"), ("--strobe 1 --strobe-out", "out.csv")],
+        [("--trace", "out.svg"), ("--phase-plane", "./out.svg")],
+        [("--events", "out.svg"), ("--trace", "out.svg")],
+        [("--strobe 1 --strobe-out", "./out.png"), ("--phase-plane", "out.png")],
+    ] {
+        let says = [one, other].map(|option| option.trim_start_matches("--strobe 1 "));
+        let name = second.trim_start_matches("./");
+        place.refuses(&format!("simulate MODEL --rpm 700 {one} {first} {other} {second}"), &[says[0], says[1], name]);
+    }
 }
 
 #[test]

@@ -152,7 +152,7 @@ fn rows_that_say_the_same_otherwise() {
         ("closed", closed),
         ("crlf", plain.replace('\n', "\r\n")),
         ("marked", format!("\u{feff}{plain}")),
-        ("blank", format!("{}\n\n", plain.replace(',', " , ").replacen("angle_deg , lift", "angle_deg,lift", 1))),
+        ("blank", format!("{}\n\n", plain.replace(',', " , "))),
     ] {
         assert_eq!(cam_of(name, &text, "cubic").unwrap(), cam, "{name}");
     }

@@ -9,7 +9,7 @@ use std::ops::ControlFlow;
 use corner_impact::cam::Cam;
 use corner_impact::flight::State;
 use corner_impact::model::Model;
-use corner_impact::simulate::{Event, EventKind, Goal, Machine, accumulation, angular_velocity};
+use corner_impact::simulate::{Event, EventKind, Goal, Machine, Unobserved, accumulation, angular_velocity};
 
 /// The gap t after an impact that it leaves at u, and its rate: `g'' = -A + J t - 2 zeta g'`, solved by its power series.
 fn hop(u: f64, pressing: f64, rate: f64, zeta: f64, t: f64) -> (f64, f64) {
@@ -112,7 +112,7 @@ fn a_million_revolutions_lose_no_digit() {
     let machine = Machine::new(common::cam(&model), &model.follower, angular_velocity(700.0));
     let mut motion = machine.start(5.762717154756, State { position: 5.397, velocity: 0.0 }).unwrap();
     let goal = motion.after(2000);
-    let _ = machine.advance(&mut motion, goal, &mut |_: &Event| ControlFlow::Continue(())).unwrap();
+    let _ = machine.advance(&mut motion, goal, &mut Unobserved).unwrap();
     let (mut low, mut high, mut impacts) = (f64::INFINITY, 0.0_f64, 0);
     let goal = motion.after(1_000_000);
     let _ = machine

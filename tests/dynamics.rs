@@ -10,7 +10,7 @@ use approx::{assert_abs_diff_eq, assert_relative_eq};
 use corner_impact::diagram::growth;
 use corner_impact::flight::State;
 use corner_impact::section::StroboscopicMap;
-use corner_impact::simulate::{Event, EventKind, Machine, Motion, angular_velocity};
+use corner_impact::simulate::{Event, EventKind, Machine, Motion, Unobserved, angular_velocity};
 
 /// The corners R, P, Q, Q', P', R' by index.
 const P: usize = 1;
@@ -56,7 +56,7 @@ fn events(machine: &Machine, motion: &mut Motion, revolutions: u64) -> Vec<Event
 /// Goes on without a look.
 fn skip(machine: &Machine, motion: &mut Motion, revolutions: u64) {
     let goal = motion.after(revolutions);
-    let _ = machine.advance(motion, goal, &mut |_: &Event| ControlFlow::Continue(())).unwrap();
+    let _ = machine.advance(motion, goal, &mut Unobserved).unwrap();
 }
 
 /// Whether the next revolutions have one impact each, and end in the same state.
@@ -202,7 +202,7 @@ fn are_there_cascades_of_periods_that_go_up_by_one() {
     let machine = machine(speeds[6]);
     let mut motion = machine.start_on_cam(corner(&machine, P) - 0.05, 0.0).unwrap();
     let goal = motion.next(0.0);
-    let _ = machine.advance(&mut motion, goal, &mut |_: &Event| ControlFlow::Continue(())).unwrap();
+    let _ = machine.advance(&mut motion, goal, &mut Unobserved).unwrap();
     skip(&machine, &mut motion, 3);
     let map = StroboscopicMap { machine, cam_angle: 0.0 };
     let unstable = map.periodic(motion.state, 1).unwrap().unwrap();
@@ -317,6 +317,22 @@ fn does_the_chaotic_motion_ever_forget() {
         releases[1].revolution - releases[0].revolution,
         "the same state, so the same again"
     );
+}
+
+/// One stick in thousands of revolutions wipes out every deviation; without its revolution the motion is chaotic as ever.
+#[test]
+fn what_does_a_rare_stick_do_to_the_exponent() {
+    let machine = machine(664.0);
+    let mut start = machine.start_on_cam(0.0, 0.0).unwrap();
+    skip(&machine, &mut start, 1);
+    // Turn by turn, as the exponent is computed: chaos makes another motion of other roundings.
+    let mut motion = start;
+    let flies = |_: &u64| kinds(&events(&machine, &mut motion, 1), EventKind::Stick).is_empty();
+    let before = (0..200_000_u64).take_while(flies).count() as u64;
+    assert!(before > 100, "{before}: rare");
+    assert!(growth(&machine, start, before).unwrap() > 0.3);
+    assert_eq!(growth(&machine, start, before + 1).unwrap(), f64::NEG_INFINITY);
+    assert_eq!(growth(&machine, start, 0).unwrap(), 0.0);
 }
 
 /// A multiplier passes -1 at 739.31978 rpm: two impact angles branch off, apart by the root of the distance. The later one

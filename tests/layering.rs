@@ -67,6 +67,23 @@ fn routes_do_not_use_each_other() {
     }
 }
 
+/// What a jump of any order makes of the map is predicted without a run, and measured without a formula of it.
+#[test]
+fn prediction_and_measurement_share_nothing() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/corner/jump_order");
+    let code = |file: &str| {
+        let text = std::fs::read_to_string(folder.join(file)).unwrap();
+        text.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n")
+    };
+    for forbidden in ["simulate", "section", "flight::", "measured", "extrapolation", "least_squares", "one_sided"] {
+        assert!(!code("predicted.rs").contains(forbidden), "predicted.rs: {forbidden}");
+    }
+    for forbidden in ["predicted", "closed_form", "jump_order.", ".jump,", "corner.jump", "curvature", "third", "slope"]
+    {
+        assert!(!code("measured.rs").contains(forbidden), "measured.rs: {forbidden}");
+    }
+}
+
 /// One event loop, one tolerance table: small numbers that decide something stand in the table.
 #[test]
 fn thresholds_stand_in_the_table() {

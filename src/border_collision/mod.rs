@@ -2,9 +2,11 @@
 
 pub mod feigin;
 pub mod normal_form;
+mod scenario;
 
 pub use feigin::{Classification, classify};
 pub use normal_form::{NormalForm, normal_form};
+pub use scenario::scenario;
 
 /// A map that the classification says nothing about, and why.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -2,6 +2,7 @@
 
 use super::context::{Context, Found, Residuals};
 use super::dynamics::*;
+use super::jump_order::order_of_the_jump;
 use super::statements::*;
 use crate::published::Verdict;
 
@@ -106,7 +107,7 @@ pub static CHECKS: &[(&str, Check)] = &[
     ("nonsmooth fold", Check::Paper(nonsmooth_fold)),
     ("figure: local map", Check::Paper(figure_of_the_local_map)),
     ("fixed points above, none below", Check::Paper(fixed_points_above)),
-    ("order of the jump", Check::Open("a conjecture: needs corners of order one and three, and their maps")),
+    ("order of the jump", Check::Any(order_of_the_jump)),
     ("conclusions", Check::Any(continuity)),
     ("equation: eq:lmaptheta_1", Check::Equation("eq:gff")),
     ("equation: eq:impactdynamics_1", Check::Equation("eq:lmapd")),

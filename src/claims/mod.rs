@@ -7,6 +7,7 @@
 pub mod checks;
 pub mod context;
 mod dynamics;
+pub mod jump_order;
 pub mod ledger;
 pub mod statements;
 

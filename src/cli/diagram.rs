@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use clap::ValueEnum;
 
-use super::start::{StartArguments, finite, speeds, turn};
+use super::start::{StartArguments, count, finite, speeds, turn};
 use super::{CommandError, Exit, picture, progress::Progress};
 use crate::cam::Cam;
 use crate::diagram::{Block, Counted, Following, Row, Section, Seen, Speeds, Sweep, SweepError, Tally};
@@ -30,30 +30,31 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "LO:HI:N", value_parser = speeds, allow_hyphen_values = true)]
     rpm: Speeds,
     /// Revolutions at each speed before anything is recorded.
-    #[arg(long, value_name = "N", default_value_t = 300)]
+    #[arg(long, value_name = "N", default_value_t = 300, value_parser = count, allow_hyphen_values = true)]
     transient: u64,
     /// Revolutions that are recorded.
-    #[arg(long, value_name = "N", default_value_t = 100)]
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = count, allow_hyphen_values = true)]
     record: u64,
     /// Record what happens at the cam, or the state at one cam angle.
     #[arg(long, value_enum, default_value = "impact")]
     section: SectionName,
-    /// That angle, rad.
-    #[arg(long, value_name = "RAD", value_parser = finite, default_value_t = 0.0, allow_hyphen_values = true)]
-    strobe: f64,
+    /// That angle, rad [default: 0].
+    #[arg(long, value_name = "RAD", value_parser = finite, allow_hyphen_values = true)]
+    strobe: Option<f64>,
     /// Start every speed alike, or go on from the next lower (up) or next higher speed (down).
     #[arg(long = "start", value_enum, default_value = "fixed")]
     following: FollowingName,
     #[command(flatten)]
     start: StartArguments,
-    /// Threads [default: one for each core].
+    /// Threads [default: one for each core]; up and down go from speed to speed on one.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
     /// A table (.csv, or - for standard output) or a picture (.svg, .png).
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = picture::picture_or_table)]
     out: Option<PathBuf>,
-    /// Add the Lyapunov exponent of each speed: a column, or a second panel.
-    #[arg(long)]
+    /// Add the Lyapunov exponent of each speed, per revolution: a column, or a second panel. -inf where the follower came
+    /// to stick to the cam, be it once.
+    #[arg(long, requires = "out")]
     lyapunov: bool,
     /// Print a summary as one JSON document.
     #[arg(long)]
@@ -120,6 +121,9 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Co
     if to_standard && arguments.summary {
         return Err(CommandError::Input("--out - and --summary both print to standard output".into()));
     }
+    if arguments.strobe.is_some() && matches!(arguments.section, SectionName::Impact) {
+        return Err(CommandError::Input("--strobe is the angle of --section strobe, which is not there".into()));
+    }
     let model = Model::read(&arguments.model).map_err(CommandError::input)?;
     let cam = Cam::new(&model).map_err(CommandError::input)?;
     let corners = corner_marks(&cam);
@@ -136,12 +140,15 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Co
         record: arguments.record,
         section: match arguments.section {
             SectionName::Impact => Section::Impacts,
-            SectionName::Strobe => Section::Strobe(turn(arguments.strobe)),
+            SectionName::Strobe => Section::Strobe(turn(arguments.strobe.unwrap_or(0.0))),
         },
         lyapunov: arguments.lyapunov,
     };
-    let threads =
-        arguments.threads.map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), usize::from);
+    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = match sweep.following {
+        Following::Nothing => arguments.threads.map_or_else(cores, usize::from).min(sweep.speeds.count),
+        Following::Up | Following::Down => 1,
+    };
     let clock = Instant::now();
     let tally = match target {
         Target::Nowhere => {

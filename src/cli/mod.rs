@@ -2,15 +2,19 @@
 
 mod cam;
 mod claims;
+mod continuation;
+mod curve;
 mod diagram;
+mod orbit;
 mod picture;
 mod progress;
 mod simulate;
+mod speeds;
 mod start;
 mod verify;
 
 use std::ffi::OsString;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 
 use clap::{Parser, Subcommand};
 
@@ -42,6 +46,10 @@ enum Command {
     Cam(cam::Arguments),
     Simulate(simulate::Arguments),
     Diagram(diagram::Arguments),
+    Orbit(orbit::Arguments),
+    Continue(continuation::Arguments),
+    Curve(curve::Arguments),
+    Speeds(speeds::Arguments),
 }
 
 /// Why a command has no result.
@@ -53,6 +61,8 @@ enum CommandError {
     Report(String),
     #[error("{0}")]
     Write(String),
+    #[error("standard output: nobody reads it any more")]
+    Unread,
 }
 
 impl CommandError {
@@ -65,15 +75,21 @@ impl CommandError {
     }
 
     fn file(error: FileError) -> Self {
-        Self::Write(error.to_string())
+        if error.is_unread() { Self::Unread } else { Self::Write(error.to_string()) }
     }
 
     fn write(error: std::io::Error) -> Self {
-        Self::Write(error.to_string())
+        match error.downcast::<FileError>() {
+            Ok(error) => Self::file(error),
+            Err(error) => Self::Write(error.to_string()),
+        }
     }
 
     fn standard(error: std::io::Error) -> Self {
-        Self::Write(format!("standard output: {error}"))
+        match error.kind() {
+            ErrorKind::BrokenPipe => Self::Unread,
+            _ => Self::Write(format!("standard output: {error}")),
+        }
     }
 }
 
@@ -112,9 +128,16 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         }
         Command::Simulate(arguments) => simulate::run(arguments, out),
         Command::Diagram(arguments) => diagram::run(arguments, out),
+        Command::Orbit(arguments) => print(orbit::run(arguments), out),
+        Command::Speeds(arguments) => print(speeds::run(arguments), out),
+        Command::Curve(arguments) => curve::run(arguments, out, err),
+        Command::Continue(arguments) => continuation::run(arguments, out, err),
     };
     result.unwrap_or_else(|error| {
-        let _ = writeln!(err, "error: {error}");
+        // Whoever closes a pipe early, as `head` does, wants no more, nor a complaint.
+        if !matches!(error, CommandError::Unread) {
+            let _ = writeln!(err, "error: {error}");
+        }
         Exit::BadInput
     })
 }

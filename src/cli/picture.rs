@@ -33,6 +33,14 @@ pub(super) fn picture(text: &str) -> Result<PathBuf, String> {
     if kind(&path).is_some() { Ok(path) } else { Err("must end in .svg or .png".into()) }
 }
 
+/// A file name of a picture or a table, for clap. Devices and pipes have names of any kind; what ends like another kind of
+/// picture is not to hold a table.
+pub(super) fn picture_or_table(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let is_table = path.extension().is_none_or(|extension| extension.eq_ignore_ascii_case("csv"));
+    if is_table || kind(&path).is_some() { Ok(path) } else { Err("must end in .csv, .svg or .png, or be -".into()) }
+}
+
 /// A file that a figure goes to, whole or not at all; opened before the work that the figure shows.
 pub(super) struct Canvas<'a> {
     file: Output<'a>,

@@ -2,10 +2,10 @@
 
 use std::io::Write;
 use std::ops::ControlFlow;
-use std::path::{Component, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use super::start::{StartArguments, finite, rpm, turn};
+use super::start::{StartArguments, count, finite, rpm, turn};
 use super::{CommandError, Exit, picture, progress::Progress};
 use crate::cam::Cam;
 use crate::diagram::growth;
@@ -31,10 +31,11 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "R", value_parser = rpm, allow_hyphen_values = true)]
     rpm: f64,
     /// Turns of the cam.
-    #[arg(long, value_name = "N", default_value_t = 100, conflicts_with = "impacts")]
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = count, allow_hyphen_values = true,
+        conflicts_with = "impacts")]
     revolutions: u64,
     /// Run up to this many impacts instead.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = count, allow_hyphen_values = true)]
     impacts: Option<u64>,
     #[command(flatten)]
     start: StartArguments,
@@ -50,7 +51,8 @@ pub(super) struct Arguments {
     /// Print the summary as one JSON document.
     #[arg(long)]
     summary: bool,
-    /// Add the growth of a small deviation per revolution to the summary.
+    /// Add the growth of a small deviation per revolution to the summary, a natural logarithm: -inf (null in JSON) where
+    /// the follower came to stick to the cam, be it once.
     #[arg(long, conflicts_with = "impacts")]
     lyapunov: bool,
     /// Draw follower, cam and gap over the last revolutions (.svg or .png).
@@ -59,15 +61,17 @@ pub(super) struct Arguments {
     /// Draw the gap against its velocity over the last revolutions (.svg or .png).
     #[arg(long, value_name = "FILE", value_parser = picture::picture, conflicts_with = "impacts")]
     phase_plane: Option<PathBuf>,
-    /// How many revolutions are drawn.
-    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u64).range(1..=1000))]
-    drawn: u64,
+    /// How many revolutions are drawn [default: 2].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
+    drawn: Option<u64>,
 }
 
 /// Events that are kept before they are written.
 const KEPT: usize = 4096;
 /// Revolutions between two looks at the progress.
 const STRIDE: u64 = 4096;
+/// Revolutions that are drawn where nothing else is asked for.
+const DRAWN: u64 = 2;
 /// Revolutions without an impact after which none is waited for.
 const PATIENCE: u64 = 100_000;
 
@@ -103,14 +107,24 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Co
         let words = "--events -, --strobe-out - and --summary all print to standard output: give the tables files";
         return Err(CommandError::Input(words.into()));
     }
-    distinct([("--events", &arguments.events), ("--strobe-out", &arguments.strobe_out)])?;
-    distinct([("--trace", &arguments.trace), ("--phase-plane", &arguments.phase_plane)])?;
+    let Arguments { events, strobe_out, trace, phase_plane, .. } = arguments;
+    distinct(&[
+        ("--events", events),
+        ("--strobe-out", strobe_out),
+        ("--trace", trace),
+        ("--phase-plane", phase_plane),
+    ])?;
+    if arguments.drawn.is_some() && trace.is_none() && phase_plane.is_none() {
+        return Err(CommandError::Input(
+            "--drawn says how much --trace and --phase-plane draw: neither is there".into(),
+        ));
+    }
     let model = Model::read(&arguments.model).map_err(CommandError::input)?;
     let cam = Cam::new(&model).map_err(CommandError::input)?;
     let machine = Machine::new(cam, &model.follower, angular_velocity(arguments.rpm));
     let start = arguments.start.start();
     let first = start.motion(&machine).map_err(CommandError::input)?;
-    let drawn = first.after(arguments.revolutions.saturating_sub(arguments.drawn));
+    let drawn = first.after(arguments.revolutions.saturating_sub(arguments.drawn.unwrap_or(DRAWN)));
 
     // Every file is begun before the run: a name that cannot be is told at once.
     let mut nobody = [std::io::sink(), std::io::sink(), std::io::sink()];
@@ -151,12 +165,17 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Co
 }
 
 /// Refuses two files of one name: the second would be all that is left.
-fn distinct(files: [(&str, &Option<PathBuf>); 2]) -> Result<(), CommandError> {
-    let [(one, Some(first)), (other, Some(second))] = files else { return Ok(()) };
+fn distinct(files: &[(&str, &Option<PathBuf>)]) -> Result<(), CommandError> {
     // As far as names tell: ./x is x.
-    let parts = |path: &PathBuf| path.components().filter(|part| *part != Component::CurDir).collect::<PathBuf>();
-    if parts(first) == parts(second) && first.as_os_str() != "-" {
-        return Err(CommandError::Input(format!("{one} and {other} are both {}", first.display())));
+    let parts = |path: &Path| path.components().filter(|part| *part != Component::CurDir).collect::<PathBuf>();
+    let mut names: Vec<(&str, PathBuf)> = Vec::new();
+    let given = files.iter().filter_map(|(option, path)| Some((*option, path.as_deref()?)));
+    for (option, path) in given.filter(|(_, path)| path.as_os_str() != "-") {
+        let name = parts(path);
+        if let Some((before, _)) = names.iter().find(|(_, other)| *other == name) {
+            return Err(CommandError::Input(format!("{before} and {option} are both {}", path.display())));
+        }
+        names.push((option, name));
     }
     Ok(())
 }
@@ -261,7 +280,7 @@ fn draw<'a>(
     if trace.is_none() && plane.is_none() {
         return Ok(files);
     }
-    let revolutions = arguments.drawn.min(arguments.revolutions);
+    let revolutions = arguments.drawn.unwrap_or(DRAWN).min(arguments.revolutions);
     let (samples, events) =
         section::trace(machine, motion, revolutions, run::TRACE_SAMPLES).map_err(CommandError::input)?;
     let (points, impacts) = run::trace_points(&samples, &events, machine.angular_velocity());

@@ -48,10 +48,22 @@ pub(super) fn not_negative(text: &str) -> Result<f64, String> {
     if number >= 0.0 { Ok(number) } else { Err("must be a finite number, 0 or more".into()) }
 }
 
+/// How many of something.
+pub(super) fn count(text: &str) -> Result<u64, String> {
+    text.trim().parse().map_err(|_| format!("must be a whole number from 0 to {}, written in digits", u64::MAX))
+}
+
 /// A speed that a simulation can turn at.
 pub(super) fn rpm(text: &str) -> Result<f64, String> {
     let number = positive(text)?;
     if number <= Speeds::FASTEST { Ok(number) } else { Err(format!("must be {:e} or less", Speeds::FASTEST)) }
+}
+
+/// `LO:HI`, speeds.
+pub(super) fn range(text: &str) -> Result<[f64; 2], String> {
+    let (low, high) = text.split_once(':').ok_or("must be LO:HI: lowest speed, highest speed")?;
+    let (low, high) = (rpm(low)?, rpm(high)?);
+    if low < high { Ok([low, high]) } else { Err(format!("the highest speed, {high}, is not above the lowest, {low}")) }
 }
 
 /// `LO:HI:N`.
@@ -71,7 +83,7 @@ pub(super) fn speeds(text: &str) -> Result<Speeds, String> {
     }
 }
 
-fn state(text: &str) -> Result<State, String> {
+pub(super) fn state(text: &str) -> Result<State, String> {
     let Some((position, velocity)) = text.split_once(',') else {
         return Err("must be Q,V: a position and a velocity".into());
     };

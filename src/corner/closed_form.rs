@@ -102,7 +102,7 @@ pub fn orbit(model: &Model, at: &CornerImpact) -> Result<(Vector2<f64>, f64), No
 
 /// eq:gff: `phi_t = e^{-zeta t} (I cos(ws t) + A sin(ws t))`, `ws = sqrt(w0^2 - zeta^2)`, with its limits for critical and
 /// over-damping, where the cosine and sine become hyperbolic.
-fn propagator(zeta: f64, omega0_squared: f64, t: f64) -> Matrix2<f64> {
+pub(super) fn propagator(zeta: f64, omega0_squared: f64, t: f64) -> Matrix2<f64> {
     let square = omega0_squared - zeta * zeta;
     let omega = square.abs().sqrt();
     // cos = e^{-zeta t} cos(ws t), sin = e^{-zeta t} sin(ws t)/ws

@@ -126,15 +126,15 @@ fn power(z: Vector3<f64>, exponents: [u32; 3]) -> f64 {
     (0..3).map(|k| z[k].powi(exponents[k] as i32)).product()
 }
 
-struct Fit {
+pub(super) struct Fit {
     /// One column for each response.
-    coefficients: Mat<f64>,
+    pub coefficients: Mat<f64>,
     /// In the same shape.
-    standard_errors: Mat<f64>,
+    pub standard_errors: Mat<f64>,
 }
 
 /// Ordinary least squares by QR: `min |X beta - Y|`, with `se_j^2 = sigma^2 [(X'X)^{-1}]_jj`, `sigma^2 = |residual|^2/(n - p)`.
-struct Solver<'a> {
+pub(super) struct Solver<'a> {
     design: &'a Mat<f64>,
     factors: Qr<f64>,
     /// Lengths of the rows of R^{-1}: the square roots of the diagonal of (X'X)^{-1} = R^{-1} R^{-T}.
@@ -144,7 +144,7 @@ struct Solver<'a> {
 }
 
 impl<'a> Solver<'a> {
-    fn new(design: &'a Mat<f64>) -> Result<Self, SampleError> {
+    pub fn new(design: &'a Mat<f64>) -> Result<Self, SampleError> {
         let (rows, columns) = (design.nrows(), design.ncols());
         let singular = SampleError::Singular { what: "coefficients of the fit" };
         let singular_values = design.singular_values().map_err(|_| singular)?;
@@ -163,7 +163,7 @@ impl<'a> Solver<'a> {
         Ok(Self { design, factors, row_lengths, condition_number: largest / smallest })
     }
 
-    fn fit(&self, response: &Mat<f64>) -> Fit {
+    pub fn fit(&self, response: &Mat<f64>) -> Fit {
         let (rows, columns) = (self.design.nrows(), self.design.ncols());
         let mut solution = response.clone();
         self.factors.solve_lstsq_in_place_with_conj(Conj::No, solution.as_mut());

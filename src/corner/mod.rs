@@ -11,12 +11,16 @@
 //! | [`least_squares`] | is built on it: a polynomial fitted to simulated revolutions |
 //! | [`external`] | nothing: Python programs that get the model file's numbers and find the place themselves |
 //!
+//! [`jump_order`] has what a corner of any order makes of the map, predicted and measured.
+//!
 //! States here are the paper's x: position from the spring's equilibrium, and velocity.
 
 pub mod border;
 pub mod closed_form;
 pub mod external;
+mod extrapolation;
 pub mod finite_difference;
+pub mod jump_order;
 pub mod least_squares;
 pub mod locate;
 pub mod map;

@@ -9,8 +9,9 @@ use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError, Variatio
 /// The mean growth of a small deviation per revolution, as a natural logarithm: the largest Lyapunov exponent in the limit
 /// of many `revolutions`.
 ///
-/// Minus infinity where the follower sticks to the cam, which forgets every deviation; a start on the cam counts from its
-/// release on.
+/// Minus infinity where the follower comes to stick to the cam, be it once in thousands of revolutions: nothing is left of a
+/// deviation then, and what follows repeats what followed the stick before. Until such a stick a chaotic motion has the
+/// number that it would have without. A start on the cam counts from its release on; in no revolution nothing grows.
 pub fn growth(machine: &Machine, mut motion: Motion, revolutions: u64) -> Result<f64, SimulateError> {
     let omega = machine.angular_velocity();
     if motion.contact {
@@ -43,5 +44,5 @@ pub fn growth(machine: &Machine, mut motion: Motion, revolutions: u64) -> Result
         direction = carried / stretch;
         variation.reset(Matrix2::identity());
     }
-    Ok(sum / revolutions as f64)
+    Ok(sum / revolutions.max(1) as f64)
 }

@@ -10,7 +10,7 @@ mod pipeline;
 use std::ops::ControlFlow;
 
 use crate::flight::State;
-use crate::simulate::{Event, Machine, Motion, SimulateError};
+use crate::simulate::{Event, Machine, Motion, SimulateError, Unobserved};
 pub use growth::growth;
 pub use pipeline::{Block, Counted, Tally};
 
@@ -161,7 +161,7 @@ impl Sweep {
         mut keep: impl FnMut(Row) -> ControlFlow<()>,
     ) -> Result<(Motion, ControlFlow<()>), SimulateError> {
         let goal = motion.after(self.transient);
-        let _ = machine.advance(&mut motion, goal, &mut |_: &Event| ControlFlow::Continue(()))?;
+        let _ = machine.advance(&mut motion, goal, &mut Unobserved)?;
         let lyapunov = if self.lyapunov { Some(growth(machine, motion, self.record)?) } else { None };
         let row = |revolution, seen| Row { rpm, revolution, seen, lyapunov };
         let goal = motion.after(self.record);
@@ -171,8 +171,7 @@ impl Sweep {
             Section::Strobe(cam_angle) => loop {
                 let next = motion.next(cam_angle);
                 let last = next > goal;
-                let _ = machine
-                    .advance(&mut motion, if last { goal } else { next }, &mut |_: &Event| ControlFlow::Continue(()))?;
+                let _ = machine.advance(&mut motion, if last { goal } else { next }, &mut Unobserved)?;
                 if last {
                     break ControlFlow::Continue(());
                 }

@@ -79,7 +79,7 @@ impl Table {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let mut lines = text.lines().enumerate().map(|(index, line)| (index + 1, line.trim()));
         match lines.next() {
-            Some((_, HEADER)) => {}
+            Some((_, found)) if found.split(',').map(str::trim).eq(HEADER.split(',')) => {}
             Some((line, found)) => return Err(self.reject(line, "header", found, format!("must be {HEADER}"))),
             None => return Err(self.complain(None, format!("is empty; its first line must be {HEADER}"))),
         }

@@ -261,6 +261,18 @@ impl Cycle {
         self
     }
 
+    /// Where a contact stands once the contacts are [in order](Self::in_order).
+    pub fn place_in_order(&self, contact: usize) -> usize {
+        let key =
+            |contact: &Contact| (contact.revolution.rem_euclid(self.revolutions.max(1) as i64), contact.cam_angle);
+        let (revolution, angle) = key(&self.contacts[contact]);
+        let earlier = |other: &&Contact| {
+            let (turn, place) = key(other);
+            (turn, place) < (revolution, angle)
+        };
+        self.contacts.iter().filter(earlier).count()
+    }
+
     /// The same cycle begun `revolutions` later.
     pub fn begun_later(&self, revolutions: u64) -> Self {
         let mut later = self.clone();

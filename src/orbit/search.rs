@@ -117,7 +117,7 @@ impl Found<'_> {
     /// One period from the cam: its impacts are a guess.
     fn shoot(&mut self, cam_angle: f64, relative_velocity: f64) -> Result<(), SimulateError> {
         let mut motion = self.machine.start_on_cam(cam_angle, relative_velocity)?;
-        let (_, events) = period(self.machine, &mut motion, self.wanted.revolutions)?;
+        let events = period(self.machine, &mut motion, self.wanted.revolutions)?;
         let count = events.iter().filter(|event| event.kind == EventKind::Impact).count();
         let sticks = events.iter().any(|event| event.kind == EventKind::Stick);
         let most = self.wanted.impacts.unwrap_or(Search::MOST_IMPACTS);
@@ -127,6 +127,24 @@ impl Found<'_> {
         self.close(&Cycle::of_events(self.wanted.revolutions, &events).in_order());
         Ok(())
     }
+}
+
+/// The orbit near the motion of `revolutions` that starts at `cam_angle`, rad, with `state`: its impacts are the guess.
+pub fn near(
+    machine: &Machine,
+    cam_angle: f64,
+    state: State,
+    revolutions: u64,
+) -> Result<Option<PeriodicOrbit>, SimulateError> {
+    let mut motion = machine.start(cam_angle, state)?;
+    let events = period(machine, &mut motion, revolutions)?;
+    if events.iter().any(|event| event.kind != EventKind::Impact) {
+        return settled(machine, motion, 0, revolutions);
+    }
+    if events.is_empty() {
+        return Ok(None);
+    }
+    Ok(close(machine, &Cycle::of_events(revolutions, &events).in_order()))
 }
 
 /// The orbit near a guess, by Newton's method; `None` where that leads nowhere, or to no motion of the cam as it is, or to
@@ -156,7 +174,7 @@ pub fn settled(
     let size = super::cycle::lift_size(machine);
     let mut events = Vec::new();
     for turns in 1..=longest {
-        let (_, more) = period(machine, &mut motion, 1)?;
+        let more = period(machine, &mut motion, 1)?;
         events.extend(more.into_iter().map(|event| Event { revolution: turns - 1, ..event }));
         let (position, velocity) =
             (motion.state.position - first.state.position, motion.state.velocity - first.state.velocity);
@@ -194,8 +212,8 @@ fn free(machine: &Machine, state: State) -> PeriodicOrbit {
     PeriodicOrbit { revolutions: 1, events: Vec::new(), state, matrix, residual, course }
 }
 
-/// Runs `revolutions` and returns the events on the way, with the state at their end.
-fn period(machine: &Machine, motion: &mut Motion, revolutions: u64) -> Result<(State, Vec<Event>), SimulateError> {
+/// Runs `revolutions` and returns the events on the way.
+fn period(machine: &Machine, motion: &mut Motion, revolutions: u64) -> Result<Vec<Event>, SimulateError> {
     let mut events = Vec::new();
     let goal = motion.after(revolutions);
     let _ = machine.advance(motion, goal, &mut |event: &Event| {
@@ -203,7 +221,7 @@ fn period(machine: &Machine, motion: &mut Motion, revolutions: u64) -> Result<(S
         // A follower that chatters has no use for a table of all its impacts.
         if events.len() > 4096 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     })?;
-    Ok((motion.state, events))
+    Ok(events)
 }
 
 /// Guesses for every orbit of one impact in `revolutions`.

@@ -18,14 +18,21 @@ use tempfile::NamedTempFile;
 #[error("{path}: {action}: {why}")]
 pub struct FileError {
     path: String,
+    standard: bool,
     action: &'static str,
     why: io::Error,
 }
 
 impl FileError {
     fn new(path: &Path, action: &'static str) -> impl Fn(io::Error) -> Self + use<> {
-        let path = if path == Path::new("-") { "standard output".to_owned() } else { path.display().to_string() };
-        move |why| Self { path: path.clone(), action, why }
+        let standard = path == Path::new("-");
+        let path = if standard { "standard output".to_owned() } else { path.display().to_string() };
+        move |why| Self { path: path.clone(), standard, action, why }
+    }
+
+    /// Whether it is standard output, and whoever read that has had enough.
+    pub fn is_unread(&self) -> bool {
+        self.standard && self.kind() == io::ErrorKind::BrokenPipe
     }
 
     /// What the system said.

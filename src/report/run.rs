@@ -29,7 +29,8 @@ pub struct RunSummary {
     /// Where it ended.
     #[serde(rename = "final")]
     pub end: End,
-    /// Growth of a small deviation per revolution, as a natural logarithm, if asked for; null where the follower sticks.
+    /// Growth of a small deviation per revolution, as a natural logarithm, if asked for; null where the follower
+    /// came to stick to the cam.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lyapunov_per_revolution: Option<Exponent>,
     /// Seconds that the simulation took, without reading, writing and drawing.
@@ -81,7 +82,9 @@ impl RunSummary {
         let place = if contact { ", on the cam" } else { "" };
         writeln!(page, "  ends at {degrees:.4} deg with q = {position_m:.9} m, v = {velocity_m_s:.9} m/s{place}")?;
         if let Some(Exponent(exponent)) = self.lyapunov_per_revolution {
-            writeln!(page, "  Lyapunov exponent {exponent:.4} per revolution")?;
+            let why =
+                if exponent == f64::NEG_INFINITY { ": it stuck to the cam, where every deviation is lost" } else { "" };
+            writeln!(page, "  Lyapunov exponent {exponent:.4} per revolution{why}")?;
         }
         writeln!(page, "  {:.3} s{}", self.wall_s, per_turn(self.wall_s, self.revolutions))?;
         Ok(page)
@@ -123,7 +126,8 @@ impl SweepSummary {
             "{}: {} revolutions, {} rows, {} impacts",
             self.model, self.revolutions, self.points, self.impacts
         )?;
-        writeln!(page, "  {:.3} s on {} threads{per_turn}", self.wall_s, self.threads)?;
+        let threads = if self.threads == 1 { "1 thread".to_owned() } else { format!("{} threads", self.threads) };
+        writeln!(page, "  {:.3} s on {threads}{per_turn}", self.wall_s)?;
         Ok(page)
     }
 }

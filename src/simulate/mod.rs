@@ -24,7 +24,7 @@ use crate::impact::rebound;
 use crate::model::Follower;
 use crate::tolerance;
 use again::Turn;
-pub use event::{Event, EventKind, Observer, SimulateError};
+pub use event::{Event, EventKind, Observer, SimulateError, Unobserved};
 pub use motion::{Goal, Motion};
 pub use sticking::accumulation;
 use terrain::Terrain;

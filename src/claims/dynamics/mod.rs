@@ -12,7 +12,7 @@ use super::context::{Context, Found};
 use crate::flight::State;
 use crate::published::Verdict;
 use crate::section::StroboscopicMap;
-use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError, angular_velocity};
+use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError, Unobserved, angular_velocity};
 use crate::tolerance;
 pub(super) use chattering::{
     chattering_at_175, chattering_at_183, detachment, impact_diagram_of_slow_cams, period_adding, resonant_peaks,
@@ -38,14 +38,10 @@ fn corners(context: &Context<'_>) -> [f64; 6] {
     std::array::from_fn(|index| corners.get(index).map_or(f64::NAN, |corner| corner.angle))
 }
 
-fn unobserved(_: &Event) -> ControlFlow<()> {
-    ControlFlow::Continue(())
-}
-
 /// Turns the cam `revolutions` on.
 fn turn(machine: &Machine, motion: &mut Motion, revolutions: u64) -> Result<(), SimulateError> {
     let goal = motion.after(revolutions);
-    let _ = machine.advance(motion, goal, &mut unobserved)?;
+    let _ = machine.advance(motion, goal, &mut Unobserved)?;
     Ok(())
 }
 

@@ -43,7 +43,7 @@ pub(super) fn half(
                 let bracket = [at.min(next), at.max(next)];
                 let special =
                     detaches.then_some(Special { kind: Kind::Detachment, bracket, residual: bracket[1] - bracket[0] });
-                points.push(BranchPoint { rpm, value: next, orbit, special });
+                points.push(BranchPoint { sides: None, rpm, value: next, orbit, special });
                 (at, step) = (next, longest.min(2.0 * step.max(closest)));
             }
             None if step > closest => step *= 0.5,

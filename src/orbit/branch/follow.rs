@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use super::problem::{Problem, Units};
+use super::problem::{Pinned, Problem, Units};
 use super::switch::{self, Exit};
 use super::{BranchPoint, End, Following, Kind, Special, gap};
 use crate::orbit::curve::{self, CurvePoint, Equations, NoPoint};
@@ -33,6 +33,18 @@ enum Cut {
     Flip,
     /// The second half of a period becomes the same as the first.
     Halved,
+    /// On one side of the corner that an impact is pinned to, a multiplier passes 1 or -1.
+    Type { side: usize, multiplier: f64 },
+}
+
+/// Where a walk starts.
+pub(super) struct Start<'a> {
+    pub(super) cycle: &'a Cycle,
+    /// Of the free numbers; the last is the one that the walk is about.
+    pub(super) values: &'a [f64],
+    /// Of the free numbers.
+    pub(super) spans: &'a [f64],
+    pub(super) pinned: Option<Pinned>,
 }
 
 /// A cut, located.
@@ -46,26 +58,26 @@ struct Located {
     residual: f64,
 }
 
-/// The branch in one direction: the sign of the parameter's first change.
+/// The branch in one direction: the sign of the last free number's first change.
 pub(super) fn half(
     family: &Family,
-    value: f64,
-    cycle: &Cycle,
+    start: &Start<'_>,
     following: &Following,
     direction: f64,
 ) -> Result<(Vec<BranchPoint>, End), OrbitError> {
-    let machine = family.machine(&[value])?.0;
-    let spans = [following.range[1] - following.range[0]];
+    let Start { cycle, values, spans, pinned } = *start;
+    let machine = family.machine(values)?.0;
     let units = Units::of(cycle, &machine);
-    let problem = Problem::new(family, cycle, units, &spans, None);
-    let unknowns = problem.unknowns(cycle, &machine, &[value]);
+    let problem = Problem::new(family, cycle, units, spans, pinned);
+    let unknowns = problem.unknowns(cycle, &machine, values);
     let Ok(tangent) = curve::first_tangent(&problem, &unknowns) else { return Ok((Vec::new(), End::Lost)) };
-    let ahead = tangent[problem.column(0)] * direction >= 0.0;
+    let ahead = tangent[unknowns.len() - 1] * direction >= 0.0;
     let walk = Walk {
         family,
         following,
         units,
-        spans,
+        spans: spans.to_vec(),
+        pinned,
         pattern: cycle.clone(),
         from: CurvePoint { unknowns, tangent: if ahead { tangent } else { -tangent }, steps: 0 },
         step: FIRST * following.longest_step,
@@ -79,7 +91,8 @@ struct Walk<'a> {
     family: &'a Family,
     following: &'a Following,
     units: Units,
-    spans: [f64; 1],
+    spans: Vec<f64>,
+    pinned: Option<Pinned>,
     pattern: Cycle,
     from: CurvePoint,
     step: f64,
@@ -96,7 +109,7 @@ impl Walk<'_> {
                 return Ok((self.points, End::MostPoints));
             }
             match self.advance() {
-                Ok(None) => self.rescale(&mut begin.1),
+                Ok(None) => self.rescale(&mut begin),
                 Ok(Some(end)) => return Ok((self.points, end)),
                 Err(error) => {
                     if matches!(error, NoPoint::Outside(_))
@@ -138,15 +151,15 @@ impl Walk<'_> {
     }
 
     /// The same curve in units of the velocities that it has come to.
-    fn rescale(&mut self, home: &mut CurvePoint) {
+    fn rescale(&mut self, home: &mut (Cycle, CurvePoint)) {
         /// From which factor on.
         const FACTOR: f64 = 1.5;
         let Ok((cycle, machine, _)) = self.problem().unpack(&self.from.unknowns) else { return };
         let units = Units::of(&cycle, &machine);
         let factor = units.velocity / self.units.velocity;
         if !(1.0 / FACTOR..FACTOR).contains(&factor) {
-            self.units.convert(&mut self.from, units);
-            self.units.convert(home, units);
+            self.units.convert(&mut self.from, cycle.contacts.len(), units);
+            self.units.convert(&mut home.1, home.0.contacts.len(), units);
             self.units = units;
         }
     }
@@ -160,6 +173,10 @@ impl Walk<'_> {
         if !(step.is_finite() && (0.0..=self.step).contains(&step)) {
             return None;
         }
+        // A pinned cycle closes at one speed only, and not at this one.
+        if self.pinned.is_some() {
+            return None;
+        }
         let (machine, rpm) = self.family.machine(&[bound]).ok()?;
         let problem = self.problem();
         let mut unknowns = from + &self.from.tangent * step;
@@ -168,15 +185,15 @@ impl Walk<'_> {
         let (cycle, residual) = guess.closed(&machine).ok()?;
         let is_orbit = matches!(cycle.departure(&machine), Ok(None));
         let orbit = PeriodicOrbit::of_cycle(&machine, cycle, residual);
-        is_orbit.then_some(BranchPoint { rpm, value: bound, orbit, special: None })
+        is_orbit.then_some(BranchPoint { sides: None, rpm, value: bound, orbit, special: None })
     }
 
     fn problem(&self) -> Problem<'_> {
-        Problem::new(self.family, &self.pattern, self.units, &self.spans, None)
+        Problem::new(self.family, &self.pattern, self.units, &self.spans, self.pinned)
     }
 
     fn value(&self, unknowns: &DVector<f64>) -> f64 {
-        unknowns[unknowns.len() - 1] * self.spans[0]
+        unknowns[unknowns.len() - 1] * self.spans[self.spans.len() - 1]
     }
 
     /// One step, or the part of it up to where the cycle changes.
@@ -231,7 +248,7 @@ impl Walk<'_> {
         }
         let end_point = first.as_ref().map_or(next, |located| located.point.clone());
         let mut points = Vec::new();
-        for cut in [Cut::Fold, Cut::Flip] {
+        for cut in self.passed() {
             let at = |point: &CurvePoint| self.measure(&problem, cut, point);
             // Just short of a graze, where the matrix has a pole.
             if (at(&self.from)? > 0.0) != (at(&clear)? > 0.0) && self.fresh.is_none() {
@@ -285,6 +302,15 @@ impl Walk<'_> {
         }
     }
 
+    /// What may be passed without a change of the cycle.
+    fn passed(&self) -> Vec<Cut> {
+        if self.pinned.is_none() {
+            return vec![Cut::Fold, Cut::Flip];
+        }
+        let of_side = |side| [1.0, -1.0].map(|multiplier| Cut::Type { side, multiplier });
+        [0, 1].into_iter().flat_map(of_side).chain([Cut::Fold]).collect()
+    }
+
     /// What the equations show to have been passed at `unknowns`.
     fn cuts(&self, problem: &Problem<'_>, unknowns: &DVector<f64>) -> Result<Vec<Cut>, NoPoint<FamilyError>> {
         let (cycle, machine, _) = problem.unpack(unknowns)?;
@@ -299,10 +325,11 @@ impl Walk<'_> {
         }
         for (index, contact) in cycle.contacts.iter().enumerate() {
             let segment = &machine.cam().segments()[contact.segment];
-            if contact.cam_angle > segment.end {
+            let pinned = self.pinned.is_some_and(|pinned| pinned.contact == index);
+            if contact.cam_angle > segment.end && !pinned {
                 cuts.push(Cut::Exit(Exit::Corner { contact: index, past_end: true }));
             }
-            if contact.cam_angle < segment.start {
+            if contact.cam_angle < segment.start && !pinned {
                 cuts.push(Cut::Exit(Exit::Corner { contact: index, past_end: false }));
             }
             if cycle.approach(&machine, index) <= 0.0 {
@@ -329,7 +356,7 @@ impl Walk<'_> {
             Cut::Exit(Exit::Touch { contact, turned }) => {
                 gap::least(&cycle, &machine, contact, turned).ok_or(NoPoint::NotClosed)?.0
             }
-            Cut::Fold => at.tangent[problem.column(0)],
+            Cut::Fold => at.tangent[at.tangent.len() - 1],
             Cut::Halved => {
                 let other = cycle.second_half(0).ok_or(NoPoint::NotClosed)?;
                 cycle.contacts[other].cam_angle - cycle.contacts[0].cam_angle
@@ -337,6 +364,11 @@ impl Walk<'_> {
             Cut::Flip => {
                 let (_, matrix) = cycle.at_section(&machine, 0.0);
                 1.0 + matrix.trace() + matrix.determinant()
+            }
+            Cut::Type { side, multiplier } => {
+                let pinned = self.pinned.ok_or(NoPoint::NotClosed)?;
+                let matrix = pinned.sides(&cycle, &machine)[side];
+                1.0 - multiplier * matrix.trace() + matrix.determinant()
             }
         })
     }
@@ -397,9 +429,16 @@ impl Walk<'_> {
             Cut::Range(_) => return Ok(None),
             Cut::Fold => Kind::Fold,
             Cut::Flip | Cut::Halved => Kind::Flip,
+            Cut::Type { side, multiplier } => Kind::Type { after_corner: side == 1, multiplier },
             Cut::Exit(exit) => match (exit, self.order(exit, &cycle, &machine)) {
                 (Exit::Corner { .. }, None) => return Ok(None),
-                (_, order) => switch::kind(exit, &cycle, &machine, order.unwrap_or(0)),
+                // Contacts are numbered as those of the orbit, from angle 0 on.
+                (_, order) => match switch::kind(exit, &cycle, &machine, order.unwrap_or(0)) {
+                    Kind::Corner { contact, segment, jump_order } => {
+                        Kind::Corner { contact: cycle.place_in_order(contact), segment, jump_order }
+                    }
+                    other => other,
+                },
             },
         };
         Ok(Some(Special { kind, bracket: located.bracket, residual: located.residual }))
@@ -421,12 +460,16 @@ impl Walk<'_> {
     ) -> Result<BranchPoint, NoPoint<FamilyError>> {
         let (cycle, machine, rpm) = problem.unpack(&point.unknowns)?;
         let residual = cycle.residual(&machine).amax() / lift_size(&machine);
+        let sides = self.pinned.map(|pinned| pinned.sides(&cycle, &machine));
         let orbit = PeriodicOrbit::of_cycle(&machine, cycle, residual);
-        Ok(BranchPoint { rpm, value: self.value(&point.unknowns), orbit, special })
+        Ok(BranchPoint { sides, rpm, value: self.value(&point.unknowns), orbit, special })
     }
 
     /// Goes over to the cycle beyond an exit.
     fn go_over(&mut self, exit: Exit) -> Result<Option<End>, NoPoint<FamilyError>> {
+        if self.pinned.is_some() {
+            return Ok(Some(if matches!(exit, Exit::Corner { .. }) { End::Corner } else { End::Graze }));
+        }
         let values = [self.value(&self.from.unknowns)];
         let machine = self.family.machine(&values)?.0;
         let (cycle, _, _) = self.problem().unpack(&self.from.unknowns)?;

@@ -10,12 +10,16 @@ mod follow;
 mod gap;
 mod problem;
 mod special;
+mod survey;
 mod switch;
+
+use nalgebra::Matrix2;
 
 use super::{Family, OrbitError, Parameter, PeriodicOrbit};
 use crate::model::Model;
 pub use problem::{Pinned, Problem, Units};
 pub use special::{Kind, Special};
+pub use survey::{corner_impacts, survey};
 
 /// What is followed, and how far.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,6 +43,8 @@ pub struct BranchPoint {
     pub value: f64,
     /// The orbit.
     pub orbit: PeriodicOrbit,
+    /// On a curve of corner impacts: its matrix with the law before the corner and with the law after it, 2x2 each.
+    pub sides: Option<[Matrix2<f64>; 2]>,
     /// What changes here, if anything.
     pub special: Option<Special>,
 }
@@ -56,6 +62,8 @@ pub enum End {
     MostPoints,
     /// Impacts without number: the follower begins to chatter there, or ceases to.
     Chatter,
+    /// Another impact of the orbit at a corner.
+    Corner,
     /// A graze beyond which no orbit nearby continues the branch.
     Graze,
     /// An orbit that repeats sooner, which it branches off from: by a flip or a graze.
@@ -75,6 +83,7 @@ impl End {
             Self::Edge(why) => format!("the edge of what the model allows: {why}"),
             Self::MostPoints => "the number of points that was asked for".into(),
             Self::Chatter => "the onset of chattering".into(),
+            Self::Corner => "another impact of the orbit at a corner".into(),
             Self::Graze => "a graze, beyond which no orbit continues it".into(),
             Self::Shorter => "an orbit of fewer revolutions, which it branches off from".into(),
             Self::Gap => "a corner where the cam's velocity jumps, beyond which no orbit continues it".into(),
@@ -97,17 +106,55 @@ impl Branch {
     pub fn through(model: &Model, rpm: f64, orbit: &PeriodicOrbit, following: &Following) -> Result<Self, OrbitError> {
         let family = Family::new(model, rpm, vec![following.parameter.clone()])?;
         let value = following.parameter.value(model, rpm).unwrap_or(f64::NAN);
+        let spans = [following.range[1] - following.range[0]];
         let halves = [-1.0, 1.0].map(|direction| match &orbit.course {
-            super::Course::Impacts(cycle) => follow::half(&family, value, cycle, following, direction),
+            super::Course::Impacts(cycle) => {
+                let start = follow::Start { cycle, values: &[value], spans: &spans, pinned: None };
+                follow::half(&family, &start, following, direction)
+            }
             super::Course::Sticking(anchor) => {
                 chatter::half(&family, value, (*anchor, orbit.revolutions), following, direction)
             }
             super::Course::Free => Ok((Vec::new(), End::Graze)),
         });
-        let [backward, forward] = halves;
+        let middle = BranchPoint { sides: None, rpm, value, orbit: orbit.clone(), special: None };
+        Self::joined(halves, middle)
+    }
+
+    /// The curve of corner impacts through one of them, in the plane of the speed and what is followed.
+    ///
+    /// `corner` is a special point of a branch in the speed; speeds are compared over `speeds`, rpm.
+    pub fn of_corner_impacts(
+        model: &Model,
+        corner: &BranchPoint,
+        speeds: [f64; 2],
+        following: &Following,
+    ) -> Result<Self, OrbitError> {
+        let (Some(Special { kind: Kind::Corner { contact, segment, .. }, .. }), super::Course::Impacts(cycle)) =
+            (corner.special, &corner.orbit.course)
+        else {
+            return Ok(Self { points: Vec::new(), ends: [End::Lost, End::Lost] });
+        };
+        let family = Family::new(model, corner.rpm, vec![Parameter::Speed, following.parameter.clone()])?;
+        let value = following.parameter.value(model, corner.rpm).unwrap_or(f64::NAN);
+        let spans = [speeds[1] - speeds[0], following.range[1] - following.range[0]];
+        let pinned = Pinned { contact, at_end: cycle.contacts[contact].segment != segment };
+        let values = [corner.rpm, value];
+        let start = follow::Start { cycle, values: &values, spans: &spans, pinned: Some(pinned) };
+        let halves = [-1.0, 1.0].map(|direction| follow::half(&family, &start, following, direction));
+        let sides = Some(pinned.sides(cycle, &family.machine(&values)?.0));
+        let middle = BranchPoint { sides, value, ..corner.clone() };
+        Self::joined(halves, middle)
+    }
+
+    /// Both directions from a point in the middle.
+    fn joined(
+        [backward, forward]: [Result<(Vec<BranchPoint>, End), OrbitError>; 2],
+        middle: BranchPoint,
+    ) -> Result<Self, OrbitError> {
         let ((mut points, first), (onward, last)) = (backward?, forward?);
         points.reverse();
-        points.push(BranchPoint { rpm, value, orbit: orbit.clone(), special: None });
+        points.push(middle);
         if first != End::Closed {
             points.extend(onward);
         }

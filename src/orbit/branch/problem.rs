@@ -1,6 +1,8 @@
 //! The equations of a cycle with numbers of the model free, in units in which a curve of solutions is followed.
 
-use nalgebra::{DMatrix, DVector};
+use std::f64::consts::TAU;
+
+use nalgebra::{DMatrix, DVector, Matrix2};
 
 use crate::orbit::curve::{CurvePoint, Equations};
 use crate::orbit::cycle::lift_size;
@@ -14,6 +16,35 @@ pub struct Pinned {
     pub contact: usize,
     /// Whether it stays at the end of its segment; at the start otherwise.
     pub at_end: bool,
+}
+
+impl Pinned {
+    /// The matrices of the orbit, at angle 0, with the law before the corner and with the law after it, 2x2 each.
+    pub fn sides(&self, cycle: &Cycle, machine: &Machine) -> [Matrix2<f64>; 2] {
+        let other = self.other_side(cycle, machine);
+        let (own, other) = (cycle.at_section(machine, 0.0).1, other.at_section(machine, 0.0).1);
+        if self.at_end { [own, other] } else { [other, own] }
+    }
+
+    /// The same cycle, the pinned contact named after the segment on the other side of the corner.
+    pub(super) fn other_side(&self, cycle: &Cycle, machine: &Machine) -> Cycle {
+        let last = machine.cam().segments().len() - 1;
+        let mut other = cycle.clone();
+        let contact = &mut other.contacts[self.contact];
+        match (self.at_end, contact.segment) {
+            (true, segment) if segment == last => {
+                (contact.segment, contact.cam_angle, contact.revolution) =
+                    (0, contact.cam_angle - TAU, contact.revolution + 1);
+            }
+            (true, _) => contact.segment += 1,
+            (false, 0) => {
+                (contact.segment, contact.cam_angle, contact.revolution) =
+                    (last, contact.cam_angle + TAU, contact.revolution - 1);
+            }
+            (false, _) => contact.segment -= 1,
+        }
+        other
+    }
 }
 
 /// What lengths are measured by.
@@ -34,10 +65,10 @@ impl Units {
         Self { lift, velocity: lift.max(fastest / machine.angular_velocity()) }
     }
 
-    /// A point of a curve in these units, in those of `other`; its last unknown is a free number.
-    pub fn convert(&self, point: &mut CurvePoint, other: Self) {
+    /// A point of a curve of cycles of so many contacts in these units, in those of `other`.
+    pub fn convert(&self, point: &mut CurvePoint, contacts: usize, other: Self) {
         let factor = self.velocity / other.velocity;
-        for index in (1..point.unknowns.len().saturating_sub(1)).step_by(2) {
+        for index in (1..2 * contacts).step_by(2) {
             point.unknowns[index] *= factor;
             point.tangent[index] *= factor;
         }

@@ -25,6 +25,13 @@ pub enum Kind {
         /// Impacts after.
         after: usize,
     },
+    /// Along a curve of corner impacts: a multiplier of the map on one side of the corner passes 1 or -1.
+    Type {
+        /// Whether that side is the one after the corner.
+        after_corner: bool,
+        /// 1 or -1.
+        multiplier: f64,
+    },
     /// The follower begins to chatter, or ceases to.
     Chatter,
     /// The follower leaves the cam for the first time, or never does beyond.
@@ -39,6 +46,7 @@ impl Kind {
             Self::Flip => "flip",
             Self::Corner { .. } => "corner",
             Self::Graze { .. } => "graze",
+            Self::Type { .. } => "type",
             Self::Chatter => "chatter",
             Self::Detachment => "detachment",
         }

@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use super::problem::Problem;
+use super::problem::{Pinned, Problem};
 use super::{gap, special::Kind};
 use crate::orbit::curve::{NoPoint, first_tangent};
 use crate::orbit::{Contact, Cycle, FamilyError};
@@ -39,20 +39,7 @@ pub(super) fn beyond(exit: Exit, cycle: &Cycle, machine: &Machine) -> Option<Cyc
     let mut beyond = cycle.clone();
     match exit {
         Exit::Corner { contact, past_end } => {
-            let contact = &mut beyond.contacts[contact];
-            let (last, turn) = (segments.len() - 1, std::f64::consts::TAU);
-            match (past_end, contact.segment) {
-                (true, segment) if segment == last => {
-                    (contact.segment, contact.cam_angle) = (0, contact.cam_angle - turn);
-                    contact.revolution += 1;
-                }
-                (true, _) => contact.segment += 1,
-                (false, 0) => {
-                    (contact.segment, contact.cam_angle) = (last, contact.cam_angle + turn);
-                    contact.revolution -= 1;
-                }
-                (false, _) => contact.segment -= 1,
-            }
+            beyond = Pinned { contact, at_end: past_end }.other_side(cycle, machine);
         }
         Exit::Tangent { contact } => {
             beyond.contacts.remove(contact);

@@ -125,16 +125,23 @@ impl Density {
         };
         let mut shades: Vec<u8> = self.counts.iter().map(|count| shade(*count)).collect();
         if spread {
-            let width = self.columns;
-            let of = |cells: &[u8], at: usize, step: usize, first: bool, last: bool| {
-                let before = if first { 0 } else { cells[at - step] };
-                let after = if last { 0 } else { cells[at + step] };
-                cells[at].max(before).max(after)
-            };
-            let across: Vec<u8> =
-                (0..shades.len()).map(|at| of(&shades, at, 1, at % width == 0, at % width == width - 1)).collect();
-            let up = |at: usize| of(&across, at, width, at < width, at + width >= across.len());
-            shades = (0..across.len()).map(up).collect();
+            for row in shades.chunks_mut(self.columns) {
+                let mut before = 0;
+                for at in 0..row.len() {
+                    let after = row.get(at + 1).copied().unwrap_or(0);
+                    let here = row[at];
+                    row[at] = here.max(before).max(after);
+                    before = here;
+                }
+            }
+            // Row by row from below, so that no second grid is needed.
+            let mut below = vec![0; self.columns];
+            for at in 0..shades.len() {
+                let above = shades.get(at + self.columns).copied().unwrap_or(0);
+                let here = shades[at];
+                shades[at] = here.max(below[at % self.columns]).max(above);
+                below[at % self.columns] = here;
+            }
         }
         shades
     }

@@ -1,16 +1,20 @@
 //! The figure as PNG, from its SVG; letters come with the program, for machines that have none.
 
+use std::io::Write;
+
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use resvg::tiny_skia::{Pixmap, Transform};
+use resvg::tiny_skia::{Color, Pixmap, Transform};
 use resvg::usvg::{Options, Tree};
 
 use super::density::SHADES;
 use super::svg::{self, Dense};
 use super::{Colour, Figure};
 
-/// The widest image that is made: 40 MB of pixels for a figure as high as wide.
+/// The widest image that is made.
 const WIDEST: u32 = 10_000;
+/// Rows of pixels that are drawn at a time; what is clipped takes five times as many beside them.
+const BAND: u32 = 32;
 
 /// Why there is no image.
 #[derive(Debug, thiserror::Error)]
@@ -46,9 +50,26 @@ pub fn render(figure: &Figure, width: u32) -> Result<Vec<u8>, PngError> {
     let tree = Tree::from_str(&svg::write(figure, Dense::Outlined)?, &options)?;
     let scale = width as f32 / tree.size().width();
     let height = (tree.size().height() * scale).ceil() as u32;
-    let mut image = Pixmap::new(width, height).ok_or(PngError::Width(width))?;
-    resvg::render(&tree, Transform::from_scale(scale, scale), &mut image.as_mut());
-    image.encode_png().map_err(|error| PngError::Pack(error.to_string()))
+    let pack = |error: png::EncodingError| PngError::Pack(error.to_string());
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    let mut writer = encoder.write_header().map_err(pack)?;
+    let mut stream = writer.stream_writer().map_err(pack)?;
+    // Band by band: all pixels of a page at once would be most of the program's memory.
+    let mut image = Pixmap::new(width, BAND.min(height)).ok_or(PngError::Width(width))?;
+    for top in (0..height).step_by(BAND as usize) {
+        image.fill(Color::WHITE);
+        let place = Transform::from_row(scale, 0.0, 0.0, scale, 0.0, -(top as f32));
+        resvg::render(&tree, place, &mut image.as_mut());
+        let rows = width as usize * BAND.min(height - top) as usize;
+        let band: Vec<u8> =
+            image.pixels()[..rows].iter().flat_map(|pixel| [pixel.red(), pixel.green(), pixel.blue()]).collect();
+        stream.write_all(&band).map_err(|error| PngError::Pack(error.to_string()))?;
+    }
+    stream.finish().map_err(pack)?;
+    writer.finish().map_err(pack)?;
+    Ok(bytes)
 }
 
 /// A grid of shades, rows from below, as a PNG in base 64: one colour, its opacity by shade.

@@ -19,6 +19,9 @@ pub struct Diagram<'a> {
     pub lyapunov: Option<&'a [[f64; 2]]>,
 }
 
+/// Below a diagram in which some exponent cannot be drawn.
+const FORGETS: &str = "λ = −∞, not drawn, where the follower came to stick to the cam: every deviation is lost there";
+
 /// Impact phases against speed, with the cam's corners as lines.
 pub fn impact_diagram(diagram: Diagram<'_>) -> Figure {
     let marks = diagram.corners.iter().map(CornerMark::mark).collect();
@@ -35,6 +38,7 @@ pub fn strobe_diagram(diagram: Diagram<'_>) -> Figure {
 fn figure(diagram: Diagram<'_>, axis: Axis, marks: Vec<crate::report::figure::Mark>) -> Figure {
     let Diagram { title, points, shown, lyapunov, .. } = diagram;
     let [rpm, all] = points.ranges();
+    let forgets = lyapunov.is_some_and(|points| points.iter().any(|[_, exponent]| *exponent == f64::NEG_INFINITY));
     let cloud = Series { label: String::new(), colour: Colour::Blue, data: Data::Density(points) };
     let mut panels = vec![panel(axis.over(shown.unwrap_or(all)), 0.52, vec![cloud], marks)];
     panels.extend(lyapunov.map(exponents));
@@ -43,7 +47,7 @@ fn figure(diagram: Diagram<'_>, axis: Axis, marks: Vec<crate::report::figure::Ma
         x: Axis::new("cam speed ω", "rpm").over(rpm),
         marks: Vec::new(),
         panels,
-        note: String::new(),
+        note: if forgets { FORGETS.into() } else { String::new() },
     }
 }
 

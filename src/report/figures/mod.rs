@@ -1,10 +1,14 @@
 //! The figures that this program draws, each built from plain data; nothing is simulated here.
 
+mod branches;
 mod cam;
+mod curve;
 mod diagram;
 mod trace;
 
+pub use branches::{Branches, branches_figure};
 pub use cam::{CornerMark, cam_figure, corner_marks};
+pub use curve::curve_figure;
 pub use diagram::{Diagram, impact_diagram, strobe_diagram};
 pub use trace::{Against, ImpactPoint, Trace, TracePoint, phase_plane, time_trace};
 

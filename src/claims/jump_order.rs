@@ -1,0 +1,146 @@
+//! The paper's conjecture that the order of the derivative that jumps decides the local map: one corner after another.
+
+use std::f64::consts::TAU;
+
+use super::context::{Context, Found};
+use super::statements::decide;
+use crate::cam::{Cam, Corner};
+use crate::corner::jump_order::compared::{Compared, compare};
+use crate::corner::jump_order::predicted::Hits;
+use crate::corner::jump_order::{Approach, JumpOrderError};
+use crate::model::{CamProfile, Model, ModelError, OSORIO_2008};
+use crate::published::Verdict;
+
+/// A flight onto a corner of a model that is built in.
+#[derive(Clone, Copy, Debug)]
+pub struct Example {
+    /// Which machine and what happens, in a few words.
+    pub name: &'static str,
+    file: &'static str,
+    text: &'static str,
+    /// Turns humps into hollows.
+    upside_down: bool,
+    /// The corner's place among the cam's corners.
+    corner: usize,
+    /// Speed, rpm.
+    pub rpm: f64,
+    /// u-, m/s.
+    pub closing_velocity: f64,
+}
+
+const SINE: Example = Example {
+    name: "",
+    file: "rectified-sine.toml",
+    text: include_str!("../../models/laws/rectified-sine.toml"),
+    upside_down: false,
+    corner: 1,
+    rpm: 60.0 / TAU,
+    closing_velocity: 4.0,
+};
+
+const PROGRAM: Example =
+    Example { file: "program.toml", text: include_str!("../../models/laws/program.toml"), rpm: 600.0, ..SINE };
+
+const JERK: Example =
+    Example { file: "jerk.toml", text: include_str!("../../models/jump-order/jerk.toml"), rpm: 706.0, ..SINE };
+
+/// One flight or more for each order from 1 to 4; of order 1 for each way to hit.
+pub static EXAMPLES: [Example; 11] = [
+    Example { name: "rectified sine, one impact on either side", ..SINE },
+    Example { name: "rectified sine, a second impact after the corner", closing_velocity: 1.0, ..SINE },
+    Example { name: "hollows, no impact after the corner", upside_down: true, closing_velocity: 0.5, ..SINE },
+    Example { name: "hollows, one impact on either side", upside_down: true, ..SINE },
+    Example {
+        name: "the paper's cam at P",
+        file: "osorio-2008.toml",
+        text: OSORIO_2008,
+        corner: 1,
+        rpm: 673.234445003848821,
+        closing_velocity: 193.667598912036,
+        ..SINE
+    },
+    Example { name: "program, dwell to harmonic", corner: 11, closing_velocity: 5.0, ..PROGRAM },
+    Example { name: "jerk, rising", corner: 1, closing_velocity: 50.0, ..JERK },
+    Example { name: "jerk, near the top", corner: 2, closing_velocity: 30.0, ..JERK },
+    Example { name: "program, dwell to cycloidal", corner: 1, closing_velocity: 5.0, ..PROGRAM },
+    Example { name: "program, within a modified sine", corner: 8, closing_velocity: 5.0, ..PROGRAM },
+    Example { name: "program, 4-5-6-7 polynomial to dwell", corner: 0, closing_velocity: 5.0, ..PROGRAM },
+];
+
+/// Why an example could not be compared.
+#[derive(Debug, thiserror::Error)]
+pub enum ExampleError {
+    /// Its model does not read.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// Its cam has no such corner.
+    #[error("{name}: the cam has {count} corners, none with index {index}")]
+    NoCorner {
+        /// The example.
+        name: &'static str,
+        /// Which was asked for.
+        index: usize,
+        /// How many there are.
+        count: usize,
+    },
+    /// Prediction or measurement failed.
+    #[error(transparent)]
+    JumpOrder(#[from] JumpOrderError),
+}
+
+impl Example {
+    /// Model, cam and flight.
+    pub fn build(&self) -> Result<(Model, Cam, Approach), ExampleError> {
+        let mut model = Model::parse(self.file, self.text)?;
+        if let CamProfile::RectifiedSine(profile) = &mut model.cam {
+            profile.amplitude *= if self.upside_down { -1.0 } else { 1.0 };
+        }
+        let cam = Cam::new(&model)?;
+        let corners = cam.corners();
+        let no_corner = || ExampleError::NoCorner { name: self.name, index: self.corner, count: corners.len() };
+        let corner: Corner = *corners.get(self.corner).ok_or_else(no_corner)?;
+        let omega = crate::simulate::angular_velocity(self.rpm);
+        let approach = Approach::new(corner, omega, omega * corner.minus.slope - self.closing_velocity)?;
+        Ok((model, cam, approach))
+    }
+
+    /// What is predicted and what is measured there.
+    pub fn compare(&self) -> Result<Compared, ExampleError> {
+        let (model, cam, approach) = self.build()?;
+        Ok(compare(&model, &cam, &approach)?)
+    }
+}
+
+/// Exponents and coefficients at corners of order 1 to 4, each by simulation and by formula.
+pub(super) fn order_of_the_jump(_: &Context<'_>) -> Found {
+    let compared: Result<Vec<_>, _> = EXAMPLES.iter().map(Example::compare).collect();
+    let compared = match compared {
+        Ok(compared) => compared,
+        Err(error) => return Found { verdict: Verdict::Open, evidence: error.to_string() },
+    };
+    let of_order = |order: usize| compared.iter().filter(move |one| one.approach.corner.jump_order == order);
+    // The first row of each is the velocity's.
+    let velocities = |order: usize| of_order(order).filter_map(|one| one.rows.first());
+    let furthest = |order: usize| {
+        let expected = order as f64 - 1.0;
+        let off = |exponent: f64| (exponent - expected).abs();
+        let exponents = velocities(order).map(|row| row.measured.exponent.value);
+        exponents.fold(expected, |furthest, found| if off(found) > off(furthest) { found } else { furthest })
+    };
+    // Rounding decides the sign of a zero, and adding 0 takes it off.
+    let shown = |exponent: f64| (exponent * 1e3).round() / 1e3 + 0.0;
+    let parts: Vec<_> = (1..=4).map(|order| format!("{:.3} for order {order}", shown(furthest(order)))).collect();
+    let rows = compared.iter().map(|one| one.rows.len()).sum::<usize>();
+    let agree = compared.iter().filter(|one| one.agrees()).count();
+    let ways = [Hits::Once, Hits::NeverAfter, Hits::TwiceBefore];
+    let complete = (1..=4).all(|order| of_order(order).next().is_some())
+        && ways.iter().all(|way| of_order(1).any(|one| one.hits == *way));
+    let evidence = format!(
+        "the velocities after an impact s before or after the corner differ by (1+r) J s^(j-1)/(j-1)!, J the jump of the j-th \
+         derivative: by simulation exponents of {}; {agree} of {} corners have all exponents and coefficients ({rows}) \
+         of the formulas: order 1 a gap, 2 a jump of the derivative, 3 of the second (docs/jump-order.md)",
+        parts.join(", "),
+        compared.len()
+    );
+    decide(complete && agree == compared.len(), Verdict::Refuted, evidence)
+}

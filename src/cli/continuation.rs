@@ -1,0 +1,198 @@
+//! `corner-impact continue MODEL --from-rpm R --parameter NAME=LO:HI`.
+
+use std::io::Write;
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+
+use super::start::{finite, positive, rpm};
+use super::{CommandError, Exit, picture, progress::Progress};
+use crate::cam::Cam;
+use crate::model::Model;
+use crate::orbit::branch::{Branch, Following};
+use crate::orbit::{Family, OrbitError, Parameter, PeriodicOrbit, Search, search};
+use crate::report::branch;
+use crate::report::figure::Density;
+use crate::report::figures::{Branches, branches_figure, corner_marks};
+use crate::report::file::Output;
+use crate::simulate::{Event, EventKind, Machine, angular_velocity};
+
+/// Follows the orbits of one speed through a parameter, round folds and through corners.
+#[derive(clap::Args)]
+#[command(
+    name = "continue",
+    after_help = "Examples: corner-impact continue models/osorio-2008.toml --from-rpm 700 --parameter rpm=660:760\n\
+    \x20         corner-impact continue models/osorio-2008.toml --from-rpm 700 --parameter restitution=0.5:0.95 --out branches.svg\n\n\
+    Prints the table; what each branch passes and where it ends goes to standard error.\n\
+    Exit code: 0 done, 2 bad model file, usage or file, or nothing to follow."
+)]
+pub(super) struct Arguments {
+    /// Model file (TOML).
+    model: PathBuf,
+    /// Speed at which the orbits are looked for.
+    #[arg(long, value_name = "R", value_parser = rpm, allow_hyphen_values = true)]
+    from_rpm: f64,
+    /// What changes, and from where to where: rpm, or a number of the model file, such as restitution.
+    #[arg(long, value_name = "NAME=LO:HI", value_parser = parameter)]
+    parameter: (String, [f64; 2]),
+    /// Turns of the cam in one period.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=Search::MOST_REVOLUTIONS))]
+    revolutions: u64,
+    /// Only orbits that start with this many impacts.
+    #[arg(long, value_name = "M")]
+    impacts: Option<usize>,
+    /// The longest step, of the range and of a radian.
+    #[arg(long, value_name = "STEP", default_value_t = 0.02, value_parser = positive)]
+    step: f64,
+    /// Orbits after which a branch is given up, in either direction.
+    #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    points: u32,
+    /// A table (.csv, or - for standard output) or a picture (.svg, .png).
+    #[arg(long, value_name = "FILE", default_value = "-")]
+    out: PathBuf,
+    /// Values of the parameter at which a picture shows what runs settle on; 0 for none.
+    #[arg(long, value_name = "N", default_value_t = 400, value_parser = clap::value_parser!(u32).range(0..=100_000))]
+    runs: u32,
+}
+
+/// `NAME=LO:HI`.
+pub(super) fn parameter(text: &str) -> Result<(String, [f64; 2]), String> {
+    let parts = text.split_once('=').and_then(|(name, range)| Some((name, range.split_once(':')?)));
+    let Some((name, (low, high))) = parts else {
+        return Err("must be NAME=LO:HI: what changes, and from where to where".into());
+    };
+    let range = [finite(low)?, finite(high)?];
+    if range[0] < range[1] { Ok((name.trim().into(), range)) } else { Err(format!("{low} is not below {high}")) }
+}
+
+pub(super) fn run(arguments: &Arguments, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit, CommandError> {
+    let model = Model::read(&arguments.model).map_err(CommandError::input)?;
+    let cam = Cam::new(&model).map_err(CommandError::input)?;
+    let corners = corner_marks(&cam);
+    let (name, range) = &arguments.parameter;
+    let parameter = Parameter::named(&model, name).map_err(CommandError::input)?;
+    let value = parameter.value(&model, arguments.from_rpm).unwrap_or(f64::NAN);
+    if !(range[0] <= value && value <= range[1]) {
+        let words = format!(
+            "{}: orbits are looked for at {} = {value}, which is outside of {}:{}",
+            arguments.model.display(),
+            parameter.name(),
+            range[0],
+            range[1]
+        );
+        return Err(CommandError::Input(words));
+    }
+    let machine = Machine::new(cam, &model.follower, angular_velocity(arguments.from_rpm));
+    let wanted = Search { revolutions: arguments.revolutions, impacts: arguments.impacts };
+    let orbits = search(&machine, &wanted).map_err(CommandError::input)?;
+    if orbits.is_empty() {
+        let words = format!(
+            "{}: no periodic orbit of {} revolution(s) found at {} rpm to follow",
+            arguments.model.display(),
+            arguments.revolutions,
+            arguments.from_rpm
+        );
+        return Err(CommandError::Input(words));
+    }
+    let following = Following {
+        parameter: parameter.clone(),
+        range: *range,
+        longest_step: arguments.step,
+        most_points: arguments.points as usize,
+    };
+    // Every file is begun before the work: a name that cannot be is told at once.
+    let is_picture = picture::kind(&arguments.out).is_some();
+    let mut nobody = std::io::sink();
+    let (canvas, table) = if is_picture {
+        (Some(picture::Canvas::create(&arguments.out, &mut nobody)?), None)
+    } else {
+        (None, Some(Output::create(&arguments.out, out).map_err(CommandError::file)?))
+    };
+    let branches = follow(&model, arguments.from_rpm, value, &orbits, &following)?;
+    for (index, found) in branches.iter().enumerate() {
+        let account = branch::account(found, parameter.name(), index + 1).map_err(CommandError::report)?;
+        // Nobody is left to tell where standard error is closed.
+        let _ = err.write_all(account.as_bytes());
+    }
+    if let Some(mut table) = table {
+        table.write_all(branch::COLUMNS.as_bytes()).map_err(CommandError::write)?;
+        for (index, found) in branches.iter().enumerate() {
+            let mut lines = String::new();
+            found.points.iter().for_each(|point| branch::line(&mut lines, parameter.name(), index + 1, point));
+            table.write_all(lines.as_bytes()).map_err(CommandError::write)?;
+        }
+        super::commit(vec![table])?;
+    }
+    if let Some(canvas) = canvas {
+        let settled = settled(&model, arguments, &parameter, *range)?;
+        let what = if parameter == Parameter::Speed { "speed" } else { parameter.name() };
+        let title = format!("{}: orbits found at {} rpm, followed in {what}", model.name, arguments.from_rpm);
+        let drawn = Branches {
+            title: &title,
+            parameter: (parameter.name(), *range),
+            branches: &branches,
+            settled,
+            corners: &corners,
+        };
+        super::commit(vec![canvas.draw(&branches_figure(drawn))?])?;
+    }
+    Ok(Exit::Agrees)
+}
+
+/// The branches through `orbits`, each once.
+fn follow(
+    model: &Model,
+    rpm: f64,
+    value: f64,
+    orbits: &[PeriodicOrbit],
+    following: &Following,
+) -> Result<Vec<Branch>, CommandError> {
+    let mut branches: Vec<Branch> = Vec::new();
+    let mut progress = Progress::new(orbits.len() as u64);
+    for (index, orbit) in orbits.iter().enumerate() {
+        progress.set(index as u64);
+        if !branches.iter().any(|branch| branch.holds(value, orbit)) {
+            branches.push(Branch::through(model, rpm, orbit, following).map_err(CommandError::input)?);
+        }
+    }
+    Ok(branches)
+}
+
+/// What runs settle on, value by value of the parameter: phases of impacts in degrees.
+fn settled(
+    model: &Model,
+    arguments: &Arguments,
+    parameter: &Parameter,
+    [low, high]: [f64; 2],
+) -> Result<Option<Density>, CommandError> {
+    const TRANSIENT: u64 = 300;
+    const RECORD: u64 = 100;
+    if arguments.runs == 0 {
+        return Ok(None);
+    }
+    let family = Family::new(model, arguments.from_rpm, vec![parameter.clone()]).map_err(CommandError::input)?;
+    let mut density = Density::new([low, high], [0.0, 360.0]);
+    let mut progress = Progress::new(u64::from(arguments.runs));
+    for index in 0..arguments.runs {
+        progress.set(u64::from(index));
+        let value = low + (high - low) * (f64::from(index) + 0.5) / f64::from(arguments.runs);
+        // The edge of what the model allows has been told already.
+        let Ok((machine, _)) = family.machine(&[value]) else { continue };
+        let run = || -> Result<Vec<f64>, OrbitError> {
+            let mut motion = machine.start_on_cam(0.0, 0.0)?;
+            let goal = motion.after(TRANSIENT);
+            let _ = machine.advance(&mut motion, goal, &mut |_: &Event| ControlFlow::Continue(()))?;
+            let (goal, mut phases) = (motion.after(RECORD), Vec::new());
+            let _ = machine.advance(&mut motion, goal, &mut |event: &Event| {
+                if event.kind == EventKind::Impact {
+                    phases.push(event.cam_angle.to_degrees());
+                }
+                ControlFlow::Continue(())
+            })?;
+            Ok(phases)
+        };
+        for phase in run().map_err(CommandError::input)? {
+            density.push(value, phase);
+        }
+    }
+    Ok(Some(density))
+}

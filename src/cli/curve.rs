@@ -1,0 +1,125 @@
+//! `corner-impact curve MODEL --rpm LO:HI --parameter NAME=LO:HI`.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use super::continuation::parameter;
+use super::start::{positive, range};
+use super::{CommandError, Exit, picture, progress::Progress};
+use crate::model::Model;
+use crate::orbit::branch::{Branch, BranchPoint, Following, Kind, Special, corner_impacts, survey};
+use crate::orbit::{Parameter, Search};
+use crate::report::curve::{self, AtCorner};
+use crate::report::figure::layout::widened;
+use crate::report::figures::curve_figure;
+use crate::report::file::Output;
+
+/// Follows corner impacts through a number of the model: their speed, and where their type changes.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Example: corner-impact curve models/osorio-2008.toml --rpm 600:760 --parameter restitution=0.5:0.95 --out curve.svg\n\n\
+    Prints the table; what each curve passes and where it ends goes to standard error.\n\
+    Exit code: 0 done, also where there is none, 2 bad model file, usage or file."
+)]
+pub(super) struct Arguments {
+    /// Model file (TOML).
+    model: PathBuf,
+    /// Speeds between which corner impacts of the model are looked for.
+    #[arg(long, value_name = "LO:HI", value_parser = range, allow_hyphen_values = true)]
+    rpm: [f64; 2],
+    /// What changes, and from where to where: a number of the model file, such as restitution.
+    #[arg(long, value_name = "NAME=LO:HI", value_parser = parameter)]
+    parameter: (String, [f64; 2]),
+    /// Turns of the cam in one period.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=Search::MOST_REVOLUTIONS))]
+    revolutions: u64,
+    /// Only orbits that were found with this many impacts.
+    #[arg(long, value_name = "M")]
+    impacts: Option<usize>,
+    /// The longest step, of the ranges and of a radian.
+    #[arg(long, value_name = "STEP", default_value_t = 0.02, value_parser = positive)]
+    step: f64,
+    /// A table (.csv, or - for standard output) or a picture (.svg, .png).
+    #[arg(long, value_name = "FILE", default_value = "-")]
+    out: PathBuf,
+}
+
+/// Corner impacts on a curve after which it is given up, in either direction.
+const MOST_POINTS: usize = 2000;
+
+pub(super) fn run(arguments: &Arguments, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit, CommandError> {
+    let model = Model::read(&arguments.model).map_err(CommandError::input)?;
+    let (name, range) = &arguments.parameter;
+    let parameter = Parameter::named(&model, name).map_err(CommandError::input)?;
+    if parameter == Parameter::Speed {
+        let words = "--parameter must be a number of the model: the speed is what the corner impacts are at";
+        return Err(CommandError::Input(words.into()));
+    }
+    let value = parameter.value(&model, arguments.rpm[0]).unwrap_or(f64::NAN);
+    if !(range[0] <= value && value <= range[1]) {
+        let words = format!("the model's {} = {value} is outside of {}:{}", parameter.name(), range[0], range[1]);
+        return Err(CommandError::Input(words));
+    }
+    let mut nobody = std::io::sink();
+    let (canvas, table) = if picture::kind(&arguments.out).is_some() {
+        (Some(picture::Canvas::create(&arguments.out, &mut nobody)?), None)
+    } else {
+        (None, Some(Output::create(&arguments.out, out).map_err(CommandError::file)?))
+    };
+    let wanted = Search { revolutions: arguments.revolutions, impacts: arguments.impacts };
+    let corners = corner_impacts(&survey(&model, arguments.rpm, &wanted).map_err(CommandError::input)?);
+    let following = Following {
+        parameter: parameter.clone(),
+        range: *range,
+        longest_step: arguments.step,
+        most_points: MOST_POINTS,
+    };
+    let mut curves = Vec::new();
+    let mut progress = Progress::new(corners.len() as u64);
+    for (index, corner) in corners.iter().enumerate() {
+        progress.set(index as u64);
+        let Some(at) = at_corner(corner) else { continue };
+        let found = Branch::of_corner_impacts(&model, corner, arguments.rpm, &following);
+        curves.push((found.map_err(CommandError::input)?, at));
+    }
+    let mut say = |words: &str| {
+        // Nobody is left to tell where standard error is closed.
+        let _ = err.write_all(words.as_bytes());
+    };
+    if curves.is_empty() {
+        let [low, high] = arguments.rpm;
+        say(&format!(
+            "no corner impact of an orbit of {} revolution(s) found between {low} and {high} rpm\n",
+            wanted.revolutions
+        ));
+    }
+    for (index, (found, at)) in curves.iter().enumerate() {
+        say(&curve::account(found, parameter.name(), index + 1, *at).map_err(CommandError::report)?);
+    }
+    if let Some(mut table) = table {
+        table.write_all(curve::COLUMNS.as_bytes()).map_err(CommandError::write)?;
+        for (index, (found, at)) in curves.iter().enumerate() {
+            let mut lines = String::new();
+            found.points.iter().for_each(|point| curve::line(&mut lines, parameter.name(), index + 1, *at, point));
+            table.write_all(lines.as_bytes()).map_err(CommandError::write)?;
+        }
+        super::commit(vec![table])?;
+    }
+    if let Some(canvas) = canvas {
+        let title = format!("{}: corner impacts against {}", model.name, parameter.name());
+        let speeds = curves.iter().flat_map(|(found, _)| &found.points).map(|point| point.rpm);
+        let extent = speeds.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], rpm| [low.min(rpm), high.max(rpm)]);
+        let shown = if extent[0] < extent[1] { widened(extent, 0.04) } else { arguments.rpm };
+        let figure = curve_figure(&title, (parameter.name(), *range), shown, &curves);
+        super::commit(vec![canvas.draw(&figure)?])?;
+    }
+    Ok(Exit::Agrees)
+}
+
+/// Which impact of a corner impact is at the corner, and the order of the jump.
+fn at_corner(point: &BranchPoint) -> Option<AtCorner> {
+    match point.special {
+        Some(Special { kind: Kind::Corner { contact, jump_order, .. }, .. }) => Some(AtCorner { contact, jump_order }),
+        _ => None,
+    }
+}

@@ -1,0 +1,62 @@
+//! `corner-impact orbit MODEL --rpm R`.
+
+use std::path::PathBuf;
+
+use super::start::{rpm, state, turn};
+use super::{CommandError, Exit};
+use crate::cam::Cam;
+use crate::flight::State;
+use crate::model::Model;
+use crate::orbit::search::near;
+use crate::orbit::{Search, search};
+use crate::report::{OrbitDocument, json};
+use crate::simulate::{Machine, angular_velocity};
+
+/// Finds periodic orbits at one speed, stable and unstable, with their multipliers.
+#[derive(clap::Args)]
+#[command(after_help = "Examples: corner-impact orbit models/osorio-2008.toml --rpm 680\n\
+    \x20         corner-impact orbit models/osorio-2008.toml --rpm 745 --revolutions 2 --json\n\n\
+    One-impact orbits are found one and all; those of more impacts by a search from many starts, which may miss some.\n\
+    Exit code: 0 done, also where there is none, 2 bad model file or usage.")]
+pub(super) struct Arguments {
+    /// Model file (TOML).
+    model: PathBuf,
+    /// Speed of the cam.
+    #[arg(long, value_name = "R", value_parser = rpm, allow_hyphen_values = true)]
+    rpm: f64,
+    /// Turns of the cam in one period.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=Search::MOST_REVOLUTIONS))]
+    revolutions: u64,
+    /// Impacts in one period [default: any number].
+    #[arg(long, value_name = "M")]
+    impacts: Option<usize>,
+    /// Only the orbit that Newton's method finds from this state at cam angle 0, m and m/s.
+    #[arg(long, value_name = "Q,V", value_parser = state, allow_hyphen_values = true, conflicts_with = "impacts")]
+    guess: Option<State>,
+    /// Print one JSON document instead of the page.
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(String, Exit), CommandError> {
+    let model = Model::read(&arguments.model).map_err(CommandError::input)?;
+    let cam = Cam::new(&model).map_err(CommandError::input)?;
+    let machine = Machine::new(cam, &model.follower, angular_velocity(arguments.rpm));
+    let orbits = match arguments.guess {
+        Some(state) => {
+            let found = near(&machine, turn(0.0), state, arguments.revolutions).map_err(CommandError::input)?;
+            found.into_iter().collect()
+        }
+        None => {
+            let wanted = Search { revolutions: arguments.revolutions, impacts: arguments.impacts };
+            search(&machine, &wanted).map_err(CommandError::input)?
+        }
+    };
+    let document = OrbitDocument::new(&model.name, arguments.rpm, &orbits);
+    let page = if arguments.json {
+        json::render(&document).map_err(CommandError::report)?
+    } else {
+        document.text().map_err(CommandError::report)?
+    };
+    Ok((page, Exit::Agrees))
+}

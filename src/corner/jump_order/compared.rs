@@ -1,0 +1,140 @@
+//! What is predicted at a corner beside what is measured there.
+
+use nalgebra::Vector3;
+
+use super::measured::{self, Estimate, Gap, MeasuredLaw, Sides};
+use super::predicted::{self, Hits, PowerLaw};
+use super::{Approach, JumpOrderError};
+use crate::cam::Cam;
+use crate::model::Model;
+use crate::tolerance;
+
+/// What a power law is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// The velocities of the cam as it is, on either side of the corner, against the gap at the corner's moment.
+    Gap,
+    /// The velocities at the corner's moment against the time of the impact.
+    Velocity,
+    /// The positions at the corner's moment against the time of the impact.
+    Position,
+    /// The positions at the end of the map against a deviation of the starting position.
+    MapOfPosition,
+    /// The velocities at the end of the map against a deviation of the period.
+    MapOfPeriod,
+}
+
+impl Quantity {
+    /// In words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Gap => "velocity, cam as it is",
+            Self::Velocity => "velocity at the corner",
+            Self::Position => "position at the corner",
+            Self::MapOfPosition => "position after the map, by dx1",
+            Self::MapOfPeriod => "velocity after the map, by dT",
+        }
+    }
+}
+
+/// One power law, predicted and measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row {
+    /// What it is of.
+    pub quantity: Quantity,
+    /// By the formulas.
+    pub predicted: PowerLaw,
+    /// By simulation.
+    pub measured: MeasuredLaw,
+}
+
+impl Row {
+    /// How far the coefficients are apart, of the predicted one.
+    pub fn relative_difference(&self) -> f64 {
+        let predicted = self.predicted.coefficient;
+        ((self.measured.coefficient.value - predicted) / predicted).abs()
+    }
+
+    /// Whether exponent and coefficient are the predicted ones.
+    pub fn agrees(&self) -> bool {
+        let off = (self.measured.exponent.value - f64::from(self.predicted.exponent)).abs();
+        off <= tolerance::JUMP_EXPONENT.value && self.relative_difference() <= tolerance::JUMP_COEFFICIENT.value
+    }
+}
+
+/// Everything that is predicted at a corner, and measured.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Compared {
+    /// The flight.
+    pub approach: Approach,
+    /// How often flights hit the cam near the corner, by the formulas.
+    pub hits: Hits,
+    /// Over the cam as it is, with a jump of order 1.
+    pub gap: Option<Gap>,
+    /// The angle that the map is taken over before the corner, and after it, rad; 0 where only the gap was measured.
+    pub span: f64,
+    /// Every power law.
+    pub rows: Vec<Row>,
+}
+
+impl Compared {
+    /// Whether all of it agrees: the laws, and how often flights hit.
+    pub fn agrees(&self) -> bool {
+        let counted = self.gap.is_none_or(|gap| gap.impacts == impacts(self.hits));
+        counted && !self.rows.is_empty() && self.rows.iter().all(Row::agrees)
+    }
+}
+
+/// Impacts of a flight that comes down before the corner, and of one that would after it.
+fn impacts(hits: Hits) -> [usize; 2] {
+    match hits {
+        Hits::Once => [1, 1],
+        Hits::NeverAfter => [1, 0],
+        Hits::TwiceBefore => [2, 1],
+    }
+}
+
+/// Predicts and measures at the corner of `approach`.
+pub fn compare(model: &Model, cam: &Cam, approach: &Approach) -> Result<Compared, JumpOrderError> {
+    let follower = &model.follower;
+    let hits = predicted::hits(follower, approach);
+    let mut compared = Compared { approach: *approach, hits, gap: None, span: 0.0, rows: Vec::new() };
+    if approach.corner.jump_order == 1 {
+        let gap = measured::gap(model, cam, approach)?;
+        // At the corner's moment itself F is the unit matrix.
+        let step = predicted::over(follower, approach, 0.0, 0.0).step;
+        compared.gap = Some(gap);
+        compared.rows.push(Row {
+            quantity: Quantity::Gap,
+            predicted: PowerLaw { exponent: 0, coefficient: step[1] },
+            measured: MeasuredLaw { exponent: gap.exponent, coefficient: gap.limit[1] },
+        });
+    }
+    if hits != Hits::Once {
+        return Ok(compared);
+    }
+    let sides = Sides::new(model, cam, approach)?;
+    compared.span = sides.span();
+    let [position, velocity] = sides.at_corner()?;
+    let difference = predicted::difference(follower, approach);
+    let row = |quantity, predicted, measured| Row { quantity, predicted, measured };
+    compared.rows.push(row(Quantity::Velocity, difference.velocity, velocity));
+    compared.rows.push(row(Quantity::Position, difference.position, position));
+
+    let map = predicted::over(follower, approach, compared.span, compared.span);
+    let scales = sides.scales();
+    let directions = [(Quantity::MapOfPosition, 0, 0), (Quantity::MapOfPeriod, 2, 1)];
+    for (quantity, direction, component) in directions {
+        let mut z = Vector3::zeros();
+        z[direction] = scales[direction];
+        let law = sides.along(z)?[component];
+        // Per unit of the deviation, where the runs were in parts of a scale.
+        let per_unit = scales[direction].powi(law.exponent.value.round() as i32);
+        let Estimate { value, error } = law.coefficient;
+        let coefficient = Estimate { value: value / per_unit, error: error / per_unit };
+        let unit = map.at(z / scales[direction])[component];
+        let predicted = PowerLaw { exponent: map.exponent, coefficient: unit };
+        compared.rows.push(row(quantity, predicted, MeasuredLaw { exponent: law.exponent, coefficient }));
+    }
+    Ok(compared)
+}

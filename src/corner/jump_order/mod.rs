@@ -1,0 +1,104 @@
+//! The order of the derivative that jumps at a corner, and what it makes of the map of a flight that hits the cam there.
+//!
+//! With J the jump of the lift's j-th derivative in time, u = c' - v the velocity of approach, and s the time of the impact
+//! from the corner, the states after an impact under the law before the corner and under the law after it, both carried to
+//! the corner's moment, differ by
+//!
+//! ```text
+//! velocity    (1+r) J s^(j-1)/(j-1)!            position    -(1+r) J (j-1) s^j/j!
+//! ```
+//!
+//! to leading order: a map with a gap for j = 1, a continuous piecewise-linear one for j = 2, one with a continuous derivative
+//! and a jump in its second for j = 3. [`mod@predicted`] has the formulas, which `derivations/jump_order.py` proves;
+//! [`mod@measured`] finds exponents and coefficients by simulation and knows none of them;
+//! [`mod@compared`] holds the two against each other.
+
+pub mod compared;
+pub mod measured;
+pub mod predicted;
+
+use std::f64::consts::TAU;
+
+use super::locate::CornerImpact;
+use super::one_sided::SampleError;
+use crate::cam::Corner;
+use crate::simulate::SimulateError;
+
+/// A flight that comes in from above and hits the cam on a corner.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Approach {
+    /// The corner.
+    pub corner: Corner,
+    /// omega, rad/s.
+    pub angular_velocity: f64,
+    /// v-, m/s.
+    pub velocity_before: f64,
+}
+
+impl Approach {
+    /// A flight that arrives on `corner` at `velocity_before`, m/s, over a cam that turns at `angular_velocity`, rad/s.
+    ///
+    /// Refused where it does not come in from above: `u- = c'- - v-` must be above 0.
+    pub fn new(corner: Corner, angular_velocity: f64, velocity_before: f64) -> Result<Self, JumpOrderError> {
+        let approach = Self { corner, angular_velocity, velocity_before };
+        let closing = approach.closing_velocity();
+        if closing > 0.0 && closing.is_finite() && angular_velocity > 0.0 && angular_velocity.is_finite() {
+            Ok(approach)
+        } else {
+            Err(JumpOrderError::NotFromAbove { closing, angular_velocity, cam_angle: corner.angle })
+        }
+    }
+
+    /// The impact of a located orbit.
+    pub fn of(at: &CornerImpact) -> Result<Self, JumpOrderError> {
+        Self::new(at.corner, TAU / at.period, at.velocity_before)
+    }
+
+    /// u- = c'- - v-, m/s, with the cam's velocity before the corner.
+    pub fn closing_velocity(&self) -> f64 {
+        self.angular_velocity * self.corner.minus.slope - self.velocity_before
+    }
+}
+
+/// Why there is nothing to predict or to measure.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum JumpOrderError {
+    /// The follower does not fall onto the corner.
+    #[error(
+        "jump order: at {angular_velocity} rad/s the follower closes on the corner at {cam_angle} rad at {closing} m/s; it must come in from above"
+    )]
+    NotFromAbove {
+        /// u-, m/s.
+        closing: f64,
+        /// omega, rad/s.
+        angular_velocity: f64,
+        /// The corner, rad.
+        cam_angle: f64,
+    },
+    /// No stretch around the corner is free of other events.
+    #[error(
+        "jump order: within {least} rad of the corner at {cam_angle} rad a flight that hits it has impacts elsewhere, or sticks"
+    )]
+    NotFree {
+        /// The corner, rad.
+        cam_angle: f64,
+        /// The shortest stretch tried, rad.
+        least: f64,
+    },
+    /// Too few differences stand out of rounding.
+    #[error("jump order: {resolved} of {tried} differences stand out of rounding, and {needed} are needed for a fit")]
+    Unresolved {
+        /// How many do.
+        resolved: usize,
+        /// Of how many.
+        tried: usize,
+        /// How many are needed.
+        needed: usize,
+    },
+    /// A side could not be sampled.
+    #[error("jump order: {0}")]
+    Sample(#[from] SampleError),
+    /// The simulator gave up.
+    #[error("jump order: {0}")]
+    Simulate(#[from] SimulateError),
+}

@@ -1,0 +1,129 @@
+//! The formulas, from the corner's derivatives and the paper's own propagator: nothing is simulated here.
+
+use std::f64::consts::TAU;
+
+use nalgebra::{RowVector3, Vector2, Vector3};
+
+use super::Approach;
+use crate::cam::Lift;
+use crate::corner::closed_form::propagator;
+use crate::model::Follower;
+
+/// `coefficient * s^exponent`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PowerLaw {
+    /// The power of s.
+    pub exponent: u32,
+    /// In m or m/s, per power of a second.
+    pub coefficient: f64,
+}
+
+/// How often flights next to the one on the corner hit the cam near it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Hits {
+    /// Once, whichever side they come down on.
+    Once,
+    /// Once before the corner; after it the cam falls away faster than they do.
+    NeverAfter,
+    /// Twice if the first is before the corner: the cam after it rises faster than they rebound. Once after it.
+    TwiceBefore,
+}
+
+/// What the two sides' states after the impact differ by at the corner's moment, after less before, to leading order in the
+/// time s from the corner to the impact under the law before it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Difference {
+    /// Of the positions, m.
+    pub position: PowerLaw,
+    /// Of the velocities, m/s.
+    pub velocity: PowerLaw,
+}
+
+/// J, m/s^j: what the j-th derivative of the lift in time jumps by.
+pub fn jump(approach: &Approach) -> f64 {
+    approach.corner.jump * approach.angular_velocity.powi(approach.corner.jump_order as i32)
+}
+
+/// How often flights near `approach` hit the cam, from the velocities alone.
+pub fn hits(follower: &Follower, approach: &Approach) -> Hits {
+    let closing = approach.closing_velocity();
+    match approach.corner.jump_order {
+        1 if jump(approach) <= -closing => Hits::NeverAfter,
+        1 if jump(approach) > follower.restitution * closing => Hits::TwiceBefore,
+        _ => Hits::Once,
+    }
+}
+
+/// At the corner's moment, for flights that hit the cam once under the law of either side.
+pub fn difference(follower: &Follower, approach: &Approach) -> Difference {
+    let order = approach.corner.jump_order as u32;
+    let r = follower.restitution;
+    let jump = jump(approach);
+    let velocity = PowerLaw { exponent: order - 1, coefficient: (1.0 + r) * jump / factorial(order - 1) };
+    let position = if order == 1 {
+        // -(1+r)/2 (S+ (u-/u+)^2 - S-),  S = c'' + 2 zeta c' + w0^2 q, each side's own
+        let closing = approach.closing_velocity();
+        let ratio = closing / (closing + jump);
+        let surplus = |lift: &Lift| surplus(follower, approach.angular_velocity, lift);
+        let [minus, plus] = [&approach.corner.minus, &approach.corner.plus].map(surplus);
+        PowerLaw { exponent: 2, coefficient: -0.5 * (1.0 + r) * (plus * ratio * ratio - minus) }
+    } else {
+        // -(1+r) J (j-1) s^j/j!
+        let coefficient = -(1.0 + r) * jump * f64::from(order - 1) / factorial(order);
+        PowerLaw { exponent: order, coefficient }
+    };
+    Difference { position, velocity }
+}
+
+/// S: the cam's acceleration less the follower's own at the cam's velocity, m/s^2.
+fn surplus(follower: &Follower, omega: f64, lift: &Lift) -> f64 {
+    let zeta = follower.damping / (2.0 * follower.mass);
+    let spring = follower.stiffness / follower.mass * (lift.value - follower.rest_position) + follower.gravity;
+    omega * omega * lift.curvature + 2.0 * zeta * omega * lift.slope + spring
+}
+
+fn factorial(n: u32) -> f64 {
+    (1..=n).map(f64::from).product()
+}
+
+/// What the two sides of a map from a section before the corner to one after it differ by, to leading order:
+/// `P+ - P- = step (n z)^(j-1)` for a deviation `z = (dx, dT)` of the state and the period.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SectionJump {
+    /// j - 1: the order of the derivative of the map that jumps; 0 is a gap.
+    pub exponent: u32,
+    /// `(1+r) J/(j-1)! F e2`, m and m/s per power of a second, F the flight from the corner to the end. With j = 1 the J in it
+    /// is held between `-u-` and `r u-`: beyond them flights miss the cam, or hit it twice.
+    pub step: Vector2<f64>,
+    /// n, the time of the impact from the corner for each unit of position, velocity and period: s/m, s^2/m, 1. The border is
+    /// `n z = 0`.
+    pub gradient: RowVector3<f64>,
+}
+
+impl SectionJump {
+    /// `P+ - P-` at the deviation `z`: m, m/s and s.
+    pub fn at(&self, z: Vector3<f64>) -> Vector2<f64> {
+        self.step * (self.gradient * z)[0].powi(self.exponent as i32)
+    }
+}
+
+/// Over flights that start `before` rad before the corner and end `after` rad after it. Half a turn each is the stroboscopic
+/// map: there `step n` is `(A+ - A-, B+ - B-)` for j = 2, and `2 step n n` the jump of the second derivatives for j = 3.
+pub fn over(follower: &Follower, approach: &Approach, before: f64, after: f64) -> SectionJump {
+    let zeta = follower.damping / (2.0 * follower.mass);
+    let flight = |turn: f64| {
+        let omega0_squared = follower.stiffness / follower.mass;
+        propagator(zeta, omega0_squared, turn / approach.angular_velocity)
+    };
+    let Approach { corner, velocity_before: v, .. } = approach;
+    let (exponent, closing) = (corner.jump_order as u32 - 1, approach.closing_velocity());
+    let effective = match exponent {
+        0 => jump(approach).min(follower.restitution * closing).max(-closing),
+        _ => jump(approach),
+    };
+    let step = flight(after).column(1) * ((1.0 + follower.restitution) * effective / factorial(exponent));
+    // n z = (h F dx + v dt)/u,  dt = before/(2 pi) dT
+    let incoming = flight(before);
+    let gradient = RowVector3::new(incoming[(0, 0)], incoming[(0, 1)], v * before / TAU) / closing;
+    SectionJump { exponent, step, gradient }
+}

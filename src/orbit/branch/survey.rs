@@ -1,0 +1,52 @@
+//! The branches of a range of speeds: those through every orbit that is found at a few of them, each once.
+
+use super::{Branch, BranchPoint, Following, Kind};
+use crate::cam::Cam;
+use crate::model::Model;
+use crate::orbit::{OrbitError, Parameter, Search, search};
+use crate::simulate::{Machine, angular_velocity};
+use crate::tolerance;
+
+/// Speeds at which orbits are looked for, evenly over the range, its ends left out.
+const SPEEDS: usize = 5;
+/// The longest step along a branch.
+const STEP: f64 = 0.02;
+/// Points of a branch in either direction: beyond, it winds through ever more impacts.
+const MOST_POINTS: usize = 1000;
+
+/// The branches of `model` over `range`, rpm, of orbits of `wanted.revolutions` that have `wanted.impacts` where they were
+/// found.
+///
+/// Found by searches at a few speeds: a branch that none of these meets is missing.
+pub fn survey(model: &Model, range: [f64; 2], wanted: &Search) -> Result<Vec<Branch>, OrbitError> {
+    let machine = Machine::new(Cam::new(model).map_err(crate::orbit::FamilyError::from)?, &model.follower, 1.0);
+    let following = Following { parameter: Parameter::Speed, range, longest_step: STEP, most_points: MOST_POINTS };
+    let mut branches: Vec<Branch> = Vec::new();
+    for index in 0..SPEEDS {
+        let rpm = range[0] + (range[1] - range[0]) * (index as f64 + 0.5) / SPEEDS as f64;
+        for orbit in search(&machine.at_speed(angular_velocity(rpm)), wanted)? {
+            if !branches.iter().any(|branch| branch.holds(rpm, &orbit)) {
+                branches.push(Branch::through(model, rpm, &orbit, &following)?);
+            }
+        }
+    }
+    Ok(branches)
+}
+
+/// The corner impacts on `branches`, each once, by rising speed.
+pub fn corner_impacts(branches: &[Branch]) -> Vec<BranchPoint> {
+    let is_corner =
+        |point: &&BranchPoint| matches!(point.special, Some(special) if matches!(special.kind, Kind::Corner { .. }));
+    let mut found: Vec<BranchPoint> = Vec::new();
+    for point in branches.iter().flat_map(|branch| &branch.points).filter(is_corner) {
+        let same = |known: &BranchPoint| {
+            (known.rpm - point.rpm).abs() <= tolerance::SAME_ORBIT.value * point.rpm
+                && known.orbit.is_same(&point.orbit)
+        };
+        if !found.iter().any(same) {
+            found.push(point.clone());
+        }
+    }
+    found.sort_by(|one, two| one.rpm.total_cmp(&two.rpm));
+    found
+}

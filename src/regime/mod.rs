@@ -1,0 +1,194 @@
+//! What a machine does over a range of speeds: on the cam, chattering, bouncing regularly, chaotic; and where that changes.
+//!
+//! Speeds are run through upwards and downwards, each from where the last one ended, so that hysteresis shows. A change
+//! between two speeds is narrowed down by halving, and then explained: by the special point of the branch of orbits that
+//! ends there, if there is one.
+
+mod change;
+mod walk;
+
+use crate::model::{Model, ModelError};
+use crate::orbit::{Course, OrbitError, PeriodicOrbit};
+use crate::simulate::SimulateError;
+pub use change::{Cause, Change};
+pub use walk::detachment;
+
+/// What a follower does in the long run at one speed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Regime {
+    /// It stays on the cam.
+    OnCam,
+    /// It bounces, chatters and sticks to the cam, and repeats.
+    Chattering,
+    /// It repeats, with an impact here and there.
+    Regular,
+    /// It never meets the cam.
+    Free,
+    /// It does not repeat; small deviations grow.
+    Chaotic,
+    /// It does not repeat within the revolutions that were run, and small deviations do not grow.
+    Unsettled,
+}
+
+impl Regime {
+    /// Its name in documents.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::OnCam => "on-cam",
+            Self::Chattering => "chattering",
+            Self::Regular => "regular",
+            Self::Free => "free",
+            Self::Chaotic => "chaotic",
+            Self::Unsettled => "unsettled",
+        }
+    }
+}
+
+/// The long run at one speed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settled {
+    /// Speed, rpm.
+    pub rpm: f64,
+    /// What it is.
+    pub regime: Regime,
+    /// The orbit that it is, if it repeats.
+    pub orbit: Option<PeriodicOrbit>,
+    /// Growth of a small deviation per revolution, where it does not.
+    pub growth: Option<f64>,
+}
+
+impl Settled {
+    fn of_orbit(rpm: f64, orbit: PeriodicOrbit) -> Self {
+        let regime = match orbit.course {
+            Course::Sticking(_) if orbit.events.is_empty() => Regime::OnCam,
+            Course::Sticking(_) => Regime::Chattering,
+            Course::Impacts(_) => Regime::Regular,
+            Course::Free => Regime::Free,
+        };
+        Self { rpm, regime, orbit: Some(orbit), growth: None }
+    }
+
+    /// Turns of the cam and impacts of one period.
+    pub fn period(&self) -> Option<(u64, usize)> {
+        self.orbit.as_ref().map(|orbit| (orbit.revolutions, orbit.impacts().count()))
+    }
+
+    /// Whether two long runs are of one kind: the same regime, and if regular the same numbers of revolutions and impacts.
+    pub fn is_like(&self, other: &Self) -> bool {
+        self.regime == other.regime && (self.regime != Regime::Regular || self.period() == other.period())
+    }
+}
+
+/// A range of speeds over which runs are of one kind.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stretch {
+    /// Lowest and highest speed, rpm.
+    pub rpm: [f64; 2],
+    /// The long run at its first speed, in the direction of the walk.
+    pub settled: Settled,
+}
+
+/// One walk through the speeds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Walk {
+    /// By rising speed, whichever way they were run through.
+    pub stretches: Vec<Stretch>,
+    /// What lies between each and the next.
+    pub changes: Vec<Change>,
+}
+
+/// A range of speeds at which what is seen depends on where the speed comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hysteresis {
+    /// Lowest and highest speed, rpm.
+    pub rpm: [f64; 2],
+    /// What rising speed shows.
+    pub rising: Settled,
+    /// What falling speed shows.
+    pub falling: Settled,
+}
+
+/// What a machine does over a range of speeds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Survey {
+    /// The range, rpm.
+    pub rpm: [f64; 2],
+    /// Where the follower first leaves the cam, rpm; `None` where it never does, or even at rest would not stay on it.
+    pub detachment: Option<f64>,
+    /// With rising speed.
+    pub rising: Walk,
+    /// With falling speed.
+    pub falling: Walk,
+    /// Where the two differ.
+    pub hysteresis: Vec<Hysteresis>,
+}
+
+/// How finely a range is looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Care {
+    /// Speeds that are run.
+    pub speeds: usize,
+    /// Revolutions at each before anything is decided.
+    pub settling: u64,
+    /// The longest period that counts as regular, revolutions.
+    pub longest_period: u64,
+}
+
+impl Default for Care {
+    fn default() -> Self {
+        Self { speeds: 300, settling: 400, longest_period: 12 }
+    }
+}
+
+/// Why there is no survey.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SurveyError {
+    /// The model is impossible.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// A run could not go on.
+    #[error("at {rpm} rpm: {error}")]
+    Simulate {
+        /// Speed, rpm.
+        rpm: f64,
+        /// Why.
+        error: SimulateError,
+    },
+    /// A branch could not be followed.
+    #[error(transparent)]
+    Orbit(#[from] OrbitError),
+}
+
+/// Walks through `rpm` upwards and downwards.
+pub fn survey(model: &Model, rpm: [f64; 2], care: Care) -> Result<Survey, SurveyError> {
+    let machine = walk::machine(model)?;
+    let detachment = detachment(model, rpm)?;
+    let (rising, falling) =
+        rayon::join(|| walk::walk(model, &machine, rpm, care, true), || walk::walk(model, &machine, rpm, care, false));
+    let ((rising, up), (falling, down)) = (rising?, falling?);
+    Ok(Survey { rpm, detachment, rising, falling, hysteresis: hysteresis(&up, &down) })
+}
+
+/// The stretches of speeds at which `up` and `down`, both by rising speed, are not the same motion.
+fn hysteresis(up: &[Settled], down: &[Settled]) -> Vec<Hysteresis> {
+    let mut found: Vec<Hysteresis> = Vec::new();
+    let mut open = false;
+    for (rising, falling) in up.iter().zip(down) {
+        let differ = match (&rising.orbit, &falling.orbit) {
+            (Some(one), Some(other)) => !one.is_same(other),
+            (None, None) => false,
+            _ => true,
+        };
+        let like = |last: &Hysteresis| last.rising.regime == rising.regime && last.falling.regime == falling.regime;
+        match found.last_mut() {
+            Some(last) if differ && open && like(last) => last.rpm[1] = rising.rpm,
+            _ if differ => {
+                let rpm = [rising.rpm, rising.rpm];
+                found.push(Hysteresis { rpm, rising: rising.clone(), falling: falling.clone() });
+            }
+            _ => {}
+        }
+        open = differ;
+    }
+    found
+}

@@ -1,0 +1,120 @@
+//! One walk through the speeds, and what the long run at each is.
+
+use std::ops::ControlFlow;
+
+use super::change::{self, Change};
+use super::{Care, Regime, Settled, Stretch, SurveyError, Walk};
+use crate::cam::Cam;
+use crate::diagram::growth;
+use crate::model::Model;
+use crate::orbit::search::settled;
+use crate::simulate::{Event, Machine, Motion, SimulateError, angular_velocity};
+use crate::tolerance;
+
+/// Revolutions over which the growth of a deviation is averaged.
+const AVERAGED: u64 = 400;
+
+/// The machine of a model, at a speed to be chosen.
+pub(super) fn machine(model: &Model) -> Result<Machine, SurveyError> {
+    Ok(Machine::new(Cam::new(model)?, &model.follower, 1.0))
+}
+
+/// Where the follower first leaves the cam between two speeds, rpm; `None` where it leaves at the lower already, or at
+/// neither.
+pub fn detachment(model: &Model, [low, high]: [f64; 2]) -> Result<Option<f64>, SurveyError> {
+    /// Speeds that are looked at before the first change is narrowed down.
+    const SPEEDS: u32 = 200;
+    let machine = machine(model)?;
+    let stays = |rpm: f64| -> Result<bool, SurveyError> {
+        let of_speed = |error| SurveyError::Simulate { rpm, error };
+        let machine = machine.at_speed(angular_velocity(rpm));
+        let mut motion = machine.start_on_cam(0.0, 0.0).map_err(of_speed)?;
+        if !motion.contact {
+            return Ok(false);
+        }
+        let goal = motion.after(1);
+        let flow = machine.advance(&mut motion, goal, &mut |_: &Event| ControlFlow::Break(())).map_err(of_speed)?;
+        Ok(flow.is_continue())
+    };
+    if !stays(low)? {
+        return Ok(None);
+    }
+    let at = |index: u32| low + (high - low) * f64::from(index) / f64::from(SPEEDS);
+    for index in 1..=SPEEDS {
+        if stays(at(index))? {
+            continue;
+        }
+        let (mut low, mut high) = (at(index - 1), at(index));
+        while high - low > tolerance::ROOT_WIDTH.value * high {
+            let middle = 0.5 * (low + high);
+            if stays(middle)? { low = middle } else { high = middle }
+        }
+        return Ok(Some(high));
+    }
+    Ok(None)
+}
+
+/// The long run from `motion`, with where it ended.
+pub(super) fn long_run(
+    machine: &Machine,
+    rpm: f64,
+    motion: &Motion,
+    care: Care,
+) -> Result<(Settled, Motion), SurveyError> {
+    let run = || -> Result<(Settled, Motion), SimulateError> {
+        let machine = machine.at_speed(angular_velocity(rpm));
+        let mut motion = machine.resume(motion)?;
+        let goal = motion.after(care.settling);
+        let _ = machine.advance(&mut motion, goal, &mut |_: &Event| ControlFlow::Continue(()))?;
+        if let Some(orbit) = settled(&machine, motion, 0, care.longest_period)? {
+            return Ok((Settled::of_orbit(rpm, orbit), motion));
+        }
+        let rate = growth(&machine, motion, AVERAGED)?;
+        let regime = if rate > tolerance::CHAOTIC_GROWTH.value { Regime::Chaotic } else { Regime::Unsettled };
+        Ok((Settled { rpm, regime, orbit: None, growth: Some(rate) }, motion))
+    };
+    run().map_err(|error| SurveyError::Simulate { rpm, error })
+}
+
+/// The walk, and the long run at each of its speeds, both by rising speed.
+pub(super) fn walk(
+    model: &Model,
+    machine: &Machine,
+    [low, high]: [f64; 2],
+    care: Care,
+    rising: bool,
+) -> Result<(Walk, Vec<Settled>), SurveyError> {
+    let count = care.speeds.max(2);
+    let at = |index: usize| low + (high - low) * index as f64 / (count - 1) as f64;
+    let mut order: Vec<usize> = (0..count).collect();
+    if !rising {
+        order.reverse();
+    }
+    let first = at(order[0]);
+    let start = machine.at_speed(angular_velocity(first)).start_on_cam(0.0, 0.0);
+    let mut motion = start.map_err(|error| SurveyError::Simulate { rpm: first, error })?;
+    let (mut runs, mut stretches, mut changes) = (Vec::<Settled>::new(), Vec::<Stretch>::new(), Vec::<Change>::new());
+    for index in order {
+        let before = motion;
+        let (now, end) = long_run(machine, at(index), &motion, care)?;
+        motion = end;
+        match (stretches.last_mut(), runs.last()) {
+            (Some(stretch), Some(last)) if now.is_like(last) => stretch.rpm[usize::from(rising)] = now.rpm,
+            (Some(stretch), Some(last)) => {
+                let change = change::narrowed(model, machine, (last, &before), &now, care)?;
+                stretch.rpm[usize::from(rising)] = change.rpm;
+                let rpm = if rising { [change.rpm, now.rpm] } else { [now.rpm, change.rpm] };
+                changes.push(change);
+                stretches.push(Stretch { rpm, settled: now.clone() });
+            }
+            _ => stretches.push(Stretch { rpm: [now.rpm, now.rpm], settled: now.clone() }),
+        }
+        runs.push(now);
+    }
+    if !rising {
+        runs.reverse();
+        stretches.reverse();
+        changes.reverse();
+    }
+    Ok((Walk { stretches, changes }, runs))
+}

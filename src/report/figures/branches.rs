@@ -1,0 +1,119 @@
+//! Branches of orbits over the brute-force diagram: stable unbroken, unstable broken, special points marked.
+
+use super::cam::CornerMark;
+use super::panel;
+use crate::orbit::branch::{Branch, BranchPoint, Kind};
+use crate::report::figure::{Axis, Colour, Data, Density, Figure, Marker, Series, Stroke};
+
+/// What is drawn.
+#[derive(Clone, Debug)]
+pub struct Branches<'a> {
+    /// The figure's title.
+    pub title: &'a str,
+    /// The name of the parameter, and its range.
+    pub parameter: (&'a str, [f64; 2]),
+    /// The branches.
+    pub branches: &'a [Branch],
+    /// What runs settle on, drawn below: the parameter across, impact phases in degrees up.
+    pub settled: Option<Density>,
+    /// The cam's corners.
+    pub corners: &'a [CornerMark],
+}
+
+/// The kinds of point that are marked, with name and colour.
+const MARKED: [(&str, Colour); 5] = [
+    ("corner impact", Colour::Ink),
+    ("fold", Colour::Vermilion),
+    ("flip", Colour::Purple),
+    ("graze", Colour::Green),
+    ("chatter, detachment", Colour::Blue),
+];
+
+fn mark(kind: &Kind) -> usize {
+    match kind {
+        Kind::Corner { .. } => 0,
+        Kind::Fold => 1,
+        Kind::Flip => 2,
+        Kind::Graze { .. } => 3,
+        Kind::Chatter | Kind::Detachment => 4,
+        // Of another figure.
+        Kind::Type { .. } => MARKED.len(),
+    }
+}
+
+/// Impact phases along branches against the parameter.
+pub fn branches_figure(drawn: Branches<'_>) -> Figure {
+    let Branches { title, parameter: (name, range), branches, settled, corners } = drawn;
+    let mut series = Vec::new();
+    if let Some(density) = settled {
+        series.push(Series { label: "runs".into(), colour: Colour::Grey, data: Data::Density(density) });
+    }
+    for (stable, label, colour, stroke) in
+        [(true, "stable", Colour::Blue, Stroke::Solid), (false, "unstable", Colour::Vermilion, Stroke::Dashed)]
+    {
+        let points = lines(branches, stable);
+        if !points.is_empty() {
+            series.push(Series { label: label.into(), colour, data: Data::Line { points, stroke } });
+        }
+    }
+    for (which, (label, colour)) in MARKED.into_iter().enumerate() {
+        let points: Vec<[f64; 2]> =
+            branches.iter().flat_map(|branch| &branch.points).filter_map(|point| place(point, which)).collect();
+        if !points.is_empty() {
+            let data = Data::Points { points, marker: Marker::Ring };
+            series.push(Series { label: label.into(), colour, data });
+        }
+    }
+    let marks = corners.iter().map(CornerMark::mark).collect();
+    let axis = Axis::degrees("cam angle at impact φ");
+    let (label, unit) = if name == "rpm" { ("cam speed ω", "rpm") } else { (name, "") };
+    Figure {
+        title: title.into(),
+        x: Axis::new(label, unit).over(range),
+        marks: Vec::new(),
+        panels: vec![panel(axis.over([0.0, 360.0]), 0.52, series, marks)],
+        note: String::new(),
+    }
+}
+
+/// Where a special point of one of the marked kinds is drawn: at the impact that it is about, or the first.
+fn place(point: &BranchPoint, which: usize) -> Option<[f64; 2]> {
+    let special = point.special.filter(|special| mark(&special.kind) == which)?;
+    let index = if let Kind::Corner { contact, .. } = special.kind { contact } else { 0 };
+    let impact = point.orbit.impacts().nth(index).or_else(|| point.orbit.impacts().next())?;
+    Some([point.value, impact.cam_angle.to_degrees()])
+}
+
+/// The phases of each impact along the branches where they are stable, or not: one line for each impact, broken where the
+/// number of impacts changes or the stability does.
+fn lines(branches: &[Branch], stable: bool) -> Vec<[f64; 2]> {
+    const BREAK: [f64; 2] = [f64::NAN, f64::NAN];
+    let mut all = Vec::new();
+    for branch in branches {
+        let most = branch.points.iter().map(|point| point.orbit.impacts().count()).max().unwrap_or(0);
+        for index in 0..most {
+            let mut before: Option<[f64; 2]> = None;
+            for pair in branch.points.windows(2) {
+                let [one, other] = pair else { continue };
+                let phase = |point: &BranchPoint| {
+                    point.orbit.impacts().nth(index).map(|impact| [point.value, impact.cam_angle.to_degrees()])
+                };
+                let same = one.orbit.impacts().count() == other.orbit.impacts().count();
+                // A piece takes the stability of its end that is no special point.
+                let at = if one.special.is_some() { other } else { one };
+                let ends = phase(one).zip(phase(other)).filter(|(from, to)| same && (to[1] - from[1]).abs() < 60.0);
+                match ends.filter(|_| at.orbit.is_stable() == stable) {
+                    Some((from, to)) => {
+                        if before != Some(from) {
+                            all.extend([BREAK, from]);
+                        }
+                        all.push(to);
+                        before = Some(to);
+                    }
+                    None => before = None,
+                }
+            }
+        }
+    }
+    all
+}

@@ -1,0 +1,70 @@
+//! Curves of corner impacts in the plane of the speed and a number of the model, by what happens at them.
+
+use super::panel;
+use crate::orbit::branch::{Branch, Kind};
+use crate::report::curve::{AtCorner, kind};
+use crate::report::figure::{Axis, Colour, Data, Figure, Marker, Series, Stroke};
+
+/// Kinds of corner impact, with the way in which they are drawn.
+const KINDS: [(&str, Colour, Stroke); 5] = [
+    ("nonsmooth-fold", Colour::Vermilion, Stroke::Solid),
+    ("nonsmooth-flip", Colour::Purple, Stroke::Dashed),
+    ("persistence", Colour::Blue, Stroke::Thin),
+    ("not-piecewise-linear", Colour::Green, Stroke::Dashed),
+    ("degenerate", Colour::Grey, Stroke::Thin),
+];
+
+/// Speed up, the parameter across.
+pub fn curve_figure(
+    title: &str,
+    (name, range): (&str, [f64; 2]),
+    speeds: [f64; 2],
+    curves: &[(Branch, AtCorner)],
+) -> Figure {
+    let mut series = Vec::new();
+    for (label, colour, stroke) in KINDS {
+        let mut points = Vec::new();
+        for (curve, at) in curves {
+            for pair in curve.points.windows(2) {
+                let [from, to] = pair else { continue };
+                // A piece is of the kind of its end that is no point of change.
+                let of = if from.special.is_some() { to } else { from };
+                if kind(of, *at) == label {
+                    points.extend([[from.value, from.rpm], [to.value, to.rpm], [f64::NAN; 2]]);
+                }
+            }
+        }
+        if !points.is_empty() {
+            series.push(Series { label: label.into(), colour, data: Data::Line { points: joined(points), stroke } });
+        }
+    }
+    let all = curves.iter().flat_map(|(curve, _)| &curve.points);
+    let of_type = |kind: &Kind| matches!(kind, Kind::Type { .. });
+    let changes: Vec<[f64; 2]> = all
+        .filter(|point| point.special.is_some_and(|special| of_type(&special.kind)))
+        .map(|point| [point.value, point.rpm])
+        .collect();
+    if !changes.is_empty() {
+        let data = Data::Points { points: changes, marker: Marker::Ring };
+        series.push(Series { label: "a multiplier is 1 or -1".into(), colour: Colour::Ink, data });
+    }
+    Figure {
+        title: title.into(),
+        x: Axis::new(name, "").over(range),
+        marks: Vec::new(),
+        panels: vec![panel(Axis::new("speed of the corner impact", "rpm").over(speeds), 0.52, series, Vec::new())],
+        note: String::new(),
+    }
+}
+
+/// Pieces that meet, as one line: dashes run on.
+fn joined(pieces: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    let mut line: Vec<[f64; 2]> = Vec::new();
+    for piece in pieces.chunks_exact(3) {
+        match line.last() {
+            Some(last) if *last == piece[0] => line.push(piece[1]),
+            _ => line.extend([[f64::NAN; 2], piece[0], piece[1]]),
+        }
+    }
+    line
+}
