@@ -139,7 +139,7 @@ fn all_of(branch: &Branch, is: impl Fn(&Kind) -> bool) -> Vec<&BranchPoint> {
 
 /// The one point of its kind, with its status: between the ends of its bracket, next to nothing left.
 #[track_caller]
-fn the_one<'a>(branch: &'a Branch, is: impl Fn(&Kind) -> bool, derived: f64) -> &'a BranchPoint {
+fn the_one(branch: &Branch, is: impl Fn(&Kind) -> bool, derived: f64) -> &BranchPoint {
     let points = all_of(branch, is);
     let kinds: Vec<_> = branch.points.iter().filter_map(|point| Some((point.value, point.special?))).collect();
     assert_eq!(points.len(), 1, "{derived} among {kinds:#?}, ends {:?}", branch.ends);
