@@ -19,6 +19,7 @@ import closed_forms
 import corner_map
 import flight
 import impact
+import impact_oscillator
 import jump_order
 import normal_form
 import points
@@ -56,6 +57,7 @@ def run():
     stage("impact", impact.proofs())
     stage("corner map", corner_map.proofs())
     stage("normal form", normal_form.proofs())
+    stage("impact oscillator", impact_oscillator.proofs())
     stage("jump order", jump_order.proofs())
     stage("border collision", border_collision.proofs())
     verdicts, results = printed_equations.examined()
@@ -79,6 +81,7 @@ def run():
             "lines": [{"name": name, "expression": text} for name, text in closed_forms.CLOSED_FORMS.items()],
         }),
         "corner_map.json": pretty({"note": note, "inputs": closed_forms.INPUTS, "expressions": expressions}),
+        "impact_oscillator.json": pretty({"note": note, **impact_oscillator.document()}),
         "points.json": lines({"note": note, "seed": points.SEED, "digits": points.DIGITS, "points": [points.entry(row) for row in rows]}, "points"),
         "printed_equations.json": pretty({"note": note, "equations": verdicts}),
         "recovery.json": pretty({"note": note, **recover.document()}),

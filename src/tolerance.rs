@@ -73,6 +73,9 @@ table! {
         rounding stops the iteration";
     /// How near two impacts are that are the same, rad.
     SAME_ORBIT = 1e-6, "absolute, rad: a cycle is known to ten digits, or half of them near a graze or a fold";
+    /// How short the turn between two impacts of a cycle is where a branch that ends does so in chattering, rad.
+    CHATTERING_TURN = 1e-3, "absolute, rad: with restitution 0.8 thirty impacts more are within the rounding of an angle, and \
+        no segment of a designed cam is as short";
     /// How closely a point is located where sticking begins or ends on a branch.
     SPECIAL_POINT = 1e-14, "of the range of the parameter: ten digits of its value are asked for, and each one more costs three \
         simulated periods";

@@ -297,13 +297,38 @@ impl Cycle {
     /// Whether the motion repeats sooner than after `revolutions`.
     pub fn repeats_sooner(&self) -> bool {
         let divides = |sooner: &u64| self.revolutions.is_multiple_of(*sooner);
-        (1..self.revolutions).filter(divides).any(|sooner| {
-            let later = self.begun_later(sooner);
-            self.contacts.iter().zip(&later.contacts).all(|(one, other)| {
-                one.revolution == other.revolution
-                    && (one.cam_angle - other.cam_angle).abs() <= tolerance::SAME_ORBIT.value
-            })
-        })
+        (1..self.revolutions).filter(divides).any(|sooner| self.repeats_after(sooner))
+    }
+
+    fn repeats_after(&self, revolutions: u64) -> bool {
+        let later = self.begun_later(revolutions);
+        let near = |(one, other): (&Contact, &Contact)| {
+            one.revolution == other.revolution && (one.cam_angle - other.cam_angle).abs() <= tolerance::SAME_ORBIT.value
+        };
+        let itself = self.clone().in_order();
+        itself.contacts.iter().zip(&later.contacts).all(near)
+    }
+
+    /// The contact half a period after `contact`, if it is one on the same segment.
+    pub fn second_half(&self, contact: usize) -> Option<usize> {
+        let half = self.contacts.len() / 2;
+        let even = self.revolutions.is_multiple_of(2) && self.contacts.len().is_multiple_of(2);
+        let (one, two) = (self.contacts.get(contact)?, self.contacts.get(contact + half)?);
+        let later = two.revolution - one.revolution == self.revolutions as i64 / 2;
+        (even && later && one.segment == two.segment).then_some(contact + half)
+    }
+
+    /// The same motion over as few revolutions as it repeats after.
+    pub fn shortest(self) -> Self {
+        let cycle = self.in_order();
+        let sooner = |revolutions: &u64| cycle.repeats_after(*revolutions);
+        match (1..cycle.revolutions).filter(|sooner| cycle.revolutions.is_multiple_of(*sooner)).find(sooner) {
+            None => cycle,
+            Some(revolutions) => {
+                let contacts = cycle.contacts.iter().filter(|contact| contact.revolution < revolutions as i64);
+                Self { revolutions, contacts: contacts.copied().collect() }
+            }
+        }
     }
 
     /// The contacts in the order that a cam meets them from `cam_angle`, rad, in `[0, 2 pi)`, each with the angle turned.

@@ -7,6 +7,7 @@
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
+use super::cycle::lift_size;
 use super::{Contact, Course, Cycle, PeriodicOrbit, sticking};
 use crate::flight::State;
 use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError};
@@ -34,6 +35,10 @@ const START_VELOCITIES: usize = 20;
 /// Starts of long runs, and revolutions that they settle in.
 const LONG_RUNS: usize = 6;
 const SETTLING: u64 = 600;
+/// The same for those that come to rest on the cam.
+const SETTLING_STICKING: u64 = 6;
+/// Events of a revolution that are kept: a follower that chatters with restitution 0.99 makes thousands before it rests.
+const MOST_EVENTS: usize = 100_000;
 /// Samples of a segment in which roots are told apart.
 const SAMPLES: usize = 512;
 
@@ -90,7 +95,9 @@ struct Found<'a> {
 
 impl Found<'_> {
     fn keep(&mut self, orbit: PeriodicOrbit) {
-        let wanted = self.wanted.impacts.is_none_or(|impacts| orbit.impacts().count() == impacts);
+        // A long run may settle on what repeats sooner.
+        let wanted = orbit.revolutions == self.wanted.revolutions
+            && self.wanted.impacts.is_none_or(|impacts| orbit.impacts().count() == impacts);
         if wanted && !self.orbits.iter().any(|known| known.is_same(&orbit)) {
             self.orbits.push(orbit);
         }
@@ -106,7 +113,11 @@ impl Found<'_> {
     /// A long run, which settles on something stable.
     fn settle(&mut self, cam_angle: f64, relative_velocity: f64) -> Result<(), SimulateError> {
         let motion = self.machine.start_on_cam(cam_angle, relative_velocity)?;
-        if let Some(orbit) = settled(self.machine, motion, SETTLING, self.wanted.revolutions)? {
+        // A follower that comes to rest on the cam has settled: what comes after repeats at once.
+        let early = settled(self.machine, motion, SETTLING_STICKING, self.wanted.revolutions)?;
+        let sticks = early.as_ref().is_some_and(|orbit| matches!(orbit.course, Course::Sticking(_)));
+        let settled = if sticks { early } else { settled(self.machine, motion, SETTLING, self.wanted.revolutions)? };
+        if let Some(orbit) = settled {
             self.keep(orbit);
         }
         Ok(())
@@ -115,10 +126,10 @@ impl Found<'_> {
     /// One period from the cam: its impacts are a guess.
     fn shoot(&mut self, cam_angle: f64, relative_velocity: f64) -> Result<(), SimulateError> {
         let mut motion = self.machine.start_on_cam(cam_angle, relative_velocity)?;
-        let events = period(self.machine, &mut motion, self.wanted.revolutions)?;
+        let most = self.wanted.impacts.unwrap_or(Search::MOST_IMPACTS);
+        let events = period(self.machine, &mut motion, self.wanted.revolutions, most + 1)?;
         let count = events.iter().filter(|event| event.kind == EventKind::Impact).count();
         let sticks = events.iter().any(|event| event.kind == EventKind::Stick);
-        let most = self.wanted.impacts.unwrap_or(Search::MOST_IMPACTS);
         if sticks || count == 0 || count > most + 1 {
             return Ok(());
         }
@@ -135,7 +146,7 @@ pub fn near(
     revolutions: u64,
 ) -> Result<Option<PeriodicOrbit>, SimulateError> {
     let mut motion = machine.start(cam_angle, state)?;
-    let events = period(machine, &mut motion, revolutions)?;
+    let events = period(machine, &mut motion, revolutions, MOST_EVENTS)?;
     if events.iter().any(|event| event.kind != EventKind::Impact) {
         return settled(machine, motion, 0, revolutions);
     }
@@ -148,6 +159,10 @@ pub fn near(
 /// The orbit near a guess, by Newton's method; `None` where that leads nowhere, or to no motion of the cam as it is, or to
 /// one that repeats sooner.
 pub fn close(machine: &Machine, guess: &Cycle) -> Option<PeriodicOrbit> {
+    // An impact or so a revolution is no chattering, however many revolutions there are.
+    if guess.contacts.len() > Search::MOST_IMPACTS.max(4 * guess.revolutions as usize) {
+        return None;
+    }
     let (cycle, residual) = guess.closed(machine).ok()?;
     let mut corners = machine.cam().corners().into_iter().map(|corner| corner.segment).collect::<Vec<_>>();
     corners.sort_unstable();
@@ -169,10 +184,10 @@ pub fn settled(
     let goal = motion.next(0.0);
     let _ = machine.advance(&mut motion, goal, ignore)?;
     let first = motion;
-    let size = super::cycle::lift_size(machine);
+    let size = lift_size(machine);
     let mut events = Vec::new();
     for turns in 1..=longest {
-        let more = period(machine, &mut motion, 1)?;
+        let more = period(machine, &mut motion, 1, MOST_EVENTS)?;
         events.extend(more.into_iter().map(|event| Event { revolution: turns - 1, ..event }));
         let (position, velocity) =
             (motion.state.position - first.state.position, motion.state.velocity - first.state.velocity);
@@ -195,7 +210,7 @@ pub fn settled(
         } else if impacts {
             close(machine, &Cycle::of_events(turns, &events))
         } else {
-            Some(free(machine, motion.state))
+            free(machine, motion.state)
         };
         // What a run settles on draws it in, or keeps it; Newton's method finds what a run only passes too.
         let holds = |orbit: &PeriodicOrbit| {
@@ -208,23 +223,26 @@ pub fn settled(
     Ok(None)
 }
 
-/// The follower at rest above the cam.
-fn free(machine: &Machine, state: State) -> PeriodicOrbit {
-    let matrix = machine.flight().propagator(TAU / machine.angular_velocity());
-    let rest = State { velocity: 0.0, ..state };
-    let residual = machine.flight().acceleration(rest).abs() / machine.angular_velocity().powi(2);
-    let course = Course::Free;
-    PeriodicOrbit { revolutions: 1, events: Vec::new(), state, matrix, residual, course }
+/// The follower at rest above the cam, near `state`: where no force is left on it. `None` where it falls, or meets the cam.
+fn free(machine: &Machine, state: State) -> Option<PeriodicOrbit> {
+    let (flight, force) = (machine.flight(), machine.flight().force(state.position));
+    let above = if force == 0.0 { 0.0 } else { force / flight.omega0_squared() };
+    let state = State { position: state.position + above, velocity: 0.0 };
+    let matrix = flight.propagator(TAU / machine.angular_velocity());
+    let residual = flight.acceleration(state).abs() / machine.angular_velocity().powi(2) / lift_size(machine);
+    let orbit = PeriodicOrbit { revolutions: 1, events: Vec::new(), state, matrix, residual, course: Course::Free };
+    (state.position.is_finite() && state.position > machine.cam().top()).then_some(orbit)
 }
 
 /// Runs `revolutions` and returns the events on the way.
-fn period(machine: &Machine, motion: &mut Motion, revolutions: u64) -> Result<Vec<Event>, SimulateError> {
+///
+/// It stops right after more than `most` of them.
+fn period(machine: &Machine, motion: &mut Motion, revolutions: u64, most: usize) -> Result<Vec<Event>, SimulateError> {
     let mut events = Vec::new();
     let goal = motion.after(revolutions);
     let _ = machine.advance(motion, goal, &mut |event: &Event| {
         events.push(*event);
-        // A follower that chatters has no use for a table of all its impacts.
-        if events.len() > 4096 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        if events.len() > most { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     })?;
     Ok(events)
 }

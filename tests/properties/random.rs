@@ -17,6 +17,7 @@ use proptest::strategy::Union;
 /// A machine, where a run of it starts, and what it was made from.
 #[derive(Clone)]
 pub struct Case {
+    pub model: Model,
     pub machine: Machine,
     pub rpm: f64,
     pub angle: f64,
@@ -264,6 +265,7 @@ pub fn cases() -> impl Strategy<Value = Case> {
         let text = text(low + around(rest, 2.0) * stroke);
         let model = model(&text, table.as_deref());
         let mut case = Case {
+            model: model.clone(),
             machine: Machine::new(Cam::new(&model).unwrap(), &model.follower, 1.0),
             rpm: 0.0,
             angle: 0.0,

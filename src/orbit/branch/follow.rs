@@ -31,6 +31,8 @@ enum Cut {
     Fold,
     /// A multiplier passes -1.
     Flip,
+    /// The second half of a period becomes the same as the first.
+    Halved,
     /// On one side of the corner that an impact is pinned to, a multiplier passes 1 or -1.
     Type { side: usize, multiplier: f64 },
 }
@@ -101,13 +103,13 @@ struct Walk<'a> {
 
 impl Walk<'_> {
     fn run(mut self) -> Result<(Vec<BranchPoint>, End), OrbitError> {
-        let begin = (self.pattern.clone(), self.from.clone());
+        let mut begin = (self.pattern.clone(), self.from.clone());
         loop {
             if self.points.len() >= self.following.most_points {
                 return Ok((self.points, End::MostPoints));
             }
             match self.advance() {
-                Ok(None) => {}
+                Ok(None) => self.rescale(&mut begin),
                 Ok(Some(end)) => return Ok((self.points, end)),
                 Err(error) => {
                     if matches!(error, NoPoint::Outside(_))
@@ -121,6 +123,7 @@ impl Walk<'_> {
                         let end = match (error, self.fresh) {
                             (NoPoint::Outside(error), _) => End::Edge(error.to_string()),
                             (_, Some(Exit::Touch { .. } | Exit::Tangent { .. })) => End::Graze,
+                            _ if self.chatters() => End::Chatter,
                             _ => End::Lost,
                         };
                         return Ok((self.points, end));
@@ -136,6 +139,28 @@ impl Walk<'_> {
                     return Ok((self.points, End::Closed));
                 }
             }
+        }
+    }
+
+    /// Whether some impacts follow one another so closely that there is no telling them apart soon.
+    fn chatters(&self) -> bool {
+        let closest =
+            |cycle: Cycle| (0..cycle.contacts.len()).map(|index| cycle.turn(index)).fold(f64::INFINITY, f64::min);
+        let here = self.problem().unpack(&self.from.unknowns);
+        here.is_ok_and(|(cycle, ..)| closest(cycle) < tolerance::CHATTERING_TURN.value)
+    }
+
+    /// The same curve in units of the velocities that it has come to.
+    fn rescale(&mut self, home: &mut (Cycle, CurvePoint)) {
+        /// From which factor on.
+        const FACTOR: f64 = 1.5;
+        let Ok((cycle, machine, _)) = self.problem().unpack(&self.from.unknowns) else { return };
+        let units = Units::of(&cycle, &machine);
+        let factor = units.velocity / self.units.velocity;
+        if !(1.0 / FACTOR..FACTOR).contains(&factor) {
+            self.units.convert(&mut self.from, cycle.contacts.len(), units);
+            self.units.convert(&mut home.1, home.0.contacts.len(), units);
+            self.units = units;
         }
     }
 
@@ -188,6 +213,15 @@ impl Walk<'_> {
         for cut in self.cuts(&problem, &next.unknowns)? {
             keep(self.locate(&problem, cut, self.step)?);
         }
+        if self.pattern.second_half(0).is_some()
+            && (self.measure(&problem, Cut::Halved, &self.from)? > 0.0)
+                != (self.measure(&problem, Cut::Halved, &next)? > 0.0)
+        {
+            let located = self.locate(&problem, Cut::Halved, self.step)?;
+            if problem.unpack(&located.point.unknowns)?.0.repeats_sooner() {
+                keep(located);
+            }
+        }
         // And those that only the simulator sees, on the way there.
         let (mut clear, mut reach) = match &first {
             Some(located) => {
@@ -239,8 +273,13 @@ impl Walk<'_> {
             // The impact that is none has no saltation matrix; the orbit without it has one.
             let (cycle, machine, _) = problem.unpack(&end_point.unknowns)?;
             if let Some(without) = switch::beyond(exit, &cycle, &machine) {
-                last.orbit = PeriodicOrbit::of_cycle(&machine, without, last.orbit.residual);
+                last.orbit = PeriodicOrbit::of_cycle(&machine, without.shortest(), last.orbit.residual);
             }
+        }
+        if let (Some(Located { cut: Cut::Halved, .. }), (cycle, machine, _)) =
+            (&first, problem.unpack(&end_point.unknowns)?)
+        {
+            last.orbit = PeriodicOrbit::of_cycle(&machine, cycle.shortest(), last.orbit.residual);
         }
         let grown = if end_point.steps <= 4 { 1.5 } else { 1.0 };
         drop(problem);
@@ -253,6 +292,7 @@ impl Walk<'_> {
         self.from = end_point;
         match first {
             Some(Located { cut: Cut::Range(_), .. }) => Ok(Some(End::Range)),
+            Some(Located { cut: Cut::Halved, .. }) => Ok(Some(End::Shorter)),
             Some(Located { cut: Cut::Exit(exit), .. }) => self.go_over(exit),
             _ => {
                 self.fresh = None;
@@ -317,6 +357,10 @@ impl Walk<'_> {
                 gap::least(&cycle, &machine, contact, turned).ok_or(NoPoint::NotClosed)?.0
             }
             Cut::Fold => at.tangent[at.tangent.len() - 1],
+            Cut::Halved => {
+                let other = cycle.second_half(0).ok_or(NoPoint::NotClosed)?;
+                cycle.contacts[other].cam_angle - cycle.contacts[0].cam_angle
+            }
             Cut::Flip => {
                 let (_, matrix) = cycle.at_section(&machine, 0.0);
                 1.0 + matrix.trace() + matrix.determinant()
@@ -369,6 +413,10 @@ impl Walk<'_> {
                 bracket[0] = self.value(&found.unknowns);
             }
         }
+        // Met exactly, while the other end of the bracket is still far.
+        if residual == 0.0 {
+            bracket = [self.value(&point.unknowns); 2];
+        }
         if bracket[0] > bracket[1] {
             bracket.swap(0, 1);
         }
@@ -380,7 +428,7 @@ impl Walk<'_> {
         let kind = match located.cut {
             Cut::Range(_) => return Ok(None),
             Cut::Fold => Kind::Fold,
-            Cut::Flip => Kind::Flip,
+            Cut::Flip | Cut::Halved => Kind::Flip,
             Cut::Type { side, multiplier } => Kind::Type { after_corner: side == 1, multiplier },
             Cut::Exit(exit) => match (exit, self.order(exit, &cycle, &machine)) {
                 (Exit::Corner { .. }, None) => return Ok(None),
@@ -438,6 +486,9 @@ impl Walk<'_> {
             return Ok(Some(exhausted));
         }
         let Some(beyond) = switch::beyond(exit, &cycle, &machine) else { return Ok(Some(End::Graze)) };
+        if beyond.repeats_sooner() {
+            return Ok(Some(End::Shorter));
+        }
         if beyond.contacts.len() > MOST_IMPACTS * beyond.revolutions as usize {
             return Ok(Some(End::Chatter));
         }

@@ -11,8 +11,11 @@ use crate::tolerance;
 ///
 /// `None` where the gap has no minimum there but falls to one of the flight's ends.
 pub(super) fn least(cycle: &Cycle, machine: &Machine, index: usize, turned: f64) -> Option<(f64, f64)> {
-    /// From where to where the minimum is walked to, in parts of the flight.
-    const PARTS: f64 = 400.0;
+    /// The first stride of the walk to the minimum, of the way to the nearer end of the flight: a short hop in front of a
+    /// long flight is seen.
+    const PART: f64 = 0.05;
+    /// What each stride is longer by than the one before.
+    const LONGER: f64 = 1.25;
     let (start, _) = cycle.flight(machine, index);
     let from = cycle.contacts[index].cam_angle;
     let whole = cycle.turn(index);
@@ -22,19 +25,24 @@ pub(super) fn least(cycle: &Cycle, machine: &Machine, index: usize, turned: f64)
         let lift = machine.cam().lift(if angle < TAU { angle } else { 0.0 });
         machine.flight().fly(start, turned / omega).1.position - lift.value
     };
-    let stride = whole / PARTS;
-    let inside = |turned: f64| turned > stride && turned < whole - stride;
-    let mut at = turned.clamp(2.0 * stride, whole - 2.0 * stride);
-    let direction = if gap(at + stride) < gap(at - stride) { stride } else { -stride };
-    while gap(at + direction) < gap(at) {
-        at += direction;
-        if !inside(at) {
+    let inside = |turned: f64| turned > 0.0 && turned < whole;
+    if !inside(turned) {
+        return None;
+    }
+    let stride = PART * turned.min(whole - turned);
+    let onward = if gap(turned + stride) < gap(turned - stride) { 1.0 } else { -1.0 };
+    let (mut behind, mut middle, mut length) = (turned - onward * stride, turned, stride);
+    let mut ahead = turned + onward * stride;
+    while gap(ahead) < gap(middle) {
+        length *= LONGER;
+        (behind, middle, ahead) = (middle, ahead, ahead + onward * length);
+        if !inside(ahead) {
             return None;
         }
     }
     // Golden section: the gap is smooth but at corners, and one minimum is inside.
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
-    let (mut low, mut high) = (at - stride, at + stride);
+    let (mut low, mut high) = (behind.min(ahead), behind.max(ahead));
     let (mut left, mut right) = (high - golden * (high - low), low + golden * (high - low));
     let (mut at_left, mut at_right) = (gap(left), gap(right));
     // Sixty sections leave less than rounding of the angle.
@@ -63,6 +71,6 @@ pub(super) fn least(cycle: &Cycle, machine: &Machine, index: usize, turned: f64)
         sharp -= omega * velocity / acceleration;
     }
     // Not at a corner, where the gap has a kink.
-    let at = if (sharp - at).abs() < tolerance::SAME_MINIMUM.value * stride { sharp } else { at };
+    let at = if (sharp - at).abs() < tolerance::SAME_MINIMUM.value * length { sharp } else { at };
     Some((gap(at), at))
 }

@@ -66,6 +66,8 @@ pub enum End {
     Corner,
     /// A graze beyond which no orbit nearby continues the branch.
     Graze,
+    /// An orbit that repeats sooner, which it branches off from: by a flip or a graze.
+    Shorter,
     /// An impact at a corner where the cam's velocity jumps: the map has a gap there.
     Gap,
     /// No orbit was found nearby.
@@ -83,6 +85,7 @@ impl End {
             Self::Chatter => "the onset of chattering".into(),
             Self::Corner => "another impact of the orbit at a corner".into(),
             Self::Graze => "a graze, beyond which no orbit continues it".into(),
+            Self::Shorter => "an orbit of fewer revolutions, which it branches off from".into(),
             Self::Gap => "a corner where the cam's velocity jumps, beyond which no orbit continues it".into(),
             Self::Lost => "a place from which Newton's method finds no orbit nearby".into(),
         }

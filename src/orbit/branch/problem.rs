@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector, Matrix2};
 
-use crate::orbit::curve::Equations;
+use crate::orbit::curve::{CurvePoint, Equations};
 use crate::orbit::cycle::lift_size;
 use crate::orbit::{Cycle, Family, FamilyError};
 use crate::simulate::Machine;
@@ -63,6 +63,16 @@ impl Units {
         let fastest =
             cycle.contacts.iter().fold(0.0_f64, |fastest, contact| fastest.max(contact.velocity_before.abs()));
         Self { lift, velocity: lift.max(fastest / machine.angular_velocity()) }
+    }
+
+    /// A point of a curve of cycles of so many contacts in these units, in those of `other`.
+    pub fn convert(&self, point: &mut CurvePoint, contacts: usize, other: Self) {
+        let factor = self.velocity / other.velocity;
+        for index in (1..2 * contacts).step_by(2) {
+            point.unknowns[index] *= factor;
+            point.tangent[index] *= factor;
+        }
+        point.tangent /= point.tangent.norm();
     }
 }
 

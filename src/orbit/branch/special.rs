@@ -7,7 +7,7 @@ use crate::orbit::{Course, PeriodicOrbit};
 pub enum Kind {
     /// A multiplier passes 1: the branch turns round in the parameter.
     Fold,
-    /// A multiplier passes -1: an orbit of twice the period branches off.
+    /// A multiplier passes -1: an orbit of twice the period branches off; or, on a branch of those, its end there.
     Flip,
     /// An impact passes a corner of the cam.
     Corner {
