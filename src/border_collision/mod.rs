@@ -7,16 +7,14 @@ pub mod local_map;
 pub mod long_run;
 pub mod normal_form;
 pub mod outcome;
-mod scenario;
 pub mod validity;
 pub mod word;
 
 pub use conditions::{Condition, conditions};
-pub use feigin::{Classification, classify};
+pub use feigin::{Classification, classify, scenario};
 pub use local_map::LocalMap;
 pub use normal_form::{NormalForm, normal_form};
 pub use outcome::LocalOutcome;
-pub use scenario::scenario;
 
 /// A map that the classification says nothing about, and why.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
