@@ -131,7 +131,10 @@ impl RegimesDocument {
         writeln!(page, "{}, {low} to {high} rpm\n", self.model)?;
         match self.detachment_rpm {
             Some(rpm) => writeln!(page, "  leaves the cam first at   {rpm:.6} rpm")?,
-            None => writeln!(page, "  leaves the cam first at   no speed in between")?,
+            None if self.rising.first().is_some_and(|stretch| stretch.motion.regime == "on-cam") => {
+                writeln!(page, "  leaves the cam first at   no speed in between")?;
+            }
+            None => writeln!(page, "  leaves the cam first at   {low} rpm already, or below")?,
         }
         for RegimeEntry { regime, ranges } in &self.regimes {
             let what = match *regime {
