@@ -10,7 +10,7 @@ use crate::cam::Cam;
 use crate::corner::border::border;
 use crate::corner::external::{self, Outside, PROGRAMS, Program};
 use crate::corner::{self, CornerImpact, CornerMap, LocateError, Route};
-use crate::corner::{closed_form, finite_difference, least_squares, simulated_orbit};
+use crate::corner::{closed_form, finite_difference, least_squares, simulated_orbit, variational};
 use crate::model::Model;
 use crate::published::{PrintedNumber, PublishedError, compare_published};
 use crate::python::PythonError;
@@ -81,6 +81,7 @@ pub fn verify(model: &Model, external: External) -> Result<Findings, LocateError
     let closed = closed_form::route(model, &at);
     let map = closed.map;
     let mut routes = vec![closed];
+    routes.push(variational::route(model, &cam, &at));
     routes.extend(log.keep("finite_difference", finite_difference::route(model, &cam, &at)));
     routes.extend(log.keep("least_squares", least_squares::route(model, &cam, &at)));
 
@@ -111,7 +112,7 @@ pub fn verify(model: &Model, external: External) -> Result<Findings, LocateError
     let mut comparisons = agreement::compare_routes(&routes);
     comparisons.extend(agreement::compare_orbits(&orbits));
 
-    let border = border(model, &at);
+    let border = border(model, &cam, &at);
     comparisons.push(compare_borders(&map, border));
     let normal_form = normal_form(&map).map_err(|error| log.leave_out("normal_form", error.to_string())).ok();
     let classification =

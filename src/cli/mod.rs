@@ -3,6 +3,7 @@
 mod cam;
 mod claims;
 mod diagram;
+mod locate;
 mod picture;
 mod progress;
 mod simulate;
@@ -42,6 +43,7 @@ enum Command {
     Cam(cam::Arguments),
     Simulate(simulate::Arguments),
     Diagram(diagram::Arguments),
+    Locate(locate::Arguments),
 }
 
 /// Why a command has no result.
@@ -112,6 +114,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         }
         Command::Simulate(arguments) => simulate::run(arguments, out),
         Command::Diagram(arguments) => diagram::run(arguments, out),
+        Command::Locate(arguments) => print(locate::run(arguments), out),
     };
     result.unwrap_or_else(|error| {
         let _ = writeln!(err, "error: {error}");

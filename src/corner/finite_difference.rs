@@ -1,15 +1,16 @@
-//! A and B by central differences of simulated revolutions, extrapolated to step 0.
+//! A and B by central differences of simulated periods, extrapolated to step 0.
 //!
 //! A central difference errs by even powers of the step, so halving it k times and eliminating a power each time
 //! (Richardson) leaves an error of order 2k + 2 in the step, until rounding, which grows as the step shrinks, takes over.
-//! Each entry of the table is known to its last correction and to the rounding of the revolution over the step; the one
+//! Each entry of the table is known to its last correction and to the rounding of the period over the step; the one
 //! for which their sum is smallest is taken, and that sum is its error estimate.
 
 use nalgebra::{Matrix2, Vector2, Vector3};
 
-use super::locate::CornerImpact;
+use super::corner_impact::CornerImpact;
 use super::map::{CornerMap, Route, SideMap, Uncertainty};
 use super::one_sided::{OneSidedMap, SampleError};
+use super::varied::Varied;
 use crate::cam::{Cam, Side};
 use crate::model::Model;
 
@@ -18,8 +19,13 @@ const HALVINGS: usize = 7;
 
 /// The map by extrapolated central differences, with the last correction of each entry.
 pub fn route(model: &Model, cam: &Cam, at: &CornerImpact) -> Result<Route, SampleError> {
-    let (minus, minus_error) = side_map(&OneSidedMap::new(model, cam, at, Side::Minus)?)?;
-    let (plus, plus_error) = side_map(&OneSidedMap::new(model, cam, at, Side::Plus)?)?;
+    route_by(model, cam, at, &Varied::Period)
+}
+
+/// The same with B by any number of the model.
+pub fn route_by(model: &Model, cam: &Cam, at: &CornerImpact, varied: &Varied) -> Result<Route, SampleError> {
+    let (minus, minus_error) = side_map(&OneSidedMap::by(model, cam, at, Side::Minus, varied)?)?;
+    let (plus, plus_error) = side_map(&OneSidedMap::by(model, cam, at, Side::Plus, varied)?)?;
     Ok(Route {
         name: "finite_difference",
         map: CornerMap { minus, plus },
@@ -27,7 +33,8 @@ pub fn route(model: &Model, cam: &Cam, at: &CornerImpact) -> Result<Route, Sampl
     })
 }
 
-fn side_map(map: &OneSidedMap<'_>) -> Result<(SideMap, SideMap), SampleError> {
+/// One side's map, and the error of each entry.
+pub fn side_map(map: &OneSidedMap<'_>) -> Result<(SideMap, SideMap), SampleError> {
     let scales = map.scales();
     let mut columns = [(Vector2::zeros(), Vector2::zeros()); 3];
     for (direction, column) in columns.iter_mut().enumerate() {

@@ -292,14 +292,7 @@ impl Verification {
             normal_form: normal_form.as_ref().map(NormalFormEntry::new),
             classification: classification.as_ref().map(|verdict| ClassificationEntry::new(verdict, *border)),
             published: published.iter().map(PublishedEntry::new).collect(),
-            skipped: skipped
-                .iter()
-                .map(|Skipped { route, why, failed }| SkippedEntry {
-                    route: route.clone(),
-                    why: why.clone(),
-                    failed: *failed,
-                })
-                .collect(),
+            skipped: skipped.iter().map(SkippedEntry::new).collect(),
             agrees: *agrees,
         }
     }
@@ -330,10 +323,22 @@ fn rows(matrix: &Matrix2<f64>) -> [[f64; 2]; 2] {
     matrix.transpose().into()
 }
 
+impl SideEntry {
+    pub(super) fn new(side: &SideMap) -> Self {
+        Self { a: rows(&side.a), b: side.b.into() }
+    }
+}
+
 impl Sides<SideEntry> {
     fn new(map: &CornerMap) -> Self {
-        let entry = |side: &SideMap| SideEntry { a: rows(&side.a), b: side.b.into() };
-        Self { minus: entry(&map.minus), plus: entry(&map.plus) }
+        Self { minus: SideEntry::new(&map.minus), plus: SideEntry::new(&map.plus) }
+    }
+}
+
+impl SkippedEntry {
+    pub(super) fn new(skipped: &Skipped) -> Self {
+        let Skipped { route, why, failed } = skipped.clone();
+        Self { route, why, failed }
     }
 }
 
@@ -362,7 +367,7 @@ impl RouteEntry {
 }
 
 impl AgreementEntry {
-    fn new(agreement: &Agreement) -> Self {
+    pub(super) fn new(agreement: &Agreement) -> Self {
         let Agreement { routes, quantity, max_abs_diff, max_rel_diff, bound, agrees } = agreement.clone();
         Self { routes, quantity, max_abs_diff, max_rel_diff, tolerance: bound.value, reason: bound.reason, agrees }
     }
@@ -382,7 +387,7 @@ impl NormalFormEntry {
 }
 
 impl ClassificationEntry {
-    fn new(verdict: &Classification, (e, f): (RowVector2<f64>, f64)) -> Self {
+    pub(super) fn new(verdict: &Classification, (e, f): (RowVector2<f64>, f64)) -> Self {
         let Classification { scenario, period_two_orbit, minus, plus } = verdict;
         Self {
             scenario: scenario.name(),

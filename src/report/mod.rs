@@ -9,10 +9,12 @@ pub mod figure;
 pub mod figures;
 pub mod file;
 pub mod json;
+pub mod locate;
 pub mod run;
 pub mod text;
 
 pub use cam::CamDocument;
 pub use claims::ClaimsDocument;
 pub use document::Verification;
+pub use locate::LocateDocument;
 pub use run::{RunSummary, SweepSummary};
