@@ -12,8 +12,9 @@ use crate::cam::{Cam, Side};
 use crate::corner::border::border;
 use crate::corner::locate::Rejected;
 use crate::corner::map::Uncertainty;
-use crate::corner::one_sided::{OneSidedMap, SampleError};
+use crate::corner::one_sided::SampleError;
 use crate::corner::range::{self, RangeError, Survey};
+use crate::corner::varied::Varied;
 use crate::corner::{CornerImpact, CornerMap, Route, SideMap};
 use crate::corner::{closed_form, finite_difference, least_squares, variational};
 use crate::model::{Model, ModelError, Study};
@@ -143,12 +144,12 @@ pub fn located(model: &Model, cam: &Cam, at: &CornerImpact) -> Located {
 
 /// The estimate of the side that the impact is on, in the place of both.
 fn one_side(model: &Model, cam: &Cam, at: &CornerImpact) -> Result<Route, SampleError> {
-    let (side, _) = finite_difference::side_map(&OneSidedMap::new(model, cam, at, at.side)?)?;
+    let (side, _) = finite_difference::side_map(model, cam, at, at.side, &Varied::Period)?;
     Ok(Route { name: "finite_difference", map: CornerMap { minus: side, plus: side }, uncertainty: None })
 }
 
 /// The comparisons but for those with a fit that says itself that it knows the quantity less closely than is asked: such a
-/// fit would be no check. Amplified a thousandfold on an orbit of several impacts, rounding leaves it no more.
+/// fit would be no check. Over a whole period of several impacts rounding is amplified as deviations are, and leaves no more.
 fn split_by_knowledge(comparisons: Vec<Agreement>, routes: &[Route]) -> (Vec<Agreement>, Option<Skipped>) {
     let Some(fit) = routes.iter().find(|route| matches!(route.uncertainty, Some(Uncertainty::Fit { .. }))) else {
         return (comparisons, None);

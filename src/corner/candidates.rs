@@ -12,9 +12,9 @@ use crate::orbit::{Course, Cycle, Departure, Search, search};
 use crate::simulate::{Machine, angular_velocity};
 
 /// Speeds that orbits are searched for at, both ends among them.
-const SPEEDS: usize = 7;
+const SPEEDS: usize = 17;
 /// Steps between two of them, and halvings of a step that leads nowhere.
-const STEPS: usize = 32;
+const STEPS: usize = 16;
 const HALVINGS: usize = 8;
 
 /// The guesses, and what was looked at.
@@ -26,7 +26,7 @@ pub struct Candidates {
     pub speeds: Vec<f64>,
     /// Orbits of several impacts that were found there.
     pub orbits: usize,
-    /// Searches that ended with an error, and the first.
+    /// The first search that ended with an error, if any did.
     pub failed: Option<String>,
 }
 

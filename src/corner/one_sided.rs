@@ -16,7 +16,7 @@ use crate::cam::{Cam, Corner, Side};
 use crate::flight::State;
 use crate::model::Model;
 use crate::orbit::{Family, Parameter};
-use crate::simulate::{Event, EventKind, Machine, SimulateError};
+use crate::simulate::{Event, EventKind, Goal, Machine, SimulateError};
 
 /// Why a side of the map could not be sampled.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -86,6 +86,66 @@ pub struct OneSidedMap<'a> {
     varied: Turned,
     /// What unit perturbations are made smaller by.
     shrunk: f64,
+    stretch: Stretch,
+}
+
+/// A stretch of the orbit from one section to another.
+#[derive(Clone, Debug)]
+struct Stretch {
+    /// The first section, rad, and the follower there.
+    section: f64,
+    start: State,
+    /// The angle turned by each flight, rad, and the contact that it ends at.
+    flights: Vec<(f64, usize)>,
+    /// The second section.
+    goal: Goal,
+    end: State,
+    /// `c' - v-` and `v-` of the impact that the perturbations are measured by, m/s.
+    approach: f64,
+    velocity_before: f64,
+}
+
+impl Stretch {
+    /// The whole period.
+    fn whole(at: &CornerImpact) -> Self {
+        let section = at.section_angle();
+        Self {
+            section,
+            start: at.state,
+            flights: at.course().0,
+            goal: Goal { revolution: at.cycle.revolutions, cam_angle: section },
+            end: at.state,
+            approach: at.cam_velocity - at.velocity_before,
+            velocity_before: at.velocity_before,
+        }
+    }
+
+    /// One stretch for each impact, from the middle of the flight before it to that of the flight after.
+    fn pieces(at: &CornerImpact, machine: &Machine) -> Vec<Self> {
+        let (flights, last) = at.course();
+        let count = flights.len();
+        // The middle of the flight that ends at each contact: its angle, the follower, and the angle left to the contact.
+        let middle = |index: usize| {
+            if index % count == 0 {
+                return (at.section_angle(), at.state, flights[0].0);
+            }
+            let ((turn, _), (_, before)) = (flights[index], flights[index - 1]);
+            let angle = (at.cycle.contacts[before].cam_angle + 0.5 * turn).rem_euclid(TAU) % TAU;
+            let leaving = at.cycle.flight(machine, before).0;
+            (angle, machine.flight().fly(leaving, 0.5 * turn / TAU * at.period).1, 0.5 * turn)
+        };
+        let piece = |index: usize| {
+            let ((section, start, to), (cam_angle, end, _)) = (middle(index), middle(index + 1));
+            let from = if index + 1 == count { last } else { 0.5 * flights[index + 1].0 };
+            let contact = flights[index].1;
+            let revolution = ((section + to + from - cam_angle) / TAU).round() as u64;
+            let goal = Goal { revolution, cam_angle };
+            let velocity_before = at.cycle.contacts[contact].velocity_before;
+            let approach = at.cycle.approach(machine, contact);
+            Self { section, start, flights: vec![(to, contact)], goal, end, approach, velocity_before }
+        };
+        (0..count).map(piece).collect()
+    }
 }
 
 /// What turns at a third perturbation.
@@ -101,9 +161,9 @@ enum Turned {
 pub struct Sample {
     /// Deviation of position (m), velocity (m/s), and period (s) or number that it started with.
     pub perturbation: Vector3<f64>,
-    /// Deviation from x* at its end: m, m/s.
+    /// Deviation from the orbit at its end: m, m/s.
     pub end: Vector2<f64>,
-    /// Cam angle of the impact past the corner, rad.
+    /// Cam angle of the impact past the corner, rad; 0 on a stretch without it.
     pub past_corner: f64,
 }
 
@@ -115,7 +175,7 @@ impl<'a> OneSidedMap<'a> {
     /// A unit perturbation over the reach: the impact moves by at most about 2 pi per unit, and stays inside with room.
     const PERTURBATION: f64 = 0.02;
     /// Halvings of the perturbations that are tried where impacts that come after one another carry them too far.
-    const HALVINGS: u32 = 12;
+    const HALVINGS: u32 = 16;
 
     /// The map of `side` by state and period, with its law continued as far as the neighbouring segment allows.
     pub fn new(model: &'a Model, cam: &Cam, at: &'a CornerImpact, side: Side) -> Result<Self, SampleError> {
@@ -129,6 +189,31 @@ impl<'a> OneSidedMap<'a> {
         at: &'a CornerImpact,
         side: Side,
         varied: &Varied,
+    ) -> Result<Self, SampleError> {
+        Self::over(model, whole, at, side, varied, Stretch::whole(at))
+    }
+
+    /// The maps from the middle of each flight to that of the next, which the map of a period is made of: impacts one after
+    /// another amplify rounding with every deviation, and a single one does not.
+    pub fn pieces(
+        model: &'a Model,
+        whole: &Cam,
+        at: &'a CornerImpact,
+        side: Side,
+        varied: &Varied,
+    ) -> Result<Vec<Self>, SampleError> {
+        let machine = Machine::new(whole.clone(), &model.follower, at.angular_velocity());
+        let stretches = Stretch::pieces(at, &machine).into_iter();
+        stretches.map(|stretch| Self::over(model, whole, at, side, varied, stretch)).collect()
+    }
+
+    fn over(
+        model: &'a Model,
+        whole: &Cam,
+        at: &'a CornerImpact,
+        side: Side,
+        varied: &Varied,
+        stretch: Stretch,
     ) -> Result<Self, SampleError> {
         let varied = match varied {
             Varied::Period => Turned::Slower,
@@ -152,7 +237,7 @@ impl<'a> OneSidedMap<'a> {
                 return Err(SampleError::NotContinued { side, cam_angle: at.corner.angle, least: Self::LEAST_REACH });
             }
         };
-        let mut map = Self { model, at, side, cam, whole: whole.clone(), reach, varied, shrunk: 1.0 };
+        let mut map = Self { model, at, side, cam, whole: whole.clone(), reach, varied, shrunk: 1.0, stretch };
         map.shrink()?;
         Ok(map)
     }
@@ -178,24 +263,25 @@ impl<'a> OneSidedMap<'a> {
     /// Perturbations of position, velocity and period or number that move the impact by comparable parts of the reach.
     ///
     /// The impact's own scales: its relative velocity u, the length u/omega, and the period, less where the follower is faster
-    /// than u. Of a number itself, or of one where it is 0.
+    /// than u. Of a number, a part of itself.
     pub fn scales(&self) -> Vector3<f64> {
-        let approach = self.at.cam_velocity - self.at.velocity_before;
-        let period = self.at.period;
+        let (approach, period) = (self.stretch.approach, self.at.period);
         let third = match &self.varied {
-            Turned::Slower => period * approach / (approach + self.at.velocity_before.abs()),
+            Turned::Slower => period * approach / (approach + self.stretch.velocity_before.abs()),
             Turned::Remade { value, .. } => {
-                if *value == 0.0 {
-                    1.0
-                } else {
-                    value.abs()
-                }
+                // One of its unit at first where it is 0: what that is too much for is halved.
+                if *value == 0.0 { 1.0 / (Self::PERTURBATION * self.reach) } else { value.abs() }
             }
         };
         Vector3::new(approach * period / TAU, approach, third) * (Self::PERTURBATION * self.reach * self.shrunk)
     }
 
-    /// How far rounding may move the end of a period: a few ulps of the largest position and velocity on the way.
+    /// Impacts of the stretch.
+    pub fn impacts(&self) -> usize {
+        self.stretch.flights.len()
+    }
+
+    /// How far rounding may move the end of a stretch: a few ulps of the largest position and velocity on the way.
     pub fn rounding(&self) -> Vector2<f64> {
         let CornerImpact { state, velocity_before, velocity_after, .. } = *self.at;
         let position = state.position.abs().max(self.at.corner.plus.value);
@@ -235,17 +321,15 @@ impl<'a> OneSidedMap<'a> {
     /// One period from about `x* + (dx1, dx2)` at a period of about `T* + dT`, or another number; the sample says from where
     /// exactly.
     pub fn sample(&self, perturbation: Vector3<f64>) -> Result<Sample, SampleError> {
-        let start = self.at.state;
+        let Stretch { section, start, goal, end, .. } = self.stretch;
         let state = State { position: start.position + perturbation[0], velocity: start.velocity + perturbation[1] };
         let (machine, whole, corner, third) = self.machine(perturbation[2])?;
         // A perturbation of a ten-thousandth keeps twelve digits when it is added to x* and T*. What is left of it is known
         // exactly, the differences of close numbers being exact.
         let exact = Vector3::new(state.position - start.position, state.velocity - start.velocity, third);
         let failed = |error| SampleError::Simulate { side: self.side, error };
-        let section = self.at.section_angle();
         let mut motion = machine.start(section, state).map_err(failed)?;
-        let goal = motion.after(self.at.cycle.revolutions);
-        let (mut events, expected) = (Vec::new(), self.at.cycle.contacts.len());
+        let (mut events, expected) = (Vec::new(), self.stretch.flights.len());
         let _ = machine
             .advance(&mut motion, goal, &mut |event: &Event| {
                 events.push(*event);
@@ -256,7 +340,7 @@ impl<'a> OneSidedMap<'a> {
         match self.past_corner(&whole, section, &events).map(|past| past - moved_corner) {
             Some(past_corner) if past_corner.abs() < self.reach => Ok(Sample {
                 perturbation: exact,
-                end: Vector2::new(motion.state.position - start.position, motion.state.velocity - start.velocity),
+                end: Vector2::new(motion.state.position - end.position, motion.state.velocity - end.velocity),
                 past_corner,
             }),
             _ => {
@@ -269,28 +353,28 @@ impl<'a> OneSidedMap<'a> {
     }
 
     /// How far past the corner, where it was, the corner's impact is, rad, if the events are the orbit's impacts, each on
-    /// its own segment.
+    /// its own segment; 0 where the corner's is not among them.
     fn past_corner(&self, whole: &Cam, section: f64, events: &[Event]) -> Option<f64> {
-        let (flights, _) = self.at.course();
+        let flights = &self.stretch.flights;
         if events.len() != flights.len() || events.iter().any(|event| event.kind != EventKind::Impact) {
             return None;
         }
-        let (mut turned, mut past_corner) = (0.0, None);
+        let (mut turned, mut past_corner) = (0.0, 0.0);
         for (event, (turn, index)) in events.iter().zip(flights) {
             turned += turn;
             let later = event.turned_since(section) - turned;
-            if index == self.at.contact {
-                past_corner = Some(later);
+            if *index == self.at.contact {
+                past_corner = later;
                 continue;
             }
-            let contact = &self.at.cycle.contacts[index];
+            let contact = &self.at.cycle.contacts[*index];
             let segment = &whole.segments()[contact.segment];
             let angle = contact.cam_angle + later;
             if !(segment.start <= angle && angle <= segment.end) {
                 return None;
             }
         }
-        past_corner
+        Some(past_corner)
     }
 }
 

@@ -260,7 +260,7 @@ impl LocateDocument {
         }
         writeln!(
             out,
-            "{:>4}{:>16}{:>13}  order  impacts{:>14}{:>14}  {:<17}routes",
+            "{:>4}{:>15}{:>13}  order  impacts{:>12}{:>12}  {:<17}routes",
             "", "rpm", "corner deg", "v before", "v after", "what happens"
         )?;
         for (index, impact) in self.corner_impacts.iter().enumerate() {
@@ -271,7 +271,7 @@ impl LocateDocument {
             let scenario = format!("{}{side}", classification.scenario());
             writeln!(
                 out,
-                "{:>4}{speed_rpm:>16.9}{:>13.6}{jump_order:>7}{impacts:>9}{before:>14}{after:>14}  {scenario:<17}{}",
+                "{:>4}{speed_rpm:>15.9}{:>13.6}{jump_order:>7}{impacts:>9}{before:>12}{after:>12}  {scenario:<17}{}",
                 index + 1,
                 impact.cam_angle_rad.to_degrees(),
                 if impact.agrees { "agree" } else { "DISAGREE" }
@@ -346,7 +346,7 @@ impl LocateDocument {
 /// What does not agree at a corner impact.
 fn disagreement(impact: &CornerImpactEntry) -> String {
     let missing = impact.skipped.iter().filter(|skipped| skipped.failed);
-    let missing = missing.map(|skipped| format!("{} did not run: {}", skipped.route, skipped.why));
+    let missing = missing.map(|skipped| format!("{}: {}", skipped.route, skipped.why));
     let differing = impact.agreement.iter().filter(|entry| !entry.agrees);
     let differing = differing.map(|entry| {
         let [one, other] = &entry.routes;
