@@ -78,6 +78,16 @@ fn an_orbit_of_two_revolutions_reaches_the_noses_end() {
     assert!(self::document(MODEL, "738:741", "1").1["corner_impacts"].as_array().unwrap().is_empty());
 }
 
+/// A follower without spring that flies for two revolutions from the corner back to it.
+#[test]
+fn one_impact_in_two_revolutions_is_found() {
+    let model = common::read(concat!(env!("CARGO_MANIFEST_DIR"), "/models/ballistic.toml").as_ref());
+    let found = surveyed(&model, 332.0, 332.6, 2);
+    let [located] = found.found.as_slice() else { panic!("{:?}", found.found) };
+    assert!((located.at.speed_rpm() - 332.297519227).abs() < 1e-8 && located.agrees, "{located:?}");
+    assert_eq!((located.at.cycle.revolutions, located.at.cycle.contacts.len()), (2, 1));
+}
+
 #[test]
 fn routes_agree_at_every_corner_impact() {
     let mut scenarios = Vec::new();
@@ -91,6 +101,7 @@ fn routes_agree_at_every_corner_impact() {
         let found = surveyed(&model, low, high, revolutions);
         assert!(found.found.len() >= least, "{}: {}", model.name, found.found.len());
         assert!(found.agrees);
+        assert!(found.found.iter().map(|located| located.at.speed_rpm()).is_sorted(), "{}", model.name);
         for located in &found.found {
             let speed = located.at.speed_rpm();
             assert!(located.agrees && (low..=high).contains(&speed), "{} at {speed}: {located:?}", model.name);
@@ -194,6 +205,19 @@ fn a_corner_that_is_only_grazed_is_refused_with_the_reason() {
     for graze in grazes {
         assert!(found.found.iter().all(|located| (located.at.speed_rpm() - graze.speed_rpm).abs() > 1e-9), "{graze:?}");
     }
+}
+
+/// Where the velocity jumps, an orbit may close through the cam's other side, and the reason names it.
+#[test]
+fn an_orbit_out_of_the_other_side_is_refused_with_the_reason() {
+    let found = surveyed(&common::read(law("rectified-sine").as_ref()), 4.1, 4.3, 1);
+    let through = |angle: f64| {
+        let near = |speed: f64| (speed - 4.207501).abs() < 1e-6;
+        found.rejected().iter().any(|at| {
+            near(at.speed_rpm) && (at.cam_angle - angle).abs() < 1e-9 && at.why.contains("out of the cam's other side")
+        })
+    };
+    assert!(through(0.0) && through(std::f64::consts::PI), "{:?}", found.rejected());
 }
 
 #[test]
