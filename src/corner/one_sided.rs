@@ -126,7 +126,7 @@ impl Stretch {
         let count = flights.len();
         // The middle of the flight that ends at each contact: its angle, the follower, and the angle left to the contact.
         let middle = |index: usize| {
-            if index % count == 0 {
+            if index.is_multiple_of(count) {
                 return (at.section_angle(), at.state, flights[0].0);
             }
             let ((turn, _), (_, before)) = (flights[index], flights[index - 1]);
