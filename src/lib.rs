@@ -27,6 +27,8 @@
 //!    ▼
 //!  verify                all of the above on one model
 //!    ▼
+//!  survey                every corner impact of a range of speeds, with its map by routes that agree
+//!    ▼
 //!  claims                the paper's statements, one by one: holds, misprint, refuted, open
 //!    ▼
 //!  report                document values; text, JSON, Markdown; figures: SVG, PNG
@@ -77,6 +79,8 @@ pub mod border_collision;
 pub mod published;
 
 pub mod verify;
+
+pub mod survey;
 
 pub mod claims;
 

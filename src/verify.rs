@@ -14,7 +14,7 @@ use crate::corner::border::border;
 use crate::corner::external::{self, Outside, PROGRAMS, Program};
 use crate::corner::one_sided::SampleError;
 use crate::corner::{self, CornerImpact, CornerMap, LocateError, Route};
-use crate::corner::{closed_form, finite_difference, least_squares, simulated_orbit};
+use crate::corner::{closed_form, finite_difference, least_squares, simulated_orbit, variational};
 use crate::model::Model;
 use crate::published::{PrintedNumber, PublishedError, compare_published};
 use crate::python::PythonError;
@@ -95,6 +95,7 @@ pub fn verify(model: &Model, external: External) -> Result<Findings, LocateError
     let mut routes = vec![closed];
     let differenced = finite_difference::route(model, &cam, &at);
     let sticking = differenced.as_ref().err().and_then(sticks);
+    routes.push(variational::route(model, &cam, &at));
     routes.extend(log.keep("finite_difference", differenced));
     routes.extend(log.keep("least_squares", least_squares::route(model, &cam, &at)));
 
@@ -125,7 +126,7 @@ pub fn verify(model: &Model, external: External) -> Result<Findings, LocateError
     let mut comparisons = agreement::compare_routes(&routes);
     comparisons.extend(agreement::compare_orbits(&orbits));
 
-    let border = border(model, &at);
+    let border = border(model, &cam, &at);
     comparisons.push(compare_borders(&map, border));
     let normal_form = normal_form(&map).map_err(|error| log.leave_out("normal_form", error.to_string())).ok();
     let verdict = match sticking {
@@ -176,7 +177,7 @@ pub fn verify(model: &Model, external: External) -> Result<Findings, LocateError
 /// The side on which a revolution next to the orbit has the follower stay on the cam.
 fn sticks(error: &SampleError) -> Option<&'static str> {
     match error {
-        SampleError::NotOneImpact { side, sticks: true, .. } => {
+        SampleError::OtherImpacts { side, sticks: true, .. } => {
             Some(if *side == Side::Minus { "minus" } else { "plus" })
         }
         _ => None,

@@ -43,7 +43,7 @@ fn the_json_document_has_the_fields_of_the_contract() {
     assert!(["period_s", "speed_rpm", "cam_angle_rad"].iter().all(|field| at[field].is_f64()));
     assert!(is_vector(&at["state"]));
     let routes = &document["routes"];
-    for route in ["closed_form", "finite_difference", "least_squares"] {
+    for route in ["closed_form", "variational", "finite_difference", "least_squares"] {
         assert!(is_vector(&routes[route]["C"]) && routes[route]["D"].is_f64(), "{route}");
         for side in ["minus", "plus"] {
             assert!(is_matrix(&routes[route][side]["A"]) && is_vector(&routes[route][side]["B"]), "{route} {side}");
@@ -57,7 +57,7 @@ fn the_json_document_has_the_fields_of_the_contract() {
     }
     assert!(routes["least_squares"]["condition_number"].is_f64());
     let comparisons = document["agreement"].as_array().unwrap();
-    assert_eq!(comparisons.len(), 31);
+    assert_eq!(comparisons.len(), 55);
     for entry in comparisons {
         assert!(entry["routes"].as_array().unwrap().len() == 2 && entry["quantity"].is_string());
         assert!(["max_abs_diff", "max_rel_diff", "tolerance"].iter().all(|field| entry[field].is_f64()));
@@ -125,7 +125,7 @@ fn disagreement_is_said_plainly() {
     found.agrees = false;
     let page = text::render(&Verification::new(&model, &found)).unwrap();
     assert!(page.contains("DISAGREE") && page.contains("UNEXPECTED"));
-    assert!(page.contains("30 of 31 comparisons agree") && page.contains("1 came out otherwise than found"));
+    assert!(page.contains("54 of 55 comparisons agree") && page.contains("1 came out otherwise than found"));
     assert!(page.trim_end().ends_with("DISAGREES: a comparison above"));
 }
 

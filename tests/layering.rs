@@ -63,7 +63,13 @@ fn routes_do_not_use_each_other() {
         }
     }
     for file in ["finite_difference.rs", "least_squares.rs", "one_sided.rs", "simulated_orbit.rs"] {
-        assert!(!text(file).contains("closed_form"), "{file}");
+        assert!(!text(file).contains("closed_form") && !text(file).contains("variational"), "{file}");
+    }
+    // The product around the orbit knows the laws and the orbit, and neither runs it nor looks at another route.
+    for file in ["variational.rs", "varied.rs"] {
+        for forbidden in ["closed_form", "finite_difference", "least_squares", "one_sided", "advance(", ".turn("] {
+            assert!(!text(file).contains(forbidden), "{file}: {forbidden}");
+        }
     }
 }
 

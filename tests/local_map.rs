@@ -18,6 +18,7 @@ use corner_impact::flight::State;
 use corner_impact::model::Model;
 use corner_impact::report::{Verification, text};
 use corner_impact::section::StroboscopicMap;
+use corner_impact::simulate::Machine;
 use corner_impact::verify::{External, Findings, verify};
 use nalgebra::{Matrix2, Vector2};
 
@@ -133,7 +134,8 @@ fn read(name: &str) -> Model {
 
 /// The machine at a period `dt` from T*.
 fn section_at(model: &Model, found: &Findings, dt: f64) -> StroboscopicMap {
-    found.at.map(model, common::cam(model), TAU / (found.at.period + dt))
+    let machine = Machine::new(common::cam(model), &model.follower, TAU / (found.at.period + dt));
+    StroboscopicMap { machine, cam_angle: found.at.section_angle() }
 }
 
 /// The sides of the impacts of `count` revolutions after a long run from x*, at a period `dt` from T*; `?` where a revolution

@@ -15,7 +15,7 @@ const MAPS: [&str; 4] = ["A_minus", "A_plus", "B_minus", "B_plus"];
 fn five_decimals_on_the_papers_model() {
     let found = verify(&common::osorio(), External::LeftOut).unwrap();
     let of_maps: Vec<_> = found.comparisons.iter().filter(|entry| MAPS.contains(&entry.quantity.as_str())).collect();
-    assert_eq!(of_maps.len(), 3 * MAPS.len(), "closed form, differences and fit, pairwise");
+    assert_eq!(of_maps.len(), 6 * MAPS.len(), "closed form, product, differences and fit, pairwise");
     for entry in of_maps {
         assert!(entry.max_abs_diff < 5e-6, "{entry:?}");
     }
@@ -47,7 +47,9 @@ fn estimators_know_their_errors() {
     for file in common::model_files() {
         let found = verify(&common::read(&file), External::LeftOut).unwrap();
         let exact = entries(&found.closed_form().map);
-        for route in &found.routes[1..] {
+        let estimates: Vec<_> = found.routes.iter().filter(|route| route.uncertainty.is_some()).collect();
+        assert_eq!(estimates.len(), 2, "differences and fit");
+        for route in estimates {
             let error: Vec<f64> = match route.uncertainty.as_ref().unwrap() {
                 Uncertainty::Fit { standard, systematic, condition_number } => {
                     assert!((1.0..100.0).contains(condition_number), "{condition_number}");

@@ -15,7 +15,7 @@ use crate::corner::CornerImpact;
 use crate::flight::State;
 use crate::model::Model;
 use crate::section::StroboscopicMap;
-use crate::simulate::{Event, EventKind};
+use crate::simulate::{Event, EventKind, Machine};
 use crate::tolerance;
 
 /// What is compared.
@@ -82,7 +82,13 @@ type Difference = Option<(Vector2<f64>, f64)>;
 
 /// The range of each prediction that there is, on either side of the corner-impact speed, faster speeds first.
 pub fn ranges(model: &Model, cam: &Cam, at: &CornerImpact, map: &LocalMap) -> Vec<Range> {
-    let machine = Real { at, map: at.map(model, cam.clone(), TAU / at.period) };
+    let machine = Real {
+        at,
+        map: StroboscopicMap {
+            machine: Machine::new(cam.clone(), &model.follower, at.angular_velocity()),
+            cam_angle: at.section_angle(),
+        },
+    };
     let mut found = Vec::new();
     for sign in [-1.0, 1.0] {
         let side = map.side(Vector2::zeros(), sign);

@@ -5,6 +5,7 @@ mod claims;
 mod continuation;
 mod curve;
 mod diagram;
+mod locate;
 mod orbit;
 mod picture;
 mod progress;
@@ -50,6 +51,7 @@ enum Command {
     Continue(continuation::Arguments),
     Curve(curve::Arguments),
     Speeds(speeds::Arguments),
+    Locate(locate::Arguments),
 }
 
 /// Why a command has no result.
@@ -132,6 +134,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         Command::Speeds(arguments) => print(speeds::run(arguments), out),
         Command::Curve(arguments) => curve::run(arguments, out, err),
         Command::Continue(arguments) => continuation::run(arguments, out, err),
+        Command::Locate(arguments) => print(locate::run(arguments), out),
     };
     result.unwrap_or_else(|error| {
         // Whoever closes a pipe early, as `head` does, wants no more, nor a complaint.

@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::locate::CornerImpact;
+use super::corner_impact::CornerImpact;
 use super::map::{CornerMap, Route, SideMap};
 use crate::cam::{Lift, Side};
 use crate::model::{Follower, Model};

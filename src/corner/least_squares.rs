@@ -10,9 +10,10 @@ use faer::linalg::solvers::{Qr, SolveLstsqCore};
 use faer::{Conj, Mat};
 use nalgebra::{Matrix2, Vector2, Vector3};
 
-use super::locate::CornerImpact;
+use super::corner_impact::CornerImpact;
 use super::map::{CornerMap, Route, SideMap, Uncertainty};
 use super::one_sided::{OneSidedMap, SampleError};
+use super::varied::Varied;
 use crate::cam::{Cam, Side};
 use crate::model::Model;
 
@@ -28,8 +29,13 @@ const WIDTHS: u32 = 8;
 
 /// The map by least squares, with a standard error for each entry and the condition number of the design.
 pub fn route(model: &Model, cam: &Cam, at: &CornerImpact) -> Result<Route, SampleError> {
-    let minus = side_map(&OneSidedMap::new(model, cam, at, Side::Minus)?)?;
-    let plus = side_map(&OneSidedMap::new(model, cam, at, Side::Plus)?)?;
+    route_by(model, cam, at, &Varied::Period)
+}
+
+/// The same with B by any number of the model.
+pub fn route_by(model: &Model, cam: &Cam, at: &CornerImpact, varied: &Varied) -> Result<Route, SampleError> {
+    let minus = side_map(&OneSidedMap::by(model, cam, at, Side::Minus, varied)?)?;
+    let plus = side_map(&OneSidedMap::by(model, cam, at, Side::Plus, varied)?)?;
     Ok(Route {
         name: "least_squares",
         map: CornerMap { minus: minus.value, plus: plus.value },
@@ -146,11 +152,11 @@ pub(super) struct Solver<'a> {
 impl<'a> Solver<'a> {
     pub fn new(design: &'a Mat<f64>) -> Result<Self, SampleError> {
         let (rows, columns) = (design.nrows(), design.ncols());
-        let singular = SampleError::Singular { what: "coefficients of the fit" };
-        let singular_values = design.singular_values().map_err(|_| singular)?;
+        let singular = || SampleError::Singular { what: "coefficients of the fit" };
+        let singular_values = design.singular_values().map_err(|_| singular())?;
         let (largest, smallest) = (singular_values[0], singular_values[columns - 1]);
         if !(smallest > f64::EPSILON * rows as f64 * largest) || rows <= columns {
-            return Err(singular);
+            return Err(singular());
         }
         let factors = design.qr();
         let mut inverse = Mat::<f64>::identity(columns, columns);

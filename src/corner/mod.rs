@@ -1,22 +1,34 @@
 //! The corner impact: where it happens, and its local map {A-, A+, B-, B+, C, D} by several routes.
 //!
-//! Near a periodic orbit whose impact falls on a corner of the cam, one revolution maps a deviation of the state `dx` and of
-//! the period `dT` to `A dx + B dT`, with matrices that depend on the side of the corner the impact falls on. [`mod@locate`]
-//! finds the orbit; each route then computes the matrices by means of its own:
+//! Near a periodic orbit with an impact on a corner of the cam, one period maps a deviation of the state `dx` and of the
+//! cam's period `dT`, or of any number of the model, to `A dx + B dT`, with matrices that depend on the side of the corner the
+//! impact falls on. The orbit is the paper's, one impact in one revolution, or has any number of both. It is found by
+//!
+//! | module | finds |
+//! |---|---|
+//! | [`period_equation`] | the speeds at which the one impact of an orbit is on a corner: all of a range, the roots of one equation |
+//! | [`candidates`] | guesses for orbits of several impacts, from searches at some speeds |
+//! | [`pinned`] | the speed at which such an orbit has an impact on the corner, by Newton's method |
+//! | [`mod@locate`] | the paper's kind, for `verify`; [`range`] all kinds |
+//!
+//! Each route then computes the matrices by means of its own:
 //!
 //! | module | shares with the simulator |
 //! |---|---|
-//! | [`closed_form`] | the place: T*, v and the cam's lift there; the formulas and their propagator are its own |
-//! | [`finite_difference`] | is built on it: differences of simulated revolutions |
-//! | [`least_squares`] | is built on it: a polynomial fitted to simulated revolutions |
-//! | [`external`] | nothing: Python programs that get the model file's numbers and find the place themselves |
+//! | [`closed_form`] | the place: T*, v and the cam's lift there; the formulas and their propagator are its own. The paper's orbits only |
+//! | [`variational`] | the laws of flight and impact; it multiplies their derivatives once around and simulates nothing |
+//! | [`finite_difference`] | is built on it: differences of simulated periods |
+//! | [`least_squares`] | is built on it: a polynomial fitted to simulated periods |
+//! | [`external`] | nothing: Python programs that get the model file's numbers and find the place themselves. The paper's orbits only |
 //!
 //! [`jump_order`] has what a corner of any order makes of the map, predicted and measured.
 //!
 //! States here are the paper's x: position from the spring's equilibrium, and velocity.
 
 pub mod border;
+pub mod candidates;
 pub mod closed_form;
+pub mod corner_impact;
 pub mod external;
 mod extrapolation;
 pub mod finite_difference;
@@ -25,7 +37,13 @@ pub mod least_squares;
 pub mod locate;
 pub mod map;
 pub mod one_sided;
+pub mod period_equation;
+pub mod pinned;
+pub mod range;
 pub mod simulated_orbit;
+pub mod variational;
+pub mod varied;
 
-pub use locate::{CornerImpact, LocateError, locate};
+pub use corner_impact::CornerImpact;
+pub use locate::{LocateError, locate};
 pub use map::{CornerMap, Route, SideMap};

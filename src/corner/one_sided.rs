@@ -1,20 +1,25 @@
-//! One revolution of the simulator over a cam with one segment continued past the corner: what the estimators sample.
+//! One period of the simulator over a cam with one segment continued past the corner: what the estimators sample.
 //!
 //! As in the paper, the map of a side is smooth through the corner once the cam's law on that side is continued past it.
-//! A revolution counts only if its one impact falls on the continued stretch; any other is an error, never a sample.
+//! A period counts only if its impacts are the orbit's, one for one, and the corner's is on the continued stretch; any other
+//! is an error, never a sample.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
+use std::ops::ControlFlow;
 
 use nalgebra::{Vector2, Vector3};
 
-use super::locate::CornerImpact;
-use crate::cam::{Cam, Side};
+use super::corner_impact::CornerImpact;
+use super::pinned::apart;
+use super::varied::{NoChange, Varied, value_of};
+use crate::cam::{Cam, Corner, Side};
 use crate::flight::State;
 use crate::model::Model;
-use crate::simulate::{Event, EventKind, SimulateError};
+use crate::orbit::{Family, Parameter};
+use crate::simulate::{Event, EventKind, Goal, Machine, SimulateError};
 
 /// Why a side of the map could not be sampled.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SampleError {
     /// The neighbour of the corner is too short, or the law ends too soon.
     #[error("the {side:?} law cannot be continued past the corner at {cam_angle} rad by {least} rad")]
@@ -26,18 +31,21 @@ pub enum SampleError {
         /// The shortest continuation tried, rad.
         least: f64,
     },
-    /// A perturbed revolution did something else than hit the cam once near the corner.
+    /// A perturbed period did something else than hit the cam where the orbit does.
     #[error(
-        "{side:?} side: a revolution perturbed by {perturbation:?} has {impacts} impacts near the corner or elsewhere{} instead of one near it",
-        if *sticks { ", and sticks to the cam," } else { "" }
+        "{side:?} side: a period perturbed by {perturbation:?} has {impacts} impacts near the corner or elsewhere{} instead of {}",
+        if *sticks { ", and sticks to the cam," } else { "" },
+        if *expected == 1 { "one near it".to_owned() } else { format!("the orbit's {expected}, one near it") }
     )]
-    NotOneImpact {
+    OtherImpacts {
         /// Which side's law.
         side: Side,
-        /// Change of position (m), velocity (m/s) and period (s).
+        /// Change of position (m), velocity (m/s), and period (s) or number.
         perturbation: [f64; 3],
         /// Impacts counted.
         impacts: usize,
+        /// Impacts of the orbit.
+        expected: usize,
         /// Whether the follower stays on the cam for a while.
         sticks: bool,
     },
@@ -49,6 +57,14 @@ pub enum SampleError {
         /// Why.
         error: SimulateError,
     },
+    /// The number cannot be varied.
+    #[error("{side:?} side: {error}")]
+    Varied {
+        /// Which side's law.
+        side: Side,
+        /// Why.
+        error: NoChange,
+    },
     /// A linear system that does not determine its unknowns.
     #[error("the samples do not determine the {what}")]
     Singular {
@@ -57,23 +73,97 @@ pub enum SampleError {
     },
 }
 
-/// The smooth map of one side: deviation of state and period in, deviation of the state one revolution later out.
+/// The smooth map of one side: deviation of state and period, or of another number, in; deviation of the state one period
+/// of the orbit later out.
 pub struct OneSidedMap<'a> {
     model: &'a Model,
     at: &'a CornerImpact,
     side: Side,
     cam: Cam,
+    /// The cam as it is.
+    whole: Cam,
     reach: f64,
+    varied: Turned,
+    /// What unit perturbations are made smaller by.
+    shrunk: f64,
+    stretch: Stretch,
 }
 
-/// A sampled revolution.
+/// A stretch of the orbit from one section to another.
+#[derive(Clone, Debug)]
+struct Stretch {
+    /// The first section, rad, and the follower there.
+    section: f64,
+    start: State,
+    /// The angle turned by each flight, rad, and the contact that it ends at.
+    flights: Vec<(f64, usize)>,
+    /// The second section.
+    goal: Goal,
+    end: State,
+    /// `c' - v-` and `v-` of the impact that the perturbations are measured by, m/s.
+    approach: f64,
+    velocity_before: f64,
+}
+
+impl Stretch {
+    /// The whole period.
+    fn whole(at: &CornerImpact) -> Self {
+        let section = at.section_angle();
+        Self {
+            section,
+            start: at.state,
+            flights: at.course().0,
+            goal: Goal { revolution: at.cycle.revolutions, cam_angle: section },
+            end: at.state,
+            approach: at.cam_velocity - at.velocity_before,
+            velocity_before: at.velocity_before,
+        }
+    }
+
+    /// One stretch for each impact, from the middle of the flight before it to that of the flight after.
+    fn pieces(at: &CornerImpact, machine: &Machine) -> Vec<Self> {
+        let (flights, last) = at.course();
+        let count = flights.len();
+        // The middle of the flight that ends at each contact: its angle, the follower, and the angle left to the contact.
+        let middle = |index: usize| {
+            if index.is_multiple_of(count) {
+                return (at.section_angle(), at.state, flights[0].0);
+            }
+            let ((turn, _), (_, before)) = (flights[index], flights[index - 1]);
+            let angle = (at.cycle.contacts[before].cam_angle + 0.5 * turn).rem_euclid(TAU) % TAU;
+            let leaving = at.cycle.flight(machine, before).0;
+            (angle, machine.flight().fly(leaving, 0.5 * turn / TAU * at.period).1, 0.5 * turn)
+        };
+        let piece = |index: usize| {
+            let ((section, start, to), (cam_angle, end, _)) = (middle(index), middle(index + 1));
+            let from = if index + 1 == count { last } else { 0.5 * flights[index + 1].0 };
+            let contact = flights[index].1;
+            let revolution = ((section + to + from - cam_angle) / TAU).round() as u64;
+            let goal = Goal { revolution, cam_angle };
+            let velocity_before = at.cycle.contacts[contact].velocity_before;
+            let approach = at.cycle.approach(machine, contact);
+            Self { section, start, flights: vec![(to, contact)], goal, end, approach, velocity_before }
+        };
+        (0..count).map(piece).collect()
+    }
+}
+
+/// What turns at a third perturbation.
+enum Turned {
+    /// The same cam at another period.
+    Slower,
+    /// A machine made with another number.
+    Remade { family: Box<Family>, value: f64 },
+}
+
+/// A sampled period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// Deviation of position (m), velocity (m/s) and period (s) that the revolution started with.
+    /// Deviation of position (m), velocity (m/s), and period (s) or number that it started with.
     pub perturbation: Vector3<f64>,
-    /// Deviation from x* after the revolution: m, m/s.
+    /// Deviation from the orbit at its end: m, m/s.
     pub end: Vector2<f64>,
-    /// Cam angle of the impact past the corner, rad.
+    /// Cam angle of the impact past the corner, rad; 0 on a stretch without it.
     pub past_corner: f64,
 }
 
@@ -84,33 +174,114 @@ impl<'a> OneSidedMap<'a> {
     const LEAST_REACH: f64 = 5e-4;
     /// A unit perturbation over the reach: the impact moves by at most about 2 pi per unit, and stays inside with room.
     const PERTURBATION: f64 = 0.02;
+    /// Halvings of the perturbations that are tried where impacts that come after one another carry them too far.
+    const HALVINGS: u32 = 16;
 
-    /// The map of `side`, with its law continued as far as the neighbouring segment allows.
+    /// The map of `side` by state and period, with its law continued as far as the neighbouring segment allows.
     pub fn new(model: &'a Model, cam: &Cam, at: &'a CornerImpact, side: Side) -> Result<Self, SampleError> {
+        Self::by(model, cam, at, side, &Varied::Period)
+    }
+
+    /// The map of `side` by state and any number.
+    pub fn by(
+        model: &'a Model,
+        whole: &Cam,
+        at: &'a CornerImpact,
+        side: Side,
+        varied: &Varied,
+    ) -> Result<Self, SampleError> {
+        Self::over(model, whole, at, side, varied, Stretch::whole(at))
+    }
+
+    /// The maps from the middle of each flight to that of the next, which the map of a period is made of: impacts one after
+    /// another amplify rounding with every deviation, and a single one does not.
+    pub fn pieces(
+        model: &'a Model,
+        whole: &Cam,
+        at: &'a CornerImpact,
+        side: Side,
+        varied: &Varied,
+    ) -> Result<Vec<Self>, SampleError> {
+        let machine = Machine::new(whole.clone(), &model.follower, at.angular_velocity());
+        let stretches = Stretch::pieces(at, &machine).into_iter();
+        stretches.map(|stretch| Self::over(model, whole, at, side, varied, stretch)).collect()
+    }
+
+    fn over(
+        model: &'a Model,
+        whole: &Cam,
+        at: &'a CornerImpact,
+        side: Side,
+        varied: &Varied,
+        stretch: Stretch,
+    ) -> Result<Self, SampleError> {
+        let varied = match varied {
+            Varied::Period => Turned::Slower,
+            Varied::Number(name) => {
+                let number = || {
+                    let value = value_of(model, name)?;
+                    let free = vec![Parameter::Field(name.clone())];
+                    Ok(Turned::Remade { family: Box::new(Family::new(model, at.speed_rpm(), free)?), value })
+                };
+                number().map_err(|error| SampleError::Varied { side, error })?
+            }
+        };
         let mut reach = Self::REACH;
-        loop {
-            if let Some(cam) = cam.continued(&at.corner, side, reach) {
-                return Ok(Self { model, at, side, cam, reach });
+        let cam = loop {
+            let clear = nearest_other(at) >= 2.0 * reach;
+            if let Some(continued) = whole.continued(&at.corner, side, reach).filter(|_| clear) {
+                break continued;
             }
             reach *= 0.5;
             if reach < Self::LEAST_REACH {
                 return Err(SampleError::NotContinued { side, cam_angle: at.corner.angle, least: Self::LEAST_REACH });
             }
-        }
+        };
+        let mut map = Self { model, at, side, cam, whole: whole.clone(), reach, varied, shrunk: 1.0, stretch };
+        map.shrink()?;
+        Ok(map)
     }
 
-    /// Perturbations of position, velocity and period that move the impact by comparable parts of the reach.
+    /// Halves the perturbations until one unit in each direction leaves the impacts the orbit's.
+    fn shrink(&mut self) -> Result<(), SampleError> {
+        let mut first = None;
+        for _ in 0..=Self::HALVINGS {
+            let units = (0..6).map(|index| {
+                let mut unit = Vector3::zeros();
+                unit[index / 2] = if index % 2 == 0 { 1.0 } else { -1.0 };
+                unit.component_mul(&self.scales())
+            });
+            match units.map(|unit| self.sample(unit)).find_map(Result::err) {
+                None => return Ok(()),
+                Some(error) => first = first.or(Some(error)),
+            }
+            self.shrunk *= 0.5;
+        }
+        first.map_or(Ok(()), Err)
+    }
+
+    /// Perturbations of position, velocity and period or number that move the impact by comparable parts of the reach.
     ///
     /// The impact's own scales: its relative velocity u, the length u/omega, and the period, less where the follower is faster
-    /// than u.
+    /// than u. Of a number, a part of itself.
     pub fn scales(&self) -> Vector3<f64> {
-        let approach = self.at.cam_velocity - self.at.velocity_before;
-        let period = self.at.period;
-        let time = period * approach / (approach + self.at.velocity_before.abs());
-        Vector3::new(approach * period / TAU, approach, time) * (Self::PERTURBATION * self.reach)
+        let (approach, period) = (self.stretch.approach, self.at.period);
+        let third = match &self.varied {
+            Turned::Slower => period * approach / (approach + self.stretch.velocity_before.abs()),
+            Turned::Remade { value, .. } => {
+                // One of its unit at first where it is 0: what that is too much for is halved.
+                if *value == 0.0 { 1.0 / (Self::PERTURBATION * self.reach) } else { value.abs() }
+            }
+        };
+        Vector3::new(approach * period / TAU, approach, third) * (Self::PERTURBATION * self.reach * self.shrunk)
     }
 
-    /// How far rounding may move the end of a revolution: a few ulps of the largest position and velocity on the way.
+    /// Impacts of the stretch.
+    pub fn impacts(&self) -> usize {
+        self.stretch.flights.len()
+    }
+
+    /// How far rounding may move the end of a stretch: a few ulps of the largest position and velocity on the way.
     pub fn rounding(&self) -> Vector2<f64> {
         let CornerImpact { state, velocity_before, velocity_after, .. } = *self.at;
         let position = state.position.abs().max(self.at.corner.plus.value);
@@ -118,32 +289,97 @@ impl<'a> OneSidedMap<'a> {
         Vector2::new(position, velocity) * (4.0 * f64::EPSILON)
     }
 
-    /// One revolution from about `x* + (dx1, dx2)` at a period of about `T* + dT`; the sample says from where exactly.
-    pub fn sample(&self, perturbation: Vector3<f64>) -> Result<Sample, SampleError> {
-        let CornerImpact { state: start, period, .. } = *self.at;
-        let state = State { position: start.position + perturbation[0], velocity: start.velocity + perturbation[1] };
-        let (omega, perturbed) = (TAU / period, TAU / (period + perturbation[2]));
-        // A perturbation of a ten-thousandth keeps twelve digits when it is added to x* and T*. What is left of it is known
-        // exactly, the differences of close numbers being exact: dT = 2 pi/w - 2 pi/w* = T* (w* - w)/w.
-        let exact = Vector3::new(
-            state.position - start.position,
-            state.velocity - start.velocity,
-            period * ((omega - perturbed) / perturbed),
-        );
-        let map = self.at.map(self.model, self.cam.clone(), perturbed);
-        let back = map.apply(state).map_err(|error| SampleError::Simulate { side: self.side, error })?;
-        let past_corner = |event: &Event| event.turned_since(map.cam_angle) - PI;
-        match back.events.as_slice() {
-            [impact] if impact.kind == EventKind::Impact && past_corner(impact).abs() < self.reach => Ok(Sample {
-                perturbation: exact,
-                end: Vector2::new(back.state.position - start.position, back.state.velocity - start.velocity),
-                past_corner: past_corner(impact),
-            }),
-            events => {
-                let impacts = back.impacts().count();
-                let sticks = events.iter().any(|event| event.kind == EventKind::Stick);
-                Err(SampleError::NotOneImpact { side: self.side, perturbation: exact.into(), impacts, sticks })
+    /// The machine of a third perturbation, with the law continued; its cam as it is, the corner on it, rad; and the
+    /// perturbation as it is in doubles.
+    fn machine(&self, perturbation: f64) -> Result<(Machine, Cam, f64, f64), SampleError> {
+        let CornerImpact { period, corner, .. } = *self.at;
+        match &self.varied {
+            Turned::Slower => {
+                let (omega, perturbed) = (TAU / period, TAU / (period + perturbation));
+                let machine = Machine::new(self.cam.clone(), &self.model.follower, perturbed);
+                // dT = 2 pi/w - 2 pi/w* = T* (w* - w)/w
+                Ok((machine, self.whole.clone(), corner.angle, period * ((omega - perturbed) / perturbed)))
+            }
+            Turned::Remade { family, value } => {
+                let side = self.side;
+                let moved = value + perturbation;
+                let remade =
+                    family.machine(&[moved]).map_err(|error| SampleError::Varied { side, error: error.into() })?;
+                let cam = remade.0.cam().clone();
+                let angle = cam.segments().get(corner.segment).map_or(f64::NAN, |segment| segment.start);
+                let there = Corner { angle, ..corner };
+                let continued = cam.continued(&there, side, self.reach);
+                let Some(continued) = continued.filter(|_| cam.segments().len() == self.whole.segments().len()) else {
+                    return Err(SampleError::NotContinued { side, cam_angle: angle, least: self.reach });
+                };
+                let machine = remade.0.with_cam(continued);
+                Ok((machine, cam, angle, moved - value))
             }
         }
     }
+
+    /// One period from about `x* + (dx1, dx2)` at a period of about `T* + dT`, or another number; the sample says from where
+    /// exactly.
+    pub fn sample(&self, perturbation: Vector3<f64>) -> Result<Sample, SampleError> {
+        let Stretch { section, start, goal, end, .. } = self.stretch;
+        let state = State { position: start.position + perturbation[0], velocity: start.velocity + perturbation[1] };
+        let (machine, whole, corner, third) = self.machine(perturbation[2])?;
+        // A perturbation of a ten-thousandth keeps twelve digits when it is added to x* and T*. What is left of it is known
+        // exactly, the differences of close numbers being exact.
+        let exact = Vector3::new(state.position - start.position, state.velocity - start.velocity, third);
+        let failed = |error| SampleError::Simulate { side: self.side, error };
+        let mut motion = machine.start(section, state).map_err(failed)?;
+        let (mut events, expected) = (Vec::new(), self.stretch.flights.len());
+        let _ = machine
+            .advance(&mut motion, goal, &mut |event: &Event| {
+                events.push(*event);
+                if events.len() > expected { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            })
+            .map_err(failed)?;
+        let moved_corner = corner - self.at.corner.angle;
+        match self.past_corner(&whole, section, &events).map(|past| past - moved_corner) {
+            Some(past_corner) if past_corner.abs() < self.reach => Ok(Sample {
+                perturbation: exact,
+                end: Vector2::new(motion.state.position - end.position, motion.state.velocity - end.velocity),
+                past_corner,
+            }),
+            _ => {
+                let impacts = events.iter().filter(|event| event.kind == EventKind::Impact).count();
+                let sticks = events.iter().any(|event| event.kind == EventKind::Stick);
+                let (side, perturbation) = (self.side, exact.into());
+                Err(SampleError::OtherImpacts { side, perturbation, impacts, expected, sticks })
+            }
+        }
+    }
+
+    /// How far past the corner, where it was, the corner's impact is, rad, if the events are the orbit's impacts, each on
+    /// its own segment; 0 where the corner's is not among them.
+    fn past_corner(&self, whole: &Cam, section: f64, events: &[Event]) -> Option<f64> {
+        let flights = &self.stretch.flights;
+        if events.len() != flights.len() || events.iter().any(|event| event.kind != EventKind::Impact) {
+            return None;
+        }
+        let (mut turned, mut past_corner) = (0.0, 0.0);
+        for (event, (turn, index)) in events.iter().zip(flights) {
+            turned += turn;
+            let later = event.turned_since(section) - turned;
+            if *index == self.at.contact {
+                past_corner = later;
+                continue;
+            }
+            let contact = &self.at.cycle.contacts[*index];
+            let segment = &whole.segments()[contact.segment];
+            let angle = contact.cam_angle + later;
+            if !(segment.start <= angle && angle <= segment.end) {
+                return None;
+            }
+        }
+        Some(past_corner)
+    }
+}
+
+/// How near to the corner another impact of the orbit is, rad.
+fn nearest_other(at: &CornerImpact) -> f64 {
+    let others = at.cycle.contacts.iter().enumerate().filter(|(index, _)| *index != at.contact);
+    others.fold(f64::INFINITY, |least, (_, contact)| least.min(apart(contact.cam_angle, at.corner.angle)))
 }

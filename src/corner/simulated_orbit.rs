@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector2, Vector3};
 
-use super::locate::CornerImpact;
+use super::corner_impact::CornerImpact;
 use super::one_sided::{OneSidedMap, SampleError};
 use crate::cam::{Cam, Side};
 use crate::model::Model;

@@ -263,14 +263,7 @@ impl Verification {
             local_map: outcomes.iter().map(OutcomeEntry::new).collect(),
             linear_range: ranges.iter().map(RangeEntry::new).collect(),
             published: published.iter().map(PublishedEntry::new).collect(),
-            skipped: skipped
-                .iter()
-                .map(|Skipped { route, why, failed }| SkippedEntry {
-                    route: route.clone(),
-                    why: why.clone(),
-                    failed: *failed,
-                })
-                .collect(),
+            skipped: skipped.iter().map(SkippedEntry::new).collect(),
             agrees: *agrees,
         }
     }
@@ -301,10 +294,22 @@ pub(super) fn rows(matrix: &Matrix2<f64>) -> [[f64; 2]; 2] {
     matrix.transpose().into()
 }
 
+impl SideEntry {
+    pub(super) fn new(side: &SideMap) -> Self {
+        Self { a: rows(&side.a), b: side.b.into() }
+    }
+}
+
 impl Sides<SideEntry> {
     fn new(map: &CornerMap) -> Self {
-        let entry = |side: &SideMap| SideEntry { a: rows(&side.a), b: side.b.into() };
-        Self { minus: entry(&map.minus), plus: entry(&map.plus) }
+        Self { minus: SideEntry::new(&map.minus), plus: SideEntry::new(&map.plus) }
+    }
+}
+
+impl SkippedEntry {
+    pub(super) fn new(skipped: &Skipped) -> Self {
+        let Skipped { route, why, failed } = skipped.clone();
+        Self { route, why, failed }
     }
 }
 
@@ -333,7 +338,7 @@ impl RouteEntry {
 }
 
 impl AgreementEntry {
-    fn new(agreement: &Agreement) -> Self {
+    pub(super) fn new(agreement: &Agreement) -> Self {
         let Agreement { routes, quantity, max_abs_diff, max_rel_diff, bound, agrees } = agreement.clone();
         Self { routes, quantity, max_abs_diff, max_rel_diff, tolerance: bound.value, reason: bound.reason, agrees }
     }

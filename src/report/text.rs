@@ -111,18 +111,38 @@ fn side(out: &mut String, document: &Verification, name: &str, when: &str) -> fm
         .collect();
     let printed =
         |quantity: &str| document.published.iter().find(|entry| entry.quantity == format!("{quantity}_{name}"));
+    let room = WIDTH - LABELS - if printed("A").is_some() { PRINTED } else { 0 };
+    // As few blocks as hold all columns, and as even.
+    let blocks = (routes.len() * COLUMN).div_ceil(room).max(1);
+    for routes in routes.chunks(routes.len().div_ceil(blocks).max(1)) {
+        columns(out, routes, printed)?;
+    }
+    Ok(())
+}
+
+/// Widths of a table of maps: its labels, a route, the digits in print.
+const LABELS: usize = 8;
+const COLUMN: usize = 14;
+const PRINTED: usize = 19;
+
+/// One block of a side's table: some routes, and what the paper prints.
+fn columns<'a>(
+    out: &mut String,
+    routes: &[(String, SideEntry)],
+    printed: impl Fn(&str) -> Option<&'a PublishedEntry>,
+) -> fmt::Result {
     // Two words, two lines.
     let heads: Vec<_> = routes.iter().map(|(route, _)| route.split_once(' ').unwrap_or(("", route))).collect();
     let mut lines = [String::new(), String::new()];
     for (first, second) in &heads {
-        write!(lines[0], "{first:>14}")?;
-        write!(lines[1], "{second:>14}")?;
+        write!(lines[0], "{first:>COLUMN$}")?;
+        write!(lines[1], "{second:>COLUMN$}")?;
     }
     if printed("A").is_some() {
-        write!(lines[1], "{:>19}", "printed")?;
+        write!(lines[1], "{:>PRINTED$}", "printed")?;
     }
-    writeln!(out, "{:8}{}", "", lines[0].trim_end())?;
-    writeln!(out, "{:8}{}", "", lines[1])?;
+    writeln!(out, "{:LABELS$}{}", "", lines[0].trim_end())?;
+    writeln!(out, "{:LABELS$}{}", "", lines[1])?;
     let entries = |side: &SideEntry| -> [f64; 6] {
         let SideEntry { a: [[a11, a12], [a21, a22]], b: [b1, b2] } = *side;
         [a11, a12, a21, a22, b1, b2]
@@ -130,13 +150,13 @@ fn side(out: &mut String, document: &Verification, name: &str, when: &str) -> fm
     for (index, label) in ["A11", "A12", "A21", "A22", "B1", "B2"].into_iter().enumerate() {
         write!(out, "    {label:<4}")?;
         let (quantity, entry) = if index < 4 { ("A", index) } else { ("B", index - 4) };
-        for (_, side) in &routes {
+        for (_, side) in routes {
             let values = entries(side);
             let block = if index < 4 { &values[..4] } else { &values[4..] };
-            write!(out, "{:>14}", cell(values[index], block))?;
+            write!(out, "{:>COLUMN$}", cell(values[index], block))?;
         }
         if let Some(digits) = printed(quantity).and_then(|number| number.printed.get(entry)) {
-            write!(out, "{digits:>19}")?;
+            write!(out, "{digits:>PRINTED$}")?;
         }
         writeln!(out)?;
     }

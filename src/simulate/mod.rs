@@ -73,6 +73,11 @@ impl Machine {
         Self { angular_velocity, turn: Turn::new(&self.flight, angular_velocity), ..self.clone() }
     }
 
+    /// The same follower at the same speed over another cam.
+    pub fn with_cam(&self, cam: Cam) -> Self {
+        Self { terrain: Arc::new(Terrain::new(cam)), ..self.clone() }
+    }
+
     /// The lift profile.
     pub fn cam(&self) -> &Cam {
         &self.terrain.cam

@@ -257,13 +257,13 @@ pub fn gap(model: &Model, cam: &Cam, approach: &Approach) -> Result<Gap, JumpOrd
     let smallest = |passage: &Passage| both(passage, scale(passage) / f64::from(1_u32 << (2 * HALVINGS)));
     let passage = Passage::longest(&model.follower, approach, |passage| smallest(passage).is_some())?;
     let least = passage.span;
-    let not_free = JumpOrderError::NotFree { cam_angle: approach.corner.angle, least };
-    let impacts = smallest(&passage).map(counts).ok_or(not_free)?;
+    let not_free = || JumpOrderError::NotFree { cam_angle: approach.corner.angle, least };
+    let impacts = smallest(&passage).map(counts).ok_or_else(not_free)?;
     let halved = (0..HALVINGS).map(|halving| scale(&passage) / f64::from(1_u32 << halving));
     let alike = |distance: &f64| both(&passage, *distance).map(counts) == Some(impacts);
-    let widest = halved.filter(alike).nth(1).ok_or(not_free)?;
+    let widest = halved.filter(alike).nth(1).ok_or_else(not_free)?;
     let sample = |part: f64| {
-        let [before, after] = both(&passage, widest * part).ok_or(not_free)?;
+        let [before, after] = both(&passage, widest * part).ok_or_else(not_free)?;
         Ok((part, passage.back * (after.end - before.end)))
     };
     let rounding = passage.rounding(approach);

@@ -61,7 +61,7 @@ impl Approach {
 }
 
 /// Why there is nothing to predict or to measure.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum JumpOrderError {
     /// The follower does not fall onto the corner.
     #[error(

@@ -1,0 +1,53 @@
+//! `corner-impact locate MODEL`.
+
+use std::path::PathBuf;
+
+use super::{CommandError, Exit};
+use crate::model::{Model, Study};
+use crate::orbit::Search;
+use crate::report::{LocateDocument, json};
+use crate::survey::survey;
+
+/// Lists the speeds at which a periodic orbit has an impact on a corner of the cam, and what happens there.
+#[derive(clap::Args)]
+#[command(after_help = "Examples: corner-impact locate models/osorio-2008.toml --rpm 600:760\n\
+    \x20         corner-impact locate models/osorio-2008.toml --rpm 600:760 --revolutions 2 --json\n\n\
+    Exit code: 0 done and the routes agree, 1 routes disagree at a corner impact, 2 bad model file or usage.")]
+pub(super) struct Arguments {
+    /// Model file (TOML).
+    model: PathBuf,
+    /// Range of speeds, rpm.
+    #[arg(long, value_name = "LO:HI", value_parser = range)]
+    rpm: Study,
+    /// Turns of the cam after which the orbits repeat, and no fewer.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=Search::MOST_REVOLUTIONS))]
+    revolutions: u64,
+    /// Print one JSON document instead of the page.
+    #[arg(long)]
+    json: bool,
+}
+
+/// `LO:HI`, both above 0, the second higher.
+fn range(text: &str) -> Result<Study, String> {
+    let number = |part: &str| part.trim().parse::<f64>().map_err(|error| format!("\"{part}\": {error}"));
+    let (low, high) = text.split_once(':').ok_or("a range is written LO:HI")?;
+    let (rpm_min, rpm_max) = (number(low)?, number(high)?);
+    if rpm_min > 0.0 && rpm_max > rpm_min && rpm_max.is_finite() {
+        Ok(Study { rpm_min, rpm_max })
+    } else {
+        Err("a range goes from a speed above 0 to a higher one".into())
+    }
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(String, Exit), CommandError> {
+    let model = Model::read(&arguments.model).map_err(CommandError::input)?;
+    let found = survey(&model, arguments.rpm, arguments.revolutions)
+        .map_err(|error| CommandError::Input(format!("{}: {error}", model.file())))?;
+    let document = LocateDocument::new(&model, &found);
+    let page = if arguments.json {
+        json::render(&document).map_err(CommandError::report)?
+    } else {
+        document.text().map_err(CommandError::report)?
+    };
+    Ok((page, if document.agrees { Exit::Agrees } else { Exit::Disagrees }))
+}

@@ -1,0 +1,129 @@
+//! A periodic orbit with an impact on a corner: of one revolution with one impact as in the paper, or of any number of both.
+
+use std::f64::consts::TAU;
+
+use nalgebra::Vector2;
+
+use crate::cam::{Corner, Lift, Side};
+use crate::flight::State;
+use crate::model::Follower;
+use crate::orbit::{Contact, Cycle};
+use crate::simulate::Machine;
+
+/// A periodic orbit with an impact on a corner of the cam.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CornerImpact {
+    /// The corner that it hits.
+    pub corner: Corner,
+    /// T*, s: one revolution of the cam.
+    pub period: f64,
+    /// The two neighbouring doubles, or nearly, that T* was bracketed by; for an orbit of several impacts the last step of
+    /// Newton's method to either side.
+    pub bracket: [f64; 2],
+    /// Left side of the equation for T*, over the sum of its terms' sizes; of several impacts Newton's last correction.
+    pub residual: f64,
+    /// v- at the corner, m/s.
+    pub velocity_before: f64,
+    /// v+ at the corner, m/s.
+    pub velocity_after: f64,
+    /// c' at the corner, m/s.
+    pub cam_velocity: f64,
+    /// The state on the section, in the cam's coordinates.
+    pub state: State,
+    /// Where the paper's x is measured from, m: the spring's equilibrium, or where the spring is slack if it has no stiffness.
+    pub origin: f64,
+    /// How far one simulated period ends from its start, over the orbit's size; of several impacts, or at a corner of
+    /// velocity, what the closing equations are off by.
+    pub closure: f64,
+    /// The orbit's impacts.
+    pub cycle: Cycle,
+    /// Index of the one on the corner.
+    pub contact: usize,
+    /// The side whose law the impact obeys: where the velocity jumps, the orbits of the two sides differ.
+    pub side: Side,
+}
+
+impl CornerImpact {
+    /// omega*, rpm.
+    pub fn speed_rpm(&self) -> f64 {
+        60.0 / self.period
+    }
+
+    /// omega*, rad/s.
+    pub fn angular_velocity(&self) -> f64 {
+        TAU / self.period
+    }
+
+    /// c'' before and after the corner, m/s^2.
+    pub fn cam_acceleration(&self) -> [f64; 2] {
+        [self.corner.minus, self.corner.plus].map(|lift| lift.curvature * self.angular_velocity().powi(2))
+    }
+
+    /// Whether it is the paper's: one impact in one revolution, at a corner of acceleration or a smoother one.
+    pub fn is_simple(&self) -> bool {
+        self.cycle.revolutions == 1 && self.cycle.contacts.len() == 1 && self.corner.jump_order > 1
+    }
+
+    /// The contact that the section's flight starts at, and the angle of that flight, rad.
+    fn longest_flight(&self) -> (usize, f64) {
+        longest_flight(&self.cycle)
+    }
+
+    /// The stroboscopic section, rad: the middle of the longest flight, where no impact is near. With one impact it is half a
+    /// period from the corner.
+    pub fn section_angle(&self) -> f64 {
+        let (index, turn) = self.longest_flight();
+        (self.cycle.contacts[index].cam_angle + 0.5 * turn) % TAU
+    }
+
+    /// Once around from the section: the angle turned by each flight and the contact that it ends at, in order; and the angle
+    /// of the last flight, rad, which ends on the section.
+    pub fn course(&self) -> (Vec<(f64, usize)>, f64) {
+        let (last, turn) = self.longest_flight();
+        let count = self.cycle.contacts.len();
+        let flight = |later: usize| {
+            let index = (last + 1 + later) % count;
+            (if later == 0 { 0.5 * turn } else { self.cycle.turn((last + later) % count) }, index)
+        };
+        ((0..count).map(flight).collect(), 0.5 * turn)
+    }
+
+    /// The paper's x*: position from the equilibrium, and velocity, on the section.
+    pub fn x_star(&self) -> Vector2<f64> {
+        Vector2::new(self.state.position - self.origin, self.state.velocity)
+    }
+
+    /// The lift at a contact; at the corner, that of `side`.
+    pub fn lift(&self, machine: &Machine, contact: usize, side: Side) -> Lift {
+        if contact == self.contact {
+            return match side {
+                Side::Minus => self.corner.minus,
+                Side::Plus => self.corner.plus,
+            };
+        }
+        let Contact { segment, cam_angle, .. } = self.cycle.contacts[contact];
+        machine.cam().segments()[segment].law.lift(cam_angle)
+    }
+}
+
+/// The longest flight of a cycle: the contact that it starts at, and its angle, rad.
+fn longest_flight(cycle: &Cycle) -> (usize, f64) {
+    let flights = (0..cycle.contacts.len()).map(|index| (index, cycle.turn(index)));
+    flights.fold((0, f64::NEG_INFINITY), |longest, flight| if flight.1 > longest.1 { flight } else { longest })
+}
+
+/// The state of a cycle in the middle of its longest flight.
+pub fn at_section(machine: &Machine, cycle: &Cycle, period: f64) -> State {
+    let (index, turn) = longest_flight(cycle);
+    let (leaving, _) = cycle.flight(machine, index);
+    machine.flight().fly(leaving, 0.5 * (turn / TAU) * period).1
+}
+
+/// Where the paper's x is measured from: the equilibrium `rest - g/w0^2`, or the slack spring without stiffness, m.
+pub fn origin(follower: &Follower) -> f64 {
+    if follower.stiffness > 0.0 {
+        follower.rest_position - follower.mass * follower.gravity / follower.stiffness
+    } else {
+        follower.rest_position
+    }
+}

@@ -1,0 +1,154 @@
+//! A and B as a product once around the orbit: propagators of flights, saltation matrices of impacts.
+//!
+//! A deviation `xi` of the state, at one cam angle, goes through a flight from y over an angle `turn` and an impact as
+//!
+//! ```text
+//! flight   xi -> Phi xi + f(end) turn/(2 pi) dT + dy_p dp          dy' = M dy + M_p y + f_p,   dy(0) = 0
+//! impact   xi -> S (xi - (c_p, 0) dp) + (c_p, (1 + r) dc'_p + r_p (c' - v)) dp
+//! ```
+//!
+//! with `y' = f(y) = M y + f`, the propagator `Phi` of [`crate::flight`] and the saltation matrix S of [`crate::impact`]. The
+//! speed enters at an impact by `c' = w dc/dtheta` alone: `dc' = -c' dT/T`. At the corner S and c' have the side's lift, and
+//! nothing else tells the sides apart. Nothing is simulated.
+
+use nalgebra::{Matrix2, Matrix2x3, RowVector2, SMatrix, Vector2};
+
+use super::corner_impact::CornerImpact;
+use super::map::{CornerMap, Route, SideMap, Uncertainty};
+use super::varied::{Change, LiftChange, NoChange, Varied};
+use crate::cam::{Cam, Side};
+use crate::flight::State;
+use crate::impact::ImpactRates;
+use crate::model::{Follower, Model};
+use crate::simulate::Machine;
+
+/// The map with B by the period.
+pub fn route(model: &Model, cam: &Cam, at: &CornerImpact) -> Route {
+    let around = Around::new(model, cam, at);
+    let Ok(map) = CornerMap::try_from_sides(|side| {
+        Ok::<_, std::convert::Infallible>(around.side_map(side, &Change::of_period(at.cycle.contacts.len())))
+    });
+    Route { name: "variational", map, uncertainty: None }
+}
+
+/// The map with B by any number; where the cam's shape depends on it, with the error of the differences that its lift was
+/// differentiated by.
+pub fn route_by(model: &Model, cam: &Cam, at: &CornerImpact, varied: &Varied) -> Result<Route, NoChange> {
+    let around = Around::new(model, cam, at);
+    let mut error = CornerMap { minus: nothing(), plus: nothing() };
+    let map = CornerMap::try_from_sides(|side| {
+        let change = Change::new(model, at, varied, side)?;
+        let map = around.side_map(side, &change);
+        let off = match side {
+            Side::Minus => &mut error.minus,
+            Side::Plus => &mut error.plus,
+        };
+        for (contact, uncertain) in change.lift_errors.iter().enumerate() {
+            for moved in [LiftChange { slope: 0.0, ..*uncertain }, LiftChange { value: 0.0, ..*uncertain }] {
+                let mut other = change.clone();
+                other.lifts[contact].value += moved.value;
+                other.lifts[contact].slope += moved.slope;
+                off.b += (around.side_map(side, &other).b - map.b).abs();
+            }
+        }
+        Ok::<_, NoChange>(map)
+    })?;
+    let uncertainty = matches!(varied, Varied::Number(_)).then_some(Uncertainty::Extrapolation(error));
+    Ok(Route { name: "variational", map, uncertainty })
+}
+
+/// How far the flight at the corner is from the cam when the corner passes, to first order: `e dx + f dp`, from the section
+/// on; and so, where it is negative, that the impact has been before.
+pub fn gap_at_corner(model: &Model, cam: &Cam, at: &CornerImpact) -> (RowVector2<f64>, f64) {
+    let around = Around::new(model, cam, at);
+    let gap = around.go(at.side, &Change::of_period(at.cycle.contacts.len()), true);
+    (RowVector2::new(gap[(0, 0)], gap[(0, 1)]), gap[(0, 2)])
+}
+
+fn nothing() -> SideMap {
+    SideMap { a: Matrix2::zeros(), b: Vector2::zeros() }
+}
+
+/// The orbit and what turns along it.
+struct Around<'a> {
+    follower: &'a Follower,
+    at: &'a CornerImpact,
+    machine: Machine,
+}
+
+impl<'a> Around<'a> {
+    fn new(model: &'a Model, cam: &Cam, at: &'a CornerImpact) -> Self {
+        let machine = Machine::new(cam.clone(), &model.follower, at.angular_velocity());
+        Self { follower: &model.follower, at, machine }
+    }
+
+    fn side_map(&self, side: Side, change: &Change) -> SideMap {
+        let around = self.go(side, change, false);
+        SideMap { a: around.fixed_view::<2, 2>(0, 0).into(), b: around.column(2).into() }
+    }
+
+    /// The deviation by both components of the start and by the number varied: once around, or up to before the corner.
+    fn go(&self, side: Side, change: &Change, to_corner: bool) -> Matrix2x3<f64> {
+        let (flights, last) = self.at.course();
+        let mut deviation = Matrix2x3::identity();
+        let mut state = self.at.state;
+        for (turn, contact) in flights {
+            deviation = self.fly(deviation, state, turn, change);
+            if to_corner && contact == self.at.contact {
+                return deviation;
+            }
+            deviation = self.hit(deviation, contact, side, change);
+            state = self.at.cycle.flight(&self.machine, contact).0;
+        }
+        self.fly(deviation, state, last, change)
+    }
+
+    fn fly(&self, deviation: Matrix2x3<f64>, start: State, turn: f64, change: &Change) -> Matrix2x3<f64> {
+        // Half a revolution is half a period to the last digit.
+        let part = turn / std::f64::consts::TAU;
+        let time = part * self.at.period;
+        let flight = self.machine.flight();
+        let mut after = flight.propagator(time) * deviation;
+        let (_, end) = flight.fly(start, time);
+        let later = Vector2::new(end.velocity, flight.acceleration(end)) * (part * change.period);
+        let other = if change.flies_differently() { self.differ(start, time, change) } else { Vector2::zeros() };
+        let by = after.column(2) + later + other;
+        after.set_column(2, &by);
+        after
+    }
+
+    /// `dy` at the end of a flight: `exp` of `[[M, M_p, f_p], [0, M, f], [0, 0, 0]] t`, applied to `(0, y, 1)`.
+    fn differ(&self, start: State, time: f64, change: &Change) -> Vector2<f64> {
+        let Follower { mass, damping, stiffness, gravity, rest_position, .. } = *self.follower;
+        let matrix = Matrix2::new(0.0, 1.0, -stiffness / mass, -damping / mass);
+        let force = Vector2::new(0.0, stiffness * rest_position / mass - gravity);
+        let mut whole = SMatrix::<f64, 5, 5>::zeros();
+        whole.fixed_view_mut::<2, 2>(0, 0).copy_from(&matrix);
+        whole.fixed_view_mut::<2, 2>(0, 2).copy_from(&change.matrix);
+        whole.fixed_view_mut::<2, 1>(0, 4).copy_from(&change.force);
+        whole.fixed_view_mut::<2, 2>(2, 2).copy_from(&matrix);
+        whole.fixed_view_mut::<2, 1>(2, 4).copy_from(&force);
+        let end = (whole * time).exp() * SMatrix::<f64, 5, 1>::from([0.0, 0.0, start.position, start.velocity, 1.0]);
+        end.fixed_rows::<2>(0).into()
+    }
+
+    fn hit(&self, deviation: Matrix2x3<f64>, contact: usize, side: Side, change: &Change) -> Matrix2x3<f64> {
+        let omega = self.at.angular_velocity();
+        let lift = self.at.lift(&self.machine, contact, side);
+        let rates = ImpactRates {
+            cam_velocity: omega * lift.slope,
+            cam_acceleration: omega * omega * lift.curvature,
+            ..self.at.cycle.rates(&self.machine, contact)
+        };
+        let (r, v, velocity) = (rates.restitution, rates.velocity_before, rates.cam_velocity);
+        let LiftChange { value, slope } = change.lifts[contact];
+        // From a cam that has risen by c_p, as from one at rest.
+        let mut gap = deviation;
+        gap[(0, 2)] -= value;
+        let mut after = rates.saltation() * gap;
+        let faster = omega * slope - velocity * change.period / self.at.period;
+        after[(0, 2)] += value;
+        after[(1, 2)] += (1.0 + r) * faster + change.restitution * (velocity - v);
+        after
+    }
+}

@@ -1,0 +1,198 @@
+//! The number that B is the derivative by: the period, or any number of the model; and what it changes of the laws.
+
+use nalgebra::{Matrix2, Vector2};
+
+use super::corner_impact::CornerImpact;
+use super::period_equation::at_corner;
+use crate::cam::{Cam, Side};
+use crate::model::{Follower, Model};
+use crate::orbit::{Family, FamilyError, Parameter};
+
+/// What B is the derivative by.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Varied {
+    /// T, s.
+    Period,
+    /// A number of the model file, by dotted path, in its own units.
+    Number(String),
+}
+
+/// Why a law has no derivative by a number.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum NoChange {
+    /// The model does not allow numbers close by.
+    #[error(transparent)]
+    Family(#[from] FamilyError),
+    /// No number of that name.
+    #[error("the model has no number \"{name}\" to vary")]
+    Unknown {
+        /// The name.
+        name: String,
+    },
+    /// The cam has other segments with every number close by.
+    #[error("the cam has other segments as soon as {name} moves from {value}")]
+    OtherSegments {
+        /// The name.
+        name: String,
+        /// Its value.
+        value: f64,
+    },
+}
+
+/// How the lift under an impact changes, at the same angle.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct LiftChange {
+    /// `c_p`, m per unit.
+    pub value: f64,
+    /// `dc/dtheta` by p, m/rad per unit.
+    pub slope: f64,
+}
+
+/// The derivatives of the physical laws by the number.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Change {
+    /// Of T: 1 or 0.
+    pub period: f64,
+    /// Of M in `y' = M y + f`.
+    pub matrix: Matrix2<f64>,
+    /// Of f.
+    pub force: Vector2<f64>,
+    /// Of r.
+    pub restitution: f64,
+    /// Of the lift at each contact.
+    pub lifts: Vec<LiftChange>,
+    /// What they may be off by.
+    pub lift_errors: Vec<LiftChange>,
+}
+
+impl Change {
+    fn none(contacts: usize) -> Self {
+        let still = vec![LiftChange::default(); contacts];
+        let (matrix, force) = (Matrix2::zeros(), Vector2::zeros());
+        Self { period: 0.0, matrix, force, restitution: 0.0, lifts: still.clone(), lift_errors: still }
+    }
+
+    /// By T, for an orbit of so many contacts.
+    pub fn of_period(contacts: usize) -> Self {
+        Self { period: 1.0, ..Self::none(contacts) }
+    }
+
+    /// By any number, with the lift of one side at the corner.
+    pub fn new(model: &Model, at: &CornerImpact, varied: &Varied, side: Side) -> Result<Self, NoChange> {
+        let contacts = at.cycle.contacts.len();
+        let Varied::Number(name) = varied else { return Ok(Self::of_period(contacts)) };
+        let Follower { mass, damping, stiffness, rest_position, .. } = model.follower;
+        // M = [[0, 1], [-k/m, -b/m]],  f = (0, k rest/m - g)
+        let bottom = |position: f64, velocity: f64, force: f64| Self {
+            matrix: Matrix2::new(0.0, 0.0, position, velocity),
+            force: Vector2::new(0.0, force),
+            ..Self::none(contacts)
+        };
+        Ok(match name.as_str() {
+            "follower.mass" => {
+                bottom(stiffness / (mass * mass), damping / (mass * mass), -stiffness * rest_position / (mass * mass))
+            }
+            "follower.damping" => bottom(0.0, -1.0 / mass, 0.0),
+            "follower.stiffness" => bottom(-1.0 / mass, 0.0, rest_position / mass),
+            "follower.gravity" => bottom(0.0, 0.0, -1.0),
+            "follower.rest_position" => bottom(0.0, 0.0, stiffness / mass),
+            "follower.restitution" => Self { restitution: 1.0, ..Self::none(contacts) },
+            _ => {
+                let (lifts, lift_errors) = lift_changes(model, at, name, side)?;
+                Self { lifts, lift_errors, ..Self::none(contacts) }
+            }
+        })
+    }
+
+    /// Whether a flight from the same state ends elsewhere.
+    pub fn flies_differently(&self) -> bool {
+        self.matrix != Matrix2::zeros() || self.force != Vector2::zeros()
+    }
+}
+
+/// The value of a number of the model.
+pub(super) fn value_of(model: &Model, name: &str) -> Result<f64, NoChange> {
+    let value = Parameter::Field(name.into()).value(model, f64::NAN);
+    value.ok_or_else(|| NoChange::Unknown { name: name.into() })
+}
+
+/// The lift under every contact by a number of the cam, and the errors: a difference over six cams on either side,
+///
+/// ```text
+/// h df/dp = (45 (f_1 - f_-1) - 9 (f_2 - f_-2) + (f_3 - f_-3))/60 + O(h^7)
+/// ```
+///
+/// at the step where halving it changes the least.
+fn lift_changes(
+    model: &Model,
+    at: &CornerImpact,
+    name: &str,
+    side: Side,
+) -> Result<(Vec<LiftChange>, Vec<LiftChange>), NoChange> {
+    /// Steps tried, each half the one before; from a part of the number down.
+    const STEPS: i32 = 16;
+    const LARGEST: f64 = 1.0 / 64.0;
+    const WEIGHTS: [f64; 3] = [45.0, -9.0, 1.0];
+    let value = value_of(model, name)?;
+    let family = Family::new(model, at.speed_rpm(), vec![Parameter::Field(name.into())])?;
+    let here = family.machine(&[value])?.0;
+    let scale = LARGEST * if value == 0.0 { 1.0 } else { value.abs() };
+    let contacts = contacts(here.cam(), at, side);
+    let mut failure = NoChange::OtherSegments { name: name.into(), value };
+    let (mut wider, mut best): (Option<Vec<LiftChange>>, Option<_>) = (None, None);
+    for halving in 0..STEPS {
+        let step = scale * 0.5_f64.powi(halving);
+        let mut sums = vec![LiftChange::default(); contacts.len()];
+        let mut sample = |multiple: f64, weight: f64| -> Result<bool, FamilyError> {
+            let (machine, _) = family.machine(&[value + multiple * step])?;
+            let segments = machine.cam().segments();
+            for (sum, (segment, angle)) in sums.iter_mut().zip(&contacts) {
+                let lift = segments.get(*segment).map(|segment| segment.law.lift(*angle));
+                sum.value += weight * lift.map_or(f64::NAN, |lift| lift.value);
+                sum.slope += weight * lift.map_or(f64::NAN, |lift| lift.slope);
+            }
+            Ok(segments.len() == here.cam().segments().len())
+        };
+        let mut same = true;
+        let mut at_steps = || {
+            for (weight, multiple) in WEIGHTS.into_iter().zip([1.0, 2.0, 3.0]) {
+                same &= sample(multiple, weight / (60.0 * step))?;
+                same &= sample(-multiple, -weight / (60.0 * step))?;
+            }
+            Ok::<_, FamilyError>(())
+        };
+        if let Err(error) = at_steps() {
+            (failure, wider) = (error.into(), None);
+            continue;
+        }
+        if !same {
+            wider = None;
+            continue;
+        }
+        if let Some(wider) = &wider {
+            let rounding = f64::EPSILON * here.cam().top().abs() / step;
+            let off = |one: f64, other: f64| (one - other).abs() + rounding;
+            let errors: Vec<LiftChange> = sums
+                .iter()
+                .zip(wider)
+                .map(|(sum, wide)| LiftChange { value: off(sum.value, wide.value), slope: off(sum.slope, wide.slope) })
+                .collect();
+            let size: f64 = errors.iter().map(|error| error.value + error.slope).sum();
+            if best.as_ref().is_none_or(|(least, _, _)| size < *least) {
+                best = Some((size, sums.clone(), errors));
+            }
+        }
+        wider = Some(sums);
+    }
+    best.map(|(_, lifts, errors)| (lifts, errors)).ok_or(failure)
+}
+
+/// Segment and angle, rad, of every contact.
+fn contacts(cam: &Cam, at: &CornerImpact, side: Side) -> Vec<(usize, f64)> {
+    let place = |(index, contact): (usize, &crate::orbit::Contact)| {
+        let on_side = at_corner(cam, &at.corner, side, contact.revolution, contact.velocity_before);
+        let contact = if index == at.contact { &on_side } else { contact };
+        (contact.segment, contact.cam_angle)
+    };
+    at.cycle.contacts.iter().enumerate().map(place).collect()
+}
