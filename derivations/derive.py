@@ -14,6 +14,7 @@ from pathlib import Path
 
 from mpmath import mpf
 
+import border_collision
 import closed_forms
 import corner_map
 import flight
@@ -58,6 +59,7 @@ def run():
     stage("normal form", normal_form.proofs())
     stage("impact oscillator", impact_oscillator.proofs())
     stage("jump order", jump_order.proofs())
+    stage("border collision", border_collision.proofs())
     verdicts, results = printed_equations.examined()
     stage("printed", results)
     stage("recovered", recover.proofs())

@@ -8,7 +8,13 @@ use nalgebra::Matrix2;
 #[inline]
 pub fn rebound(restitution: f64, incoming: f64, surface: f64) -> f64 {
     // As c' + r (c' - v-): the relative velocity is reversed and scaled, with no cancellation as it dies out.
-    surface + restitution * (surface - incoming)
+    surface + relative_rebound(restitution, incoming, surface)
+}
+
+/// Velocity relative to the cam after an impact, m/s: `v+ - c' = r (c' - v-)`; arguments as for [`rebound`].
+#[inline]
+pub fn relative_rebound(restitution: f64, incoming: f64, surface: f64) -> f64 {
+    restitution * (surface - incoming)
 }
 
 /// An impact as its derivative needs it: velocities in m/s, accelerations in m/s^2.

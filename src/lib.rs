@@ -21,7 +21,7 @@
 //!    ▼
 //!  agreement             routes pairwise against the table of tolerances
 //!    ▼
-//!  border_collision      normal form, Feigin's classification
+//!  border_collision      normal form, Feigin's classification, the local map's own motions and how far it holds
 //!    ▼
 //!  published             the numbers that the paper prints, against those computed
 //!    ▼

@@ -127,6 +127,23 @@ table! {
         itself";
     /// When a quantity that a change of coordinates divides by counts as zero.
     DEGENERATE = 1e-10, "of the terms it is made of: the quotient would keep fewer than six digits";
+    /// How closely the two sides of a local map meet on its border.
+    CONTINUOUS = 1e-8, "of the terms of each minor: what two routes to the map may differ by";
+    /// When a motion of the local map counts as gone: the scale of the map over the size of the motion.
+    ESCAPED = 1e-12, "the map's scale over the motion's size: a fixed point lies at 1e10 times the scale where det(I - A) is as \
+        small as is not refused, and bounded motions within a few times that";
+    /// What pushes a motion off an unstable periodic orbit that rounding has put it on.
+    KICK = 1e-6, "of the map's scale: far above rounding, and far below the parts of a chaotic motion";
+    /// The standard error of a Lyapunov exponent of the local map over the exponent, when the motion counts as chaotic.
+    CHAOTIC_EXPONENT = 0.2, "the standard error over the exponent: five standard errors above 0, which chance exceeds once in \
+        three million runs";
+    /// The difference between the local map and the real one up to which it counts as valid.
+    LINEAR_WITHIN = 0.1, "of the displacement that the local map predicts: the tenth that its range is asked for at";
+    /// Where the search for the end of the local map's range begins.
+    LINEAR_FROM = 1e-8, "of T*: there what the local map leaves out is far below a tenth, and rounding of the real one still \
+        is";
+    /// How closely the end of the local map's range is bracketed.
+    LINEAR_BRACKET = 1e-6, "of dT: four digits more than the tenth means";
 }
 
 /// How closely two routes must agree on a quantity, and why.

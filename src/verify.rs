@@ -5,10 +5,14 @@ use std::thread::JoinHandle;
 use nalgebra::RowVector2;
 
 use crate::agreement::{self, Agreement, NamedOrbit, compare};
-use crate::border_collision::{Classification, NormalForm, classify, normal_form};
-use crate::cam::Cam;
+use crate::border_collision::validity::{self, Range};
+use crate::border_collision::{
+    Classification, Condition, LocalMap, LocalOutcome, NormalForm, Refusal, classify, conditions, normal_form,
+};
+use crate::cam::{Cam, Side};
 use crate::corner::border::border;
 use crate::corner::external::{self, Outside, PROGRAMS, Program};
+use crate::corner::one_sided::SampleError;
 use crate::corner::{self, CornerImpact, CornerMap, LocateError, Route};
 use crate::corner::{closed_form, finite_difference, least_squares, simulated_orbit};
 use crate::model::Model;
@@ -31,8 +35,16 @@ pub struct Findings {
     pub border: (RowVector2<f64>, f64),
     /// Absent where the map is degenerate.
     pub normal_form: Option<NormalForm>,
-    /// Absent where the map is degenerate.
+    /// Absent where the map is degenerate or the follower sticks.
     pub classification: Option<Classification>,
+    /// Why there is no classification, where there is none.
+    pub refusal: Option<Refusal>,
+    /// What classification, stability and normal form rest on, each with how far it is from failing.
+    pub conditions: Vec<Condition>,
+    /// The local map's own motions at dT = -1, 1 and 0; empty without a classification.
+    pub outcomes: Vec<LocalOutcome>,
+    /// How far the local map holds; empty without a classification.
+    pub ranges: Vec<Range>,
     /// The paper's numbers; empty for another model.
     pub published: Vec<PrintedNumber>,
     /// What did not run, and why.
@@ -81,7 +93,9 @@ pub fn verify(model: &Model, external: External) -> Result<Findings, LocateError
     let closed = closed_form::route(model, &at);
     let map = closed.map;
     let mut routes = vec![closed];
-    routes.extend(log.keep("finite_difference", finite_difference::route(model, &cam, &at)));
+    let differenced = finite_difference::route(model, &cam, &at);
+    let sticking = differenced.as_ref().err().and_then(sticks);
+    routes.extend(log.keep("finite_difference", differenced));
     routes.extend(log.keep("least_squares", least_squares::route(model, &cam, &at)));
 
     let mut orbits: Vec<NamedOrbit> = vec![("located", at.x_star(), at.period)];
@@ -114,8 +128,23 @@ pub fn verify(model: &Model, external: External) -> Result<Findings, LocateError
     let border = border(model, &at);
     comparisons.push(compare_borders(&map, border));
     let normal_form = normal_form(&map).map_err(|error| log.leave_out("normal_form", error.to_string())).ok();
-    let classification =
-        classify(&map, border).map_err(|error| log.leave_out("classification", error.to_string())).ok();
+    let verdict = match sticking {
+        Some(side) => Err(Refusal::Sticking { side }),
+        None => classify(&map, border).map_err(Refusal::from),
+    };
+    let (classification, refusal) = match verdict {
+        Ok(classification) => (Some(classification), None),
+        Err(refusal) => {
+            log.leave_out("classification", refusal.to_string());
+            (None, Some(refusal))
+        }
+    };
+    let local = LocalMap::new(&map, border);
+    let (mut outcomes, mut ranges) = (Vec::new(), Vec::new());
+    if classification.is_some() {
+        outcomes.extend([-1.0, 1.0, 0.0].map(|mu| local.outcome(mu)));
+        ranges = validity::ranges(model, &cam, &at, &local);
+    }
     let published = match compare_published(model, &at, &map, normal_form.as_ref()) {
         Err(error @ PublishedError::OtherModel) => {
             log.leave_out("published", error.to_string());
@@ -134,10 +163,24 @@ pub fn verify(model: &Model, external: External) -> Result<Findings, LocateError
         border,
         normal_form,
         classification,
+        refusal,
+        conditions: conditions(&local),
+        outcomes,
+        ranges,
         published,
         skipped: log.skipped,
         agrees,
     })
+}
+
+/// The side on which a revolution next to the orbit has the follower stay on the cam.
+fn sticks(error: &SampleError) -> Option<&'static str> {
+    match error {
+        SampleError::NotOneImpact { side, sticks: true, .. } => {
+            Some(if *side == Side::Minus { "minus" } else { "plus" })
+        }
+        _ => None,
+    }
 }
 
 type Started = (Program, Option<JoinHandle<Result<Outside, PythonError>>>);

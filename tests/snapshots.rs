@@ -7,6 +7,8 @@
 
 mod common;
 
+use corner_impact::border_collision::LocalOutcome;
+use corner_impact::border_collision::long_run::End;
 use corner_impact::corner::map::{Eigenvalue, SideMap};
 use corner_impact::report::{Verification, text};
 use corner_impact::verify::{External, verify};
@@ -37,6 +39,14 @@ fn kept(entries: &[f64]) -> Value {
 fn side(side: &SideMap) -> Value {
     let values: Vec<f64> = side.eigenvalues().iter().flat_map(|Eigenvalue { re, im }| [*re, *im]).collect();
     json!({ "A": kept(side.a.transpose().as_slice()), "B": kept(side.b.as_slice()), "eigenvalues_re_im": kept(&values) })
+}
+
+/// Where the motion from x* ends: a word, or a kind.
+fn end(outcome: &LocalOutcome) -> String {
+    match &outcome.fates[0].end {
+        End::Periodic(orbit) => orbit.word.to_string(),
+        other => other.name().into(),
+    }
 }
 
 #[test]
@@ -72,6 +82,11 @@ fn fixed_points_matrices_eigenvalues_and_normal_forms() {
                 "scenario": verdict.scenario.name(),
                 "fixed_points_exist_for": [verdict.minus.exists_for.name(), verdict.plus.exists_for.name()],
                 "stable": [verdict.minus.stable, verdict.plus.stable],
+            },
+            "local_map_from_the_corner_impact": {
+                "faster": end(&found.outcomes[0]),
+                "slower": end(&found.outcomes[1]),
+                "at": end(&found.outcomes[2]),
             },
         });
         settings().bind(|| insta::assert_json_snapshot!(format!("{}", common::stem(&file)), document));

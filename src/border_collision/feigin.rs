@@ -7,7 +7,10 @@
 use nalgebra::{Matrix2, RowVector2, Vector2};
 
 use super::Degenerate;
+use super::conditions::{Condition, Decides, conditions};
+use super::local_map::LocalMap;
 use crate::corner::map::{CornerMap, Eigenvalue, SideMap};
+use crate::orbit::eigenvalues;
 use crate::tolerance;
 
 /// What happens to the fixed point at the border.
@@ -22,6 +25,15 @@ pub enum Scenario {
 }
 
 impl Scenario {
+    /// By the numbers of real eigenvalues above 1 and below -1, of both sides together.
+    pub fn of_counts(above_one: usize, below_minus_one: usize) -> Self {
+        match (above_one % 2, below_minus_one % 2) {
+            (1, _) => Self::NonsmoothFold,
+            (_, 1) => Self::NonsmoothFlip,
+            _ => Self::Persistence,
+        }
+    }
+
     /// Its name in documents.
     pub fn name(self) -> &'static str {
         match self {
@@ -88,14 +100,33 @@ pub struct Classification {
 pub fn classify(map: &CornerMap, border: (RowVector2<f64>, f64)) -> Result<Classification, Degenerate> {
     let minus = side_counts("minus", &map.minus, border, -1.0)?;
     let plus = side_counts("plus", &map.plus, border, 1.0)?;
-    let fold = (minus.above_one + plus.above_one) % 2 == 1;
-    let flip = (minus.below_minus_one + plus.below_minus_one) % 2 == 1;
-    let scenario = match (fold, flip) {
-        (true, _) => Scenario::NonsmoothFold,
-        (false, true) => Scenario::NonsmoothFlip,
-        (false, false) => Scenario::Persistence,
-    };
-    Ok(Classification { scenario, period_two_orbit: flip, minus, plus })
+    let all = conditions(&LocalMap::new(map, border));
+    let failing = all.iter().find(|condition| condition.decides == Decides::Classification && !condition.holds());
+    if let Some(&Condition { name, meaning, value, distance, .. }) = failing {
+        return Err(Degenerate::Fails { name, value, distance, meaning });
+    }
+    let (above, below) = (minus.above_one + plus.above_one, minus.below_minus_one + plus.below_minus_one);
+    let scenario = Scenario::of_counts(above, below);
+    Ok(Classification { scenario, period_two_orbit: below % 2 == 1, minus, plus })
+}
+
+/// The scenario of A- and A+, 2x2, by their eigenvalues alone.
+pub fn scenario([minus, plus]: &[Matrix2<f64>; 2]) -> Result<Scenario, Degenerate> {
+    let (minus, plus) = (counts("minus", &eigenvalues(minus))?, counts("plus", &eigenvalues(plus))?);
+    Ok(Scenario::of_counts(minus[0] + plus[0], minus[1] + plus[1]))
+}
+
+/// The numbers of real eigenvalues above 1 and below -1, of the side called `name`.
+fn counts(name: &'static str, eigenvalues: &[Eigenvalue; 2]) -> Result<[usize; 2], Degenerate> {
+    for Eigenvalue { re, im } in *eigenvalues {
+        for boundary in [1.0, -1.0] {
+            if !((re - boundary).hypot(im) > tolerance::UNIT_EIGENVALUE.value) {
+                return Err(Degenerate::EigenvalueOnBoundary { side: name, value: re, boundary });
+            }
+        }
+    }
+    let real = |test: fn(f64) -> bool| eigenvalues.iter().filter(|value| value.im == 0.0 && test(value.re)).count();
+    Ok([real(|value| value > 1.0), real(|value| value < -1.0)])
 }
 
 /// `sign` is that of `e x + f dT` on this side.
@@ -106,14 +137,7 @@ fn side_counts(
     sign: f64,
 ) -> Result<SideCounts, Degenerate> {
     let eigenvalues = side.eigenvalues();
-    for Eigenvalue { re, im } in eigenvalues {
-        for boundary in [1.0, -1.0] {
-            if !((re - boundary).hypot(im) > tolerance::UNIT_EIGENVALUE.value) {
-                return Err(Degenerate::EigenvalueOnBoundary { side: name, value: re, boundary });
-            }
-        }
-    }
-    let real = |test: fn(f64) -> bool| eigenvalues.iter().filter(|value| value.im == 0.0 && test(value.re)).count();
+    let [above_one, below_minus_one] = counts(name, &eigenvalues)?;
     // x = A x + B dT
     let whole = Matrix2::identity() - side.a;
     let fixed_point = whole.try_inverse().map(|inverse| inverse * side.b);
@@ -126,8 +150,8 @@ fn side_counts(
         return Err(Degenerate::Vanishes { what: "the fixed point's distance from the border", value: distance });
     }
     Ok(SideCounts {
-        above_one: real(|value| value > 1.0),
-        below_minus_one: real(|value| value < -1.0),
+        above_one,
+        below_minus_one,
         stable: eigenvalues.iter().all(|value| value.re.hypot(value.im) < 1.0),
         fixed_point,
         determinant: whole.determinant(),

@@ -1,12 +1,20 @@
-//! What the piecewise-linear map predicts: its normal form and Feigin's classification.
+//! What the piecewise-linear map predicts: its normal form, Feigin's classification, its own motions on either side of the
+//! corner impact; and how far from it the prediction holds.
 
+pub mod conditions;
 pub mod feigin;
+pub mod local_map;
+pub mod long_run;
 pub mod normal_form;
-mod scenario;
+pub mod outcome;
+pub mod validity;
+pub mod word;
 
-pub use feigin::{Classification, classify};
+pub use conditions::{Condition, conditions};
+pub use feigin::{Classification, classify, scenario};
+pub use local_map::LocalMap;
 pub use normal_form::{NormalForm, normal_form};
-pub use scenario::scenario;
+pub use outcome::LocalOutcome;
 
 /// A map that the classification says nothing about, and why.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -28,5 +36,33 @@ pub enum Degenerate {
         value: f64,
         /// 1 or -1.
         boundary: f64,
+    },
+    /// A condition of the classification fails.
+    #[error("{name} is {value:e}, {distance:.1e} from failing: {meaning}")]
+    Fails {
+        /// The quantity.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// How far it is from failing, without units.
+        distance: f64,
+        /// What that means.
+        meaning: &'static str,
+    },
+}
+
+/// Why a corner impact is not classified.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Refusal {
+    /// The map is none of the generic kinds.
+    #[error("degenerate: {0}")]
+    Degenerate(#[from] Degenerate),
+    /// The follower stays on the cam, so that a revolution forgets where it began and the map has no such sides.
+    #[error(
+        "sticking: next to the corner, on its {side} side, a simulated revolution stays on the cam after the impact"
+    )]
+    Sticking {
+        /// `minus` or `plus`.
+        side: &'static str,
     },
 }

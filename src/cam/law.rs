@@ -19,6 +19,20 @@ pub struct Lift {
     pub third: f64,
 }
 
+impl Lift {
+    /// The lift `turn`, rad, further on by the Taylor sum of what is known here; the third derivative stays.
+    #[inline]
+    pub fn after(&self, turn: f64) -> Self {
+        let Self { value, slope, curvature, third } = *self;
+        Self {
+            value: value + turn * (slope + turn * (0.5 * curvature + turn * third / 6.0)),
+            slope: slope + turn * (curvature + 0.5 * turn * third),
+            curvature: curvature + turn * third,
+            third,
+        }
+    }
+}
+
 /// A smooth lift law, valid on its segment and some way past its ends.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Law {

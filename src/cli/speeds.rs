@@ -1,9 +1,10 @@
 //! `corner-impact speeds MODEL`.
 
 use std::path::PathBuf;
+use std::sync::Mutex;
 
 use super::start::range;
-use super::{CommandError, Exit};
+use super::{CommandError, Exit, progress::Progress};
 use crate::model::Model;
 use crate::regime::{Care, survey};
 use crate::report::{RegimesDocument, json};
@@ -35,7 +36,17 @@ pub(super) fn run(arguments: &Arguments) -> Result<(String, Exit), CommandError>
     let model = Model::read(&arguments.model).map_err(CommandError::input)?;
     let rpm = arguments.rpm.unwrap_or_else(|| [50.0, model.study.map_or(1000.0, |study| study.rpm_max.max(100.0))]);
     let care = Care { speeds: arguments.speeds as usize, settling: arguments.settling, ..Care::default() };
-    let survey = survey(&model, rpm, care).map_err(CommandError::input)?;
+    let progress = Mutex::new((Progress::new(2 * u64::from(arguments.speeds)), 0));
+    let passed = || {
+        // A bar that a thread died over shows nothing more.
+        if let Ok(mut guard) = progress.lock() {
+            let (bar, done) = &mut *guard;
+            *done += 1;
+            bar.set(*done);
+        }
+    };
+    let survey = survey(&model, rpm, care, &passed).map_err(CommandError::input)?;
+    drop(progress);
     let document = RegimesDocument::new(&model.name, &survey);
     let page = if arguments.json {
         json::render(&document).map_err(CommandError::report)?

@@ -1,10 +1,11 @@
 //! Speeds side by side, their rows in order, in bounded memory.
 //!
 //! Each worker turns rows into blocks, whatever those are, and sends them to the thread that called, which takes the blocks
-//! of one speed after those of the speed before. Queues are short: a worker that is ahead waits, and the worker of the
-//! lowest open speed never does.
+//! of one speed after those of the speed before. A worker runs a few neighbouring speeds in a row and sends what is short
+//! together: each time the thread that called wakes, a worker stands still where cores are few. Queues are short: a worker
+//! that is ahead waits, and the worker of the lowest open speed never does.
 
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
 use super::{Following, Row, Seen, Sweep, SweepError};
@@ -55,10 +56,13 @@ enum Message<B> {
     Done(Result<Tally, SweepError>),
 }
 
-/// Blocks of one speed that may wait to be taken.
+/// Lots of messages of one task that may wait to be taken.
 const QUEUE: usize = 4;
-/// Speeds that may be open, for each thread.
+/// Tasks that may be open, for each thread.
 const OPEN_PER_THREAD: usize = 4;
+/// Most speeds of a task, and the revolutions after which a task takes no further speed.
+const SPEEDS_PER_TASK: usize = 16;
+const REVOLUTIONS_PER_TASK: u64 = 10_000;
 
 impl Sweep {
     /// Runs on `threads` threads (all there are for `None`); `take` gets every block in order, and after each speed its
@@ -99,34 +103,57 @@ impl Sweep {
         }
         let pool = builder.build().map_err(|error| SweepError::Threads(error.to_string()))?;
         let open = OPEN_PER_THREAD * pool.current_num_threads();
+        let each = self.speeds_per_task(open);
+        let count = self.speeds.count;
         pool.in_place_scope_fifo(|scope| {
-            let spawn = |index: usize| {
+            let spawn = |first: usize| {
                 let (sender, receiver) = sync_channel(QUEUE);
-                scope.spawn_fifo(move |_| self.work::<B>(index, &sender));
+                let speeds = first..count.min(first + each);
+                scope.spawn_fifo(move |_| self.work::<B>(speeds, &sender));
                 receiver
             };
             let mut waiting = std::collections::VecDeque::new();
             let mut next = 0;
-            for index in 0..self.speeds.count {
-                while next < self.speeds.count && next < index + open {
+            for first in (0..count).step_by(each) {
+                while next < count && next < first + open * each {
                     waiting.push_back(spawn(next));
-                    next += 1;
+                    next += each;
                 }
                 let Some(receiver) = waiting.pop_front() else { break };
-                tally.add(drain(index, &receiver, &mut take)?);
+                tally.add(drain(first..count.min(first + each), &receiver, &mut take)?);
             }
             Ok(tally)
         })
     }
 
-    /// One speed's run on a worker; a receiver that is gone ends it.
-    fn work<B: Block>(&self, index: usize, sender: &SyncSender<Message<B>>) {
-        let mut send = |block| match sender.send(Message::Block(block)) {
-            Ok(()) => ControlFlow::Continue(()),
-            Err(_) => ControlFlow::Break(()),
-        };
-        let result = self.one::<B>(index, None, &mut send).map(|(_, tally)| tally);
-        let _ = sender.send(Message::Done(result));
+    /// How many neighbouring speeds make a task, where `open` tasks may be open: few enough for all threads to end together.
+    fn speeds_per_task(&self, open: usize) -> usize {
+        let revolutions = self.transient.saturating_add(self.record).max(1);
+        let by_length = usize::try_from(REVOLUTIONS_PER_TASK / revolutions).unwrap_or(SPEEDS_PER_TASK);
+        by_length.min(SPEEDS_PER_TASK).min(self.speeds.count / (4 * open)).max(1)
+    }
+
+    /// The runs of a few speeds on a worker; a receiver that is gone ends them.
+    fn work<B: Block>(&self, speeds: Range<usize>, sender: &SyncSender<Vec<Message<B>>>) {
+        let mut lot = Vec::new();
+        for index in speeds {
+            let mut is_wanted = true;
+            let mut send = |block: B| {
+                let is_full = block.is_full();
+                lot.push(Message::Block(block));
+                if is_full {
+                    is_wanted = sender.send(std::mem::take(&mut lot)).is_ok();
+                }
+                if is_wanted { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+            };
+            let result = self.one::<B>(index, None, &mut send).map(|(_, tally)| tally);
+            let failed = result.is_err();
+            lot.push(Message::Done(result));
+            if failed || !is_wanted {
+                break;
+            }
+        }
+        let _ = sender.send(lot);
     }
 
     fn one<B: Block>(
@@ -157,20 +184,27 @@ impl Sweep {
     }
 }
 
-/// Takes all blocks of a speed.
+/// Takes all blocks of a task's speeds.
 fn drain<B: Block, E: From<SweepError>>(
-    index: usize,
-    receiver: &Receiver<Message<B>>,
+    mut speeds: Range<usize>,
+    receiver: &Receiver<Vec<Message<B>>>,
     take: &mut impl FnMut(usize, B) -> Result<(), E>,
 ) -> Result<Tally, E> {
-    loop {
-        match receiver.recv() {
-            Ok(Message::Block(block)) => take(index, block)?,
-            Ok(Message::Done(result)) => {
-                take(index, B::default())?;
-                return Ok(result?);
+    let mut tally = Tally::default();
+    while !speeds.is_empty() {
+        let Ok(lot) = receiver.recv() else {
+            return Err(SweepError::Threads("a worker is gone".into()).into());
+        };
+        for message in lot {
+            match message {
+                Message::Block(block) => take(speeds.start, block)?,
+                Message::Done(result) => {
+                    take(speeds.start, B::default())?;
+                    tally.add(result?);
+                    speeds.start += 1;
+                }
             }
-            Err(_) => return Err(SweepError::Threads("a worker is gone".into()).into()),
         }
     }
+    Ok(tally)
 }

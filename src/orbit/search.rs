@@ -197,6 +197,9 @@ pub fn settled(
         }
         let sticks = events.iter().any(|event| event.kind != EventKind::Impact);
         let impacts = events.iter().any(|event| event.kind == EventKind::Impact);
+        if !sticks && events.len() > Search::MOST_IMPACTS {
+            continue;
+        }
         let orbit = if sticks {
             match sticking::anchor(&events, turns) {
                 Some(anchor) => sticking::through(machine, anchor, turns)?,
@@ -209,8 +212,12 @@ pub fn settled(
         } else {
             free(machine, motion.state)
         };
-        if orbit.is_some() {
-            return Ok(orbit);
+        // What a run settles on draws it in, or keeps it; Newton's method finds what a run only passes too.
+        let holds = |orbit: &PeriodicOrbit| {
+            orbit.multipliers().iter().all(|multiplier| multiplier.modulus() <= 1.0 + tolerance::SAME_ORBIT.value)
+        };
+        if let Some(orbit) = orbit.filter(holds) {
+            return Ok(Some(orbit));
         }
     }
     Ok(None)

@@ -1,7 +1,7 @@
 //! Where one kind of motion gives way to another, and why.
 
-use super::walk::long_run;
-use super::{Care, Settled, SurveyError};
+use super::walk::{between, long_run};
+use super::{Care, Regime, Settled, SurveyError};
 use crate::model::Model;
 use crate::orbit::Parameter;
 use crate::orbit::branch::{Branch, Following, Kind, Special};
@@ -53,6 +53,16 @@ pub(super) fn narrowed(
     now: &Settled,
     care: Care,
 ) -> Result<Change, SurveyError> {
+    // What leaves the cam is told by the first event alone.
+    if let ((Regime::OnCam, other), on, off) | ((other, Regime::OnCam), off, on) =
+        ((&last.regime, &now.regime), last.rpm, now.rpm)
+        && *other != Regime::OnCam
+    {
+        let [on, off] = between(machine, on, off)?;
+        let bracket = [on.min(off), on.max(off)];
+        let special = Special { kind: Kind::Detachment, bracket, residual: bracket[1] - bracket[0] };
+        return Ok(Change { rpm: off, bracket, cause: Cause::Special(special, None) });
+    }
     let (mut here, mut there, mut motion) = (last.rpm, now.rpm, *motion);
     while (there - here).abs() > tolerance::SPEED_BRACKETED.value {
         let middle = 0.5 * (here + there);

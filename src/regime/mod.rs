@@ -136,7 +136,7 @@ pub struct Care {
 
 impl Default for Care {
     fn default() -> Self {
-        Self { speeds: 300, settling: 400, longest_period: 12 }
+        Self { speeds: 300, settling: 400, longest_period: 400 }
     }
 }
 
@@ -159,12 +159,12 @@ pub enum SurveyError {
     Orbit(#[from] OrbitError),
 }
 
-/// Walks through `rpm` upwards and downwards.
-pub fn survey(model: &Model, rpm: [f64; 2], care: Care) -> Result<Survey, SurveyError> {
+/// Walks through `rpm` upwards and downwards; `passed` is called after each speed of either walk.
+pub fn survey(model: &Model, rpm: [f64; 2], care: Care, passed: &(dyn Fn() + Sync)) -> Result<Survey, SurveyError> {
     let machine = walk::machine(model)?;
     let detachment = detachment(model, rpm)?;
-    let (rising, falling) =
-        rayon::join(|| walk::walk(model, &machine, rpm, care, true), || walk::walk(model, &machine, rpm, care, false));
+    let walk = |rising| walk::walk(model, &machine, rpm, care, rising, passed);
+    let (rising, falling) = rayon::join(|| walk(true), || walk(false));
     let ((rising, up), (falling, down)) = (rising?, falling?);
     Ok(Survey { rpm, detachment, rising, falling, hysteresis: hysteresis(&up, &down) })
 }

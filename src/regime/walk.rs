@@ -25,33 +25,39 @@ pub fn detachment(model: &Model, [low, high]: [f64; 2]) -> Result<Option<f64>, S
     /// Speeds that are looked at before the first change is narrowed down.
     const SPEEDS: u32 = 200;
     let machine = machine(model)?;
-    let stays = |rpm: f64| -> Result<bool, SurveyError> {
-        let of_speed = |error| SurveyError::Simulate { rpm, error };
-        let machine = machine.at_speed(angular_velocity(rpm));
-        let mut motion = machine.start_on_cam(0.0, 0.0).map_err(of_speed)?;
-        if !motion.contact {
-            return Ok(false);
-        }
-        let goal = motion.after(1);
-        let flow = machine.advance(&mut motion, goal, &mut |_: &Event| ControlFlow::Break(())).map_err(of_speed)?;
-        Ok(flow.is_continue())
-    };
-    if !stays(low)? {
+    if !stays(&machine, low)? {
         return Ok(None);
     }
     let at = |index: u32| low + (high - low) * f64::from(index) / f64::from(SPEEDS);
     for index in 1..=SPEEDS {
-        if stays(at(index))? {
-            continue;
+        if !stays(&machine, at(index))? {
+            return Ok(Some(between(&machine, at(index - 1), at(index))?[1]));
         }
-        let (mut low, mut high) = (at(index - 1), at(index));
-        while high - low > tolerance::ROOT_WIDTH.value * high {
-            let middle = 0.5 * (low + high);
-            if stays(middle)? { low = middle } else { high = middle }
-        }
-        return Ok(Some(high));
     }
     Ok(None)
+}
+
+/// Whether a follower that is put on the cam stays there for a revolution.
+fn stays(machine: &Machine, rpm: f64) -> Result<bool, SurveyError> {
+    let of_speed = |error| SurveyError::Simulate { rpm, error };
+    let machine = machine.at_speed(angular_velocity(rpm));
+    let mut motion = machine.start_on_cam(0.0, 0.0).map_err(of_speed)?;
+    if !motion.contact {
+        return Ok(false);
+    }
+    let goal = motion.after(1);
+    let flow = machine.advance(&mut motion, goal, &mut |_: &Event| ControlFlow::Break(())).map_err(of_speed)?;
+    Ok(flow.is_continue())
+}
+
+/// The neighbouring speeds, rpm, of which the follower stays on the cam at the first only; between one where it does and
+/// one where it does not.
+pub(super) fn between(machine: &Machine, mut on: f64, mut off: f64) -> Result<[f64; 2], SurveyError> {
+    while (off - on).abs() > tolerance::ROOT_WIDTH.value * off {
+        let middle = 0.5 * (on + off);
+        if stays(machine, middle)? { on = middle } else { off = middle }
+    }
+    Ok([on, off])
 }
 
 /// The long run from `motion`, with where it ended.
@@ -83,6 +89,7 @@ pub(super) fn walk(
     [low, high]: [f64; 2],
     care: Care,
     rising: bool,
+    passed: &dyn Fn(),
 ) -> Result<(Walk, Vec<Settled>), SurveyError> {
     let count = care.speeds.max(2);
     let at = |index: usize| low + (high - low) * index as f64 / (count - 1) as f64;
@@ -110,6 +117,7 @@ pub(super) fn walk(
             _ => stretches.push(Stretch { rpm: [now.rpm, now.rpm], settled: now.clone() }),
         }
         runs.push(now);
+        passed();
     }
     if !rising {
         runs.reverse();

@@ -25,7 +25,7 @@ pub fn kind(point: &BranchPoint, at: AtCorner) -> &'static str {
     if at.jump_order != 2 {
         return "not-piecewise-linear";
     }
-    point.sides.as_ref().and_then(scenario).map_or("degenerate", |scenario| scenario.name())
+    point.sides.as_ref().and_then(|sides| scenario(sides).ok()).map_or("degenerate", |scenario| scenario.name())
 }
 
 /// Appends one corner impact.

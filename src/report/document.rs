@@ -4,11 +4,12 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::{Matrix2, RowVector2};
+use nalgebra::Matrix2;
 use serde::Serialize;
 
+use super::border_collision::{ClassificationEntry, ConditionEntry, NormalFormEntry, OutcomeEntry, RangeEntry};
 use crate::agreement::Agreement;
-use crate::border_collision::{Classification, NormalForm};
+use crate::border_collision::Refusal;
 use crate::corner::CornerImpact;
 use crate::corner::map::{CornerMap, Eigenvalue, Route, SideMap, Uncertainty};
 use crate::model::Model;
@@ -36,6 +37,14 @@ pub struct Verification {
     pub normal_form: Option<NormalFormEntry>,
     /// Absent where the map is degenerate; `skipped` says why.
     pub classification: Option<ClassificationEntry>,
+    /// Why there is no classification, where there is none.
+    pub refusal: Option<String>,
+    /// What classification, stability and normal form rest on.
+    pub conditions: Vec<ConditionEntry>,
+    /// The local map's own motions: faster, slower, and at the corner impact. Empty without a classification.
+    pub local_map: Vec<OutcomeEntry>,
+    /// How far the local map is within a tenth of the real one. Empty without a classification.
+    pub linear_range: Vec<RangeEntry>,
     /// The paper's numbers; empty for another model.
     pub published: Vec<PublishedEntry>,
     /// What did not run, and why.
@@ -176,52 +185,6 @@ pub struct EigenvalueEntry {
     pub im: f64,
 }
 
-/// The normal form.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct NormalFormEntry {
-    /// After the shift.
-    #[serde(rename = "B_tilde")]
-    pub b_tilde: [f64; 2],
-    /// The change of coordinates.
-    #[serde(rename = "W")]
-    pub w: [[f64; 2]; 2],
-    /// Companion form.
-    #[serde(rename = "A_bar_minus")]
-    pub a_bar_minus: [[f64; 2]; 2],
-    /// Companion form.
-    #[serde(rename = "A_bar_plus")]
-    pub a_bar_plus: [[f64; 2]; 2],
-    /// `W B_tilde`.
-    #[serde(rename = "B_bar")]
-    pub b_bar: [f64; 2],
-    /// `C W^{-1}`.
-    #[serde(rename = "C_bar")]
-    pub c_bar: [f64; 2],
-}
-
-/// Feigin's verdict.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct ClassificationEntry {
-    /// The scenario's name.
-    pub scenario: &'static str,
-    /// Counts.
-    pub real_eigenvalues_above_one: Sides<usize>,
-    /// Counts.
-    pub real_eigenvalues_below_minus_one: Sides<usize>,
-    /// Speeds at which each side's fixed point exists.
-    pub fixed_points_exist_for: Sides<&'static str>,
-    /// Whether an orbit of period two is born: the total below -1 is odd.
-    pub period_two_orbit: bool,
-    /// Whether each side's fixed point is stable.
-    pub stable: Sides<bool>,
-    /// Each side's fixed point for dT = 1 s.
-    pub fixed_point_per_unit_period: Sides<[f64; 2]>,
-    /// `det(I - A)`.
-    pub determinant_of_identity_minus_a: Sides<f64>,
-    /// `(e, f)`: the impact comes before the corner where `e dx + f dT < 0`.
-    pub border: [f64; 3],
-}
-
 /// A number of the paper.
 #[derive(Clone, Debug, Serialize)]
 pub struct PublishedEntry {
@@ -272,6 +235,10 @@ impl Verification {
             border,
             normal_form,
             classification,
+            refusal,
+            conditions,
+            outcomes,
+            ranges,
             published,
             skipped,
             agrees,
@@ -291,6 +258,10 @@ impl Verification {
             eigenvalues: Sides { minus: eigenvalues(&map.minus), plus: eigenvalues(&map.plus) },
             normal_form: normal_form.as_ref().map(NormalFormEntry::new),
             classification: classification.as_ref().map(|verdict| ClassificationEntry::new(verdict, *border)),
+            refusal: refusal.as_ref().map(Refusal::to_string),
+            conditions: conditions.iter().map(ConditionEntry::new).collect(),
+            local_map: outcomes.iter().map(OutcomeEntry::new).collect(),
+            linear_range: ranges.iter().map(RangeEntry::new).collect(),
             published: published.iter().map(PublishedEntry::new).collect(),
             skipped: skipped
                 .iter()
@@ -326,7 +297,7 @@ impl Orbit {
     }
 }
 
-fn rows(matrix: &Matrix2<f64>) -> [[f64; 2]; 2] {
+pub(super) fn rows(matrix: &Matrix2<f64>) -> [[f64; 2]; 2] {
     matrix.transpose().into()
 }
 
@@ -365,36 +336,6 @@ impl AgreementEntry {
     fn new(agreement: &Agreement) -> Self {
         let Agreement { routes, quantity, max_abs_diff, max_rel_diff, bound, agrees } = agreement.clone();
         Self { routes, quantity, max_abs_diff, max_rel_diff, tolerance: bound.value, reason: bound.reason, agrees }
-    }
-}
-
-impl NormalFormEntry {
-    fn new(form: &NormalForm) -> Self {
-        Self {
-            b_tilde: form.b_tilde.into(),
-            w: rows(&form.w),
-            a_bar_minus: rows(&form.a_bar_minus),
-            a_bar_plus: rows(&form.a_bar_plus),
-            b_bar: form.b_bar.into(),
-            c_bar: form.c_bar.into(),
-        }
-    }
-}
-
-impl ClassificationEntry {
-    fn new(verdict: &Classification, (e, f): (RowVector2<f64>, f64)) -> Self {
-        let Classification { scenario, period_two_orbit, minus, plus } = verdict;
-        Self {
-            scenario: scenario.name(),
-            real_eigenvalues_above_one: Sides { minus: minus.above_one, plus: plus.above_one },
-            real_eigenvalues_below_minus_one: Sides { minus: minus.below_minus_one, plus: plus.below_minus_one },
-            fixed_points_exist_for: Sides { minus: minus.exists_for.name(), plus: plus.exists_for.name() },
-            period_two_orbit: *period_two_orbit,
-            stable: Sides { minus: minus.stable, plus: plus.stable },
-            fixed_point_per_unit_period: Sides { minus: minus.fixed_point.into(), plus: plus.fixed_point.into() },
-            determinant_of_identity_minus_a: Sides { minus: minus.determinant, plus: plus.determinant },
-            border: [e[0], e[1], f],
-        }
     }
 }
 

@@ -1,6 +1,8 @@
 //! One document value, several renderers, and one figure value, two renderers. No renderer computes anything but how many
 //! digits to show; [`mod@file`] is how any of it reaches a disk.
 
+pub mod border_collision;
+mod border_collision_text;
 pub mod branch;
 pub mod cam;
 pub mod claims;

@@ -140,7 +140,7 @@ impl RegimesDocument {
                 "regular" => "bounces regularly",
                 "chaotic" => "chaotic",
                 "free" => "never meets the cam",
-                _ => "not settled",
+                _ => "sticks now and then",
             };
             writeln!(page, "  {what:<24}  {}", listed(ranges))?;
         }
@@ -167,7 +167,7 @@ impl MotionEntry {
         match (self.regime, self.revolutions, self.impacts) {
             ("regular", Some(n), Some(1)) => format!("1 impact in {}", turns(n)),
             ("regular", Some(n), Some(m)) => format!("{m} impacts in {}", turns(n)),
-            ("chattering", Some(n), _) => format!("chatters, repeats after {}", turns(n)),
+            ("chattering", ..) => "chatters and sticks".into(),
             ("chaotic", ..) => {
                 format!(
                     "chaotic, growth {:.2}",
@@ -175,6 +175,7 @@ impl MotionEntry {
                 )
             }
             ("on-cam", ..) => "stays on the cam".into(),
+            ("unsettled", ..) => "sticks now and then, without a period".into(),
             (other, ..) => other.into(),
         }
     }

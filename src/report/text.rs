@@ -2,6 +2,7 @@
 
 use std::fmt::{self, Write};
 
+use super::border_collision_text;
 use super::document::{AgreementEntry, PublishedEntry, SideEntry, Sides, Verification};
 use crate::agreement::{shared_decimals, worse};
 
@@ -15,6 +16,7 @@ pub fn render(document: &Verification) -> Result<String, fmt::Error> {
     map(out, document)?;
     agreement(out, document)?;
     bifurcation(out, document)?;
+    border_collision_text::local_map(out, document)?;
     published(out, document)?;
     verdict(out, document)?;
     Ok(page)
@@ -262,7 +264,11 @@ fn bifurcation(out: &mut String, document: &Verification) -> fmt::Result {
             fate(verdict.stable.plus, verdict.fixed_points_exist_for.plus)
         )?;
     }
-    Ok(())
+    if let Some(refusal) = &document.refusal {
+        writeln!(out, "  verdict             none")?;
+        paragraph_at(out, 22, refusal)?;
+    }
+    border_collision_text::conditions(out, document)
 }
 
 fn published(out: &mut String, document: &Verification) -> fmt::Result {

@@ -5,6 +5,7 @@
 
 use std::f64::consts::{PI, TAU};
 
+use super::motion::Known;
 use super::{Machine, Motion};
 use crate::cam::Lift;
 use crate::flight::{Flight, Response, State};
@@ -39,7 +40,8 @@ pub(super) struct Again {
 impl Machine {
     /// The next impact of a motion that has just left the cam and is certain to rise above its top, if that impact is one
     /// turn on to within the last Taylor step, and certainly the first.
-    pub(super) fn again(&self, motion: &Motion, jerk: f64) -> Option<Again> {
+    #[inline(always)]
+    pub(super) fn again(&self, motion: &mut Motion, jerk: f64) -> Option<Again> {
         let Turn { time, response, rises_once } = self.turn;
         let (lift, start, omega) = (motion.lift?, motion.state, self.angular_velocity);
         if !rises_once {
@@ -53,12 +55,17 @@ impl Machine {
         };
         let rate = end.velocity - omega * lift.slope;
         let acceleration = self.flight.acceleration(end);
-        // Halley's step from one turn on; where the gap hardly changes it would be short however far the contact is.
-        let newton = -gap / rate;
-        let bend = 0.5 * newton * (acceleration - omega * omega * lift.curvature) / rate;
-        let step = newton / (1.0 + bend);
+        // Halley's step from one turn on, -(g/g')/(1 - g g''/(2 g'^2)), with both fractions times g'^2; where the gap hardly
+        // changes it would be short however far the contact is.
+        let square = rate * rate;
+        let bend = 0.5 * gap * (acceleration - omega * omega * lift.curvature);
+        let step = -gap * rate / (square - bend);
         let shift = omega * step;
-        if !(rate < 0.0 && bend.abs() <= 0.5 && shift.abs() <= tolerance::LAST_TURN.value) {
+        if !(rate < 0.0
+            && square.is_normal()
+            && bend.abs() <= 0.5 * square
+            && shift.abs() <= tolerance::LAST_TURN.value)
+        {
             return None;
         }
         // It comes from above the top: so long before, it was there,
@@ -70,11 +77,19 @@ impl Machine {
         let shrinks = end.velocity + steepest * before < omega * segment.bounds.slope[0];
         let cam_angle = motion.cam_angle + shift;
         let inside = cam_angle - omega * before >= segment.start && cam_angle < segment.end;
-        (from_top && shrinks && inside).then(|| Again {
+        if !(from_top && shrinks && inside) {
+            return None;
+        }
+        // Near a place where the lift is known, its Taylor sum is as good as it is.
+        let is_near = (cam_angle - motion.known.angle).abs() <= tolerance::LAST_TURN.value;
+        if !(is_near && motion.known.segment == motion.segment) {
+            motion.known = Known { segment: motion.segment, angle: cam_angle, lift: segment.law.lift(cam_angle) };
+        }
+        Some(Again {
             time: time + step,
             cam_angle,
             velocity: end.velocity + step * (acceleration + 0.5 * step * self.flight.jerk(end)),
-            lift: segment.law.lift(cam_angle),
+            lift: motion.known.lift.after(cam_angle - motion.known.angle),
         })
     }
 }

@@ -20,11 +20,12 @@ use std::sync::Arc;
 
 use crate::cam::{Cam, Lift};
 use crate::flight::{Flight, State};
-use crate::impact::rebound;
+use crate::impact::relative_rebound;
 use crate::model::Follower;
 use crate::tolerance;
 use again::Turn;
 pub use event::{Event, EventKind, Observer, SimulateError, Unobserved};
+use motion::Known;
 pub use motion::{Goal, Motion};
 pub use sticking::accumulation;
 use terrain::Terrain;
@@ -116,6 +117,7 @@ impl Machine {
             expected: None,
             settled: false,
             last_impact: f64::NAN,
+            known: Known { segment, angle: cam_angle, lift },
         };
         if gap <= rounding {
             let relative_velocity = state.velocity - self.angular_velocity * lift.slope;
@@ -147,16 +149,14 @@ impl Machine {
 
     /// Puts the follower on the cam, where `lift` holds, with a relative velocity, m/s: sticking where it has none and is
     /// pressed against the cam. Rounding counts as none.
+    #[inline(always)]
     fn leave(&self, motion: &mut Motion, lift: &Lift, relative_velocity: f64) {
         let cam_velocity = self.angular_velocity * lift.slope;
+        let is_none = relative_velocity.abs() <= self.velocity_rounding();
+        let velocity = if is_none { cam_velocity } else { cam_velocity + relative_velocity };
+        motion.state = State { position: lift.value, velocity };
         (motion.gap, motion.lift) = (Some(0.0), Some(*lift));
-        motion.contact = false;
-        if relative_velocity.abs() <= self.velocity_rounding() {
-            motion.state = State { position: lift.value, velocity: cam_velocity };
-            motion.contact = self.lifting(lift) <= 0.0;
-        } else {
-            motion.state = State { position: lift.value, velocity: cam_velocity + relative_velocity };
-        }
+        motion.contact = is_none && self.lifting(lift) <= 0.0;
     }
 
     /// How far rounding may move the gap of a follower at `position`, m.
@@ -233,12 +233,16 @@ impl Machine {
     }
 
     /// One stretch of flight: over the top of the cam, or up to a contact or the end of a segment.
+    #[inline(always)]
     fn fly(&self, motion: &mut Motion, left: f64, observer: &mut impl Observer) -> Result<Step, SimulateError> {
         let omega = self.angular_velocity;
         let top = self.terrain.top;
         let start = motion.state;
         let clears = self.clears(motion, top);
-        if let Some(again) = clears.filter(|_| motion.settled).and_then(|jerk| self.again(motion, jerk)) {
+        if motion.settled
+            && let Some(jerk) = clears
+            && let Some(again) = self.again(motion, jerk)
+        {
             let left = left - omega * again.time;
             if left > 0.0 {
                 observer.flight(&self.flight, start, again.time);
@@ -312,6 +316,7 @@ impl Machine {
 
     /// A follower that has just left the cam and is certain to rise above all of it without another contact, with the bound
     /// of its jerk, m/s^3.
+    #[inline(always)]
     fn clears(&self, motion: &Motion, top: f64) -> Option<f64> {
         let (State { position, velocity }, omega) = (motion.state, self.angular_velocity);
         if motion.gap != Some(0.0) || !(velocity > 0.0) {
@@ -378,6 +383,7 @@ impl Machine {
     }
 
     /// An impact at the motion's angle, where `lift` holds, `left` rad before the end of the run.
+    #[inline(always)]
     fn strike(
         &self,
         motion: &mut Motion,
@@ -387,16 +393,12 @@ impl Machine {
         observer: &mut impl Observer,
     ) -> Step {
         let cam_velocity = self.angular_velocity * lift.slope;
-        let velocity_after = rebound(self.restitution, velocity_before, cam_velocity);
         let angle = motion.cam_angle;
         let moved = (angle - motion.last_impact).abs();
         motion.expected = (moved <= tolerance::REPEATED_IMPACT.value).then_some(angle);
         motion.settled = moved <= 2.0 * tolerance::LAST_TURN.value;
         motion.last_impact = angle;
-        self.leave(motion, lift, self.restitution * (cam_velocity - velocity_before));
-        // What is left of the relative velocity is rounding: report what the follower does.
-        let velocity_after = if motion.state.velocity == cam_velocity { cam_velocity } else { velocity_after };
-        motion.state.velocity = velocity_after;
+        self.leave(motion, lift, relative_rebound(self.restitution, velocity_before, cam_velocity));
         let impact = self.event(motion, EventKind::Impact, velocity_before, cam_velocity);
         // A stick that the impact leads to is part of it, also for an observer that has seen enough: a run goes on from
         // there as if it had not been split.

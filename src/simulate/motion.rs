@@ -26,6 +26,15 @@ pub struct Motion {
     /// Whether the last two impacts were at the same place to within the step that again takes.
     pub(super) settled: bool,
     pub(super) last_impact: f64,
+    pub(super) known: Known,
+}
+
+/// An angle, rad, and a segment's lift there, evaluated and not summed: a settled motion's impacts are close to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Known {
+    pub segment: usize,
+    pub angle: f64,
+    pub lift: Lift,
 }
 
 /// Where a run ends.

@@ -1,9 +1,10 @@
 //! A stretch of flight over one segment of the cam: does it meet the cam, and where first?
 //!
-//! Three shapes of the gap need no search. Two have at most one contact, so that any way of finding it is certain: a gap that
-//! only shrinks (`g' < 0`), and one that is bent downwards (`g'' < 0`). One has none: a gap that grows at first, and whose
-//! cubic minorant is still open at the end. Which shape a window has follows from bounds of the flight's jerk and of the
-//! segment, and from the gap at the start. All others go to [`super::contact`], which marches.
+//! Four shapes of the gap need no search. Two have at most one contact, so that any way of finding it is certain: a gap that
+//! only shrinks (`g' < 0`), and one that is bent downwards (`g'' < 0`). One has at most one where it still shrinks, which is
+//! the first: a gap that is bent upwards (`g'' > 0`). One has none: a gap that grows at first, and whose cubic minorant is
+//! still open at the end. Which shape a window has follows from bounds of the flight's jerk and of the segment, and from the
+//! gap at the start. All others go to [`super::contact`], which marches.
 
 use super::contact::{self, Gap, Outcome};
 use super::{Machine, Motion};
@@ -105,6 +106,48 @@ impl<'a> Window<'a> {
                 return self.only_contact(low.min(reach), reach, self.bent(&now, back), end);
             }
         }
+        // g'' is nowhere less.
+        let least = acceleration - jerk * end - self.omega * self.omega * bounds.curvature[1];
+        if least > 0.0 && now.value > 0.0 { self.hollow(now, end, least) } else { self.march(end) }
+    }
+
+    /// A gap that is bent upwards, by `least`, m/s^2, or more, and open at the start: where it shrinks, it has shrunk since, so
+    /// that what is open there has been open; and its one contact is where it still shrinks. Whatever touches is marched.
+    fn hollow(&self, mut now: Seen, end: f64, least: f64) -> Passage {
+        let mut time = 0.0;
+        // Steps triple the digits.
+        for _ in 0..8 {
+            let left = end - time;
+            // g + g' t + g'' t^2/2 with the least g'' lies below: over what is left it is lowest at the end or where it turns.
+            let lowest = left.min(-now.rate / least);
+            let depth = now.value + lowest * (now.rate + 0.5 * least * lowest);
+            if !(now.rate < 0.0) {
+                break;
+            }
+            if depth > self.machine.gap_rounding(now.state.position) {
+                return self.free(end);
+            }
+            let newton = -now.value / now.rate;
+            let bend = 0.5 * newton * now.curvature / now.rate;
+            // Far from touching, where -g g''/(2 g'^2) is -1/4.
+            if !(bend.abs() <= 0.125) {
+                if now.value < 0.0 {
+                    break;
+                }
+                // The tangent never passes the contact.
+                time += newton;
+            } else {
+                let step = newton / (1.0 + bend);
+                if self.is_small(step, time, &now.lift) && time + step <= end {
+                    return self.met(time, step, &now);
+                }
+                time += step;
+            }
+            if !(0.0 < time && time < end) {
+                break;
+            }
+            now = self.at(time);
+        }
         self.march(end)
     }
 
@@ -130,9 +173,10 @@ impl<'a> Window<'a> {
     fn only_contact(&self, low: f64, reach: f64, first: f64, end: f64) -> Passage {
         let (mut low, mut high, mut high_is_closed) = (low, reach, false);
         let mut time = if low < first && first < reach { first } else { low };
+        const LAST_TURN: f64 = tolerance::LAST_TURN.value;
         // Each halving of the bracket gains a bit.
         for _ in 0..128 {
-            let now = self.at(time);
+            let now = if time == 0.0 { self.at_start() } else { self.at(time) };
             if now.value.is_nan() {
                 return Passage::NotFinite;
             }
@@ -141,7 +185,11 @@ impl<'a> Window<'a> {
             let bend = 0.5 * newton * now.curvature / now.rate;
             // Where the gap hardly changes, Halley's step is short however far the contact is.
             let step = if bend.abs() <= 0.5 { newton / (1.0 + bend) } else { newton };
-            if now.rate < 0.0 && self.is_small(step, time, &now.lift) && time + step <= reach {
+            // At the start no time has passed to compare with; even Newton's step errs only by this bend of it.
+            let is_at_once =
+                time == 0.0 && (self.omega * step).abs() <= LAST_TURN * LAST_TURN && bend.abs() <= LAST_TURN;
+            let is_last = is_at_once || self.is_small(step, time, &now.lift);
+            if now.rate < 0.0 && is_last && time + step <= reach {
                 return self.met(time, step, &now);
             }
             if now.value > 0.0 {
@@ -190,14 +238,7 @@ impl<'a> Window<'a> {
 
     /// The contact `step` after an instant.
     fn met(&self, time: f64, step: f64, now: &Seen) -> Passage {
-        let turn = self.omega * step;
-        let Lift { value, slope, curvature, third } = now.lift;
-        let lift = Lift {
-            value: value + turn * (slope + turn * (0.5 * curvature + turn * third / 6.0)),
-            slope: slope + turn * (curvature + 0.5 * turn * third),
-            curvature: curvature + turn * third,
-            third,
-        };
+        let lift = now.lift.after(self.omega * step);
         let jerk = self.flight.jerk(now.state);
         let velocity = now.state.velocity + step * (self.flight.acceleration(now.state) + 0.5 * step * jerk);
         Passage::Contact { time: time + step, velocity, lift }

@@ -17,6 +17,7 @@ use proptest::strategy::Union;
 /// A machine, where a run of it starts, and what it was made from.
 #[derive(Clone)]
 pub struct Case {
+    #[allow(dead_code)] // read by the tests of orbits only
     pub model: Model,
     pub machine: Machine,
     pub rpm: f64,

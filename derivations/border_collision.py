@@ -1,0 +1,121 @@
+"""What piecewise-linear maps do at a border, in terms of slopes or of trace and determinant.
+
+The map is x -> A x + b mu on either side of a border; L is the side where the border's function is negative, R the other.
+
+    line        x -> a x + mu (L, x < 0),  b x + mu (R, x > 0)
+    plane       (x, y) -> (tau x + y + mu, -delta x), L where x < 0, with tau and delta of the side
+
+Proved: fixed points and the orbit of period two with the conditions for their place and their stability; the stable orbits
+L^(n-1) R of the line, for n up to 7; when the unstable manifold of the fixed point on L comes back on the inside of its stable
+one (Banerjee, Yorke and Grebogi 1998); and, for any continuous map of the plane, that one number decides where both fixed
+points lie.
+"""
+
+import sympy as sp
+
+from proof import Proof, main
+
+a, b, mu, x = sp.symbols("a b mu x")
+tau_L, tau_R, delta_L, delta_R = sp.symbols("tau_L tau_R delta_L delta_R")
+one = sp.eye(2)
+
+
+def side(tau, delta):
+    """The matrix of the plane's normal form."""
+    return sp.Matrix([[tau, 1], [-delta, 0]])
+
+
+def orbit_of_the_line(n):
+    """The points of L^(n-1) R: first the one on R, then those on L, by solving for the one on R."""
+    point = x
+    for letter in [b] + [a] * (n - 1):
+        point = letter * point + mu
+    first = sp.solve(point - x, x)[0]
+    points = [first]
+    for letter in [b] + [a] * (n - 2):
+        points.append(letter * points[-1] + mu)
+    return points
+
+
+def line_proofs():
+    for n in range(2, 8):
+        first, *others = orbit_of_the_line(n)
+        total = sum(a**k for k in range(n))
+        yield Proof(f"L^{n - 1} R: the point on R is mu (1 + a + .. + a^{n - 1})/(1 - a^{n - 1} b)",
+                    first - mu * total / (1 - a ** (n - 1) * b))
+        # The last point on L is the nearest to the border where 0 < a < 1, as the fixed point of L lies beyond it.
+        yield Proof(f"L^{n - 1} R: the last point on L is mu (1 + .. + a^{n - 2} + a^{n - 2} b)/(1 - a^{n - 1} b)",
+                    others[-1] - mu * (sum(a**k for k in range(n - 1)) + a ** (n - 2) * b) / (1 - a ** (n - 1) * b))
+        yield Proof(f"L^{n - 1} R: a times that is mu (b a^{n - 1} - 1 + (1 - a^{n})/(1 - a))/(1 - a^{n - 1} b)",
+                    a * others[-1] - mu * (b * a ** (n - 1) - 1 + (1 - a**n) / (1 - a)) / (1 - a ** (n - 1) * b))
+    # mu = 1, a > 1, b < -1: the least point of the folded interval is the image of the greatest, 1.
+    fixed = 1 / (1 - a)
+    yield Proof("a > 1, mu = 1: b + 1 - 1/(1 - a) = -a b/(a - 1) (1/a - 1/b - 1)",
+                (b + 1 - fixed) - (-a * b / (a - 1)) * (1 / a - 1 / b - 1))
+
+
+def plane_proofs():
+    A_L, A_R = side(tau_L, delta_L), side(tau_R, delta_R)
+    b_vector = sp.Matrix([1, 0])
+    for name, A, tau, delta in (("L", A_L, tau_L, delta_L), ("R", A_R, tau_R, delta_R)):
+        fixed = (one - A).inv() * b_vector
+        yield Proof(f"{name}: the fixed point is at x = mu/(1 - tau + delta)", fixed[0] - 1 / (1 - tau + delta))
+        yield Proof(f"{name}: det(I - A) = 1 - tau + delta and det(I + A) = 1 + tau + delta",
+                    [(one - A).det() - (1 - tau + delta), (one + A).det() - (1 + tau + delta)])
+    # L first: the point on L is the fixed point of A_R A_L, the point on R that of A_L A_R.
+    on_L = (one - A_R * A_L).inv() * (A_R + one) * b_vector
+    on_R = (one - A_L * A_R).inv() * (A_L + one) * b_vector
+    Delta = (1 + delta_L) * (1 + delta_R) - tau_L * tau_R
+    yield Proof("LR: det(I - A_L A_R) = (1 + delta_L)(1 + delta_R) - tau_L tau_R", (one - A_L * A_R).det() - Delta)
+    yield Proof("LR: the point on L is at x = mu (1 + delta_R + tau_R)/det(I - A_L A_R)", on_L[0] - (1 + delta_R + tau_R) / Delta)
+    yield Proof("LR: the point on R is at x = mu (1 + delta_L + tau_L)/det(I - A_L A_R)", on_R[0] - (1 + delta_L + tau_L) / Delta)
+    yield Proof("LR: det(I + A_L A_R) = (1 - delta_L)(1 - delta_R) + tau_L tau_R",
+                (one + A_L * A_R).det() - ((1 - delta_L) * (1 - delta_R) + tau_L * tau_R))
+
+
+def homoclinic_proofs():
+    """mu = 1, tau_L > 1 + delta_L, tau_R < -(1 + delta_R): with the eigenvalues l1 > 1 > l2 > 0 of A_L."""
+    l1, l2, s, t = sp.symbols("l1 l2 s t")
+    of_L = {tau_L: l1 + l2, delta_L: l1 * l2}
+    A_L, A_R = side(tau_L, delta_L).subs(of_L), side(tau_R, delta_R)
+    b_vector = sp.Matrix([1, 0])
+    saddle = (one - A_L).inv() * b_vector
+    unstable, stable = sp.Matrix([1, -l2]), sp.Matrix([1, -l1])
+    yield Proof("A_L (1, -l2) = l1 (1, -l2) and A_L (1, -l1) = l2 (1, -l1)",
+                [A_L * unstable - l1 * unstable, A_L * stable - l2 * stable])
+    on_border = saddle - unstable * saddle[0]
+    first = A_L * on_border + b_vector
+    yield Proof("the unstable manifold of the saddle on L folds at (1/(1 - l2), 0)", first - sp.Matrix([1 / (1 - l2), 0]))
+    second = A_R * first + b_vector
+    # Above the stable manifold y = y_L - l1 (x - x_L), times a positive factor, is phi.
+    above = second[1] - (saddle[1] - l1 * (second[0] - saddle[0]))
+    phi = l1 * (l1 - delta_L) + (l1 - 1) * (l1 * tau_R - delta_R)
+    yield Proof("the image of the fold lies above the stable manifold just where phi > 0",
+                above * (1 - l2) * (l1 - 1) - phi.subs(of_L))
+    printed = delta_R - (tau_R + delta_L + delta_R - (1 + tau_R) * l1) * l1
+    yield Proof("phi is delta_R - (tau_R + delta_L + delta_R - (1 + tau_R) l1) l1, as Glendinning and Simpson (2021) write it",
+                phi - printed)
+
+
+def border_proofs():
+    A = sp.Matrix(2, 2, sp.symbols("a11 a12 a21 a22"))
+    B = sp.Matrix(sp.symbols("b1 b2"))
+    e, f = sp.Matrix([sp.symbols("e1 e2")]), sp.Symbol("f")
+    E = sp.Matrix(sp.symbols("E1 E2"))
+    beta = lambda A, B: (e * (one - A).adjugate() * B)[0] + f * (one - A).det()  # noqa: E731
+    other = (A + E * e, B + E * f)
+    yield Proof("e adj(I - A) B + f det(I - A) is the same on both sides of a continuous map", beta(A, B) - beta(*other))
+    fixed = (one - A).inv() * B
+    yield Proof("the fixed point lies at e x + f mu = mu (e adj(I - A) B + f det(I - A))/det(I - A)",
+                (e * fixed)[0] + f - beta(A, B) / (one - A).det())
+
+
+def proofs():
+    yield from line_proofs()
+    yield from plane_proofs()
+    yield from homoclinic_proofs()
+    yield from border_proofs()
+
+
+if __name__ == "__main__":
+    main("border collision", proofs)

@@ -1,0 +1,168 @@
+//! The conditions under which a border collision is one of the generic kinds, each with how far it is from failing.
+//!
+//! A distance is without units and the same in any units of position, velocity and time: a quantity over the sum of the sizes
+//! of its terms, or how far an eigenvalue's modulus is from 1. It is 0 where the condition fails. Continuity alone must be met
+//! and not missed: its distance is the part of what rounding is allowed that is left, 1 or less.
+
+use nalgebra::{Matrix2, RowVector2};
+
+use super::local_map::{LocalMap, characteristic};
+use super::word::Word;
+use crate::corner::SideMap;
+use crate::tolerance::{self, Tolerance};
+
+/// What rests on a condition.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Decides {
+    /// The classification: without it there is none.
+    Classification,
+    /// Whether fixed points are stable; where they are stands without it.
+    Stability,
+    /// The normal form alone.
+    NormalForm,
+}
+
+impl Decides {
+    /// Its name in documents.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Classification => "classification",
+            Self::Stability => "stability",
+            Self::NormalForm => "normal-form",
+        }
+    }
+}
+
+/// One condition.
+#[derive(Clone, Copy, Debug)]
+pub struct Condition {
+    /// What must not vanish, as a formula; for continuity what must.
+    pub name: &'static str,
+    /// What its failing would mean.
+    pub meaning: &'static str,
+    /// The quantity, in the map's own units.
+    pub value: f64,
+    /// How far from failing, without units.
+    pub distance: f64,
+    /// What the distance must exceed.
+    pub least: Tolerance,
+    /// What rests on it.
+    pub decides: Decides,
+}
+
+impl Condition {
+    /// Whether it holds; not where the distance is not a number.
+    pub fn holds(&self) -> bool {
+        self.distance > self.least.value
+    }
+}
+
+/// Every condition on the map of the plane `map`, those of the classification first.
+pub fn conditions(map: &LocalMap) -> Vec<Condition> {
+    let (minus, plus) = (&map.minus, &map.plus);
+    let one =
+        |name, meaning, (value, distance), least, decides| Condition { name, meaning, value, distance, least, decides };
+    let over_terms = |(value, terms): (f64, f64)| (value, value.abs() / terms);
+    let determinant = |a: &Matrix2<f64>, z| over_terms(characteristic(a, z));
+    let zero = tolerance::DEGENERATE;
+    let circle = tolerance::UNIT_EIGENVALUE;
+    let (verdict, stability, form) = (Decides::Classification, Decides::Stability, Decides::NormalForm);
+    let neutral = "a multiplier on the unit circle: the linear part does not decide stability";
+    let vanishing = "a multiplier 1: the fixed point is not alone, or not there";
+    let flipping = "a multiplier -1: the smooth map flips at the same speed";
+    let mut all = vec![
+        one("A+ - A-", "both sides are one map: there is no border", jump(map), zero, verdict),
+        one(
+            "(A+ - A-, B+ - B-) - E (e, f) = 0",
+            "the sides do not meet on the border: the map is not continuous",
+            continuity(map),
+            zero,
+            verdict,
+        ),
+        one("det(I - A-)", vanishing, determinant(&minus.a, 1.0), zero, verdict),
+        one("det(I - A+)", vanishing, determinant(&plus.a, 1.0), zero, verdict),
+        one("det(I + A-)", flipping, determinant(&minus.a, -1.0), zero, verdict),
+        one("det(I + A+)", flipping, determinant(&plus.a, -1.0), zero, verdict),
+        one(
+            "e adj(I - A-) B- + f det(I - A-)",
+            "the fixed points do not cross the border as the speed changes",
+            crossing(map),
+            zero,
+            verdict,
+        ),
+    ];
+    if let Some(both) = Word::read("LR").map(|word| map.along(&word).a) {
+        let pair = determinant(&both, 1.0);
+        all.push(one("det(I - A+ A-)", "the orbit of period two is not alone, or not there", pair, zero, verdict));
+    }
+    all.push(one("|eigenvalue| - 1 of A-", neutral, modulus(minus), circle, stability));
+    all.push(one("|eigenvalue| - 1 of A+", neutral, modulus(plus), circle, stability));
+    let e = map.border.0;
+    all.push(one("det [e; e A-]", "the companion form does not exist", seen(e, e * minus.a), zero, form));
+    let c1 = (plus.a[(0, 0)] - minus.a[(0, 0)], plus.a[(0, 0)].abs() + minus.a[(0, 0)].abs());
+    all.push(one("first entry of C", "the position does not shift the border away", over_terms(c1), zero, form));
+    all
+}
+
+/// The largest entry of `A+ - A-` over the sizes that it is the difference of.
+fn jump(map: &LocalMap) -> (f64, f64) {
+    let (minus, plus) = (map.minus.a, map.plus.a);
+    let relative = |index: usize| {
+        let terms = minus[index].abs() + plus[index].abs();
+        let jump = plus[index] - minus[index];
+        (jump, if terms > 0.0 { jump.abs() / terms } else { 0.0 })
+    };
+    (0..4).map(relative).fold((0.0, 0.0), |most, next| if next.1 <= most.1 { most } else { next })
+}
+
+/// The largest minor of `[A+ - A-, B+ - B-]` and `[e, f]` over its terms, 0 where each row is a multiple of `[e, f]`; and the
+/// part of what is allowed that it leaves.
+fn continuity(map: &LocalMap) -> (f64, f64) {
+    let (e, f) = map.border;
+    let border = [e[0], e[1], f];
+    let mut off = 0.0_f64;
+    for row in 0..2 {
+        let both = |side: &SideMap| [side.a[(row, 0)], side.a[(row, 1)], side.b[row]];
+        let (minus, plus) = (both(&map.minus), both(&map.plus));
+        for (j, k) in [(0, 1), (0, 2), (1, 2)] {
+            let jump = |index: usize| plus[index] - minus[index];
+            let size = |index: usize| plus[index].abs() + minus[index].abs();
+            let terms = size(j) * border[k].abs() + size(k) * border[j].abs();
+            let minor = (jump(j) * border[k] - jump(k) * border[j]).abs();
+            let relative = if terms > 0.0 { minor / terms } else { minor };
+            off = if relative.is_nan() { f64::NAN } else { off.max(relative) };
+        }
+    }
+    (off, 1.0 - off / tolerance::CONTINUOUS.value)
+}
+
+/// The eigenvalue nearest to the unit circle.
+fn modulus(side: &SideMap) -> (f64, f64) {
+    let off = side.eigenvalues().map(|value| value.re.hypot(value.im) - 1.0);
+    let nearest = if off[0].abs() <= off[1].abs() { off[0] } else { off[1] };
+    (nearest, nearest.abs())
+}
+
+/// `e adj(I - A) B + f det(I - A)`, one number for both sides: over `det(I - A)` it is how far the fixed point of a side is
+/// from the border at mu = 1.
+fn crossing(map: &LocalMap) -> (f64, f64) {
+    let side = &map.minus;
+    let whole = Matrix2::identity() - side.a;
+    let (e, f) = map.border;
+    // adj [[a, b], [c, d]] = [[d, -b], [-c, a]]
+    let terms = [
+        e[0] * whole[(1, 1)] * side.b[0],
+        -e[0] * whole[(0, 1)] * side.b[1],
+        -e[1] * whole[(1, 0)] * side.b[0],
+        e[1] * whole[(0, 0)] * side.b[1],
+        f * whole.determinant(),
+    ];
+    let value = terms.iter().sum::<f64>();
+    (value, value.abs() / terms.iter().map(|term| term.abs()).sum::<f64>())
+}
+
+/// The determinant of two rows, over its terms.
+fn seen(first: RowVector2<f64>, second: RowVector2<f64>) -> (f64, f64) {
+    let terms = [first[0] * second[1], -first[1] * second[0]];
+    (terms[0] + terms[1], (terms[0] + terms[1]).abs() / (terms[0].abs() + terms[1].abs()))
+}

@@ -1,0 +1,140 @@
+//! The local map itself: `x' = A x + B mu` with the matrices of the side that x is on, and its periodic orbits.
+//!
+//! The map looks the same at every scale: for k > 0, x moves at mu as k x moves at k mu. So mu = 1, -1 and 0 are all there is.
+//! A map of the line is the case where the second coordinate stays 0.
+
+use nalgebra::{Matrix2, RowVector2, Vector2};
+
+use super::word::Word;
+use crate::cam::Side;
+use crate::corner::map::{CornerMap, Eigenvalue, SideMap};
+use crate::tolerance;
+
+/// A piecewise-linear map of the plane with one border.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LocalMap {
+    /// Where `e x + f mu < 0`; L in words.
+    pub minus: SideMap,
+    /// Where `e x + f mu >= 0`; R in words.
+    pub plus: SideMap,
+    /// `(e, f)`.
+    pub border: (RowVector2<f64>, f64),
+}
+
+/// An orbit that repeats a word, wherever its points lie.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PeriodicOrbit {
+    /// The sides it is to visit.
+    pub word: Word,
+    /// Its points, one for each letter.
+    pub points: Vec<Vector2<f64>>,
+    /// The eigenvalues of the product of the word's matrices.
+    pub multipliers: [Eigenvalue; 2],
+    /// The least of its points' distances from the border over the largest term of any: positive where all lie on the side
+    /// of their letter, negative where one does not.
+    pub margin: f64,
+}
+
+impl PeriodicOrbit {
+    /// Whether every point lies on the side of its letter, and not on the border to rounding.
+    pub fn admissible(&self) -> bool {
+        self.margin > tolerance::DEGENERATE.value
+    }
+
+    /// Whether both multipliers lie inside the unit circle.
+    pub fn stable(&self) -> bool {
+        self.multipliers.iter().all(|value| value.re.hypot(value.im) < 1.0)
+    }
+}
+
+impl LocalMap {
+    /// The local map of a corner impact, with dT for mu; `border` is `(e, f)` of [`crate::corner::border`].
+    pub fn new(map: &CornerMap, border: (RowVector2<f64>, f64)) -> Self {
+        Self { minus: map.minus, plus: map.plus, border }
+    }
+
+    /// The normal form `(x, y) -> (trace x + y + mu, -determinant x)`, minus where x < 0.
+    pub fn normal_form(traces: [f64; 2], determinants: [f64; 2]) -> Self {
+        let side = |index: usize| SideMap {
+            a: Matrix2::new(traces[index], 1.0, -determinants[index], 0.0),
+            b: Vector2::new(1.0, 0.0),
+        };
+        Self { minus: side(0), plus: side(1), border: (RowVector2::new(1.0, 0.0), 0.0) }
+    }
+
+    /// The map of the line `x -> slope x + mu`, minus where x < 0.
+    pub fn of_the_line(slopes: [f64; 2]) -> Self {
+        let side = |index: usize| SideMap { a: Matrix2::new(slopes[index], 0.0, 0.0, 0.0), b: Vector2::new(1.0, 0.0) };
+        Self { minus: side(0), plus: side(1), border: (RowVector2::new(1.0, 0.0), 0.0) }
+    }
+
+    /// The map of one side.
+    pub fn of(&self, side: Side) -> &SideMap {
+        match side {
+            Side::Minus => &self.minus,
+            Side::Plus => &self.plus,
+        }
+    }
+
+    /// `e x + f mu`, and the sum of its terms' sizes.
+    pub fn height(&self, x: Vector2<f64>, mu: f64) -> (f64, f64) {
+        let (e, f) = self.border;
+        let terms = [e[0] * x[0], e[1] * x[1], f * mu];
+        (terms.iter().sum(), terms.iter().map(|term| term.abs()).sum())
+    }
+
+    /// The side that x is on.
+    pub fn side(&self, x: Vector2<f64>, mu: f64) -> Side {
+        if self.height(x, mu).0 < 0.0 { Side::Minus } else { Side::Plus }
+    }
+
+    /// One step.
+    pub fn apply(&self, x: Vector2<f64>, mu: f64) -> Vector2<f64> {
+        let side = self.of(self.side(x, mu));
+        side.a * x + side.b * mu
+    }
+
+    /// `x -> A_W x + B_W mu`: the maps of a word's letters one after the other, wherever x is.
+    pub fn along(&self, word: &Word) -> SideMap {
+        let start = SideMap { a: Matrix2::identity(), b: Vector2::zeros() };
+        word.sides().iter().fold(start, |sum, side| {
+            let SideMap { a, b } = self.of(*side);
+            SideMap { a: a * sum.a, b: a * sum.b + b }
+        })
+    }
+
+    /// The orbit that repeats `word`; `None` where `det(I - A_W)` is zero to rounding, so that there is none or too many.
+    pub fn orbit(&self, word: &Word, mu: f64) -> Option<PeriodicOrbit> {
+        // Each point from its own rotation: carried from one to the next it would lose what the word expands.
+        let point = |by: usize| {
+            let round = self.along(&word.turned(by));
+            let (value, terms) = characteristic(&round.a, 1.0);
+            if !(value.abs() > tolerance::DEGENERATE.value * terms) {
+                return None;
+            }
+            // x = (I - A_W)^{-1} B_W mu
+            (Matrix2::identity() - round.a).try_inverse().map(|inverse| inverse * round.b * mu)
+        };
+        let points: Vec<_> = (0..word.sides().len()).map(point).collect::<Option<_>>()?;
+        let inward = |(x, side): (&Vector2<f64>, &Side)| {
+            let height = self.height(*x, mu).0;
+            if *side == Side::Minus { -height } else { height }
+        };
+        let least = points.iter().zip(word.sides()).map(inward).fold(f64::INFINITY, f64::min);
+        let terms = points.iter().map(|x| self.height(*x, mu).1).fold(0.0, f64::max);
+        let margin = if terms > 0.0 { least / terms } else { 0.0 };
+        Some(PeriodicOrbit { word: word.clone(), points, multipliers: self.along(word).eigenvalues(), margin })
+    }
+
+    /// Every admissible periodic orbit with a word of `longest` letters or fewer, the short ones first.
+    pub fn admissible_orbits(&self, mu: f64, longest: usize) -> Vec<PeriodicOrbit> {
+        let words = Word::primitive(longest);
+        words.iter().filter_map(|word| self.orbit(word, mu)).filter(PeriodicOrbit::admissible).collect()
+    }
+}
+
+/// `det(z I - A) = z^2 - z tr A + det A` for z = 1 or -1, and the sum of its terms' sizes.
+pub fn characteristic(a: &Matrix2<f64>, z: f64) -> (f64, f64) {
+    let (trace, determinant) = (a.trace(), a.determinant());
+    (1.0 - z * trace + determinant, 1.0 + trace.abs() + determinant.abs())
+}

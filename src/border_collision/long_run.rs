@@ -1,0 +1,203 @@
+//! Where motions of the local map end: on a periodic orbit, in chaos, or nowhere.
+//!
+//! Periodic orbits and escapes are not guessed from sizes. Once the sides repeat a word, the rest of the motion is known:
+//! it tends to the word's orbit where that is stable and on its own sides, and follows the word for ever where a sufficient
+//! condition says so. What repeats no word is measured: the largest Lyapunov exponent and how well its mean is known.
+
+use nalgebra::{Matrix2, Vector2};
+
+use super::local_map::{LocalMap, PeriodicOrbit};
+use super::word::Word;
+use crate::cam::Side;
+use crate::corner::map::Eigenvalue;
+use crate::tolerance;
+
+/// Where a motion ends.
+#[derive(Clone, Debug, PartialEq)]
+pub enum End {
+    /// On a stable periodic orbit; a fixed point for a word of one letter.
+    Periodic(PeriodicOrbit),
+    /// In a bounded motion that parts neighbours.
+    Chaotic(Exponent),
+    /// In a bounded motion whose exponent is not above 0 by enough: on a closed curve, or not settled yet.
+    Undecided(Exponent),
+    /// At the corner impact itself: at mu = 0 the motion shrinks to nothing.
+    Corner,
+    /// Nowhere: it grows without bound.
+    Escapes(Escape),
+}
+
+/// The largest Lyapunov exponent per step, a natural logarithm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Exponent {
+    /// The mean over the run after its transient.
+    pub value: f64,
+    /// The standard error of that mean, from the means over equal parts of the run.
+    pub error: f64,
+    /// Steps that the mean is over.
+    pub steps: usize,
+}
+
+/// Why a motion is taken to escape.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Escape {
+    /// It follows a word for ever and grows by a factor each time.
+    Follows {
+        /// The word.
+        word: Word,
+        /// The multiplier above 1.
+        multiplier: f64,
+    },
+    /// It has grown past `1/tolerance::ESCAPED` times its scale.
+    Grown,
+}
+
+/// Steps after which a motion is looked at, and that an exponent's mean is taken over.
+const PART: usize = 1024;
+/// Parts that are no longer looked at for a mean: the transient.
+const TRANSIENT: usize = 8;
+/// Parts of a run that repeats no word.
+const PARTS: usize = 40;
+/// How often a word must have been repeated to be one.
+const REPEATED: usize = 8;
+
+impl LocalMap {
+    /// What each coordinate grows to in the first steps from 0: its natural unit at mu = 1, positive or 0 where x is never
+    /// moved along it.
+    pub fn scales(&self) -> Vector2<f64> {
+        let mut scales = Vector2::<f64>::zeros();
+        for mu in [1.0, -1.0] {
+            let mut x = Vector2::zeros();
+            for _ in 0..8 {
+                x = self.apply(x, mu);
+                scales = scales.sup(&x.abs());
+            }
+        }
+        scales
+    }
+
+    /// Where the motion from `start` ends.
+    pub fn end(&self, start: Vector2<f64>, mu: f64) -> End {
+        let scales = self.scales();
+        let size = |x: Vector2<f64>| {
+            let over = |index: usize| if scales[index] > 0.0 { (x[index] / scales[index]).abs() } else { 0.0 };
+            over(0).max(over(1))
+        };
+        let escaped = |x: Vector2<f64>| !(size(x) * tolerance::ESCAPED.value < 1.0);
+        let mut x = start;
+        let mut tangent = Tangent::new(scales);
+        let mut means = Vec::with_capacity(PARTS);
+        let mut sides = Vec::with_capacity(PART);
+        for part in 0..PARTS {
+            sides.clear();
+            for _ in 0..PART {
+                let side = self.side(x, mu);
+                sides.push(side);
+                let map = self.of(side);
+                x = map.a * x + map.b * mu;
+                tangent.carry(&map.a);
+                if escaped(x) {
+                    return End::Escapes(self.escape(&sides, x, mu).unwrap_or(Escape::Grown));
+                }
+            }
+            if mu == 0.0 && size(x) < tolerance::ESCAPED.value {
+                return End::Corner;
+            }
+            if let Some(escape) = self.escape(&sides, x, mu) {
+                return End::Escapes(escape);
+            }
+            // At mu = 0 the only orbit is the corner impact itself, which is on no side.
+            let word = if mu == 0.0 { None } else { Word::repeated(&sides, REPEATED) };
+            if let Some(orbit) = word.and_then(|word| self.orbit(&word, mu)) {
+                if orbit.admissible() && orbit.stable() {
+                    let (word, _) = orbit.word.least_rotation();
+                    return self.orbit(&word, mu).map_or(End::Periodic(orbit), End::Periodic);
+                }
+                // Rounding can put a motion on an unstable orbit and keep it there.
+                x += scales * tolerance::KICK.value;
+            }
+            let mean = tangent.take_growth() / PART as f64;
+            if part >= TRANSIENT {
+                means.push(mean);
+            }
+        }
+        let exponent = Exponent::of(&means);
+        let known = exponent.error <= tolerance::CHAOTIC_EXPONENT.value * exponent.value;
+        if known && exponent.value > 0.0 { End::Chaotic(exponent) } else { End::Undecided(exponent) }
+    }
+
+    /// The factor by which a motion at `x` grows with each repetition of `word`, if it provably repeats it for ever.
+    ///
+    /// After m repetitions a point is `c + l1^m d1 + l2^m d2` with the word's fixed point c and the parts of x - c along the
+    /// eigenvectors. With l1 > 1 and l1 > |l2| it stays on the side s = -1, 1 for every m where
+    /// `s e d1 > |e d2| + max(0, -s (e c + f mu))`, which is asked of each rotation of the word.
+    pub fn follows_for_ever(&self, word: &Word, x: Vector2<f64>, mu: f64) -> Option<f64> {
+        let (mut point, mut growth) = (x, None);
+        for (by, side) in word.sides().iter().enumerate() {
+            let round = self.along(&word.turned(by));
+            let [Eigenvalue { re: l1, im }, Eigenvalue { re: l2, .. }] = round.eigenvalues();
+            if !(im == 0.0 && l1 > 1.0 + tolerance::UNIT_EIGENVALUE.value && l1 > l2.abs()) {
+                return None;
+            }
+            let center = (Matrix2::identity() - round.a).try_inverse()? * round.b * mu;
+            // d1 = (A_W - l2 I)/(l1 - l2) d
+            let deviation = point - center;
+            let first = (round.a * deviation - deviation * l2) / (l1 - l2);
+            let (e, sign) = (self.border.0, if *side == Side::Minus { -1.0 } else { 1.0 });
+            let against = (-sign * self.height(center, mu).0).max(0.0);
+            if !(sign * (e * first)[0] > (e * (deviation - first))[0].abs() + against) {
+                return None;
+            }
+            growth = Some(l1);
+            let map = self.of(*side);
+            point = map.a * point + map.b * mu;
+        }
+        growth
+    }
+
+    /// The escape of a motion that has visited `sides` and is at `x` now, if it provably goes on like that.
+    fn escape(&self, sides: &[Side], x: Vector2<f64>, mu: f64) -> Option<Escape> {
+        // What follows is proved, so that a word seen twice is worth trying.
+        let word = Word::repeated(&sides[sides.len() / 2..], 2)?;
+        let multiplier = self.follows_for_ever(&word, x, mu)?;
+        Some(Escape::Follows { word: word.least_rotation().0, multiplier })
+    }
+}
+
+impl Exponent {
+    /// The mean of the means over equal parts, and its standard error.
+    fn of(means: &[f64]) -> Self {
+        let count = means.len() as f64;
+        let value = means.iter().sum::<f64>() / count;
+        let variance = means.iter().map(|mean| (mean - value).powi(2)).sum::<f64>() / (count - 1.0);
+        Self { value, error: (variance / count).sqrt(), steps: means.len() * PART }
+    }
+}
+
+/// A small deviation carried along, in natural units.
+struct Tangent {
+    scales: Vector2<f64>,
+    direction: Vector2<f64>,
+    growth: f64,
+}
+
+impl Tangent {
+    fn new(scales: Vector2<f64>) -> Self {
+        let scales = scales.map(|scale| if scale > 0.0 { scale } else { 1.0 });
+        // Any direction has a part along the one that grows most.
+        Self { scales, direction: Vector2::new(0.8, 0.6), growth: 0.0 }
+    }
+
+    fn carry(&mut self, a: &Matrix2<f64>) {
+        let carried = (a * self.direction.component_mul(&self.scales)).component_div(&self.scales);
+        let stretch = carried.norm();
+        self.growth += stretch.ln();
+        if stretch > 0.0 {
+            self.direction = carried / stretch;
+        }
+    }
+
+    fn take_growth(&mut self) -> f64 {
+        std::mem::take(&mut self.growth)
+    }
+}

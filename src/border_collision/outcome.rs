@@ -1,0 +1,148 @@
+//! What the local map predicts next to the corner impact, for mu = 1, -1 and 0.
+
+use nalgebra::Vector2;
+
+use super::local_map::{LocalMap, PeriodicOrbit};
+use super::long_run::{End, Escape};
+use super::word::Word;
+use crate::cam::Side;
+use crate::tolerance;
+
+/// The longest word that periodic orbits are listed for.
+pub const LONGEST_WORD: usize = 8;
+
+/// The local map's motions for one sign of mu.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LocalOutcome {
+    /// 1, -1 or 0; everything scales with its size.
+    pub mu: f64,
+    /// The fixed points of both sides, admissible or not; none where mu is 0.
+    pub fixed_points: Vec<PeriodicOrbit>,
+    /// The orbit LR, admissible or not; none where mu is 0 or where it is not alone.
+    pub period_two: Option<PeriodicOrbit>,
+    /// Every admissible periodic orbit of [`LONGEST_WORD`] steps or fewer, fixed points included.
+    pub orbits: Vec<PeriodicOrbit>,
+    /// Where motions end, each kind once; first the one that x = 0 has, the state of the corner impact.
+    pub fates: Vec<Fate>,
+}
+
+/// Where some of the starts end.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fate {
+    /// Where.
+    pub end: End,
+    /// How many starts end there, of [`LocalOutcome::starts`].
+    pub starts: usize,
+}
+
+impl LocalOutcome {
+    /// How many starts were run.
+    pub fn starts(&self) -> usize {
+        self.fates.iter().map(|fate| fate.starts).sum()
+    }
+}
+
+impl LocalMap {
+    /// Simulates the map for `mu` from x = 0 and from circles around it, a tenth, one and ten times its size: its natural
+    /// units, or how far its fixed points are where that is further.
+    pub fn outcome(&self, mu: f64) -> LocalOutcome {
+        const DIRECTIONS: u32 = 8;
+        const CIRCLES: [f64; 3] = [0.1, 1.0, 10.0];
+        let [left, right, two] = ["L", "R", "LR"].map(Word::read);
+        let orbit = |word: &Word| if mu == 0.0 { None } else { self.orbit(word, mu) };
+        let fixed_points: Vec<_> = [left, right].iter().flatten().filter_map(orbit).collect();
+        let there = fixed_points.iter().filter(|orbit| orbit.admissible()).flat_map(|orbit| orbit.points.clone());
+        let scales = there.fold(self.scales(), |scales, point| scales.sup(&point.abs()));
+        let around = CIRCLES.iter().flat_map(|radius| {
+            (0..DIRECTIONS).map(move |index| {
+                // Off the axes, which can be invariant.
+                let angle = std::f64::consts::TAU * (f64::from(index) + 0.3) / f64::from(DIRECTIONS);
+                Vector2::new(angle.cos() * scales[0], angle.sin() * scales[1]) * *radius
+            })
+        });
+        let center = (mu != 0.0).then(Vector2::zeros);
+        let mut fates: Vec<Fate> = Vec::new();
+        for start in center.into_iter().chain(around) {
+            let end = self.end(start, mu);
+            match fates.iter_mut().find(|fate| fate.end.is_like(&end)) {
+                Some(fate) => fate.starts += 1,
+                None => fates.push(Fate { end, starts: 1 }),
+            }
+        }
+        LocalOutcome {
+            mu,
+            fixed_points,
+            period_two: two.as_ref().and_then(orbit),
+            orbits: if mu == 0.0 { Vec::new() } else { self.admissible_orbits(mu, LONGEST_WORD) },
+            fates,
+        }
+    }
+}
+
+impl End {
+    /// Its name in documents.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Periodic(orbit) if orbit.word.sides().len() == 1 => "fixed-point",
+            Self::Periodic(_) => "periodic",
+            Self::Chaotic(_) => "chaotic",
+            Self::Undecided(_) => "undecided",
+            Self::Corner => "corner",
+            Self::Escapes(_) => "escapes",
+        }
+    }
+
+    /// What it was decided by.
+    pub fn basis(&self) -> String {
+        match self {
+            Self::Periodic(orbit) => {
+                let largest = orbit.multipliers.iter().map(|value| value.re.hypot(value.im)).fold(0.0, f64::max);
+                format!(
+                    "the motion repeats {}, whose orbit lies on its own sides and has multipliers up to {largest:.6}",
+                    orbit.word
+                )
+            }
+            Self::Chaotic(exponent) => format!(
+                "bounded and without a repeated word over the run; its Lyapunov exponent, a mean over {} steps, is above 0 by \
+                 {:.0} standard errors or more",
+                exponent.steps,
+                1.0 / tolerance::CHAOTIC_EXPONENT.value
+            ),
+            Self::Undecided(exponent) => format!(
+                "bounded and without a stable word over the run; its Lyapunov exponent, a mean over {} steps, is not known to \
+                 be above 0",
+                exponent.steps
+            ),
+            Self::Corner => "the motion shrinks below any size".into(),
+            Self::Escapes(Escape::Follows { word, multiplier }) => {
+                format!("the motion follows {word} for ever and grows by {multiplier:.6} each time")
+            }
+            Self::Escapes(Escape::Grown) => {
+                format!("the motion grew past {:.0e} times its scale", 1.0 / tolerance::ESCAPED.value)
+            }
+        }
+    }
+
+    /// Whether both are one kind of end, at one place as far as that can be told.
+    fn is_like(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Periodic(one), Self::Periodic(other)) => one.word == other.word,
+            (Self::Chaotic(one), Self::Chaotic(other)) => {
+                let apart = (one.value - other.value).abs() * tolerance::CHAOTIC_EXPONENT.value;
+                apart <= one.error.hypot(other.error).max(tolerance::DEGENERATE.value)
+            }
+            _ => self.name() == other.name(),
+        }
+    }
+
+    /// The side of a fixed point.
+    pub fn fixed_on(&self) -> Option<Side> {
+        match self {
+            Self::Periodic(orbit) => match orbit.word.sides() {
+                [side] => Some(*side),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,198 @@
+//! How far from the corner impact the local map holds: measured against the simulated machine on its own cam.
+//!
+//! The real map has terms of second order that the local one leaves out. For a period T* + dT the machine is run, and its
+//! displacement from x* is compared with the one that A and B predict; |dT| grows from almost nothing until they differ by a
+//! tenth of the prediction. Velocities count over the cam's angle, `|(q, v/omega)|`.
+
+use std::f64::consts::TAU;
+
+use nalgebra::Vector2;
+
+use super::local_map::LocalMap;
+use super::word::Word;
+use crate::cam::{Cam, Side};
+use crate::corner::CornerImpact;
+use crate::flight::State;
+use crate::model::Model;
+use crate::section::StroboscopicMap;
+use crate::simulate::{Event, EventKind};
+use crate::tolerance;
+
+/// What is compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Compared {
+    /// The image of x* after one revolution, `B dT`.
+    Revolution,
+    /// The fixed point of a side, `(I - A)^{-1} B dT`.
+    FixedPoint(Side),
+}
+
+impl Compared {
+    /// Its name in documents.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Revolution => "one-revolution",
+            Self::FixedPoint(Side::Minus) => "fixed-point-minus",
+            Self::FixedPoint(Side::Plus) => "fixed-point-plus",
+        }
+    }
+}
+
+/// What ends the range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ends {
+    /// The two differ by a tenth.
+    Tenth,
+    /// The real motion is not there any more, or has not one impact.
+    OtherMotion,
+    /// Nothing, up to half and twice the speed.
+    Nothing,
+}
+
+impl Ends {
+    /// Its name in documents.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Tenth => "tenth",
+            Self::OtherMotion => "other-motion",
+            Self::Nothing => "nothing",
+        }
+    }
+}
+
+/// How far one prediction holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Range {
+    /// Of what.
+    pub compared: Compared,
+    /// Of dT: -1 for speeds above that of the corner impact, 1 for those below.
+    pub sign: f64,
+    /// The last change of the period for which it holds, s, with its sign; 0 where it never does.
+    pub period_change: f64,
+    /// The speed there, rpm.
+    pub speed_rpm: f64,
+    /// The relative difference there; none where it holds nowhere.
+    pub difference: Option<f64>,
+    /// What ends it.
+    pub ends: Ends,
+}
+
+/// A real displacement and the relative difference from the predicted one.
+type Difference = Option<(Vector2<f64>, f64)>;
+
+/// The range of each prediction that there is, on either side of the corner-impact speed, faster speeds first.
+pub fn ranges(model: &Model, cam: &Cam, at: &CornerImpact, map: &LocalMap) -> Vec<Range> {
+    let machine = Real { at, map: at.map(model, cam.clone(), TAU / at.period) };
+    let mut found = Vec::new();
+    for sign in [-1.0, 1.0] {
+        let side = map.side(Vector2::zeros(), sign);
+        let image = map.of(side).b * sign;
+        found.push(machine.range(Compared::Revolution, sign, |dt, _| machine.revolution(dt, image * dt.abs())));
+        for (name, side) in [("L", Side::Minus), ("R", Side::Plus)] {
+            let orbit = Word::read(name).and_then(|word| map.orbit(&word, sign)).filter(|orbit| orbit.admissible());
+            let Some(point) = orbit.and_then(|orbit| orbit.points.first().copied()) else { continue };
+            found.push(machine.range(Compared::FixedPoint(side), sign, |dt, before| {
+                // The real one where it was, moved on as the prediction is.
+                let guess = before.map_or(point * dt.abs(), |(real, at): (Vector2<f64>, f64)| real * (dt / at));
+                machine.fixed_point(dt, point * dt.abs(), guess)
+            }));
+        }
+    }
+    found
+}
+
+struct Real<'a> {
+    at: &'a CornerImpact,
+    map: StroboscopicMap,
+}
+
+impl Real<'_> {
+    /// By how much |dT| grows from one comparison to the next.
+    const GROWTH: f64 = 1.15;
+
+    fn map(&self, dt: f64) -> StroboscopicMap {
+        let machine = self.map.machine.at_speed(TAU / (self.at.period + dt));
+        StroboscopicMap { machine, cam_angle: self.map.cam_angle }
+    }
+
+    fn difference(&self, real: Vector2<f64>, predicted: Vector2<f64>) -> Difference {
+        let omega = TAU / self.at.period;
+        let size = |x: Vector2<f64>| x[0].hypot(x[1] / omega);
+        let relative = size(real - predicted) / size(predicted);
+        relative.is_finite().then_some((real, relative))
+    }
+
+    fn displaced(&self, dx: Vector2<f64>) -> State {
+        State { position: self.at.state.position + dx[0], velocity: self.at.state.velocity + dx[1] }
+    }
+
+    /// The displacement after a revolution from `x* + dx`, if it has one impact.
+    fn image(&self, map: &StroboscopicMap, dx: Vector2<f64>) -> Option<Vector2<f64>> {
+        let back = map.apply(self.displaced(dx)).ok()?;
+        let [Event { kind: EventKind::Impact, .. }] = back.events.as_slice() else { return None };
+        let State { position, velocity } = back.state;
+        Some(Vector2::new(position - self.at.state.position, velocity - self.at.state.velocity))
+    }
+
+    fn revolution(&self, dt: f64, predicted: Vector2<f64>) -> Difference {
+        self.difference(self.image(&self.map(dt), Vector2::zeros())?, predicted)
+    }
+
+    fn fixed_point(&self, dt: f64, predicted: Vector2<f64>, guess: Vector2<f64>) -> Difference {
+        let map = self.map(dt);
+        let State { position, velocity } = map.periodic(self.displaced(guess), 1).ok()??.state;
+        let real = Vector2::new(position - self.at.state.position, velocity - self.at.state.velocity);
+        self.image(&map, real)?;
+        self.difference(real, predicted)
+    }
+
+    /// The first |dT| at which a comparison fails, growing from [`tolerance::LINEAR_FROM`], then by halving.
+    fn range(
+        &self,
+        compared: Compared,
+        sign: f64,
+        compare: impl Fn(f64, Option<(Vector2<f64>, f64)>) -> Difference,
+    ) -> Range {
+        let period = self.at.period;
+        let holds = |found: &Difference| found.is_some_and(|(_, apart)| apart <= tolerance::LINEAR_WITHIN.value);
+        // The last dT that held with what was found there.
+        let mut last: Option<(f64, Vector2<f64>, f64)> = None;
+        let before = |last: &Option<(f64, Vector2<f64>, f64)>| last.map(|(dt, real, _)| (real, dt));
+        let mut dt = sign * tolerance::LINEAR_FROM.value * period;
+        // Half the speed and twice the speed: T* more, or T*/2 less.
+        let most = if sign > 0.0 { period } else { 0.5 * period };
+        let mut ends = Ends::Nothing;
+        while dt.abs() < most {
+            let found = compare(dt, before(&last));
+            match found {
+                Some((real, apart)) if holds(&found) => last = Some((dt, real, apart)),
+                other => {
+                    ends = if other.is_some() { Ends::Tenth } else { Ends::OtherMotion };
+                    break;
+                }
+            }
+            dt *= Self::GROWTH;
+        }
+        // Where nothing held there is no range to close in.
+        if let (Some((mut low, ..)), false) = (last, ends == Ends::Nothing) {
+            let mut high = dt;
+            while (high - low).abs() > tolerance::LINEAR_BRACKET.value * high.abs() {
+                let middle = 0.5 * (low + high);
+                let found = compare(middle, before(&last));
+                match found {
+                    Some((real, apart)) if holds(&found) => {
+                        last = Some((middle, real, apart));
+                        low = middle;
+                    }
+                    other => {
+                        ends = if other.is_some() { Ends::Tenth } else { Ends::OtherMotion };
+                        high = middle;
+                    }
+                }
+            }
+        }
+        let period_change = last.map_or(0.0, |(dt, ..)| dt);
+        let difference = last.map(|(.., apart)| apart);
+        Range { compared, sign, period_change, speed_rpm: 60.0 / (period + period_change), difference, ends }
+    }
+}
