@@ -261,7 +261,7 @@ fn is_an_orbit(model: &Model, point: &BranchPoint) {
     }
 }
 
-/// What is so next to a graze, where the simulator may see an impact more or less, or next to a corner, holds in the limit.
+/// At a special point rounding decides which of two motions the simulator sees.
 fn is_ordinary(branch: &Branch, index: usize) -> bool {
     branch.points[index].special.is_none()
 }

@@ -39,7 +39,7 @@ fn mean(cycle: &Cycle) -> Cycle {
 /// The flip between two cycles, at two values of the parameter, whose halves have changed places; `None` where what they
 /// pass is none.
 pub(super) fn flip(machine_at: impl Fn(f64) -> Option<Machine>, ends: [(f64, &Cycle); 2]) -> Option<Flipped> {
-    /// Secants gain six digits in ten.
+    /// The guess is a step away: secants need six or so.
     const STEPS: usize = 20;
     let [(first, one), (second, two)] = ends;
     let [before, after] = [apart(one)?, apart(two)?];
