@@ -111,6 +111,28 @@ fn the_papers_two_impact_orbits_fold() {
     assert!(fold.orbit.multipliers().iter().any(|one| (one.re - 1.0).abs() < 1e-6));
 }
 
+/// A branch of two revolutions ends where it came from: at the flip of the orbit of one, or at its graze.
+#[test]
+fn a_branch_of_two_revolutions_ends_on_the_orbit_of_one() {
+    let model = common::osorio();
+    let stable = orbits(&model, 739.35, 2).into_iter().find(PeriodicOrbit::is_stable).unwrap();
+    let flips = follow(&model, 739.35, &stable, "rpm", [700.0, 760.0]);
+    assert_eq!(flips.ends.iter().filter(|end| **end == End::Shorter).count(), 1, "{:?}", flips.ends);
+    let flip = special(&flips, "flip", 739.0);
+    is_at(flip, by_bisection([735.0, 739.37], |rpm| self::flip(&model, rpm) > 0.0));
+    assert_eq!((flip.orbit.revolutions, flip.orbit.impacts().count()), (1, 1));
+    let first_or_last = [&flips.points[0], &flips.points[flips.points.len() - 1]];
+    assert!(first_or_last.contains(&flip));
+
+    let three = orbits(&model, 760.0, 2).into_iter().find(|orbit| orbit.impacts().count() == 3).unwrap();
+    let grazes = follow(&model, 760.0, &three, "rpm", [700.0, 850.0]);
+    assert!(grazes.ends.contains(&End::Shorter), "{:?}", grazes.ends);
+    let graze = special(&grazes, "graze", 786.7);
+    assert_eq!((graze.orbit.revolutions, graze.orbit.impacts().count()), (1, 1));
+    let map = StroboscopicMap { machine: machine(&model, graze.rpm), cam_angle: 0.0 };
+    assert!(least_clearance(&map, &graze.orbit) < 1e-8);
+}
+
 /// The follower that sticks: where it first leaves the cam, and where it no longer comes to rest.
 #[test]
 fn the_papers_sticking_branch_ends_in_detachment_and_chattering() {
@@ -239,7 +261,7 @@ fn is_an_orbit(model: &Model, point: &BranchPoint) {
     }
 }
 
-/// What is so next to a graze, where the simulator may see an impact more or less, or next to a corner, holds in the limit.
+/// At a special point rounding decides which of two motions the simulator sees.
 fn is_ordinary(branch: &Branch, index: usize) -> bool {
     branch.points[index].special.is_none()
 }
@@ -310,4 +332,21 @@ fn a_jump_of_the_cams_velocity_is_a_gap() {
         }
     }
     assert!(gaps > 0);
+}
+
+/// Each graze adds an impact, closer to the one before: the follower begins to chatter, which is what is said.
+#[test]
+fn a_cascade_of_grazes_ends_in_chattering() {
+    for (file, rpm, range) in [("harmonic", 500.0, [350.0, 700.0]), ("polynomial", 800.0, [400.0, 1000.0])] {
+        let model = common::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("models/laws/{file}.toml")));
+        for orbit in orbits(&model, rpm, 1) {
+            let parameter = Parameter::Speed;
+            let following = Following { parameter, range, longest_step: 0.05, most_points: 2000 };
+            let branch = Branch::through(&model, rpm, &orbit, &following).unwrap();
+            assert!(branch.ends.contains(&End::Chatter), "{file}: {:?} {:?}", branch.ends, specials(&branch));
+            let grazes: Vec<f64> =
+                specials(&branch).iter().filter(|(_, kind)| kind.name() == "graze").map(|(value, _)| *value).collect();
+            assert!(grazes.len() > 10, "{grazes:?}");
+        }
+    }
 }

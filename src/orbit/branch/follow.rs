@@ -4,7 +4,7 @@ use nalgebra::DVector;
 
 use super::problem::{Pinned, Problem, Units};
 use super::switch::{self, Exit};
-use super::{BranchPoint, End, Following, Kind, Special, gap};
+use super::{BranchPoint, End, Following, Kind, Special, gap, halved};
 use crate::orbit::curve::{self, CurvePoint, Equations, NoPoint};
 use crate::orbit::cycle::lift_size;
 use crate::orbit::{Cycle, Departure, Family, FamilyError, OrbitError, PeriodicOrbit};
@@ -213,14 +213,8 @@ impl Walk<'_> {
         for cut in self.cuts(&problem, &next.unknowns)? {
             keep(self.locate(&problem, cut, self.step)?);
         }
-        if self.pattern.second_half(0).is_some()
-            && (self.measure(&problem, Cut::Halved, &self.from)? > 0.0)
-                != (self.measure(&problem, Cut::Halved, &next)? > 0.0)
-        {
-            let located = self.locate(&problem, Cut::Halved, self.step)?;
-            if problem.unpack(&located.point.unknowns)?.0.repeats_sooner() {
-                keep(located);
-            }
+        if let Some(located) = self.halved(&problem, &next)? {
+            keep(located);
         }
         // And those that only the simulator sees, on the way there.
         let (mut clear, mut reach) = match &first {
@@ -302,6 +296,31 @@ impl Walk<'_> {
         }
     }
 
+    /// The flip that a step to `next` passes, if the orbit is one of twice the period.
+    fn halved(&self, problem: &Problem<'_>, next: &CurvePoint) -> Result<Option<Located>, NoPoint<FamilyError>> {
+        if self.pinned.is_some() || self.pattern.second_half(0).is_none() {
+            return Ok(None);
+        }
+        let (one, two) = (problem.unpack(&self.from.unknowns)?.0, problem.unpack(&next.unknowns)?.0);
+        let ends = [(self.value(&self.from.unknowns), &one), (self.value(&next.unknowns), &two)];
+        let values = |value: f64| {
+            let mut values = problem.values(&self.from.unknowns);
+            if let Some(last) = values.last_mut() {
+                *last = value;
+            }
+            values
+        };
+        let machine_at = |value: f64| self.family.machine(&values(value)).ok().map(|(machine, _)| machine);
+        let Some(flipped) = halved::flip(machine_at, ends) else { return Ok(None) };
+        let Some(machine) = machine_at(flipped.value) else { return Ok(None) };
+        let unknowns = problem.unknowns(&flipped.cycle, &machine, &values(flipped.value));
+        let point = CurvePoint { unknowns, ..self.from.clone() };
+        // What comes before is looked at half way there, where the equations are regular.
+        let part = halved::apart(&one).zip(halved::apart(&two)).map_or(0.0, |(one, two)| 0.5 * one / (one - two));
+        let (bracket, residual) = (flipped.bracket, flipped.residual);
+        Ok(Some(Located { step: part * self.step, cut: Cut::Halved, point, bracket, residual }))
+    }
+
     /// What may be passed without a change of the cycle.
     fn passed(&self) -> Vec<Cut> {
         if self.pinned.is_none() {
@@ -357,10 +376,8 @@ impl Walk<'_> {
                 gap::least(&cycle, &machine, contact, turned).ok_or(NoPoint::NotClosed)?.0
             }
             Cut::Fold => at.tangent[at.tangent.len() - 1],
-            Cut::Halved => {
-                let other = cycle.second_half(0).ok_or(NoPoint::NotClosed)?;
-                cycle.contacts[other].cam_angle - cycle.contacts[0].cam_angle
-            }
+            // Its own equations are singular there: `halved` locates it.
+            Cut::Halved => return Err(NoPoint::NotClosed),
             Cut::Flip => {
                 let (_, matrix) = cycle.at_section(&machine, 0.0);
                 1.0 + matrix.trace() + matrix.determinant()

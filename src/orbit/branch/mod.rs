@@ -8,6 +8,7 @@
 mod chatter;
 mod follow;
 mod gap;
+mod halved;
 mod problem;
 mod special;
 mod survey;

@@ -1,0 +1,81 @@
+//! Where a branch of orbits of twice the period ends: at the flip that they come from.
+//!
+//! There the two halves of a period become one, and the equations of the long orbit are singular. Those of the short one
+//! are not, so the flip is located on it.
+
+use crate::orbit::{Contact, Cycle};
+use crate::simulate::Machine;
+use crate::tolerance;
+
+/// The flip of an orbit of half the period.
+pub(super) struct Flipped {
+    /// Of the parameter.
+    pub(super) value: f64,
+    /// The short orbit, gone round twice.
+    pub(super) cycle: Cycle,
+    /// Two values of the parameter between which it is.
+    pub(super) bracket: [f64; 2],
+    /// What is left of 1 + trace + determinant.
+    pub(super) residual: f64,
+}
+
+/// How far the second half of a cycle is from its first, rad; `None` where the two have nothing to do with each other.
+pub(super) fn apart(cycle: &Cycle) -> Option<f64> {
+    let other = cycle.second_half(0)?;
+    Some(cycle.contacts[other].cam_angle - cycle.contacts[0].cam_angle)
+}
+
+/// The mean of both halves.
+fn mean(cycle: &Cycle) -> Cycle {
+    let half = cycle.contacts.len() / 2;
+    let mut contacts = cycle.contacts[..half].to_vec();
+    for (contact, other) in contacts.iter_mut().zip(&cycle.contacts[half..]) {
+        contact.cam_angle = 0.5 * (contact.cam_angle + other.cam_angle);
+        contact.velocity_before = 0.5 * (contact.velocity_before + other.velocity_before);
+    }
+    Cycle { revolutions: cycle.revolutions / 2, contacts }
+}
+
+/// The flip between two cycles, at two values of the parameter, whose halves have changed places; `None` where what they
+/// pass is none.
+pub(super) fn flip(machine_at: impl Fn(f64) -> Option<Machine>, ends: [(f64, &Cycle); 2]) -> Option<Flipped> {
+    /// The guess is a step away: secants need six or so.
+    const STEPS: usize = 20;
+    let [(first, one), (second, two)] = ends;
+    let [before, after] = [apart(one)?, apart(two)?];
+    if (before > 0.0) == (after > 0.0) {
+        return None;
+    }
+    let at = |value: f64, guess: &Cycle| -> Option<(Cycle, f64)> {
+        let machine = machine_at(value)?;
+        let (cycle, _) = guess.closed(&machine).ok()?;
+        let (_, matrix) = cycle.at_section(&machine, 0.0);
+        Some((cycle, 1.0 + matrix.trace() + matrix.determinant()))
+    };
+    // The parameter turns round at the flip: it is as far from it as the halves are apart, squared.
+    let span = (second - first).abs().max(tolerance::SPECIAL_POINT.value * first.abs());
+    let (mut low, mut high) = (first, first + span);
+    let (cycle, mut at_low) = at(low, &mean(one))?;
+    let (mut cycle, mut at_high) = at(high, &cycle)?;
+    for _ in 0..STEPS {
+        let next = high - at_high * (high - low) / (at_high - at_low);
+        if !next.is_finite() || next == high || at_high == 0.0 {
+            break;
+        }
+        (low, at_low) = (high, at_high);
+        high = next;
+        (cycle, at_high) = at(high, &cycle)?;
+    }
+    let halves = mean(one);
+    let reach = before.abs() + after.abs();
+    let near = |(found, halves): (&Contact, &Contact)| (found.cam_angle - halves.cam_angle).abs() <= reach;
+    let is_flip = at_high.abs() <= tolerance::SAME_ORBIT.value && cycle.contacts.iter().zip(&halves.contacts).all(near);
+    let mut doubled = one.clone();
+    let half = cycle.contacts.len();
+    for (index, contact) in doubled.contacts.iter_mut().enumerate() {
+        let found = &cycle.contacts[index % half];
+        (contact.cam_angle, contact.velocity_before) = (found.cam_angle, found.velocity_before);
+    }
+    let bracket = [low.min(high), low.max(high)];
+    is_flip.then_some(Flipped { value: high, cycle: doubled, bracket, residual: at_high.abs() })
+}
