@@ -67,7 +67,8 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write, err: &mut dyn Writ
         (None, Some(Output::create(&arguments.out, out).map_err(CommandError::file)?))
     };
     let wanted = Search { revolutions: arguments.revolutions, impacts: arguments.impacts };
-    let corners = corner_impacts(&survey(&model, arguments.rpm, &wanted).map_err(CommandError::input)?);
+    let surveyed = survey(&model, arguments.rpm, &wanted).map_err(CommandError::input)?;
+    let corners = corner_impacts(&surveyed.branches);
     let following = Following {
         parameter: parameter.clone(),
         range: *range,

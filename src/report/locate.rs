@@ -155,8 +155,8 @@ pub struct SearchedEntry {
     pub corners_rad: Vec<f64>,
     /// Speeds at which orbits of several impacts were searched for.
     pub speeds_rpm: Vec<f64>,
-    /// Such orbits found there and followed.
-    pub orbits: usize,
+    /// Branches of orbits found there and followed.
+    pub branches: usize,
     /// Whether every corner impact of one-impact orbits is listed: they are the roots of one equation.
     pub one_impact_exhaustive: bool,
     /// Whether the same can be said of orbits with several impacts.
@@ -222,7 +222,7 @@ impl LocateDocument {
             searched: SearchedEntry {
                 corners_rad: survey.corners.iter().map(|corner| corner.angle).collect(),
                 speeds_rpm: survey.searched.speeds.clone(),
-                orbits: survey.searched.orbits,
+                branches: survey.searched.branches,
                 one_impact_exhaustive: true,
                 several_impacts_exhaustive: false,
                 failed: survey.searched.failed.clone(),
@@ -325,13 +325,13 @@ impl LocateDocument {
 
     fn write_searched(&self, out: &mut String) -> fmt::Result {
         heading(out, "What was looked at")?;
-        let SearchedEntry { corners_rad, speeds_rpm, orbits, failed, .. } = &self.searched;
+        let SearchedEntry { corners_rad, speeds_rpm, branches, failed, .. } = &self.searched;
         let mut words = if corners_rad.is_empty() {
             "The cam has no corner: no derivative of its lift jumps as far as can be told.".to_owned()
         } else {
             format!(
                 "{} corner(s) of the cam. Orbits of one impact: all, as the roots of one equation. Orbits of several impacts: \
-                 those that a search finds at {} speeds ({orbits} found), followed from one speed to the next; there may be \
+                 those on branches that a search finds at {} speeds ({branches} of them); there may be \
                  others. Orbits on which the follower sticks forget where they hit: they are left out.",
                 corners_rad.len(),
                 speeds_rpm.len()

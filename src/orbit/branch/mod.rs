@@ -20,7 +20,7 @@ use super::{Family, OrbitError, Parameter, PeriodicOrbit};
 use crate::model::Model;
 pub use problem::{Pinned, Problem, Units};
 pub use special::{Kind, Special};
-pub use survey::{corner_impacts, survey};
+pub use survey::{Survey, corner_impacts, survey};
 
 /// What is followed, and how far.
 #[derive(Clone, Debug, PartialEq)]
