@@ -13,6 +13,8 @@
 //!    ▼
 //!  orbit                 periodic orbits, their multipliers, branches of them and the points where these change
 //!    ▼
+//!  basin                 what a start ends on; the curves that part the basins
+//!    ▼
 //!  python                runs one script of `derivations/`
 //!    ▼
 //!  corner                where the corner impact is (x*, T*), and its map {A∓, B∓, C, D} by several routes
@@ -61,6 +63,8 @@ pub mod section;
 pub mod diagram;
 
 pub mod orbit;
+
+pub mod basin;
 
 pub mod python;
 

@@ -2,6 +2,7 @@
 
 pub mod feigin;
 pub mod normal_form;
+pub mod passage;
 
 pub use feigin::{Classification, classify};
 pub use normal_form::{NormalForm, normal_form};

@@ -1,5 +1,6 @@
 //! The command line: parse, one library call, exit code. Results to standard output, complaints to standard error.
 
+mod basins;
 mod cam;
 mod claims;
 mod diagram;
@@ -42,6 +43,7 @@ enum Command {
     Cam(cam::Arguments),
     Simulate(simulate::Arguments),
     Diagram(diagram::Arguments),
+    Basins(basins::Arguments),
 }
 
 /// Why a command has no result.
@@ -112,6 +114,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         }
         Command::Simulate(arguments) => simulate::run(arguments, out),
         Command::Diagram(arguments) => diagram::run(arguments, out),
+        Command::Basins(arguments) => basins::run(arguments, out),
     };
     result.unwrap_or_else(|error| {
         let _ = writeln!(err, "error: {error}");

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use crate::orbit::Cycle;
 use crate::simulate::Machine;
+use crate::tolerance;
 
 /// Least gap, m, of the flight that starts at contact `index`, near an angle `turned`, rad, after its start; and where, rad
 /// after its start.
@@ -62,6 +63,6 @@ pub(super) fn least(cycle: &Cycle, machine: &Machine, index: usize, turned: f64)
         sharp -= omega * velocity / acceleration;
     }
     // Not at a corner, where the gap has a kink.
-    let at = if (sharp - at).abs() < 1e-3 * stride { sharp } else { at };
+    let at = if (sharp - at).abs() < tolerance::SHARPENED_GAP.value * stride { sharp } else { at };
     Some((gap(at), at))
 }

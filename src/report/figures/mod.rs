@@ -1,9 +1,11 @@
 //! The figures that this program draws, each built from plain data; nothing is simulated here.
 
+mod basins;
 mod cam;
 mod diagram;
 mod trace;
 
+pub use basins::{BasinsPicture, basins_figure};
 pub use cam::{CornerMark, cam_figure, corner_marks};
 pub use diagram::{Diagram, impact_diagram, strobe_diagram};
 pub use trace::{Against, ImpactPoint, Trace, TracePoint, phase_plane, time_trace};
