@@ -15,6 +15,8 @@
 //!    ▼
 //!  regime                what the follower does over a range of speeds, and where that changes
 //!    ▼
+//!  basin                 what a start ends on; the curves that part the basins
+//!    ▼
 //!  python                runs one script of `derivations/`
 //!    ▼
 //!  corner                where the corner impact is (x*, T*), and its map {A∓, B∓, C, D} by several routes
@@ -67,6 +69,8 @@ pub mod diagram;
 pub mod orbit;
 
 pub mod regime;
+
+pub mod basin;
 
 pub mod python;
 

@@ -84,6 +84,18 @@ table! {
         another minimum is as long as the whole";
     /// How nearly a run must repeat for Newton's method to be tried on it.
     NEARLY_REPEATS = 1e-2, "of the cam's lift: a guess, that Newton's method and one simulated period confirm or refute";
+    /// How near a run must have come to a stable orbit to end on it.
+    ARRIVED = 1e-6, "of the cam's lift: chaos comes that near to an orbit by chance once in a thousand million revolutions, and \
+        a multiplier of 0.99 leaves it after the 1600 revolutions of a run";
+    /// The bracket around the border between two basins.
+    BORDER_BRACKET = 1e-12, "of the line that it is looked for on: a run that starts nearer to the border than that follows the \
+        saddle for hundreds of revolutions, and rounding decides";
+    /// How far the border between two basins may be from the stable manifold, m.
+    BORDER_ON_MANIFOLD = 1e-5, "m, absolute: the manifold is drawn as chords of up to 1e-2 m, and the sagitta of one where it bends \
+        over metres is an eighth of the square of that";
+    /// How many revolutions a run may leave sooner or later than the piecewise-linear map says.
+    PASSAGE = 1e-2, "of the count, and one revolution: at 1e-3 m from x* the second order, which the map leaves out, is a \
+        thousandth of the first";
     /// How far from the corner the impact of a located orbit may be simulated, rad.
     CORNER_ANGLE = 1e-9, "absolute, rad: twenty thousand times the rounding of an angle and far below any segment of a cam";
     /// When an eigenvalue counts as on the boundary that Feigin's counts divide at.

@@ -7,6 +7,7 @@ pub mod local_map;
 pub mod long_run;
 pub mod normal_form;
 pub mod outcome;
+pub mod passage;
 pub mod validity;
 pub mod word;
 

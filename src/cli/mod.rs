@@ -1,5 +1,6 @@
 //! The command line: parse, one library call, exit code. Results to standard output, complaints to standard error.
 
+mod basins;
 mod cam;
 mod claims;
 mod continuation;
@@ -52,6 +53,7 @@ enum Command {
     Curve(curve::Arguments),
     Speeds(speeds::Arguments),
     Locate(locate::Arguments),
+    Basins(basins::Arguments),
 }
 
 /// Why a command has no result.
@@ -135,6 +137,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         Command::Curve(arguments) => curve::run(arguments, out, err),
         Command::Continue(arguments) => continuation::run(arguments, out, err),
         Command::Locate(arguments) => print(locate::run(arguments), out),
+        Command::Basins(arguments) => basins::run(arguments, out),
     };
     result.unwrap_or_else(|error| {
         // Whoever closes a pipe early, as `head` does, wants no more, nor a complaint.

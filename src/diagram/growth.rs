@@ -12,7 +12,53 @@ use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError, Variatio
 /// Minus infinity where the follower comes to stick to the cam, be it once in thousands of revolutions: nothing is left of a
 /// deviation then, and what follows repeats what followed the stick before. Until such a stick a chaotic motion has the
 /// number that it would have without. A start on the cam counts from its release on; in no revolution nothing grows.
-pub fn growth(machine: &Machine, mut motion: Motion, revolutions: u64) -> Result<f64, SimulateError> {
+pub fn growth(machine: &Machine, motion: Motion, revolutions: u64) -> Result<f64, SimulateError> {
+    let mut sum = 0.0;
+    stretches(machine, motion, revolutions, |stretch| sum += stretch)?;
+    Ok(sum / revolutions.max(1) as f64)
+}
+
+/// A Lyapunov exponent and how well it is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Exponent {
+    /// Per revolution, a natural logarithm.
+    pub mean: f64,
+    /// Of the mean: the standard deviation of the blocks' means over the root of their number.
+    pub standard_error: f64,
+    /// Blocks that it is the mean of.
+    pub blocks: usize,
+    /// Whether the follower came to rest on the cam, after those blocks: what follows can only repeat, and a deviation of it
+    /// is none.
+    pub rests: bool,
+}
+
+/// The growth over `blocks` of `revolutions` each, one after the other, or as many as are over before the follower sticks to
+/// the cam: their mean, and its standard error, neither of them a number where there are fewer than two blocks.
+///
+/// Blocks are taken for independent: a chaotic motion has forgotten, after some dozen revolutions, what it was.
+pub fn exponent(machine: &Machine, motion: Motion, blocks: u32, revolutions: u64) -> Result<Exponent, SimulateError> {
+    let (mut means, mut sum, mut seen) = (Vec::new(), 0.0, 0);
+    stretches(machine, motion, u64::from(blocks) * revolutions, |stretch| {
+        (sum, seen) = (sum + stretch, seen + 1);
+        if seen == revolutions && sum > f64::NEG_INFINITY {
+            means.push(sum / revolutions as f64);
+            (sum, seen) = (0.0, 0);
+        }
+    })?;
+    let rests = sum == f64::NEG_INFINITY;
+    let count = means.len() as f64;
+    let mean = means.iter().sum::<f64>() / count;
+    let variance = means.iter().map(|block| (block - mean).powi(2)).sum::<f64>() / (count - 1.0);
+    Ok(Exponent { mean, standard_error: (variance / count).sqrt(), blocks: means.len(), rests })
+}
+
+/// The growth of each revolution in turn; minus infinity, once, where the follower sticks.
+fn stretches(
+    machine: &Machine,
+    mut motion: Motion,
+    revolutions: u64,
+    mut keep: impl FnMut(f64),
+) -> Result<(), SimulateError> {
     let omega = machine.angular_velocity();
     if motion.contact {
         let goal = motion.after(revolutions);
@@ -21,13 +67,13 @@ pub fn growth(machine: &Machine, mut motion: Motion, revolutions: u64) -> Result
             _ => ControlFlow::Continue(()),
         })?;
         if released.is_continue() {
-            return Ok(f64::NEG_INFINITY);
+            keep(f64::NEG_INFINITY);
+            return Ok(());
         }
     }
     let mut variation = Variation::new(machine, &motion);
     // Any direction has a part along the one that grows most; velocity counts over the angle, in m/rad.
     let mut direction = Vector2::new(0.6, 0.8);
-    let mut sum = 0.0;
     for _ in 0..revolutions {
         let goal = motion.after(1);
         let _ = machine.advance(&mut motion, goal, &mut variation)?;
@@ -37,12 +83,12 @@ pub fn growth(machine: &Machine, mut motion: Motion, revolutions: u64) -> Result
             matrix[(1, 0)] / omega * direction[0] + matrix[(1, 1)] * direction[1],
         );
         let stretch = carried.norm();
+        keep(stretch.ln());
         if stretch == 0.0 {
-            return Ok(f64::NEG_INFINITY);
+            return Ok(());
         }
-        sum += stretch.ln();
         direction = carried / stretch;
         variation.reset(Matrix2::identity());
     }
-    Ok(sum / revolutions.max(1) as f64)
+    Ok(())
 }

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use crate::basin::{Basins, Ending};
 use crate::diagram::{Block, Row, Seen};
 use crate::flight::State;
 use crate::simulate::{Event, Machine, Motion};
@@ -70,4 +71,25 @@ impl Block for Lines {
     fn is_full(&self) -> bool {
         self.0.len() >= Self::FULL
     }
+}
+
+/// The columns of a grid of starts; those of an orbit are empty where there is none, `ending` where the start is below the
+/// cam.
+pub const BASINS: &str = "position_m,velocity_m_s,ending,part,revolutions,impacts\n";
+
+/// A line for each start, row by row.
+pub fn basins(basins: &Basins) -> String {
+    let mut lines = String::from(BASINS);
+    for (cell, part) in basins.cells.iter().enumerate() {
+        let State { position, velocity } = basins.grid.start(cell);
+        let _ = write!(lines, "{position},{velocity},");
+        let _ = match part.map(|index| (index, &basins.parts[index].ending)) {
+            None => writeln!(lines, ",,,"),
+            Some((index, Ending::Orbit(orbit))) => {
+                writeln!(lines, "orbit,{index},{},{}", orbit.revolutions, orbit.impacts().count())
+            }
+            Some((index, ending)) => writeln!(lines, "{},{index},,", super::basins::name(ending)),
+        };
+    }
+    lines
 }

@@ -1,6 +1,7 @@
 //! One document value, several renderers, and one figure value, two renderers. No renderer computes anything but how many
 //! digits to show; [`mod@file`] is how any of it reaches a disk.
 
+pub mod basins;
 pub mod border_collision;
 mod border_collision_text;
 pub mod branch;
@@ -19,6 +20,7 @@ pub mod regimes;
 pub mod run;
 pub mod text;
 
+pub use basins::BasinsSummary;
 pub use cam::CamDocument;
 pub use claims::ClaimsDocument;
 pub use document::Verification;

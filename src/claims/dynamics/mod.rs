@@ -1,9 +1,10 @@
 //! Statements about runs: what the follower does at a speed, decided by the simulator.
 //!
 //! `chattering` is about slow cams, where the follower comes to rest on the cam once a revolution; `transition` about
-//! fast ones, around the corner impact. Evidence must not depend on the machine: of a chaotic run it says only what any run shows.
+//! fast ones, around the corner impact; `global` about what coexists there and how the motion goes over. Evidence must not depend on the machine: of a chaotic run it says only what any run shows.
 
 mod chattering;
+mod global;
 mod transition;
 
 use std::ops::ControlFlow;
@@ -17,9 +18,9 @@ use crate::tolerance;
 pub(super) use chattering::{
     chattering_at_175, chattering_at_183, detachment, impact_diagram_of_slow_cams, period_adding, resonant_peaks,
 };
+pub(super) use global::{coexisting, transition};
 pub(super) use transition::{
-    chaos_below, chaos_for_good, coexisting, impact_diagram, orbit_at_700, period_one_above, transition,
-    transitions_at_corners,
+    chaos_below, chaos_for_good, impact_diagram, orbit_at_700, period_one_above, transitions_at_corners,
 };
 
 /// A statement about runs; one that the simulator gives up leaves it open.

@@ -1,11 +1,13 @@
 //! The figures that this program draws, each built from plain data; nothing is simulated here.
 
+mod basins;
 mod branches;
 mod cam;
 mod curve;
 mod diagram;
 mod trace;
 
+pub use basins::{BasinsPicture, basins_figure};
 pub use branches::{Branches, branches_figure};
 pub use cam::{CornerMark, cam_figure, corner_marks};
 pub use curve::curve_figure;

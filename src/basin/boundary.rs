@@ -1,0 +1,83 @@
+//! The border between two basins, from runs alone; and how near a saddle's unstable manifold comes back to its stable one.
+
+use super::{Curve, Ending, Patience, Saddle, ending};
+use crate::flight::State;
+use crate::section::StroboscopicMap;
+use crate::simulate::SimulateError;
+use crate::tolerance;
+
+/// Where, between two starts on the section, runs change what they end on: the middle of a bracket that is halved down to
+/// the width of a rounding; `None` where both ends end alike.
+///
+/// Of several such places one is found.
+pub fn border(
+    map: &StroboscopicMap,
+    [from, to]: [State; 2],
+    patience: Patience,
+) -> Result<Option<State>, SimulateError> {
+    let at = |share: f64| State {
+        position: from.position + share * (to.position - from.position),
+        velocity: from.velocity + share * (to.velocity - from.velocity),
+    };
+    let end = |share: f64| -> Result<Ending, SimulateError> {
+        ending(&map.machine, map.machine.start(map.cam_angle, at(share))?, patience)
+    };
+    let (first, last) = (end(0.0)?, end(1.0)?);
+    if first.is_same(&last) {
+        return Ok(None);
+    }
+    let (mut low, mut high) = (0.0, 1.0);
+    while high - low > tolerance::BORDER_BRACKET.value {
+        let middle = 0.5 * (low + high);
+        if end(middle)?.is_same(&first) { low = middle } else { high = middle }
+    }
+    Ok(Some(at(0.5 * (low + high))))
+}
+
+/// How near the unstable manifold of a saddle comes back to its stable one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Approach {
+    /// The least distance, m.
+    pub distance: f64,
+    /// Where on the unstable manifold that is.
+    pub nearest: State,
+}
+
+/// Where the half of a saddle's unstable manifold that begins along its direction, times `sign`, comes nearest to `curve`,
+/// a piece of the stable one: `samples` starts from a point to its image, run until they are `away`, m, and `revolutions`
+/// further.
+///
+/// A chaotic motion on that side of the curve fills the same set as the manifold; where it touches the curve it is lost.
+pub fn approach(
+    map: &StroboscopicMap,
+    saddle: &Saddle,
+    sign: f64,
+    curve: &Curve,
+    away: f64,
+    [samples, revolutions]: [u32; 2],
+) -> Result<Approach, SimulateError> {
+    /// Where a start is, of `away`: the manifold is straight there to the square of it.
+    const FIRST: f64 = 1e-5;
+    let (multiplier, along) = saddle.unstable;
+    let leaving = (-FIRST.ln() / multiplier.ln()).ceil() as u32;
+    let bounds = curve.bounds();
+    let mut found = Approach { distance: f64::INFINITY, nearest: saddle.state };
+    for sample in 0..samples {
+        let from = sign * FIRST * away * multiplier.powf(f64::from(sample) / f64::from(samples));
+        let mut state = State {
+            position: saddle.state.position + from * along[0],
+            velocity: saddle.state.velocity + from * along[1],
+        };
+        for revolution in 1..=leaving + revolutions {
+            state = map.apply(state)?.state;
+            // Most are too far from all of the curve to be looked at closely.
+            if revolution > leaving && bounds.distance(state) < found.distance {
+                let distance = curve.distance(state);
+                if distance < found.distance {
+                    found = Approach { distance, nearest: state };
+                }
+            }
+        }
+    }
+    Ok(found)
+}

@@ -1,0 +1,130 @@
+//! A grid of starts on a section, and the motion that each ends on.
+
+use rayon::prelude::*;
+
+use super::{Ending, Patience, ending};
+use crate::flight::State;
+use crate::simulate::{Machine, SimulateError};
+
+/// Starts on the section at one cam angle: the middles of cells, evenly spaced in position and velocity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grid {
+    /// The section, rad, in `[0, 2 pi)`.
+    pub cam_angle: f64,
+    /// Positions, m: the outer edges of the first and the last cell.
+    pub positions: [f64; 2],
+    /// Velocities, m/s.
+    pub velocities: [f64; 2],
+    /// Cells along the positions, 1 or more.
+    pub columns: usize,
+    /// Cells along the velocities, 1 or more.
+    pub rows: usize,
+}
+
+impl Grid {
+    /// The most cells of a grid.
+    pub const MOST: usize = 4_000_000;
+
+    /// The start of a cell, counted row by row, from the lowest velocity up and from the lowest position on.
+    pub fn start(&self, cell: usize) -> State {
+        let middle = |[low, high]: [f64; 2], index: usize, count: usize| {
+            low + (high - low) * ((index as f64 + 0.5) / count as f64)
+        };
+        State {
+            position: middle(self.positions, cell % self.columns, self.columns),
+            velocity: middle(self.velocities, cell / self.columns, self.rows),
+        }
+    }
+
+    /// What every start ends on, on `threads` threads (all there are for `None`): the same for every number of them.
+    pub fn basins(&self, machine: &Machine, patience: Patience, threads: Option<usize>) -> Result<Basins, GridError> {
+        let mut builder = rayon::ThreadPoolBuilder::new();
+        if let Some(threads) = threads {
+            builder = builder.num_threads(threads);
+        }
+        let pool = builder.build().map_err(|error| GridError::Threads(error.to_string()))?;
+        let one = |cell: usize| {
+            let state = self.start(cell);
+            let motion = match machine.start(self.cam_angle, state) {
+                Ok(motion) => motion,
+                Err(SimulateError::BelowCam { .. }) => return Ok(None),
+                Err(error) => return Err(GridError::Simulate { state, error }),
+            };
+            ending(machine, motion, patience).map(Some).map_err(|error| GridError::Simulate { state, error })
+        };
+        let found: Result<Vec<Option<Ending>>, GridError> =
+            pool.install(|| (0..self.columns * self.rows).into_par_iter().map(one).collect());
+        Ok(Basins::new(*self, found?))
+    }
+}
+
+/// Why a grid of starts has no endings.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum GridError {
+    /// A run could not go on.
+    #[error("basins: from q = {} m, v = {} m/s: {error}", state.position, state.velocity)]
+    Simulate {
+        /// Its start.
+        state: State,
+        /// Why.
+        error: SimulateError,
+    },
+    /// The threads could not be started.
+    #[error("threads: {0}")]
+    Threads(String),
+}
+
+/// The starts of a grid that end alike.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// How they end.
+    pub ending: Ending,
+    /// How many.
+    pub starts: usize,
+    /// Their share of the starts above the cam.
+    pub share: f64,
+    /// `sqrt(p (1 - p)/N)`: the standard error of the share if the N starts were drawn by chance. Those of a grid are spread
+    /// better than by chance, so it errs on the large side.
+    pub standard_error: f64,
+}
+
+/// What the starts of a grid end on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Basins {
+    /// The starts.
+    pub grid: Grid,
+    /// The endings found, that of most starts first.
+    pub parts: Vec<Part>,
+    /// For each cell the index of its part; nothing where the start is below the cam.
+    pub cells: Vec<Option<usize>>,
+}
+
+impl Basins {
+    fn new(grid: Grid, endings: Vec<Option<Ending>>) -> Self {
+        let mut found: Vec<(Ending, Vec<usize>)> = Vec::new();
+        let mut cells = vec![None; endings.len()];
+        for (cell, ending) in endings.into_iter().enumerate() {
+            let Some(ending) = ending else { continue };
+            match found.iter_mut().find(|(known, _)| known.is_same(&ending)) {
+                Some((_, starts)) => starts.push(cell),
+                None => found.push((ending, vec![cell])),
+            }
+        }
+        // Stable: among parts of one size the first found comes first.
+        found.sort_by_key(|(_, starts)| std::cmp::Reverse(starts.len()));
+        let all = found.iter().map(|(_, starts)| starts.len()).sum::<usize>() as f64;
+        let mut parts = Vec::with_capacity(found.len());
+        for (index, (ending, starts)) in found.into_iter().enumerate() {
+            starts.iter().for_each(|cell| cells[*cell] = Some(index));
+            let share = starts.len() as f64 / all;
+            let standard_error = (share * (1.0 - share) / all).sqrt();
+            parts.push(Part { ending, starts: starts.len(), share, standard_error });
+        }
+        Self { grid, parts, cells }
+    }
+
+    /// Starts above the cam.
+    pub fn starts(&self) -> usize {
+        self.parts.iter().map(|part| part.starts).sum()
+    }
+}

@@ -1,0 +1,263 @@
+//! The curves along which a saddle orbit is approached and left: its stable and its unstable manifold on a section.
+//!
+//! Next to the saddle they are straight, along the eigenvectors of its matrix. A stretch of the unstable one from a point to
+//! its image is carried on by the map, over and over; the stable one the same way by the inverse of the map. The inverse is a
+//! run backwards in time: flights go back, and an impact turns the relative velocity after it into the one before, `-1/r`
+//! times as large.
+
+use std::f64::consts::TAU;
+
+use nalgebra::{Matrix2, Vector2};
+
+use crate::flight::State;
+use crate::model::Follower;
+use crate::orbit::{Cycle, eigenvalues};
+use crate::section::StroboscopicMap;
+use crate::simulate::{EventKind, Machine};
+use crate::tolerance;
+
+/// An orbit of one revolution with one real multiplier inside and one outside of the unit circle, both positive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Saddle {
+    /// Where it crosses the section.
+    pub state: State,
+    /// The multiplier below 1, and its direction: position, m, and velocity, m/s.
+    pub stable: (f64, Vector2<f64>),
+    /// The multiplier above 1, and its direction.
+    pub unstable: (f64, Vector2<f64>),
+}
+
+impl Saddle {
+    /// The saddle that a cycle of one revolution is at `cam_angle`, rad, in `[0, 2 pi)`; `None` where it is none.
+    pub fn new(machine: &Machine, cycle: &Cycle, cam_angle: f64) -> Option<Self> {
+        let (state, matrix) = cycle.at_section(machine, cam_angle);
+        let [above, below] = eigenvalues(&matrix);
+        let real = above.im == 0.0 && below.im == 0.0;
+        if !(real && above.re > 1.0 && below.re > 0.0 && below.re < 1.0 && cycle.revolutions == 1) {
+            return None;
+        }
+        // Lengths are compared with velocities over omega, as m/rad.
+        let omega = machine.angular_velocity();
+        let along = |multiplier: f64| (multiplier, direction(&matrix, multiplier, omega));
+        Some(Self { state, stable: along(below.re), unstable: along(above.re) })
+    }
+}
+
+/// The eigenvector of a 2x2 matrix, of length 1 with the velocity over omega.
+fn direction(matrix: &Matrix2<f64>, multiplier: f64, omega: f64) -> Vector2<f64> {
+    // (A - lambda) x = 0 by the row that says more.
+    let rows = [
+        Vector2::new(matrix[(0, 1)], multiplier - matrix[(0, 0)]),
+        Vector2::new(multiplier - matrix[(1, 1)], matrix[(1, 0)]),
+    ];
+    let size = |row: &Vector2<f64>| row[0].hypot(row[1] / omega);
+    let longer = if size(&rows[0]) >= size(&rows[1]) { rows[0] } else { rows[1] };
+    longer / size(&longer)
+}
+
+/// The inverse of the stroboscopic map of a cam that is its own mirror image.
+#[derive(Clone, Debug)]
+pub struct Reversed {
+    map: StroboscopicMap,
+    backwards: StroboscopicMap,
+}
+
+impl Reversed {
+    /// Of the map of `follower`; `None` where the cam is not its own mirror image, `c(2 pi - theta) = c(theta)`, or where
+    /// the follower keeps nothing of an impact, r = 0, which no run backwards can tell.
+    pub fn new(follower: &Follower, map: &StroboscopicMap) -> Option<Self> {
+        /// Angles at which the lift is held against its mirror image.
+        const LOOKED_AT: u32 = 720;
+        let cam = map.machine.cam();
+        let mirrored = |index: u32| {
+            let angle = TAU * f64::from(index) / f64::from(LOOKED_AT);
+            let (here, there) = (cam.lift(angle), cam.lift((TAU - angle) % TAU));
+            (here.value - there.value).abs() <= tolerance::CAM_CLOSURE.value * (here.value.abs() + there.value.abs())
+        };
+        if !(follower.restitution > 0.0 && (1..LOOKED_AT).all(mirrored)) {
+            return None;
+        }
+        // t -> -t: the mirrored cam turns on, the damping drives, and an impact gives 1/r.
+        let restitution = 1.0 / follower.restitution;
+        let follower = Follower { damping: -follower.damping, restitution, ..*follower };
+        let machine = Machine::new(cam.clone(), &follower, map.machine.angular_velocity());
+        let cam_angle = if map.cam_angle == 0.0 { 0.0 } else { TAU - map.cam_angle };
+        Some(Self { map: map.clone(), backwards: StroboscopicMap { machine, cam_angle } })
+    }
+
+    /// The state one revolution before `state`; `None` where none leads there, or one that sticks on the way: whatever the
+    /// run backwards finds is run forwards and held against `state`.
+    pub fn apply(&self, state: State) -> Option<State> {
+        let turned = |state: State| State { velocity: -state.velocity, ..state };
+        let back = self.backwards.apply(turned(state)).ok()?;
+        let before = turned(back.state);
+        let again = self.map.apply(before).ok()?;
+        let sticks = again.events.iter().chain(&back.events).any(|event| event.kind != EventKind::Impact);
+        let size = size(before, self.map.machine.angular_velocity());
+        let miss = apart(again.state, state, self.map.machine.angular_velocity());
+        (!sticks && miss <= tolerance::ORBIT_CLOSURE.value * size).then_some(before)
+    }
+}
+
+/// The size of a state, m: velocities count over omega.
+fn size(state: State, omega: f64) -> f64 {
+    state.position.hypot(state.velocity / omega)
+}
+
+/// How far two states are apart, m.
+pub fn apart(one: State, other: State, omega: f64) -> f64 {
+    (one.position - other.position).hypot((one.velocity - other.velocity) / omega)
+}
+
+/// How far a curve is followed, and how finely.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extent {
+    /// Times that the first stretch is carried on.
+    pub stretches: u32,
+    /// Where it begins, m from the saddle: what the curve bends there is the square of it.
+    pub first: f64,
+    /// The farthest that neighbouring points are apart, m.
+    pub finest: f64,
+    /// The farthest from the saddle, m, that a curve is followed.
+    pub farthest: f64,
+}
+
+impl Extent {
+    /// For a picture, or a part of the section, of this size, m.
+    pub fn of(size: f64) -> Self {
+        Self { stretches: 40, first: 1e-7 * size, finest: 1e-3 * size, farthest: 2.0 * size }
+    }
+}
+
+/// A curve on the section as a line from point to point, and where it is broken.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    /// Its pieces: states in order.
+    pub pieces: Vec<Vec<State>>,
+    omega: f64,
+}
+
+impl Curve {
+    /// One half of the saddle's unstable manifold: the one that begins along the direction, or with `sign` -1 against it.
+    pub fn unstable(map: &StroboscopicMap, saddle: &Saddle, sign: f64, extent: &Extent) -> Self {
+        let (multiplier, along) = saddle.unstable;
+        let carry = |state| map.apply(state).ok().map(|end| end.state);
+        Self::grow(saddle.state, sign * along, multiplier, carry, extent, map.machine.angular_velocity())
+    }
+
+    /// One half of its stable manifold.
+    pub fn stable(reversed: &Reversed, saddle: &Saddle, sign: f64, extent: &Extent) -> Self {
+        let (multiplier, along) = saddle.stable;
+        let carry = |state| reversed.apply(state);
+        let omega = reversed.map.machine.angular_velocity();
+        Self::grow(saddle.state, sign * along, 1.0 / multiplier, carry, extent, omega)
+    }
+
+    /// The images of a stretch from the saddle's neighbourhood: a number s from 0 to `stretches` names the image under
+    /// `floor(s)` maps of the point `first * multiplier^fract(s)` from the saddle; s is halved until images are close.
+    fn grow(
+        saddle: State,
+        along: Vector2<f64>,
+        multiplier: f64,
+        carry: impl Fn(State) -> Option<State>,
+        extent: &Extent,
+        omega: f64,
+    ) -> Self {
+        /// Points of one stretch to begin with.
+        const POINTS: u32 = 16;
+        /// Halvings after which two neighbours that stay apart are on either side of a break.
+        const HALVINGS: u32 = 16;
+        let at = |s: f64| -> Option<State> {
+            let from = extent.first * multiplier.powf(s.fract());
+            let first =
+                State { position: saddle.position + from * along[0], velocity: saddle.velocity + from * along[1] };
+            let carried = (0..s as u32).try_fold(first, |state, _| carry(state))?;
+            (apart(carried, saddle, omega) <= extent.farthest).then_some(carried)
+        };
+        let mut curve = Self { pieces: vec![vec![saddle]], omega };
+        let total = extent.stretches * POINTS;
+        let place = |index: u32| f64::from(index) / f64::from(POINTS);
+        let mut last = (0.0, at(0.0));
+        curve.push(last.1);
+        for index in 1..total {
+            // What is still to be reached, the next on top.
+            let mut ahead = vec![(place(index), at(place(index)), 0)];
+            while let Some((s, state, halvings)) = ahead.pop() {
+                let close = match (last.1, state) {
+                    (Some(one), Some(two)) => apart(one, two, omega) <= extent.finest,
+                    (None, None) => true,
+                    _ => false,
+                };
+                if !close && halvings < HALVINGS {
+                    let middle = 0.5 * (last.0 + s);
+                    ahead.push((s, state, halvings + 1));
+                    ahead.push((middle, at(middle), halvings + 1));
+                    continue;
+                }
+                if !close {
+                    curve.pieces.push(Vec::new());
+                }
+                curve.push(state);
+                last = (s, state);
+            }
+        }
+        curve.pieces.retain(|piece| !piece.is_empty());
+        curve
+    }
+
+    fn push(&mut self, state: Option<State>) {
+        if let (Some(state), Some(piece)) = (state, self.pieces.last_mut()) {
+            piece.push(state);
+        }
+    }
+
+    /// Its points.
+    pub fn points(&self) -> impl Iterator<Item = State> {
+        self.pieces.iter().flatten().copied()
+    }
+
+    /// The rectangle that it lies in.
+    pub fn bounds(&self) -> Bounds {
+        let none = [f64::INFINITY, f64::NEG_INFINITY];
+        let join = |[low, high]: [f64; 2], value: f64| [low.min(value), high.max(value)];
+        let bounds = Bounds { positions: none, scaled_velocities: none, omega: self.omega };
+        self.points().fold(bounds, |bounds, state| Bounds {
+            positions: join(bounds.positions, state.position),
+            scaled_velocities: join(bounds.scaled_velocities, state.velocity / self.omega),
+            ..bounds
+        })
+    }
+
+    /// The distance of a state from the curve, m.
+    pub fn distance(&self, state: State) -> f64 {
+        let flat = |state: &State| Vector2::new(state.position, state.velocity / self.omega);
+        let point = flat(&state);
+        let from = |piece: &Vec<State>| {
+            let alone = piece.first().map_or(f64::INFINITY, |first| (point - flat(first)).norm());
+            piece.windows(2).fold(alone, |nearest, pair| {
+                let (start, along) = (flat(&pair[0]), flat(&pair[1]) - flat(&pair[0]));
+                let share = ((point - start).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+                // Two points in one place are no direction.
+                let foot = if share.is_finite() { start + share * along } else { start };
+                nearest.min((point - foot).norm())
+            })
+        };
+        self.pieces.iter().map(from).fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// A rectangle of the section.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    positions: [f64; 2],
+    scaled_velocities: [f64; 2],
+    omega: f64,
+}
+
+impl Bounds {
+    /// The distance of a state from it, m; 0 inside.
+    pub fn distance(&self, state: State) -> f64 {
+        let beyond = |value: f64, [low, high]: [f64; 2]| (low - value).max(value - high).max(0.0);
+        beyond(state.position, self.positions).hypot(beyond(state.velocity / self.omega, self.scaled_velocities))
+    }
+}

@@ -1,0 +1,17 @@
+//! Which motion a start ends on, and what parts the starts that end on one from those that end on another.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`ending`] | what one run ends on: a stable orbit, chaos, rest |
+//! | [`grid`] | a grid of starts on a section, side by side |
+//! | [`manifold`] | the curves along which a saddle is approached and left |
+//! | [`boundary`] | points of the border between two basins, by halving; how near a manifold comes back to the saddle's other |
+
+pub mod boundary;
+pub mod ending;
+pub mod grid;
+pub mod manifold;
+
+pub use ending::{Ending, Patience, ending};
+pub use grid::{Basins, Grid, GridError, Part};
+pub use manifold::{Curve, Extent, Reversed, Saddle};

@@ -1,0 +1,66 @@
+//! How a motion leaves the place where its periodic orbit was, when the speed has just passed the corner impact.
+//!
+//! Past a nonsmooth fold neither side of the piecewise-linear map has its fixed point on its own side of the border. Next to
+//! the border the map still moves little, by an amount that is proportional to dT, and then the multiplier of A above 1
+//! carries the deviation off. It is there at dT = 0 already, so the number n of revolutions grows as a logarithm:
+//!
+//! ```text
+//! |dx_n| ~ |dT| lambda^n     n(|dx| = reach) = ln(reach/|dT|)/ln(lambda) + constant
+//! ```
+//!
+//! At a smooth fold the multiplier is 1 there, and n grows as the root of 1/|dT|.
+
+use nalgebra::Vector2;
+
+use crate::corner::CornerMap;
+use crate::flight::State;
+use crate::section::StroboscopicMap;
+use crate::simulate::{Event, SimulateError};
+use crate::tolerance;
+
+/// Revolutions from x* until the position on the section is farther than `reach`, m, from that of x*, by the
+/// piecewise-linear map at a period `dt`, s, longer than T*; `None` where it is not within `most`.
+pub fn linear(map: &CornerMap, dt: f64, reach: f64, most: u64) -> Option<u64> {
+    let (c, d) = (map.c(), map.d());
+    let mut deviation = Vector2::zeros();
+    (1..=most).find(|_| {
+        // A+, B+ where C dx + D dT < 0
+        let side = if (c * deviation)[0] + d * dt < 0.0 { &map.plus } else { &map.minus };
+        deviation = side.a * deviation + side.b * dt;
+        deviation[0].abs() > reach
+    })
+}
+
+/// The same by simulation, from `start`, the state x* on the section.
+pub fn simulated(map: &StroboscopicMap, start: State, reach: f64, most: u64) -> Result<Option<u64>, SimulateError> {
+    let mut motion = map.machine.start(map.cam_angle, start)?;
+    for revolution in 1..=most {
+        let goal = motion.after(1);
+        let _ = map.machine.advance(&mut motion, goal, &mut |_: &Event| std::ops::ControlFlow::Continue(()))?;
+        if (motion.state.position - start.position).abs() > reach {
+            return Ok(Some(revolution));
+        }
+    }
+    Ok(None)
+}
+
+/// Revolutions that each factor of ten less in |dT| adds: `ln 10/ln lambda`, lambda the multiplier above 1 of the side on
+/// which the deviation grows; `None` where neither side has one, or both have.
+pub fn revolutions_per_decade(map: &CornerMap) -> Option<f64> {
+    let above = |side: &crate::corner::map::SideMap| {
+        side.eigenvalues().into_iter().filter(|value| value.im == 0.0 && value.re > 1.0).map(|value| value.re).next()
+    };
+    let multiplier = match (above(&map.minus), above(&map.plus)) {
+        (Some(multiplier), None) | (None, Some(multiplier)) => multiplier,
+        _ => return None,
+    };
+    Some(std::f64::consts::LN_10 / multiplier.ln())
+}
+
+/// Whether both left, and after about as many revolutions.
+pub fn agree(linear: Option<u64>, simulated: Option<u64>) -> bool {
+    let near = |(linear, simulated): (u64, u64)| {
+        linear.abs_diff(simulated) as f64 <= 1.0 + tolerance::PASSAGE.value * linear as f64
+    };
+    linear.zip(simulated).is_some_and(near)
+}
