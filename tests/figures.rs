@@ -392,6 +392,41 @@ fn points_are_drawn_where_they_are() {
     assert!(line(0.5, 0.8) < 40 && line(0.5, 0.2) == 255);
 }
 
+/// In a PNG a grid is drawn by itself: within its frame, without a seam, over what comes before and under what comes after.
+#[test]
+fn a_grid_lies_between_what_is_below_and_above_it() {
+    let mut grid = Density::new([-1.0, 2.0], [-1.0, 2.0]);
+    (0..400_000).for_each(|i| grid.push(f64::from(i % 800) / 300.0 - 0.9, f64::from(i / 800) / 180.0 - 0.9));
+    assert!(grid.occupied() > 25_000);
+    let mut few = Density::new([-1.0, 2.0], [-1.0, 2.0]);
+    (0..20_000).for_each(|i| few.push(0.5, f64::from(i) / 10_000.0 - 0.5));
+    assert!(few.occupied() < 25_000);
+    for (grid, seam) in [(grid, 0.4), (few, 0.5)] {
+        let line = |y: f64, colour| Series { colour, ..series(line(vec![[0.0, y], [1.0, y]])) };
+        let (below, above) = (line(0.3, Colour::Ink), line(0.8, Colour::Vermilion));
+        let mut figure = figure(Data::Density(grid));
+        figure.x.range = Some([0.0, 1.0]);
+        figure.panels[0].y.range = Some([0.0, 1.0]);
+        figure.panels[0].series.insert(0, below);
+        figure.panels[0].series.push(above);
+        let frame = Layout::new(&figure).panels[0].frame;
+        let image = Pixmap::decode_png(&png::render(&figure, 2880).unwrap()).unwrap();
+        let pixel = |x: f64, y: f64| {
+            let at = [frame.left + frame.width * x, frame.bottom() - frame.height * y].map(|part| (4.0 * part) as u32);
+            let pixel = image.pixel(at[0], at[1]).unwrap();
+            [pixel.red(), pixel.green(), pixel.blue()]
+        };
+        let blue = |[red, _, blue]: [u8; 3]| blue > red && red < 200;
+        assert!(blue(pixel(seam, 0.3)), "{:?} over a line", pixel(seam, 0.3));
+        assert_eq!(pixel(seam, 0.8), [0xd5, 0x5e, 0x00], "under a line");
+        for outside in [[seam, -0.02], [seam, 1.02], [-0.005, 0.43], [1.005, 0.43]] {
+            assert_eq!(pixel(outside[0], outside[1]), [255; 3], "{outside:?} is outside the frame");
+        }
+        let column: Vec<[u8; 3]> = (350..750).map(|part| pixel(seam, f64::from(part) / 1000.0)).collect();
+        assert!(column.iter().all(|pixel| blue(*pixel)), "{column:?}");
+    }
+}
+
 #[test]
 fn thinned_lines_keep_their_shape_and_breaks() {
     let wave = |i: i32| [f64::from(i) * 0.01, 100.0 + 50.0 * (f64::from(i) * 0.0005).sin()];

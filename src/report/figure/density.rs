@@ -24,13 +24,14 @@ pub struct Density {
     y: [f64; 2],
     columns: usize,
     rows: usize,
-    /// `[cell, count]` where there are any; a cell is its row, from below, times the columns, plus its column.
+    /// `[cell, count]` where there are any; a cell is its row, from below, times the columns, plus its column. A count
+    /// stops at 65535: shades go by its logarithm, and two bytes a cell are half the memory of a picture.
     #[serde(serialize_with = "occupied")]
-    counts: Vec<u32>,
+    counts: Vec<u16>,
     outside: u64,
 }
 
-fn occupied<S: Serializer>(counts: &[u32], serializer: S) -> Result<S::Ok, S::Error> {
+fn occupied<S: Serializer>(counts: &[u16], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_seq(counts.iter().enumerate().filter(|(_, count)| **count > 0))
 }
 
@@ -115,11 +116,19 @@ impl Density {
     /// A shade for each cell, rows from below: 0 for none, else 1 to [`SHADES`] with the logarithm of the count. With
     /// `spread`, a point also shades the eight cells around it, so that single points are still seen in print.
     pub fn shades(&self, spread: bool) -> Vec<u8> {
-        let mut counts: Vec<u32> = self.counts.iter().copied().filter(|count| *count > 0).collect();
-        counts.sort_unstable();
+        // How many cells have each count: sorted, they would take as much memory as the grid.
+        let mut cells = vec![0_usize; usize::from(u16::MAX) + 1];
+        self.counts.iter().for_each(|count| cells[usize::from(*count)] += 1);
         // Periodic motions fall into few cells many times: the densest tenth may not push the rest into the faintest shade.
-        let full = f64::from(counts.get(counts.len().saturating_sub(1 + counts.len() / 10)).copied().unwrap_or(1));
-        let shade = |count: u32| {
+        let mut denser = self.occupied() / 10;
+        let full = (1..cells.len()).rev().find(|count| {
+            let here = cells[*count];
+            let found = here > denser;
+            denser = denser.saturating_sub(here);
+            found
+        });
+        let full = full.unwrap_or(1) as f64;
+        let shade = |count: u16| {
             let share = f64::from(count).ln_1p() / full.max(2.0).ln_1p();
             if count == 0 { 0 } else { ((share * f64::from(SHADES)) as u8).clamp(1, SHADES) }
         };
@@ -149,7 +158,7 @@ impl Density {
     /// Twice the range upwards or downwards at half the resolution, so that `y` comes nearer.
     fn double(&mut self, upwards: bool) {
         let span = self.y[1] - self.y[0];
-        let mut counts = vec![0_u32; self.counts.len()];
+        let mut counts = vec![0_u16; self.counts.len()];
         let shift = if upwards { 0 } else { self.rows / 2 };
         for (at, count) in self.counts.iter().enumerate() {
             let (row, column) = (at / self.columns, at % self.columns);

@@ -5,9 +5,11 @@
 //! [`super::figures`].
 
 pub mod density;
+mod grid;
 pub mod layout;
 pub mod png;
 mod series;
+mod sheet;
 pub mod svg;
 pub mod thin;
 pub mod ticks;
@@ -182,5 +184,11 @@ impl Colour {
             Self::Green => ("green", "#009e73", "#35cfa2"),
             Self::Purple => ("purple", "#b0588a", "#dd9cc2"),
         }
+    }
+
+    /// Red, green and blue on white paper.
+    pub(crate) fn rgb(self) -> [u8; 3] {
+        let hex = self.shades().1.trim_start_matches('#');
+        [0, 2, 4].map(|at| u8::from_str_radix(&hex[at..at + 2], 16).unwrap_or(0))
     }
 }

@@ -3,8 +3,10 @@
 use std::fmt::{self, Write};
 
 use super::density::{Density, SHADES};
+use super::grid::Grid;
 use super::layout::share;
-use super::svg::{Dense, FAR, fill, markers, number, stroke, stroked};
+use super::sheet::Sheet;
+use super::svg::{FAR, fill, markers, number, stroked};
 use super::{Colour, Data, Marker, Series, Stroke, thin};
 
 /// More points of a line than this are counted on a grid instead.
@@ -20,7 +22,6 @@ pub(super) struct Page {
     pub(super) height: f64,
     pub(super) x: [f64; 2],
     pub(super) y: [f64; 2],
-    pub(super) dense: Dense,
 }
 
 impl Page {
@@ -29,7 +30,7 @@ impl Page {
         if at.iter().all(|part| part.is_finite()) { at.map(|part| part.clamp(-FAR, FAR)) } else { [f64::NAN; 2] }
     }
 
-    pub(super) fn series(&self, out: &mut String, series: &Series) -> fmt::Result {
+    pub(super) fn series(&self, out: &mut Sheet, series: &Series) -> fmt::Result {
         let colour = series.colour;
         match &series.data {
             Data::Line { points, stroke } => self.line(out, points, *stroke, colour, false),
@@ -39,7 +40,7 @@ impl Page {
         }
     }
 
-    fn line(&self, out: &mut String, points: &[[f64; 2]], how: Stroke, colour: Colour, filled: bool) -> fmt::Result {
+    fn line(&self, out: &mut Sheet, points: &[[f64; 2]], how: Stroke, colour: Colour, filled: bool) -> fmt::Result {
         let strokes = thin::strokes(points.iter().map(|point| self.at(*point)), MOST_POINTS);
         if strokes.iter().map(Vec::len).sum::<usize>() > MOST_POINTS {
             let mut grid = Density::new(self.x, self.y);
@@ -71,7 +72,7 @@ impl Page {
         if edge.is_empty() { Ok(()) } else { stroked(out, &edge, how, colour) }
     }
 
-    fn points(&self, out: &mut String, points: &[[f64; 2]], marker: Marker, colour: Colour) -> fmt::Result {
+    fn points(&self, out: &mut Sheet, points: &[[f64; 2]], marker: Marker, colour: Colour) -> fmt::Result {
         let mut places: Vec<[f64; 2]> = Vec::new();
         let on_page = |at: &[f64; 2]| at[0].abs() <= 2.0 * self.width && at[1].abs() <= 2.0 * self.height;
         for at in points.iter().map(|point| self.at(*point)).filter(on_page) {
@@ -89,82 +90,34 @@ impl Page {
         if places.is_empty() { Ok(()) } else { markers(out, &places, marker, colour) }
     }
 
-    fn density(&self, out: &mut String, density: &Density, colour: Colour) -> fmt::Result {
+    fn density(&self, out: &mut Sheet, density: &Density, colour: Colour) -> fmt::Result {
         match density.occupied() {
             0 => Ok(()),
-            cells if cells <= MOST_DOTS => self.dots(out, density, cells, colour),
-            _ => self.cells(out, density, colour),
+            cells if cells <= MOST_DOTS => out.grid(self.dots(density, cells), colour),
+            _ => out.grid(self.cells(density), colour),
         }
     }
 
     /// Few cells: a dot each, larger where there are fewer.
-    fn dots(&self, out: &mut String, density: &Density, cells: usize, colour: Colour) -> fmt::Result {
+    fn dots(&self, density: &Density, cells: usize) -> Grid {
         let [x, y] = density.ranges();
         let [columns, rows] = density.cells();
-        let shades = density.shades(false);
-        let size = if cells < 4000 { 1.7 } else { 1.25 };
-        for shade in 1..=SHADES {
-            let (mut path, mut last) = (String::new(), [0_i64; 2]);
-            for (cell, _) in shades.iter().enumerate().filter(|(_, found)| **found == shade) {
-                let middle = |index: usize, count: usize, [low, high]: [f64; 2]| {
-                    low + (high - low) * (index as f64 + 0.5) / count as f64
-                };
-                let at = self.at([middle(cell % columns, columns, x), middle(cell / columns, rows, y)]);
-                // Tenths of a unit, from the dot before: half the bytes, and no error adds up.
-                let tenths = at.map(|part| (10.0 * part).round() as i64);
-                write!(path, "m{} {}h0", tenths[0] - last[0], tenths[1] - last[1])?;
-                last = tenths;
-            }
-            if !path.is_empty() {
-                let (width, opacity) = (10.0 * size, number(opacity(shade)));
-                let stroke = stroke(colour);
-                writeln!(
-                    out,
-                    r#"<path transform="scale(0.1)" d="M0 0{path}" fill="none" stroke-width="{width}" stroke-linecap="round" stroke-opacity="{opacity}" {stroke}/>"#
-                )?;
-            }
+        let mut at = [const { Vec::new() }; SHADES as usize];
+        for (cell, shade) in density.shades(false).into_iter().enumerate().filter(|(_, shade)| *shade > 0) {
+            let middle = |index: usize, count: usize, [low, high]: [f64; 2]| {
+                low + (high - low) * (index as f64 + 0.5) / count as f64
+            };
+            let dot = self.at([middle(cell % columns, columns, x), middle(cell / columns, rows, y)]);
+            at[usize::from(shade - 1)].push(dot.map(|part| (10.0 * part).round() as i64));
         }
-        Ok(())
+        Grid::Dots { at, size: if cells < 4000 { 1.7 } else { 1.25 } }
     }
 
     /// Many cells: the grid itself, stretched over the frame.
-    fn cells(&self, out: &mut String, density: &Density, colour: Colour) -> fmt::Result {
+    fn cells(&self, density: &Density) -> Grid {
         let [x, y] = density.ranges();
-        let [columns, rows] = density.cells();
-        let shades = density.shades(true);
         let ([left, top], [right, bottom]) = (self.at([x[0], y[1]]), self.at([x[1], y[0]]));
-        if self.dense == Dense::Embedded {
-            let image = super::png::grid(&shades, columns, colour, opacity).map_err(|_| fmt::Error)?;
-            let [left, top, width, height] = [left, top, right - left, bottom - top].map(number);
-            return writeln!(
-                out,
-                r#"<image class="dense" x="{left}" y="{top}" width="{width}" height="{height}" preserveAspectRatio="none" href="data:image/png;base64,{image}"/>"#
-            );
-        }
-        let (across, up) = ((right - left) / columns as f64, (bottom - top) / rows as f64);
-        writeln!(out, r#"<g transform="translate({left} {top}) scale({across} {up})">"#)?;
-        for shade in 1..=SHADES {
-            let mut path = String::new();
-            for (row, cells) in shades.chunks(columns).enumerate() {
-                let mut column = 0;
-                for run in cells.chunk_by(|one, other| (*one == shade) == (*other == shade)) {
-                    if run[0] == shade {
-                        let length = run.len();
-                        write!(path, "M{column} {}h{length}v1h-{length}z", rows - 1 - row)?;
-                    }
-                    column += run.len();
-                }
-            }
-            if !path.is_empty() {
-                let opacity = number(opacity(shade));
-                writeln!(out, r#"<path d="{path}" fill-opacity="{opacity}" {}/>"#, fill(colour))?;
-            }
-        }
-        writeln!(out, "</g>")
+        let place = [left, top, right - left, bottom - top];
+        Grid::Cells { shades: density.shades(true), columns: density.cells()[0], place }
     }
-}
-
-/// Of a shade: the faintest is still seen in print.
-fn opacity(shade: u8) -> f64 {
-    0.5 + 0.5 * f64::from(shade - 1) / f64::from(SHADES - 1)
 }

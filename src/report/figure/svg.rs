@@ -6,6 +6,7 @@ use std::fmt::{self, Write};
 
 use super::layout::{Frame, Layout, MarkLine, SAMPLE, TEXT, TITLE, Text, WIDTH, share};
 use super::series::Page;
+use super::sheet::{Layer, Sheet};
 use super::{Colour, Data, Figure, Marker, Panel, Series, Stroke};
 
 /// Paper on a dark screen.
@@ -15,38 +16,34 @@ const DARK_IMAGE: &str = "invert(1) hue-rotate(180deg)";
 /// Coordinates far outside the page are cut here.
 pub(super) const FAR: f64 = 1e5;
 
-/// How a dense grid is written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Dense {
-    /// As an image, which bounds the size of the file.
-    Embedded,
-    /// As rectangles, for a renderer that reads no images.
-    Outlined,
-}
-
 /// The figure as an SVG document.
 pub fn render(figure: &Figure) -> Result<String, fmt::Error> {
-    write(figure, Dense::Embedded)
+    let drawings = write(figure, false)?.into_iter().filter_map(|layer| match layer {
+        Layer::Drawing(text) => Some(text),
+        Layer::Grid(..) => None,
+    });
+    Ok(drawings.collect())
 }
 
-pub(super) fn write(figure: &Figure, dense: Dense) -> Result<String, fmt::Error> {
+/// The figure in layers, dense grids among them if they are to stand `apart`, else one document.
+pub(super) fn write(figure: &Figure, apart: bool) -> Result<Vec<Layer>, fmt::Error> {
     let layout = Layout::new(figure);
-    let mut out = String::new();
     let height = layout.height;
-    writeln!(
-        out,
+    let page = format!(
         r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" width="100%" role="img" font-family="sans-serif" font-size="{TEXT}">"#
-    )?;
-    writeln!(out, "<title>{}</title>", escaped(&figure.title))?;
+    );
+    let ink = format!("<g {}>", fill(Colour::Ink));
+    let mut out = Sheet::new(format!("{page}\n{ink}\n"), apart);
+    writeln!(out, "{page}\n<title>{}</title>", escaped(&figure.title))?;
     style(&mut out)?;
     writeln!(out, r##"<rect class="paper" width="{WIDTH}" height="{height}" fill="#ffffff"/>"##)?;
-    writeln!(out, "<g {}>", fill(Colour::Ink))?;
+    writeln!(out, "{ink}")?;
     for line in &layout.title {
         let Text { at: [x, y], text } = line;
         writeln!(out, r#"<text x="{}" y="{}" font-size="{TITLE}">{}</text>"#, number(*x), number(*y), escaped(text))?;
     }
     for (panel, place) in figure.panels.iter().zip(&layout.panels) {
-        self::panel(&mut out, panel, &layout, place, dense)?;
+        self::panel(&mut out, panel, &layout, place)?;
     }
     for mark in layout.marks.iter().filter(|mark| mark.inside) {
         leader(&mut out, mark, &layout)?;
@@ -69,10 +66,10 @@ pub(super) fn write(figure: &Figure, dense: Dense) -> Result<String, fmt::Error>
         text(&mut out, line)?;
     }
     writeln!(out, "</g>\n</svg>")?;
-    Ok(out)
+    Ok(out.layers())
 }
 
-fn style(out: &mut String) -> fmt::Result {
+fn style(out: &mut Sheet) -> fmt::Result {
     write!(out, "<style>@media (prefers-color-scheme: dark) {{ .paper {{ fill: {DARK_PAPER} }}")?;
     for (class, _, dark) in Colour::ALL.map(Colour::shades) {
         write!(out, " .s-{class} {{ stroke: {dark} }} .f-{class} {{ fill: {dark} }}")?;
@@ -80,18 +77,12 @@ fn style(out: &mut String) -> fmt::Result {
     writeln!(out, " .dense {{ filter: {DARK_IMAGE} }} }}</style>")
 }
 
-fn panel(
-    out: &mut String,
-    panel: &Panel,
-    layout: &Layout,
-    place: &super::layout::PanelLayout,
-    dense: Dense,
-) -> fmt::Result {
+fn panel(out: &mut Sheet, panel: &Panel, layout: &Layout, place: &super::layout::PanelLayout) -> fmt::Result {
     let frame = &place.frame;
-    let page = Page { width: frame.width, height: frame.height, x: layout.range, y: place.range, dense };
-    let Frame { left, top, width, height } = frame;
-    let [left, top, width, height] = [left, top, width, height].map(|part| number(*part));
-    writeln!(out, r#"<svg x="{left}" y="{top}" width="{width}" height="{height}">"#)?;
+    let page = Page { width: frame.width, height: frame.height, x: layout.range, y: place.range };
+    let Frame { left, top, width, height } = *frame;
+    out.open_frame([left, top, width, height]);
+    let [left, top, width, height] = [left, top, width, height].map(number);
     for mark in layout.marks.iter().filter(|mark| mark.inside) {
         let x = number(mark.at - frame.left);
         line(out, &format!("M{x} 0V{height}"), mark.label.is_some())?;
@@ -141,18 +132,18 @@ fn panel(
     Ok(())
 }
 
-fn text(out: &mut String, text: &Text) -> fmt::Result {
+fn text(out: &mut Sheet, text: &Text) -> fmt::Result {
     let Text { at: [x, y], text } = text;
     writeln!(out, r#"<text x="{}" y="{}">{}</text>"#, number(*x), number(*y), escaped(text))
 }
 
-fn line(out: &mut String, path: &str, labelled: bool) -> fmt::Result {
+fn line(out: &mut Sheet, path: &str, labelled: bool) -> fmt::Result {
     let dash = if labelled { r#" stroke-dasharray="2 3""# } else { "" };
     writeln!(out, r#"<path d="{path}" fill="none" stroke-width="0.8"{dash} {}/>"#, stroke(Colour::Grey))
 }
 
 /// The line from the first frame up to a label beside it.
-fn leader(out: &mut String, mark: &MarkLine, layout: &Layout) -> fmt::Result {
+fn leader(out: &mut Sheet, mark: &MarkLine, layout: &Layout) -> fmt::Result {
     let Some((label, first)) = mark.label.as_ref().zip(layout.panels.first()) else { return Ok(()) };
     let (x, from, to) = (number(mark.at), number(first.frame.top), number(label.at[1] - 0.75 * TEXT));
     writeln!(out, r#"<path d="M{x} {from}V{to}" fill="none" stroke-width="0.8" {}/>"#, stroke(Colour::Grey))?;
@@ -160,7 +151,7 @@ fn leader(out: &mut String, mark: &MarkLine, layout: &Layout) -> fmt::Result {
 }
 
 /// A series in the legend.
-fn sample(out: &mut String, series: &Series, [x, y]: [f64; 2]) -> fmt::Result {
+fn sample(out: &mut Sheet, series: &Series, [x, y]: [f64; 2]) -> fmt::Result {
     let across = format!("M{} {}h{SAMPLE}", number(x), number(y));
     let colour = series.colour;
     match &series.data {
@@ -181,7 +172,7 @@ fn sample(out: &mut String, series: &Series, [x, y]: [f64; 2]) -> fmt::Result {
     }
 }
 
-pub(super) fn stroked(out: &mut String, path: &str, how: Stroke, colour: Colour) -> fmt::Result {
+pub(super) fn stroked(out: &mut Sheet, path: &str, how: Stroke, colour: Colour) -> fmt::Result {
     let (width, dash) = match how {
         Stroke::Thin => (0.9, ""),
         Stroke::Solid => (1.5, ""),
@@ -192,7 +183,7 @@ pub(super) fn stroked(out: &mut String, path: &str, how: Stroke, colour: Colour)
     writeln!(out, r#"<path d="{path}" fill="none" stroke-width="{width}" stroke-linejoin="round"{dash} {colour}/>"#)
 }
 
-pub(super) fn markers(out: &mut String, points: &[[f64; 2]], marker: Marker, colour: Colour) -> fmt::Result {
+pub(super) fn markers(out: &mut Sheet, points: &[[f64; 2]], marker: Marker, colour: Colour) -> fmt::Result {
     let shape = match marker {
         Marker::Dot => "h0",
         Marker::Ring => "m-2.4 0a2.4 2.4 0 1 0 4.8 0a2.4 2.4 0 1 0 -4.8 0z",

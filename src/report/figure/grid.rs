@@ -1,0 +1,144 @@
+//! A dense grid on the page: as SVG, or drawn straight into the pixels of a PNG.
+
+use std::fmt::{self, Write};
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use resvg::tiny_skia::{FillRule, Mask, Paint, Path, PathBuilder, Pixmap, Rect, Transform};
+
+use super::Colour;
+use super::density::SHADES;
+use super::svg::{number, stroke};
+
+/// What is drawn of a grid; lengths in the page's units, from the upper left corner of its frame.
+pub(super) enum Grid {
+    /// The cells, stretched over a place.
+    Cells {
+        /// Row by row from below, 0 for nothing.
+        shades: Vec<u8>,
+        columns: usize,
+        /// Left, top, width and height of all of it.
+        place: [f64; 4],
+    },
+    /// A dot for each cell that has a point.
+    Dots {
+        /// By shade, the faintest first: the middle of each, in tenths of a unit.
+        at: [Vec<[i64; 2]>; SHADES as usize],
+        /// Their diameter.
+        size: f64,
+    },
+}
+
+/// Of a shade: the faintest is still seen in print.
+fn opacity(shade: u8) -> f64 {
+    0.5 + 0.5 * f64::from(shade - 1) / f64::from(SHADES - 1)
+}
+
+/// The same of 255, 0 for no shade.
+fn alpha(shade: u8) -> u8 {
+    if shade == 0 { 0 } else { (255.0 * opacity(shade)) as u8 }
+}
+
+impl Grid {
+    /// As elements of an SVG.
+    pub(super) fn write(&self, out: &mut impl Write, colour: Colour) -> fmt::Result {
+        match self {
+            Self::Cells { shades, columns, place } => {
+                let image = image(shades, *columns, colour).map_err(|_| fmt::Error)?;
+                let [left, top, width, height] = place.map(number);
+                writeln!(
+                    out,
+                    r#"<image class="dense" x="{left}" y="{top}" width="{width}" height="{height}" preserveAspectRatio="none" href="data:image/png;base64,{image}"/>"#
+                )
+            }
+            Self::Dots { at, size } => {
+                for (shade, dots) in (1..).zip(at).filter(|(_, dots)| !dots.is_empty()) {
+                    let (mut path, mut last) = (String::new(), [0; 2]);
+                    for dot in dots {
+                        // From the dot before: half the bytes, and no error adds up.
+                        write!(path, "m{} {}h0", dot[0] - last[0], dot[1] - last[1])?;
+                        last = *dot;
+                    }
+                    let (width, opacity) = (10.0 * size, number(opacity(shade)));
+                    let stroke = stroke(colour);
+                    writeln!(
+                        out,
+                        r#"<path transform="scale(0.1)" d="M0 0{path}" fill="none" stroke-width="{width}" stroke-linecap="round" stroke-opacity="{opacity}" {stroke}/>"#
+                    )?;
+                }
+                Ok(())
+            }
+        }
+    }
+
+    /// Draws what of it lies in a band of the page, `top` pixels below the page's upper edge, and in `frame` (left, top,
+    /// width and height on the page); a unit is `scale` pixels.
+    pub(super) fn draw(&self, band: &mut Pixmap, colour: Colour, frame: [f64; 4], top: f64, scale: f64) {
+        let [left, above, width, height] = frame.map(|part| part as f32);
+        let scaled = Transform::from_row(scale as f32, 0.0, 0.0, scale as f32, 0.0, -top as f32);
+        let shown = Rect::from_xywh(left, above, width, height).map(PathBuilder::from_rect);
+        let Some((mut mask, shown)) = Mask::new(band.width(), band.height()).zip(shown) else { return };
+        mask.fill_path(&shown, FillRule::Winding, true, scaled);
+        let place = Transform::from_translate(left, above).post_concat(scaled);
+        let seen = [top, top + f64::from(band.height())].map(|pixels| pixels / scale - frame[1]);
+        for shade in 1..=SHADES {
+            if let Some(path) = self.path(shade, seen) {
+                let mut paint = Paint::default();
+                let [red, green, blue] = colour.rgb();
+                paint.set_color_rgba8(red, green, blue, alpha(shade));
+                band.fill_path(&path, &paint, FillRule::Winding, place, Some(&mask));
+            }
+        }
+    }
+
+    /// What has a shade, as far as it reaches into a range of heights; nothing where nothing does.
+    fn path(&self, shade: u8, [upper, lower]: [f64; 2]) -> Option<Path> {
+        let mut path = PathBuilder::new();
+        match self {
+            Self::Cells { shades, columns, place: [left, top, width, height] } => {
+                let rows = shades.len() / columns;
+                let [across, down] = [width / *columns as f64, height / rows as f64];
+                let [first, last] = [upper, lower].map(|y| ((y - top) / down).max(0.0));
+                for line in first as usize..rows.min(last.ceil() as usize) {
+                    let row = rows - 1 - line;
+                    let [y, below] = [line, line + 1].map(|line| (top + down * line as f64) as f32);
+                    let mut column = 0;
+                    let cells = &shades[row * columns..(row + 1) * columns];
+                    for run in cells.chunk_by(|one, other| (*one == shade) == (*other == shade)) {
+                        let [x, right] =
+                            [column, column + run.len()].map(|column| (left + across * column as f64) as f32);
+                        column += run.len();
+                        if run[0] == shade {
+                            path.push_rect(Rect::from_ltrb(x, y, right, below)?);
+                        }
+                    }
+                }
+            }
+            Self::Dots { at, size } => {
+                let dots = at[usize::from(shade - 1)].iter().map(|dot| dot.map(|tenths| tenths as f64 / 10.0));
+                for [x, y] in dots.filter(|[_, y]| upper - size < *y && *y < lower + size) {
+                    path.push_circle(x as f32, y as f32, (size / 2.0) as f32);
+                }
+            }
+        }
+        path.finish()
+    }
+}
+
+/// Shades as a PNG in base 64: one colour, its opacity by shade.
+fn image(shades: &[u8], columns: usize, colour: Colour) -> Result<String, png::EncodingError> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, columns as u32, (shades.len() / columns) as u32);
+    encoder.set_color(png::ColorType::Indexed);
+    encoder.set_depth(png::BitDepth::Four);
+    let alpha: Vec<u8> = (0..=SHADES).map(alpha).collect();
+    encoder.set_palette(colour.rgb().repeat(alpha.len()));
+    encoder.set_trns(alpha);
+    encoder.set_compression(png::Compression::High);
+    let mut writer = encoder.write_header()?;
+    let pair = |pair: &[u8]| (pair[0] << 4) | pair.get(1).copied().unwrap_or(0);
+    let packed: Vec<u8> = shades.chunks(columns).rev().flat_map(|row| row.chunks(2).map(pair)).collect();
+    writer.write_image_data(&packed)?;
+    writer.finish()?;
+    Ok(STANDARD.encode(bytes))
+}

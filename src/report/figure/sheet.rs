@@ -1,0 +1,64 @@
+//! The document while it is written: in one piece, or cut where a grid is drawn between what lies below and above it.
+
+use std::fmt::{self, Write};
+
+use super::Colour;
+use super::grid::Grid;
+
+/// What is drawn, the first below.
+pub(super) enum Layer {
+    /// A whole SVG document.
+    Drawing(String),
+    /// A grid, its colour, and the frame that it is cut to: left, top, width and height on the page.
+    Grid(Grid, Colour, [f64; 4]),
+}
+
+/// The text so far, and the layers below it.
+pub(super) struct Sheet {
+    text: String,
+    layers: Vec<Layer>,
+    apart: bool,
+    /// Opens a document, and a group in it.
+    page: String,
+    /// Opens the frame that is open, and where that is.
+    frame: (String, [f64; 4]),
+}
+
+impl Write for Sheet {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        self.text.write_str(text)
+    }
+}
+
+impl Sheet {
+    /// Nothing yet; `page` opens a document and a group in it. Grids are part of the text unless they stand `apart`.
+    pub(super) fn new(page: String, apart: bool) -> Self {
+        Self { text: String::new(), layers: Vec::new(), apart, page, frame: (String::new(), [0.0; 4]) }
+    }
+
+    /// Opens a frame: left, top, width and height.
+    pub(super) fn open_frame(&mut self, frame: [f64; 4]) {
+        let [left, top, width, height] = frame.map(super::svg::number);
+        let tag = format!("<svg x=\"{left}\" y=\"{top}\" width=\"{width}\" height=\"{height}\">\n");
+        self.text.push_str(&tag);
+        self.frame = (tag, frame);
+    }
+
+    /// Adds a grid to the frame that is open.
+    pub(super) fn grid(&mut self, grid: Grid, colour: Colour) -> fmt::Result {
+        if !self.apart {
+            return grid.write(self, colour);
+        }
+        let (tag, frame) = &self.frame;
+        let above = format!("{}{tag}", self.page);
+        let below = std::mem::replace(&mut self.text, above) + "</svg>\n</g>\n</svg>\n";
+        self.layers.extend([Layer::Drawing(below), Layer::Grid(grid, colour, *frame)]);
+        Ok(())
+    }
+
+    /// The layers, the first below.
+    pub(super) fn layers(mut self) -> Vec<Layer> {
+        self.layers.push(Layer::Drawing(self.text));
+        self.layers
+    }
+}
