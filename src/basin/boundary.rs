@@ -26,10 +26,12 @@ pub fn border(
     if first.is_same(&last) {
         return Ok(None);
     }
+    // A chaotic run may come to rest by chance: an orbit, where one end has it, tells the two sides apart.
+    let ends_low = |ending: &Ending| if last.is_orbit() { !ending.is_same(&last) } else { ending.is_same(&first) };
     let (mut low, mut high) = (0.0, 1.0);
     while high - low > tolerance::BORDER_BRACKET.value {
         let middle = 0.5 * (low + high);
-        if end(middle)?.is_same(&first) { low = middle } else { high = middle }
+        if ends_low(&end(middle)?) { low = middle } else { high = middle }
     }
     Ok(Some(at(0.5 * (low + high))))
 }
