@@ -2,7 +2,7 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`ending`] | what one run ends on: a stable orbit, chaos, rest |
+//! | [`mod@ending`] | what one run ends on: a stable orbit, chaos, rest |
 //! | [`grid`] | a grid of starts on a section, side by side |
 //! | [`manifold`] | the curves along which a saddle is approached and left |
 //! | [`boundary`] | points of the border between two basins, by halving; how near a manifold comes back to the saddle's other |

@@ -4,7 +4,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`cycle`] | an orbit as its impacts, the equations that close it, Newton's method |
-//! | [`search`] | orbits of one machine: exhaustively those of one impact, by many starts the others |
+//! | [`mod@search`] | orbits of one machine: exhaustively those of one impact, by many starts the others |
 //! | [`family`] | machines that differ in a speed or a number of the model |
 //! | [`curve`] | pseudo-arclength steps along the solutions of one equation fewer than unknowns |
 //! | [`branch`] | branches of orbits through corners, folds, flips and grazes, with those points located |

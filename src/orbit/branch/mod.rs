@@ -6,6 +6,7 @@
 //! these: a branch is continuous, its direction is not.
 
 mod chatter;
+mod cut;
 mod follow;
 mod gap;
 mod halved;

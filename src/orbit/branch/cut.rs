@@ -1,0 +1,231 @@
+//! What cuts a step along a branch short, or is passed within it: told, measured and located.
+
+use nalgebra::DVector;
+
+use super::follow::Walk;
+use super::problem::Problem;
+use super::switch::{self, Exit};
+use super::{Kind, Special, gap, halved};
+use crate::orbit::curve::{self, CurvePoint, NoPoint};
+use crate::orbit::{Cycle, FamilyError};
+use crate::simulate::Machine;
+use crate::tolerance;
+
+/// A cut of the step at hand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Cut {
+    /// The parameter reaches a bound.
+    Range(f64),
+    /// The orbit leaves its cycle.
+    Exit(Exit),
+    /// A multiplier passes 1.
+    Fold,
+    /// A multiplier passes -1.
+    Flip,
+    /// The second half of a period becomes the same as the first.
+    Halved,
+    /// On one side of the corner that an impact is pinned to, a multiplier passes 1 or -1.
+    Type { side: usize, multiplier: f64 },
+}
+
+/// A cut, located.
+pub(super) struct Located {
+    /// The step to it.
+    pub(super) step: f64,
+    pub(super) cut: Cut,
+    pub(super) point: CurvePoint,
+    /// Values of the parameter on either side.
+    pub(super) bracket: [f64; 2],
+    pub(super) residual: f64,
+}
+impl Walk<'_> {
+    /// The flip that a step to `next` passes, if the orbit is one of twice the period.
+    pub(super) fn halved(
+        &self,
+        problem: &Problem<'_>,
+        next: &CurvePoint,
+    ) -> Result<Option<Located>, NoPoint<FamilyError>> {
+        if self.pinned.is_some() || self.pattern.second_half(0).is_none() {
+            return Ok(None);
+        }
+        let (one, two) = (problem.unpack(&self.from.unknowns)?.0, problem.unpack(&next.unknowns)?.0);
+        let ends = [(self.value(&self.from.unknowns), &one), (self.value(&next.unknowns), &two)];
+        let values = |value: f64| {
+            let mut values = problem.values(&self.from.unknowns);
+            if let Some(last) = values.last_mut() {
+                *last = value;
+            }
+            values
+        };
+        let machine_at = |value: f64| self.family.machine(&values(value)).ok().map(|(machine, _)| machine);
+        let Some(flipped) = halved::flip(machine_at, ends) else { return Ok(None) };
+        let Some(machine) = machine_at(flipped.value) else { return Ok(None) };
+        let unknowns = problem.unknowns(&flipped.cycle, &machine, &values(flipped.value));
+        let point = CurvePoint { unknowns, ..self.from.clone() };
+        // What comes before is looked at half way there, where the equations are regular.
+        let part = halved::apart(&one).zip(halved::apart(&two)).map_or(0.0, |(one, two)| 0.5 * one / (one - two));
+        let (bracket, residual) = (flipped.bracket, flipped.residual);
+        Ok(Some(Located { step: part * self.step, cut: Cut::Halved, point, bracket, residual }))
+    }
+
+    /// What may be passed without a change of the cycle.
+    pub(super) fn passed(&self) -> Vec<Cut> {
+        if self.pinned.is_none() {
+            return vec![Cut::Fold, Cut::Flip];
+        }
+        let of_side = |side| [1.0, -1.0].map(|multiplier| Cut::Type { side, multiplier });
+        [0, 1].into_iter().flat_map(of_side).chain([Cut::Fold]).collect()
+    }
+
+    /// What the equations show to have been passed at `unknowns`.
+    pub(super) fn cuts(
+        &self,
+        problem: &Problem<'_>,
+        unknowns: &DVector<f64>,
+    ) -> Result<Vec<Cut>, NoPoint<FamilyError>> {
+        let (cycle, machine, _) = problem.unpack(unknowns)?;
+        let mut cuts = Vec::new();
+        let value = self.value(unknowns);
+        let [low, high] = self.following.range;
+        if value < low {
+            cuts.push(Cut::Range(low));
+        }
+        if value > high {
+            cuts.push(Cut::Range(high));
+        }
+        for (index, contact) in cycle.contacts.iter().enumerate() {
+            let segment = &machine.cam().segments()[contact.segment];
+            let pinned = self.pinned.is_some_and(|pinned| pinned.contact == index);
+            if contact.cam_angle > segment.end && !pinned {
+                cuts.push(Cut::Exit(Exit::Corner { contact: index, past_end: true }));
+            }
+            if contact.cam_angle < segment.start && !pinned {
+                cuts.push(Cut::Exit(Exit::Corner { contact: index, past_end: false }));
+            }
+            if cycle.approach(&machine, index) <= 0.0 {
+                cuts.push(Cut::Exit(Exit::Tangent { contact: index }));
+            }
+        }
+        Ok(cuts)
+    }
+
+    /// A quantity that is positive before a cut and passes 0 at it; of a fold and a flip the sign before is any.
+    pub(super) fn measure(
+        &self,
+        problem: &Problem<'_>,
+        cut: Cut,
+        at: &CurvePoint,
+    ) -> Result<f64, NoPoint<FamilyError>> {
+        let (cycle, machine, _) = problem.unpack(&at.unknowns)?;
+        Ok(match cut {
+            Cut::Range(bound) => {
+                let value = self.value(&at.unknowns);
+                if bound == self.following.range[0] { value - bound } else { bound - value }
+            }
+            Cut::Exit(Exit::Corner { contact, past_end }) => {
+                let contact = &cycle.contacts[contact];
+                let segment = &machine.cam().segments()[contact.segment];
+                if past_end { segment.end - contact.cam_angle } else { contact.cam_angle - segment.start }
+            }
+            Cut::Exit(Exit::Tangent { contact }) => cycle.approach(&machine, contact),
+            Cut::Exit(Exit::Touch { contact, turned }) => {
+                gap::least(&cycle, &machine, contact, turned).ok_or(NoPoint::NotClosed)?.0
+            }
+            Cut::Fold => at.tangent[at.tangent.len() - 1],
+            // Its own equations are singular there: `halved` locates it.
+            Cut::Halved => return Err(NoPoint::NotClosed),
+            Cut::Flip => {
+                let (_, matrix) = cycle.at_section(&machine, 0.0);
+                1.0 + matrix.trace() + matrix.determinant()
+            }
+            Cut::Type { side, multiplier } => {
+                let pinned = self.pinned.ok_or(NoPoint::NotClosed)?;
+                let matrix = pinned.sides(&cycle, &machine)[side];
+                1.0 - multiplier * matrix.trace() + matrix.determinant()
+            }
+        })
+    }
+
+    /// Where in `[0, step]` a cut is: by secants that keep the bracket.
+    pub(super) fn locate(&self, problem: &Problem<'_>, cut: Cut, step: f64) -> Result<Located, NoPoint<FamilyError>> {
+        /// Secants that halve the weight of an end that stays twice gain digits fast; bisection would take fifty.
+        const STEPS: usize = 60;
+        let at = |step: f64| -> Result<(CurvePoint, f64), NoPoint<FamilyError>> {
+            let point = curve::step(problem, &self.from.unknowns, &self.from.tangent, step)?;
+            let measure = self.measure(problem, cut, &point)?;
+            Ok((point, measure))
+        };
+        let (mut low, mut high) = (0.0, step);
+        let mut at_low = self.measure(problem, cut, &self.from)?;
+        let (mut point, mut at_high) = at(high)?;
+        let mut bracket = [self.value(&self.from.unknowns), self.value(&point.unknowns)];
+        let sign = at_high < 0.0;
+        if (at_low < 0.0) == sign && at_high != 0.0 {
+            return Err(NoPoint::NotClosed);
+        }
+        let (mut best, mut residual, mut moved_high) = (high, at_high.abs(), None);
+        for _ in 0..STEPS {
+            if residual == 0.0 || high - low <= tolerance::ROOT_WIDTH.value * step {
+                break;
+            }
+            let secant = low + (high - low) * at_low / (at_low - at_high);
+            let middle = if secant > low && secant < high { secant } else { 0.5 * (low + high) };
+            let (found, measure) = at(middle)?;
+            if measure.abs() < residual {
+                (best, residual, point) = (middle, measure.abs(), found.clone());
+            }
+            if (measure < 0.0) == sign {
+                (high, at_high) = (middle, measure);
+                at_low *= if moved_high == Some(true) { 0.5 } else { 1.0 };
+                moved_high = Some(true);
+                bracket[1] = self.value(&found.unknowns);
+            } else {
+                (low, at_low) = (middle, measure);
+                at_high *= if moved_high == Some(false) { 0.5 } else { 1.0 };
+                moved_high = Some(false);
+                bracket[0] = self.value(&found.unknowns);
+            }
+        }
+        // Met exactly, while the other end of the bracket is still far.
+        if residual == 0.0 {
+            bracket = [self.value(&point.unknowns); 2];
+        }
+        if bracket[0] > bracket[1] {
+            bracket.swap(0, 1);
+        }
+        Ok(Located { step: best, cut, point, bracket, residual })
+    }
+
+    pub(super) fn special(
+        &self,
+        problem: &Problem<'_>,
+        located: &Located,
+    ) -> Result<Option<Special>, NoPoint<FamilyError>> {
+        let (cycle, machine, _) = problem.unpack(&located.point.unknowns)?;
+        let kind = match located.cut {
+            Cut::Range(_) => return Ok(None),
+            Cut::Fold => Kind::Fold,
+            Cut::Flip | Cut::Halved => Kind::Flip,
+            Cut::Type { side, multiplier } => Kind::Type { after_corner: side == 1, multiplier },
+            Cut::Exit(exit) => match (exit, self.order(exit, &cycle, &machine)) {
+                (Exit::Corner { .. }, None) => return Ok(None),
+                // Contacts are numbered as those of the orbit, from angle 0 on.
+                (_, order) => match switch::kind(exit, &cycle, &machine, order.unwrap_or(0)) {
+                    Kind::Corner { contact, segment, jump_order } => {
+                        Kind::Corner { contact: cycle.place_in_order(contact), segment, jump_order }
+                    }
+                    other => other,
+                },
+            },
+        };
+        Ok(Some(Special { kind, bracket: located.bracket, residual: located.residual }))
+    }
+
+    /// The order of the corner that a contact leaves its segment by, if it is one.
+    pub(super) fn order(&self, exit: Exit, cycle: &Cycle, machine: &Machine) -> Option<usize> {
+        let Exit::Corner { contact, past_end } = exit else { return None };
+        let segment = cycle.contacts[contact].segment;
+        let meeting = if past_end { (segment + 1) % machine.cam().segments().len() } else { segment };
+        machine.cam().corners().iter().find(|corner| corner.segment == meeting).map(|corner| corner.jump_order)
+    }
+}
