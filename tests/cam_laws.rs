@@ -239,6 +239,32 @@ fn bounds_on_the_third_derivative() {
     assert_eq!(arc.third_bound(-2.0, 2.0), f64::INFINITY);
 }
 
+/// By the high derivatives that tell corners apart, which are found another way. Somewhere each bound is nearly met: one
+/// smaller by a fifth would not be one.
+#[test]
+fn bounds_on_the_fourth_derivative() {
+    let arc = |distance: f64, radius: f64| Law::Arc(Arc { distance, direction: 0.0, radius });
+    let arcs = [arc(0.45, 0.85), arc(-0.45, 0.85), arc(0.404, 0.15), arc(0.1, 0.4)];
+    let mut laws: Vec<(Law, f64)> = references().into_iter().map(|(law, middle, _, _)| (law, middle)).collect();
+    for arc in arcs {
+        laws.extend((0..=20).map(|sample| (arc.clone(), 0.015 * f64::from(sample))));
+    }
+    let mut nearest = std::collections::BTreeMap::new();
+    for (law, middle) in laws {
+        for reach in [1e-9, 1e-4, 0.01, 0.1, 0.5] {
+            let bound = law.fourth_bound(middle - reach, middle + reach);
+            let at = |sample: i32| law.jet(middle + reach * f64::from(sample) / 500.0).0[4].abs();
+            let largest = if bound.is_finite() { (-500..=500).map(at).fold(0.0, f64::max) } else { 0.0 };
+            assert!(largest <= bound * (1.0 + 1e-12), "{law:?} {middle} {reach}: {largest} {bound}");
+            let nearest: &mut f64 = nearest.entry(law.name()).or_insert(0.0);
+            *nearest = nearest.max(largest / bound.max(f64::MIN_POSITIVE));
+        }
+    }
+    let loose = |(name, nearest): &(&&str, &f64)| **name != "dwell" && **nearest < 0.8;
+    assert_eq!(nearest.iter().find(loose), None, "{nearest:?}");
+    assert_eq!(arc(0.5, 0.1).fourth_bound(0.1, 0.21), f64::INFINITY);
+}
+
 /// Peak velocity (in rise/span) and acceleration (in rise/span^2) as the handbooks give them, to four digits.
 #[test]
 fn motions_have_the_peaks_of_the_handbooks() {

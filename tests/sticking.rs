@@ -169,3 +169,32 @@ fn a_start_on_the_cam_sticks_flies_or_is_hit() {
     assert_eq!((events[0].kind, events[0].cam_angle), (EventKind::Impact, 2.0));
     assert_relative_eq!(events[0].velocity_after - events[0].cam_velocity, 0.4, max_relative = 1e-12);
 }
+
+/// Spring and cam swing alike: the slope's terms cancel all round, and the contact force is what is left.
+#[test]
+fn a_force_near_zero_all_round_is_followed_and_its_end_found() {
+    let near_zero = |second: f64, preload: f64| {
+        let text = format!(
+            "[follower]\nmass = 1.0\ndamping = 0.0\nstiffness = 1.0\ngravity = 0.0\nrest_position = {}\n\
+             restitution = 0.5\n[cam]\nlaw = \"harmonic\"\noffset = 1.0\namplitudes = [0.1, {second:e}]\n\
+             phases_deg = [0.0, 0.0]\n",
+            1.0 - preload
+        );
+        machine(&Model::parse("near-zero.toml", &text).unwrap(), 60.0 / TAU)
+    };
+    let pressed = near_zero(0.0, 1e-9);
+    let (end, events) = run(&pressed, pressed.start_on_cam(0.0, 0.0).unwrap(), 2);
+    assert!(end.contact && events.is_empty(), "{events:?}");
+    // w = w0 = 1: lifting = 3 b cos(2 theta) - preload, which rises through 0 on the way to theta = pi.
+    let preload = 1e-6;
+    for share in [1.01, 1.1, 2.0, 10.0] {
+        let machine = near_zero(preload * share / 3.0, preload);
+        let at = PI - 0.5 * (1.0_f64 / share).acos();
+        let (_, events) = run(&machine, machine.start_on_cam(0.5 * PI, 0.0).unwrap(), 1);
+        assert_eq!(events[0].kind, EventKind::Release, "{share}: {events:?}");
+        assert_abs_diff_eq!(events[0].cam_angle, at, epsilon = 1e-7);
+    }
+    let machine = near_zero(preload * 0.999 / 3.0, preload);
+    let (end, events) = run(&machine, machine.start_on_cam(0.5 * PI, 0.0).unwrap(), 1);
+    assert!(end.contact && events.is_empty(), "{events:?}");
+}

@@ -82,6 +82,17 @@ impl Arc {
     /// A bound on `|c'''|` over `[start, end]`: its terms at their largest, or from the middle by `|c''''|` where less.
     #[inline]
     pub fn third_bound(&self, start: f64, end: f64) -> f64 {
+        self.high_bounds(start, end)[0]
+    }
+
+    /// A bound on `|c''''|` over `[start, end]`: its terms at their largest.
+    pub fn fourth_bound(&self, start: f64, end: f64) -> f64 {
+        self.high_bounds(start, end)[1]
+    }
+
+    /// Bounds on the third and the fourth derivative.
+    #[inline]
+    fn high_bounds(&self, start: f64, end: f64) -> [f64; 2] {
         let (middle, reach) = (0.5 * (start + end), 0.5 * (end - start));
         let (sin, cos) = (middle - self.direction).sin_cos();
         let turn = reach.sin_cos();
@@ -90,7 +101,7 @@ impl Arc {
         // The smallest w decides whether the ray reaches the circle all the way.
         let w = self.root_squared(largest).sqrt();
         if !(w > 0.0) {
-            return f64::INFINITY;
+            return [f64::INFINITY; 2];
         }
         let twice = |(sin, cos): (f64, f64)| (2.0 * sin * cos, (cos - sin) * (cos + sin));
         let (double_sin, double_cos) = twice((sin, cos));
@@ -108,7 +119,8 @@ impl Arc {
         let from_middle = self.lift(middle).third.abs() + reach * (kappa + w4);
         // The last bits of a dozen operations and of the angle; no min, which would take a bound for one that is not a number.
         let rounding = 64.0 * f64::EPSILON * (everywhere + kappa + w4);
-        if from_middle < everywhere { from_middle + rounding } else { everywhere + rounding }
+        let third = if from_middle < everywhere { from_middle } else { everywhere };
+        [third + rounding, kappa + w4 + rounding]
     }
 
     /// Lift and high derivatives at `angle`, rad.

@@ -84,6 +84,11 @@ impl Harmonics {
         third.min(from_middle + rounding * fourth) * (1.0 + rounding)
     }
 
+    /// A bound on `|c''''|` anywhere.
+    pub fn fourth_bound(&self) -> f64 {
+        self.bounds[1] * (1.0 + 8.0 * f64::EPSILON * self.terms.len() as f64)
+    }
+
     /// Lift and high derivatives at `angle`, rad.
     pub fn jet(&self, angle: f64) -> Jet {
         let mut jet = Jet::constant(self.offset);

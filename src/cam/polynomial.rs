@@ -60,22 +60,31 @@ impl Polynomial {
     /// A bound on `|c'''|` over `[start, end]`: its Taylor sum about the middle, every term at its largest.
     #[inline]
     pub fn third_bound(&self, start: f64, end: f64) -> f64 {
-        let Some(above) = self.coefficients.get(3..) else { return 0.0 };
+        self.high_bound::<3>(start, end)
+    }
+
+    /// The same of `|c''''|`.
+    pub fn fourth_bound(&self, start: f64, end: f64) -> f64 {
+        self.high_bound::<4>(start, end)
+    }
+
+    #[inline]
+    fn high_bound<const ORDER: usize>(&self, start: f64, end: f64) -> f64 {
+        let Some(above) = self.coefficients.get(ORDER..) else { return 0.0 };
         // From the start first: the piece of a spline is short, and far from 0.
         let (low, high) = (start - self.start, end - self.start);
         let (middle, reach) = (0.5 * (low + high), 0.5 * (high - low));
-        // c''' = sum (k+1)(k+2)(k+3) a_{k+3} u^k
-        let mut third = [0.0; MOST_COEFFICIENTS];
+        // The n-th derivative is sum (k+1)(k+2)...(k+n) a_{k+n} u^k
+        let mut derivative = [0.0; MOST_COEFFICIENTS];
         let count = above.len();
-        for (k, (slot, a)) in third.iter_mut().zip(above).enumerate() {
-            let k = k as f64;
-            *slot = (k + 1.0) * (k + 2.0) * (k + 3.0) * a;
+        for (k, (slot, a)) in derivative.iter_mut().zip(above).enumerate() {
+            *slot = (1..=ORDER).map(|next| (k + next) as f64).product::<f64>() * a;
         }
         let largest = |terms: &[f64], u: f64| terms.iter().rev().fold(0.0, |sum, term| sum * u + term.abs());
         // Of what rounding may move the sum by: terms far from the start may cancel.
-        let terms = largest(&third[..count], middle.abs() + reach);
-        shift(&mut third[..count], middle);
-        largest(&third[..count], reach) + 64.0 * f64::EPSILON * terms
+        let terms = largest(&derivative[..count], middle.abs() + reach);
+        shift(&mut derivative[..count], middle);
+        largest(&derivative[..count], reach) + 64.0 * f64::EPSILON * terms
     }
 
     /// Lift and high derivatives at `angle`, rad.

@@ -80,6 +80,11 @@ impl Sinusoid {
         everywhere.min(from_middle) + rounding
     }
 
+    /// A bound on `|c''''|` anywhere: `w^4 |(A, B)|`.
+    pub fn fourth_bound(&self) -> f64 {
+        self.frequency.powi(4) * self.sine.hypot(self.cosine) * (1.0 + 64.0 * f64::EPSILON)
+    }
+
     /// Lift and high derivatives at `angle`, rad.
     pub fn jet(&self, angle: f64) -> Jet {
         let Self { sine, cosine, frequency, .. } = *self;

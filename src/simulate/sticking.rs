@@ -138,7 +138,12 @@ impl Machine {
     /// The turn, rad, after which the cam lets go within `span`, rad, of a segment, or `None` if it does not.
     ///
     /// With `|d lifting/dt| <= L` over a stretch, `lifting` stays below 0 for `-lifting/L`: marching so never passes a
-    /// release, and as the stretches shrink, L becomes the slope itself.
+    /// release, and as the stretches shrink, L becomes the slope itself. The slope's terms may cancel, all round where cam
+    /// and spring swing alike: then L is the slope here and what its own derivative may add to it over the stretch,
+    ///
+    /// ```text
+    /// |d^2 lifting/dt^2| <= 2 zeta w^3 |c'''| + w0^2 w^2 |c''| + w^4 |c''''|
+    /// ```
     fn release(&self, motion: &Motion, segment: &Segment, span: f64) -> Result<Option<f64>, SimulateError> {
         let angle = motion.cam_angle;
         let omega = self.angular_velocity;
@@ -159,21 +164,31 @@ impl Machine {
             }
             let lift = segment.law.lift(angle + omega * time);
             let lifting = self.lifting(&lift);
-            let (_, rounding) = self.lifting_rate(&lift);
+            let (rate, rounding) = self.lifting_rate(&lift);
             let steepest = |reach: f64| {
                 let turn = omega * reach;
                 let from = angle + omega * time;
                 let third = segment.law.third_bound(from, from + turn).min(bounds.third);
                 let curvature = lift.curvature.abs() + third * turn;
                 let slope = lift.slope.abs() + curvature * turn;
-                2.0 * zeta * omega * omega * curvature + w * omega * slope + omega.powi(3) * third
+                let sum = 2.0 * zeta * omega * omega * curvature + w * omega * slope + omega.powi(3) * third;
+                (sum, third, curvature)
+            };
+            // |d lifting/dt| over a reach: its terms at their largest, or from here by the second derivative where less.
+            let fastest = |reach: f64| {
+                let (sum, third, curvature) = steepest(reach);
+                let from = angle + omega * time;
+                let fourth = segment.law.fourth_bound(from, from + omega * reach);
+                let bend = omega * omega * (2.0 * zeta * omega * third + w * curvature + omega * omega * fourth);
+                let of_rate = tolerance::GAP_ROUNDING.value * (sum + omega.powi(3) * bounds.third);
+                sum.min(rate.abs() + of_rate + bend * reach)
             };
             if lifting > rounding {
                 return Ok(Some(omega * time));
             }
             if lifting > -rounding {
                 // Where rounding decides, look ahead, further each time: it may only touch 0, or stay there.
-                hover = if hover > 0.0 { 2.0 * hover } else { 2.0 * rounding / steepest(0.0) };
+                hover = if hover > 0.0 { 2.0 * hover } else { 2.0 * rounding / steepest(0.0).0 };
                 time += hover.max(f64::EPSILON * end);
                 continue;
             }
@@ -181,7 +196,7 @@ impl Machine {
             let mut reach = widest.min(end - time);
             let mut safe: f64 = 0.0;
             for _ in 0..32 {
-                let free = -lifting / steepest(reach);
+                let free = -lifting / fastest(reach);
                 safe = safe.max(free.min(reach));
                 if free >= 0.5 * reach {
                     break;
