@@ -281,6 +281,13 @@ fn an_exponent_of_a_follower_that_sticks_is_minus_infinity() {
     assert!(document(&[&simulate("183")[..], &["--summary"]].concat())["lyapunov_per_revolution"].is_null());
     let page = prints(&simulate("700"));
     assert!(page.contains("Lyapunov exponent -0.") && !page.contains(why), "{page}");
+    // Of chaos the mean has an error, which falls with the root of the revolutions, more or less.
+    let error = |revolutions| {
+        let chaos = ["simulate", MODEL, "--rpm", "672", "--lyapunov", "--summary", "--revolutions", revolutions];
+        document(&chaos)["lyapunov_standard_error"].as_f64().unwrap()
+    };
+    let (short, long) = (error("1000"), error("16000"));
+    assert!(short > 0.005 && short < 0.1 && long < 0.6 * short && long > 0.1 * short, "{short} {long}");
     let column = |rpm| {
         let sweep = ["diagram", MODEL, "--rpm", rpm, "--lyapunov", "--out", "-"];
         rows(&prints(&sweep), &format!("{IMPACTS},lyapunov_per_revolution"))

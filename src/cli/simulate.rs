@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use super::start::{StartArguments, count, finite, rpm, turn};
 use super::{CommandError, Exit, picture, progress::Progress};
 use crate::cam::Cam;
-use crate::diagram::growth;
+use crate::diagram::{exponent as exponent_with_error, growth};
 use crate::model::Model;
 use crate::report::figures::{Against, Trace, phase_plane, time_trace};
 use crate::report::file::Output;
@@ -51,8 +51,8 @@ pub(super) struct Arguments {
     /// Print the summary as one JSON document.
     #[arg(long)]
     summary: bool,
-    /// Add the growth of a small deviation per revolution to the summary, a natural logarithm: -inf (null in JSON) where
-    /// the follower came to stick to the cam, be it once.
+    /// Add the growth of a small deviation per revolution to the summary, a natural logarithm, with its standard error over
+    /// twenty blocks of revolutions: -inf (null in JSON) where the follower came to stick to the cam, be it once.
     #[arg(long, conflicts_with = "impacts")]
     lyapunov: bool,
     /// Draw follower, cam and gap over the last revolutions (.svg or .png).
@@ -72,6 +72,8 @@ const KEPT: usize = 4096;
 const STRIDE: u64 = 4096;
 /// Revolutions that are drawn where nothing else is asked for.
 const DRAWN: u64 = 2;
+/// Blocks of revolutions whose exponents tell the error of their mean.
+const BLOCKS: u32 = 20;
 /// Revolutions without an impact after which none is waited for.
 const PATIENCE: u64 = 100_000;
 
@@ -139,6 +141,14 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Co
     } else {
         None
     };
+    // The error of a mean that sticking leaves no number of is none.
+    let per_block = arguments.revolutions / u64::from(BLOCKS);
+    let error = if exponent.is_some_and(|Exponent(mean)| mean.is_finite()) && per_block > 0 {
+        let known = exponent_with_error(&machine, first, BLOCKS, per_block).map_err(CommandError::input)?;
+        (known.blocks == BLOCKS as usize).then_some(known.standard_error)
+    } else {
+        None
+    };
     files.extend(draw(arguments, &model, &machine, before_drawn, [trace, plane])?);
     super::commit(files)?;
     let summary = RunSummary {
@@ -151,6 +161,7 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Co
         releases: seen.releases,
         end: run::End::from(&motion),
         lyapunov_per_revolution: exponent,
+        lyapunov_standard_error: error,
         wall_s: wall.as_secs_f64(),
     };
     let page = if arguments.summary {

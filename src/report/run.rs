@@ -33,6 +33,9 @@ pub struct RunSummary {
     /// came to stick to the cam.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lyapunov_per_revolution: Option<Exponent>,
+    /// Its standard error, where there is one: that of the mean of twenty blocks, taken for independent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lyapunov_standard_error: Option<f64>,
     /// Seconds that the simulation took, without reading, writing and drawing.
     pub wall_s: f64,
 }
@@ -84,7 +87,8 @@ impl RunSummary {
         if let Some(Exponent(exponent)) = self.lyapunov_per_revolution {
             let why =
                 if exponent == f64::NEG_INFINITY { ": it stuck to the cam, where every deviation is lost" } else { "" };
-            writeln!(page, "  Lyapunov exponent {exponent:.4} per revolution{why}")?;
+            let error = self.lyapunov_standard_error.map_or(String::new(), |error| format!(" ± {error:.4}"));
+            writeln!(page, "  Lyapunov exponent {exponent:.4}{error} per revolution{why}")?;
         }
         writeln!(page, "  {:.3} s{}", self.wall_s, per_turn(self.wall_s, self.revolutions))?;
         Ok(page)
