@@ -76,6 +76,9 @@ table! {
     /// How short the turn between two impacts of a cycle is where a branch that ends does so in chattering, rad.
     CHATTERING_TURN = 1e-3, "absolute, rad: with restitution 0.8 thirty impacts more are within the rounding of an angle, and \
         no segment of a designed cam is as short";
+    /// How near 1 a multiplier is where another branch crosses.
+    BRANCHING = 1e-3, "absolute: the equations are singular there, and Newton's method stops short of it; a pole of the matrix \
+        has numbers above 1";
     /// How closely a point is located where sticking begins or ends on a branch.
     SPECIAL_POINT = 1e-14, "of the range of the parameter: ten digits of its value are asked for, and each one more costs three \
         simulated periods";

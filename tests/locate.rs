@@ -241,7 +241,7 @@ fn a_disagreement_is_said_and_ends_with_1() {
     (found.found[0].agrees, found.agrees) = (false, false);
     let document = LocateDocument::new(&model, &found);
     let page = document.text().unwrap();
-    assert!(!document.agrees && page.contains("DISAGREES. A_plus: "), "{page}");
+    assert!(!document.agrees && page.contains("DISAGREE. A_plus: "), "{page}");
 }
 
 #[test]

@@ -139,6 +139,21 @@ fn a_branch_has_the_contracts_columns_and_names_its_points() {
     assert!(account.contains("the end of the range"), "{account}");
 }
 
+/// The follower of a cam of two like lobes hits both alike, until that is lost: another branch crosses, of two orbits each
+/// with two unlike impacts.
+#[test]
+fn a_crossing_of_branches_is_marked() {
+    let model = "models/laws/rectified-sine.toml";
+    let (table, account) = done(&["continue", model, "--from-rpm", "12", "--parameter", "rpm=10:20"]);
+    let table = Table::new(&table, BRANCH);
+    let [crossing] = table.special("branching")[..] else { panic!("{account}") };
+    let orbits = |rpm: f64| {
+        let found = document(&["orbit", model, "--rpm", &rpm.to_string(), "--impacts", "2", "--json"]);
+        found["orbits"].as_array().unwrap().iter().filter(|orbit| orbit["stable"] == true).count()
+    };
+    assert_eq!([orbits(crossing - 0.05), orbits(crossing + 0.05)], [1, 2], "{crossing}");
+}
+
 #[test]
 fn a_branch_in_another_number_ends_at_the_edge_with_a_plain_word() {
     let (table, account) =

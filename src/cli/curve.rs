@@ -40,7 +40,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "STEP", default_value_t = 0.02, value_parser = positive)]
     step: f64,
     /// A table (.csv, or - for standard output) or a picture (.svg, .png).
-    #[arg(long, value_name = "FILE", default_value = "-")]
+    #[arg(long, value_name = "FILE", default_value = "-", value_parser = picture::picture_or_table)]
     out: PathBuf,
 }
 

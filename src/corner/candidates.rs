@@ -8,6 +8,10 @@ use crate::model::{Model, Study};
 use crate::orbit::branch::{BranchPoint, Kind, corner_impacts, survey};
 use crate::orbit::{Course, Search};
 
+/// Impacts in a revolution of the orbits that are looked at: with more a follower is about to chatter, and its last hops
+/// are too short for the cam to be continued past a corner among them, as the estimators need.
+pub const MOST_IMPACTS: usize = 12;
+
 /// The guesses, and what was looked at.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Candidates {
@@ -42,7 +46,7 @@ fn candidate(cam: &Cam, point: &BranchPoint) -> Option<Candidate> {
     else {
         return None;
     };
-    if cycle.contacts.len() < 2 {
+    if cycle.contacts.len() < 2 || cycle.contacts.len() > MOST_IMPACTS * cycle.revolutions as usize {
         return None;
     }
     let corner = *cam.corners().iter().find(|corner| corner.segment == segment)?;

@@ -52,6 +52,7 @@ pub fn account(branch: &Branch, parameter: &str, index: usize) -> Result<String,
     for (point, Special { kind, bracket, residual }) in special.iter().take(LISTED) {
         let what = match kind {
             Kind::Fold => "fold: a multiplier is 1".into(),
+            Kind::Branching => "branching: a multiplier is 1, and another branch crosses".into(),
             Kind::Flip => "flip: a multiplier is -1".into(),
             Kind::Corner { contact, jump_order, .. } => {
                 let angle =

@@ -61,14 +61,16 @@ pub fn account(curve: &Branch, parameter: &str, index: usize, at: AtCorner) -> R
         at.jump_order
     )?;
     writeln!(page, "  begins at {parameter} = {:.9}, {:.6} rpm: {}", first.value, first.rpm, curve.ends[0].words())?;
-    let mut before = None;
+    let (mut before, mut place) = (None, first);
     for pair in curve.points.windows(2) {
         let [point, next] = pair else { continue };
         let now = kind(point, at);
         if point.special.is_none() && before != Some(now) {
-            writeln!(page, "  {parameter} = {:.9}, {:.6} rpm: {now} from here", point.value, point.rpm)?;
+            // From the special point on, if one came right before.
+            writeln!(page, "  {parameter} = {:.9}, {:.6} rpm: {now} from here", place.value, place.rpm)?;
             before = Some(now);
         }
+        place = if next.special.is_some() || point.special.is_none() { next } else { place };
         if let Some(Special { kind, .. }) = next.special {
             let what = match kind {
                 Kind::Type { after_corner, multiplier } => {
@@ -76,7 +78,8 @@ pub fn account(curve: &Branch, parameter: &str, index: usize, at: AtCorner) -> R
                     format!("a multiplier with the law {side} the corner is {multiplier}")
                 }
                 Kind::Fold => "the curve turns round".into(),
-                Kind::Corner { .. } => "the model as it is".into(),
+                Kind::Corner { contact, .. } if contact == at.contact => "the model as it is".into(),
+                Kind::Corner { .. } => "another impact of the orbit is at a corner".into(),
                 _ => kind.name().into(),
             };
             writeln!(page, "  {parameter} = {:.9}, {:.6} rpm: {what}", next.value, next.rpm)?;

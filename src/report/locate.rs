@@ -8,6 +8,7 @@ use super::border_collision::ClassificationEntry;
 use super::document::{AgreementEntry, SideEntry, SkippedEntry};
 use super::text::{heading, paragraph, paragraph_at, significant};
 use crate::cam::Side;
+use crate::corner::candidates::MOST_IMPACTS;
 use crate::corner::locate::Rejected;
 use crate::model::Model;
 use crate::survey::{LocalMap, Located, Surveyed};
@@ -246,7 +247,7 @@ impl LocateDocument {
         self.write_table(out)?;
         for (index, impact) in self.corner_impacts.iter().enumerate().filter(|(_, impact)| !impact.agrees) {
             writeln!(out)?;
-            paragraph(out, &format!("{}: DISAGREES. {}", index + 1, disagreement(impact)))?;
+            paragraph(out, &format!("{}: {}. {}", index + 1, impact.verdict(), disagreement(impact)))?;
         }
         self.write_meanings(out)?;
         self.write_rejected(out)?;
@@ -275,7 +276,7 @@ impl LocateDocument {
                 "{:>4}{speed_rpm:>15.9}{:>13.6}{jump_order:>7}{impacts:>9}{before:>12}{after:>12}  {scenario:<17}{}",
                 index + 1,
                 impact.cam_angle_rad.to_degrees(),
-                if impact.agrees { "agree" } else { "DISAGREE" }
+                impact.verdict()
             )?;
         }
         Ok(())
@@ -331,8 +332,8 @@ impl LocateDocument {
         } else {
             format!(
                 "{} corner(s) of the cam. Orbits of one impact: all, as the roots of one equation. Orbits of several impacts: \
-                 those on branches that a search finds at {} speeds ({branches} of them); there may be \
-                 others. Orbits on which the follower sticks forget where they hit: they are left out.",
+                 those on branches that a search finds at {} speeds ({branches} of them), of up to {MOST_IMPACTS} impacts a \
+                 revolution; there may be others. Orbits on which the follower sticks forget where they hit: they are left out.",
                 corners_rad.len(),
                 speeds_rpm.len()
             )
@@ -341,6 +342,17 @@ impl LocateDocument {
             write!(words, " A search could not go on: {error}.")?;
         }
         paragraph(out, &words)
+    }
+}
+
+impl CornerImpactEntry {
+    /// What the routes say, in a word or two.
+    fn verdict(&self) -> &'static str {
+        match (self.agrees, self.agreement.iter().all(|entry| entry.agrees)) {
+            (true, _) => "agree",
+            (false, true) => "not all ran",
+            (false, false) => "DISAGREE",
+        }
     }
 }
 

@@ -143,7 +143,7 @@ impl RegimesDocument {
                 "regular" => "bounces regularly",
                 "chaotic" => "chaotic",
                 "free" => "never meets the cam",
-                _ => "sticks now and then",
+                _ => "not settled",
             };
             writeln!(page, "  {what:<24}  {}", listed(ranges))?;
         }
@@ -154,7 +154,7 @@ impl RegimesDocument {
             writeln!(page, "  hysteresis                {}", listed(&hysteresis))?;
         }
         for (title, entries) in [("rising speed", &self.rising), ("falling speed", &self.falling)] {
-            writeln!(page, "\n{title}\n  {:>10} {:>11}  {:<36} begins with", "from (rpm)", "to (rpm)", "motion")?;
+            writeln!(page, "\n{title}\n  {:>10} {:>11}  {:<36} at the lower end", "from (rpm)", "to (rpm)", "motion")?;
             for StretchEntry { rpm: [from, to], motion, begins } in entries {
                 let why = begins.as_ref().map_or("", |change| change.cause.as_str());
                 writeln!(page, "  {from:>10.4} {to:>11.4}  {:<36} {why}", motion.words())?;
@@ -178,7 +178,7 @@ impl MotionEntry {
                 )
             }
             ("on-cam", ..) => "stays on the cam".into(),
-            ("unsettled", ..) => "sticks now and then, without a period".into(),
+            ("unsettled", ..) => "not settled: no period found".into(),
             (other, ..) => other.into(),
         }
     }

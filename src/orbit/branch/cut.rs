@@ -20,6 +20,8 @@ pub(super) enum Cut {
     Exit(Exit),
     /// A multiplier passes 1.
     Fold,
+    /// A multiplier passes 1, and the branch goes on: another crosses it.
+    Branching,
     /// A multiplier passes -1.
     Flip,
     /// The second half of a period becomes the same as the first.
@@ -71,7 +73,7 @@ impl Walk<'_> {
     /// What may be passed without a change of the cycle.
     pub(super) fn passed(&self) -> Vec<Cut> {
         if self.pinned.is_none() {
-            return vec![Cut::Fold, Cut::Flip];
+            return vec![Cut::Fold, Cut::Flip, Cut::Branching];
         }
         let of_side = |side| [1.0, -1.0].map(|multiplier| Cut::Type { side, multiplier });
         [0, 1].into_iter().flat_map(of_side).chain([Cut::Fold]).collect()
@@ -134,6 +136,10 @@ impl Walk<'_> {
             Cut::Fold => at.tangent[at.tangent.len() - 1],
             // Its own equations are singular there: `halved` locates it.
             Cut::Halved => return Err(NoPoint::NotClosed),
+            Cut::Branching => {
+                let (_, matrix) = cycle.at_section(&machine, 0.0);
+                1.0 - matrix.trace() + matrix.determinant()
+            }
             Cut::Flip => {
                 let (_, matrix) = cycle.at_section(&machine, 0.0);
                 1.0 + matrix.trace() + matrix.determinant()
@@ -170,7 +176,11 @@ impl Walk<'_> {
             }
             let secant = low + (high - low) * at_low / (at_low - at_high);
             let middle = if secant > low && secant < high { secant } else { 0.5 * (low + high) };
-            let (found, measure) = at(middle)?;
+            let (found, measure) = match at(middle) {
+                // As near as the singular equations let a point be found.
+                Err(_) if cut == Cut::Branching => break,
+                reached => reached?,
+            };
             if measure.abs() < residual {
                 (best, residual, point) = (middle, measure.abs(), found.clone());
             }
@@ -206,6 +216,7 @@ impl Walk<'_> {
             Cut::Range(_) => return Ok(None),
             Cut::Fold => Kind::Fold,
             Cut::Flip | Cut::Halved => Kind::Flip,
+            Cut::Branching => Kind::Branching,
             Cut::Type { side, multiplier } => Kind::Type { after_corner: side == 1, multiplier },
             Cut::Exit(exit) => match (exit, self.order(exit, &cycle, &machine)) {
                 (Exit::Corner { .. }, None) => return Ok(None),

@@ -215,13 +215,24 @@ impl Walk<'_> {
         }
         let end_point = first.as_ref().map_or(next, |located| located.point.clone());
         let mut points = Vec::new();
+        let mut folds = false;
         for cut in self.passed() {
+            // At a fold a multiplier is 1 as well.
+            if cut == Cut::Branching && folds {
+                continue;
+            }
             let at = |point: &CurvePoint| self.measure(&problem, cut, point);
             // Just short of a graze, where the matrix has a pole.
             if (at(&self.from)? > 0.0) != (at(&clear)? > 0.0) && self.fresh.is_none() {
-                let located = self.locate(&problem, cut, reach)?;
+                let located = match self.locate(&problem, cut, reach) {
+                    // Where branches cross, the equations are singular, and may not close that near.
+                    Err(_) if cut == Cut::Branching => continue,
+                    located => located?,
+                };
+                folds |= cut == Cut::Fold;
                 // A sign that changes through infinity is no root.
-                if located.residual > tolerance::SAME_ORBIT.value {
+                let small = if cut == Cut::Branching { tolerance::BRANCHING } else { tolerance::SAME_ORBIT };
+                if located.residual > small.value {
                     continue;
                 }
                 points.push((

@@ -64,6 +64,8 @@ pub enum End {
     MostPoints,
     /// Impacts without number: the follower begins to chatter there, or ceases to.
     Chatter,
+    /// The orbit never meets the cam: it is followed no further.
+    Clear,
     /// Another impact of the orbit at a corner.
     Corner,
     /// A graze beyond which no orbit nearby continues the branch.
@@ -85,6 +87,7 @@ impl End {
             Self::Edge(why) => format!("the edge of what the model allows: {why}"),
             Self::MostPoints => "the number of points that was asked for".into(),
             Self::Chatter => "the onset of chattering".into(),
+            Self::Clear => "it stays clear of the cam, and is followed no further".into(),
             Self::Corner => "another impact of the orbit at a corner".into(),
             Self::Graze => "a graze, beyond which no orbit continues it".into(),
             Self::Shorter => "an orbit of fewer revolutions, which it branches off from".into(),
@@ -117,7 +120,7 @@ impl Branch {
             super::Course::Sticking(anchor) => {
                 chatter::half(&family, value, (*anchor, orbit.revolutions), following, direction)
             }
-            super::Course::Free => Ok((Vec::new(), End::Graze)),
+            super::Course::Free => Ok((Vec::new(), End::Clear)),
         });
         let middle = BranchPoint { sides: None, rpm, value, orbit: orbit.clone(), special: None };
         Self::joined(halves, middle)

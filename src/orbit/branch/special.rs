@@ -7,6 +7,8 @@ use crate::orbit::{Course, PeriodicOrbit};
 pub enum Kind {
     /// A multiplier passes 1: the branch turns round in the parameter.
     Fold,
+    /// A multiplier passes 1 and the branch goes on: another branch crosses it, of orbits with less symmetry perhaps.
+    Branching,
     /// A multiplier passes -1: an orbit of twice the period branches off; or, on a branch of those, its end there.
     Flip,
     /// An impact passes a corner of the cam.
@@ -43,6 +45,7 @@ impl Kind {
     pub fn name(&self) -> &'static str {
         match self {
             Self::Fold => "fold",
+            Self::Branching => "branching",
             Self::Flip => "flip",
             Self::Corner { .. } => "corner",
             Self::Graze { .. } => "graze",

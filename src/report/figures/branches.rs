@@ -21,12 +21,13 @@ pub struct Branches<'a> {
 }
 
 /// The kinds of point that are marked, with name and colour.
-const MARKED: [(&str, Colour); 5] = [
+const MARKED: [(&str, Colour); 6] = [
     ("corner impact", Colour::Ink),
     ("fold", Colour::Vermilion),
     ("flip", Colour::Purple),
     ("graze", Colour::Green),
     ("chatter, detachment", Colour::Blue),
+    ("branching", Colour::Grey),
 ];
 
 fn mark(kind: &Kind) -> usize {
@@ -34,6 +35,7 @@ fn mark(kind: &Kind) -> usize {
         Kind::Corner { .. } => 0,
         Kind::Fold => 1,
         Kind::Flip => 2,
+        Kind::Branching => 5,
         Kind::Graze { .. } => 3,
         Kind::Chatter | Kind::Detachment => 4,
         // Of another figure.
