@@ -97,10 +97,10 @@ fn a_force_that_is_hardly_there_all_round() {
         let end = run(machine, start, 2);
         match end.result {
             // Told apart from 0, it holds the follower; else nothing lifts it far.
-            Ok(motion) => assert!(below < 1e-15 || motion.contact && below > 1e-6, "{below}: {end:?}"),
+            Ok(motion) => assert!(below < 1e-15 || motion.contact, "{below}: {end:?}"),
             // In between the search would creep.
             Err(SimulateError::NoProgress { revolution: 0, cam_angle, .. }) => {
-                assert!((1e-15..1e-6).contains(&below) && (0.3..TAU).contains(&cam_angle), "{below}: {end:?}");
+                assert!((1e-15..1e-9).contains(&below) && (0.3..TAU).contains(&cam_angle), "{below}: {end:?}");
             }
             Err(error) => panic!("{below}: {error}"),
         }
