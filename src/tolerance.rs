@@ -85,6 +85,12 @@ table! {
     /// How far a minimum of the gap may move when it is found once more by its slope.
     SAME_MINIMUM = 1e-3, "of a four-hundredth of the flight: half the digits of an angle are known before, and a step to \
         another minimum is as long as the whole";
+    /// How near two orbits of one branch are at most, from one of its points to the next, rad.
+    NEIGHBOURING = 0.05, "absolute, rad: more than twice the longest step of a survey, and far less than what parts two branches \
+        at one speed";
+    /// How near a change that runs bracket the special point is that explains it.
+    EXPLAINED = 0.02, "of the step between two speeds, or of itself of the speed: runs take a motion for gone where it settles too \
+        slowly, and for there where it is left too slowly";
     /// How nearly a run must repeat for Newton's method to be tried on it.
     NEARLY_REPEATS = 1e-2, "of the cam's lift: a guess, that Newton's method and one simulated period confirm or refute";
     /// How near a run must have come to a stable orbit to end on it.

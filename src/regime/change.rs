@@ -89,8 +89,6 @@ fn explained(
     bracket: [f64; 2],
     [low, high]: [f64; 2],
 ) -> Result<Option<Change>, SurveyError> {
-    /// Runs take a motion for gone where it settles too slowly, and for there where it is left too slowly.
-    const SLOW: f64 = 0.02;
     let Some(orbit) = &side.orbit else { return Ok(None) };
     let room = 0.5 * (high - low);
     let range = [(low - room).max(0.5 * low), high + room];
@@ -100,8 +98,9 @@ fn explained(
     let off = |rpm: f64| (rpm - middle).abs();
     let specials = branch.points.iter().filter_map(|point| point.special.map(|special| (point, special)));
     let nearest = specials.min_by(|one, two| off(one.0.rpm).total_cmp(&off(two.0.rpm)));
-    let Some((point, special)) = nearest.filter(|(point, _)| off(point.rpm) <= SLOW * (high - low).max(middle * SLOW))
-    else {
+    let Some((point, special)) = nearest.filter(|(point, _)| {
+        off(point.rpm) <= tolerance::EXPLAINED.value * (high - low).max(middle * tolerance::EXPLAINED.value)
+    }) else {
         return Ok(None);
     };
     let angle = match special.kind {

@@ -1,6 +1,7 @@
 //! The points where something changes along a branch.
 
 use crate::orbit::{Course, PeriodicOrbit};
+use crate::tolerance;
 
 /// What changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,8 +70,6 @@ pub struct Special {
 
 /// Whether two orbits are close enough to be neighbours on one branch.
 pub(super) fn is_near(one: &PeriodicOrbit, other: &PeriodicOrbit) -> bool {
-    /// Half a step along a branch, rad.
-    const NEAR: f64 = 0.05;
     match (&one.course, &other.course) {
         (Course::Impacts(one), Course::Impacts(other)) => {
             one.revolutions == other.revolutions
@@ -78,9 +77,10 @@ pub(super) fn is_near(one: &PeriodicOrbit, other: &PeriodicOrbit) -> bool {
                 && (0..one.revolutions).any(|later| {
                     let other = other.begun_later(later);
                     let pairs = one.contacts.iter().zip(&other.contacts);
-                    pairs
-                        .into_iter()
-                        .all(|(a, b)| a.revolution == b.revolution && (a.cam_angle - b.cam_angle).abs() < NEAR)
+                    pairs.into_iter().all(|(a, b)| {
+                        a.revolution == b.revolution
+                            && (a.cam_angle - b.cam_angle).abs() < tolerance::NEIGHBOURING.value
+                    })
                 })
         }
         (Course::Sticking(_), Course::Sticking(_)) => one.revolutions == other.revolutions,
