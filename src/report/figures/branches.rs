@@ -2,6 +2,7 @@
 
 use super::cam::CornerMark;
 use super::panel;
+use crate::orbit::Course;
 use crate::orbit::branch::{Branch, BranchPoint, Kind};
 use crate::report::figure::{Axis, Colour, Data, Density, Figure, Marker, Series, Stroke};
 
@@ -58,6 +59,15 @@ pub fn branches_figure(drawn: Branches<'_>) -> Figure {
             series.push(Series { label: label.into(), colour, data: Data::Line { points, stroke } });
         }
     }
+    let sticking = branches.iter().flat_map(|branch| &branch.points);
+    let sticking = sticking.filter(|point| matches!(point.orbit.course, Course::Sticking(_)));
+    let points: Vec<[f64; 2]> = sticking
+        .flat_map(|point| point.orbit.impacts().map(|impact| [point.value, impact.cam_angle.to_degrees()]))
+        .collect();
+    if !points.is_empty() {
+        let data = Data::Points { points, marker: Marker::Dot };
+        series.push(Series { label: "stable, sticking".into(), colour: Colour::Blue, data });
+    }
     for (which, (label, colour)) in MARKED.into_iter().enumerate() {
         let points: Vec<[f64; 2]> =
             branches.iter().flat_map(|branch| &branch.points).filter_map(|point| place(point, which)).collect();
@@ -100,7 +110,9 @@ fn lines(branches: &[Branch], stable: bool) -> Vec<[f64; 2]> {
                 let phase = |point: &BranchPoint| {
                     point.orbit.impacts().nth(index).map(|impact| [point.value, impact.cam_angle.to_degrees()])
                 };
-                let same = one.orbit.impacts().count() == other.orbit.impacts().count();
+                // Of the impacts before a follower sticks no number is that of the next orbit's.
+                let flown = |point: &BranchPoint| matches!(point.orbit.course, Course::Impacts(_));
+                let same = one.orbit.impacts().count() == other.orbit.impacts().count() && flown(one) && flown(other);
                 // A piece takes the stability of its end that is no special point.
                 let at = if one.special.is_some() { other } else { one };
                 let ends = phase(one).zip(phase(other)).filter(|(from, to)| same && (to[1] - from[1]).abs() < 60.0);
