@@ -6,7 +6,7 @@ CARGO ?= cargo
 RELEASE := --release --locked
 
 .DEFAULT_GOAL := help
-.PHONY: help verify test check derive derive-check claims review mutants bench bench-each bench-peers clean
+.PHONY: help verify test check derive derive-check claims pictures review mutants bench bench-each bench-peers clean
 
 # Python and its packages, once; again when the list of packages changes.
 PYTHON ?= python3
@@ -43,6 +43,12 @@ claims: ## write docs/claims.md: what the paper states, and what was found
 	@mkdir -p docs
 	target/release/corner-impact claims models/osorio-2008.toml --markdown > docs/claims.md.new
 	@mv docs/claims.md.new docs/claims.md
+
+pictures: ## draw the pictures of docs/ again
+	$(CARGO) build $(RELEASE) --quiet
+	target/release/corner-impact continue models/osorio-2008.toml --from-rpm 700 --parameter rpm=660:750 --out docs/branches.svg
+	target/release/corner-impact basins models/osorio-2008.toml --rpm 678 --strobe 5.762717154756 --grid 200x150 \
+	    --position 0.4:6 --velocity=-60:60 --out docs/basins-678.png
 
 review: ## after a change to the model: look at each number that moved, accept or reject it
 	@command -v cargo-insta >/dev/null || $(CARGO) install cargo-insta --locked

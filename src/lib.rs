@@ -91,3 +91,8 @@ pub mod claims;
 pub mod report;
 
 pub mod cli;
+
+/// The program on the page about the theory is a test.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/theory.md")]
+struct TheoryPage;
