@@ -33,6 +33,8 @@
 //!    ▼
 //!  claims                the paper's statements, one by one: holds, misprint, refuted, open
 //!    ▼
+//!  gallery               what the report's figures show, as numbers
+//!    ▼
 //!  report                document values; text, JSON, Markdown; figures: SVG, PNG
 //!    ▼
 //!  cli                   parse, one library call, exit code
@@ -87,6 +89,8 @@ pub mod verify;
 pub mod survey;
 
 pub mod claims;
+
+pub mod gallery;
 
 pub mod report;
 

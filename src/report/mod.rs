@@ -16,6 +16,7 @@ pub mod file;
 pub mod json;
 pub mod locate;
 pub mod orbit;
+pub mod plates;
 pub mod regimes;
 pub mod run;
 pub mod text;
