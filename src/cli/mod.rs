@@ -10,6 +10,7 @@ mod locate;
 mod orbit;
 mod picture;
 mod progress;
+mod report;
 mod simulate;
 mod speeds;
 mod start;
@@ -44,6 +45,7 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     Verify(verify::Arguments),
+    Report(report::Arguments),
     Claims(claims::Arguments),
     Cam(cam::Arguments),
     Simulate(simulate::Arguments),
@@ -125,6 +127,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
     };
     let result = match &arguments.command {
         Command::Verify(arguments) => print(verify::run(arguments, err), out),
+        Command::Report(arguments) => report::run(arguments, out, err),
         Command::Claims(arguments) => print(claims::run(arguments), out),
         Command::Cam(arguments) => {
             let page = cam::run(arguments, out);

@@ -2,5 +2,7 @@
 //! of. Nothing is drawn here.
 
 mod subject;
+pub mod through_corner;
 
 pub use subject::{Shown, Subject};
+pub use through_corner::{ThroughCorner, through_corner};
