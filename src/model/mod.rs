@@ -72,6 +72,11 @@ impl Model {
         Self::parse(&file, &text)
     }
 
+    /// The paper's model, which needs no file.
+    pub fn built_in() -> Result<Self, ModelError> {
+        Self::parse("the built-in model", OSORIO_2008)
+    }
+
     /// Checks the text of a model file; `file` is the name that complaints carry.
     pub fn parse(file: &str, text: &str) -> Result<Self, ModelError> {
         Self::from_fields(Fields::parse(file, text)?)
@@ -115,7 +120,7 @@ impl Model {
 
     /// Whether follower and cam are the paper's, whatever the model is called.
     pub fn is_the_papers(&self) -> Result<bool, ModelError> {
-        let paper = Self::parse("the built-in model", OSORIO_2008)?;
+        let paper = Self::built_in()?;
         Ok(self.follower == paper.follower && self.cam == paper.cam)
     }
 
