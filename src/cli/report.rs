@@ -1,11 +1,10 @@
-//! `corner-impact report MODEL`.
+//! `corner-impact report [MODEL]`.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
 
 use super::progress::Progress;
-use super::{CommandError, Exit};
+use super::{CommandError, Exit, ModelArgument, Session};
 use crate::model::Model;
 use crate::report::file::Output;
 use crate::report::{Dossier, html, json};
@@ -13,14 +12,17 @@ use crate::verify::External;
 
 /// Writes everything about a model as one HTML page that opens from disk.
 #[derive(clap::Args)]
-#[command(after_help = "Examples: corner-impact report models/osorio-2008.toml\n\
-    \x20         corner-impact report models/osorio-2008.toml --out page.html\n\n\
+#[command(after_help = "Examples:\n\
+    \x20 corner-impact report\n\
+    \x20 corner-impact report models/damped-light.toml --out page.html\n\
+    \x20 corner-impact report models/osorio-2008.toml --no-external --json\n\
+    \n\
     The page needs no network and no other file; its name is printed. A model without a corner impact has a page too, which\n\
     says why there is none.\n\
     Exit code: 0 everything checked agrees, 1 something disagrees, 2 bad model file, usage or file.")]
 pub(super) struct Arguments {
-    /// Model file (TOML).
-    model: PathBuf,
+    #[command(flatten)]
+    model: ModelArgument,
     /// The page [default: the model file's name with -report.html, in this folder]; - for standard output.
     #[arg(long, value_name = "FILE", value_parser = page)]
     out: Option<PathBuf>,
@@ -41,55 +43,44 @@ fn page(text: &str) -> Result<PathBuf, String> {
     if other { Err("must end in .html, or be -".into()) } else { Ok(path) }
 }
 
-/// Parts of the work that the bar tells apart.
-const STEPS: u64 = 1000;
-
-pub(super) fn run(arguments: &Arguments, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit, CommandError> {
+pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     if arguments.json && arguments.out.as_deref() == Some(Path::new("-")) {
         return Err(CommandError::Input("--json and --out - both want standard output".into()));
     }
-    let model = Model::read(&arguments.model).map_err(CommandError::input)?;
+    let model = arguments.model.read(session)?;
     let path = match (&arguments.out, arguments.json) {
         (Some(path), _) => Some(path.clone()),
         (None, true) => None,
-        (None, false) => Some(default_name(&arguments.model)),
+        (None, false) => Some(default_name(&model)),
     };
     // The file is begun before the work: a name that cannot be is told at once.
     let file = match &path {
-        Some(path) => Some(Output::create(path, &mut *out).map_err(CommandError::file)?),
+        Some(path) => Some(Output::create(path, &mut *session.out).map_err(CommandError::file)?),
         None => None,
     };
     let external = if arguments.no_external { External::LeftOut } else { External::Run };
-    let bar = Mutex::new(Progress::new(STEPS));
-    let progress = |part: f64| {
-        // A bar that a thread died over shows nothing more.
-        if let Ok(mut bar) = bar.lock() {
-            bar.set((part * STEPS as f64) as u64);
-        }
-    };
+    let progress = Progress::spinner("");
     let dossier = Dossier::of(&model, external, &progress).map_err(CommandError::input)?;
-    drop(bar);
-    for route in &dossier.headline.failed {
-        // A closed pipe leaves nobody to tell; the page says the same.
-        let _ = writeln!(err, "error: {route} did not run; the page says why");
-    }
+    drop(progress);
     let write = |mut file: Output<'_>| {
         let page = html::render(&dossier).map_err(CommandError::report)?;
         file.write_all(page.as_bytes()).map_err(CommandError::write)?;
         super::commit(vec![file])
     };
     file.map(write).transpose()?;
-    let printed = match (arguments.json, &path) {
-        (true, _) => json::render(&dossier).map_err(CommandError::report)?,
-        (false, Some(path)) if path.as_path() != Path::new("-") => format!("{}\n", path.display()),
-        _ => String::new(),
-    };
-    let exit = if dossier.agrees { Exit::Agrees } else { Exit::Disagrees };
-    super::print(Ok((printed, exit)), out)
+    for route in &dossier.headline.failed {
+        session.complain(&format!("{route} did not run; the page says why"));
+    }
+    match (arguments.json, &path) {
+        (true, _) => session.print(&json::render(&dossier).map_err(CommandError::report)?)?,
+        (false, Some(path)) if path.as_path() != Path::new("-") => session.print(&format!("{}\n", path.display()))?,
+        _ => {}
+    }
+    Ok(if dossier.agrees { Exit::Agrees } else { Exit::Disagrees })
 }
 
 /// Named after the model file, where the command is run.
-fn default_name(model: &Path) -> PathBuf {
-    let stem = model.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-    PathBuf::from(format!("{stem}-report.html"))
+fn default_name(model: &Model) -> PathBuf {
+    let stem = model.path().and_then(Path::file_stem).map(|stem| stem.to_string_lossy().into_owned());
+    PathBuf::from(format!("{}-report.html", stem.unwrap_or_else(|| model.name.clone())))
 }

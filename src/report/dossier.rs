@@ -1,5 +1,7 @@
 //! Everything that is found about one model in one value: what the HTML page is made of.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use serde::Serialize;
 
 use super::document::{AgreementEntry, SideEntry, Verification};
@@ -11,11 +13,12 @@ use super::through::ThroughEntry;
 use super::{CamDocument, ClaimsDocument};
 use crate::agreement::shared_decimals;
 use crate::cam::{Cam, Jet};
-use crate::claims::{Context, LedgerError, hold};
+use crate::claims::{Context, LedgerError, hold_watched};
 use crate::gallery::{Subject, through_corner};
 use crate::model::{Model, ModelError};
+use crate::progress::Watch;
 use crate::regime::{Care, survey};
-use crate::verify::{External, Findings, verify};
+use crate::verify::{External, Findings, verify_watched};
 
 /// A report on one model; serializes to the document `corner-impact/report/1`.
 #[derive(Clone, Debug, Serialize)]
@@ -155,20 +158,22 @@ const SURVEYED: f64 = 0.55;
 const THROUGH: f64 = 0.6;
 
 impl Dossier {
-    /// Everything about a model; `progress` is told which part of the work is done, from 0 to 1.
+    /// Everything about a model.
     ///
     /// A model without a corner impact to verify has a report that says so.
-    pub fn of(model: &Model, external: External, progress: &(dyn Fn(f64) + Sync)) -> Result<Self, DossierError> {
+    pub fn of(model: &Model, external: External, watch: &dyn Watch) -> Result<Self, DossierError> {
+        let part = |from, to| Part { watch, from, to };
         let cam = Cam::new(model)?;
-        let findings = verify(model, external);
-        progress(VERIFIED);
+        let findings = verify_watched(model, external, &part(0.0, VERIFIED));
         let claims = match &findings {
-            Ok(found) => Some(ClaimsDocument::new(&model.name, &hold(&Context::new(model, &cam, found)?)?)),
+            Ok(found) => Some(ClaimsDocument::new(
+                &model.name,
+                &hold_watched(&Context::new(model, &cam, found)?, &part(VERIFIED, HELD))?,
+            )),
             Err(_) => None,
         };
-        progress(HELD);
-        let speeds = speeds(model, progress);
-        progress(SURVEYED);
+        let speeds = speeds(model, &part(HELD, SURVEYED));
+        part(SURVEYED, THROUGH).at("the orbits on both sides of the corner impact", 0, 1);
         let marks = corner_marks(&cam);
         let through = match &findings {
             Ok(found) => match through_corner(model, &cam, &found.at) {
@@ -178,7 +183,6 @@ impl Dossier {
             },
             Err(error) => Err(error.to_string()),
         };
-        progress(THROUGH);
         let verification = findings.as_ref().ok().map(|found| Verification::new(model, found));
         let corner_deg = findings.as_ref().ok().map(|found: &Findings| found.at.corner.angle.to_degrees());
         let (findings, nothing_to_verify) = match findings {
@@ -186,9 +190,8 @@ impl Dossier {
             Err(error) => (Err(error.to_string()), Some(error.to_string())),
         };
         let subject = Subject::with(model, findings)?;
-        let plates = plates(&subject, &mut |done, total| {
-            progress(THROUGH + (1.0 - THROUGH) * done as f64 / total.max(1) as f64);
-        });
+        let drawing = part(THROUGH, 1.0);
+        let plates = plates(&subject, &mut |done, total| drawing.at("the figures", done as u64, total as u64));
         let agrees = verification.as_ref().is_none_or(|found| found.agrees) && claims.as_ref().is_none_or(|c| c.agrees);
         Ok(Self {
             schema: "corner-impact/report/1",
@@ -215,38 +218,60 @@ impl Dossier {
             no_speeds: speeds.as_ref().err().cloned(),
             speeds: speeds.ok(),
             plates,
-            commands: commands(model.file(), verification.is_some()),
+            commands: commands(model, verification.is_some()),
             verification,
         })
     }
 }
 
+/// A part of the work, told as its share of the whole.
+struct Part<'a> {
+    watch: &'a dyn Watch,
+    from: f64,
+    to: f64,
+}
+
+impl Watch for Part<'_> {
+    fn at(&self, what: &str, done: u64, total: u64) {
+        const STEPS: f64 = 1000.0;
+        let share = if total > 0 { done as f64 / total as f64 } else { 0.0 };
+        self.watch.at(what, (STEPS * (self.from + (self.to - self.from) * share)) as u64, STEPS as u64);
+    }
+}
+
 /// What the follower does from well below its corner impact on, or why that is not known.
-fn speeds(model: &Model, progress: &(dyn Fn(f64) + Sync)) -> Result<RegimesDocument, String> {
+fn speeds(model: &Model, watch: &dyn Watch) -> Result<RegimesDocument, String> {
     let fastest = model.study.map_or(1000.0, |study| study.rpm_max);
     let care = Care { speeds: SPEEDS, ..Care::default() };
-    let done = std::sync::atomic::AtomicUsize::new(0);
+    let done = AtomicUsize::new(0);
     let passed = || {
-        let done = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
-        progress(HELD + (SURVEYED - HELD) * done as f64 / (2 * SPEEDS) as f64);
+        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+        watch.at("other speeds", done as u64, 2 * SPEEDS as u64);
     };
     let found = survey(model, [0.05 * fastest, fastest], care, &passed).map_err(|error| error.to_string())?;
     Ok(RegimesDocument::new(&model.name, &found))
 }
 
-fn commands(file: &str, verified: bool) -> Vec<(String, &'static str)> {
-    let mut commands = vec![(format!("corner-impact report {file}"), "writes this page")];
+fn commands(model: &Model, verified: bool) -> Vec<(String, &'static str)> {
+    let file = model.path().map_or_else(String::new, |path| format!(" {}", shell_word(&path.to_string_lossy())));
+    let mut commands = vec![(format!("corner-impact report{file}"), "writes this page")];
     if verified {
         commands.extend([
-            (format!("corner-impact verify {file}"), "finds the corner impact, its map by every route, and compares"),
-            (format!("corner-impact claims {file}"), "holds the paper's statements against it"),
+            (format!("corner-impact verify{file}"), "finds the corner impact, its map by every route, and compares"),
+            (format!("corner-impact claims{file}"), "holds the paper's statements against it"),
         ]);
     }
     commands.extend([
-        (format!("corner-impact cam {file}"), "lists segments and corners of the cam"),
-        (format!("corner-impact speeds {file}"), "what the follower does at each speed, with more speeds than here"),
+        (format!("corner-impact cam{file}"), "lists segments and corners of the cam"),
+        (format!("corner-impact speeds{file}"), "what the follower does at each speed, with more speeds than here"),
     ]);
     commands
+}
+
+/// A word as a shell takes it: in quotes where it has anything but plain letters.
+fn shell_word(word: &str) -> String {
+    let plain = |letter: char| letter.is_ascii_alphanumeric() || "/._-+:@%,".contains(letter);
+    if !word.is_empty() && word.chars().all(plain) { word.into() } else { format!("'{}'", word.replace('\'', "'\\''")) }
 }
 
 /// A route's name as words.

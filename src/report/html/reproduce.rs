@@ -8,8 +8,8 @@ use crate::report::dossier::Dossier;
 pub(super) fn section(dossier: &Dossier) -> Section {
     let body = html! {
         p {
-            "This page was written by corner-impact " (dossier.version) " from the model file " code { (dossier.model.file) } ". "
-            "Its numbers are one document, which " code { "corner-impact report " (dossier.model.file) " --json" } " prints; the page only lays them out."
+            "This page was written by corner-impact " (dossier.version) " from " code { (dossier.model.file) } ". "
+            "Its numbers are one document, which the first command prints with " code { "--json" } "; the page only lays them out."
         }
         table.commands {
             tbody { @for (command, what) in &dossier.commands { tr { th scope="row" { code { (command) } } td { (what) } } } }
