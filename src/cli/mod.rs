@@ -6,6 +6,7 @@ mod claims;
 mod continuation;
 mod curve;
 mod diagram;
+mod figure;
 mod locate;
 mod orbit;
 mod picture;
@@ -54,6 +55,7 @@ enum Command {
     Speeds(speeds::Arguments),
     Locate(locate::Arguments),
     Basins(basins::Arguments),
+    Figure(figure::Arguments),
 }
 
 /// Why a command has no result.
@@ -138,6 +140,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         Command::Continue(arguments) => continuation::run(arguments, out, err),
         Command::Locate(arguments) => print(locate::run(arguments), out),
         Command::Basins(arguments) => basins::run(arguments, out),
+        Command::Figure(arguments) => figure::run(arguments, out),
     };
     result.unwrap_or_else(|error| {
         // Whoever closes a pipe early, as `head` does, wants no more, nor a complaint.
