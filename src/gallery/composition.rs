@@ -56,8 +56,10 @@ pub struct Composition {
     pub after: [Line; 2],
     /// x* on Π1 and Π2, and where the orbit is at the corner, before the impact and after.
     pub states: [State; 3],
-    /// A neighbour that comes to the cam before the corner, and one that comes after.
+    /// A neighbour that comes to the cam before the corner, and one that comes as much after.
     pub neighbours: [Neighbour; 2],
+    /// One that comes before the corner, farther away where the cam has the room.
+    pub far: Neighbour,
 }
 
 /// A neighbour of the orbit.
@@ -122,6 +124,16 @@ impl Subject {
         let Some(neighbours) = neighbours else {
             return Err("no neighbour of the orbit has its one impact next to the corner".into());
         };
+        let widths = sides.map(|segment| segment.end - segment.start);
+        let mut far = neighbours[0].clone();
+        let mut wide = (FARTHEST / IMPACT).min(0.9 * widths[0]);
+        while wide > reach {
+            if let Some(found) = neighbour(at, &machine, Side::Minus, wide) {
+                far = found;
+                break;
+            }
+            wide *= 0.5;
+        }
         let window = reach / omega;
         let law = |index: usize, from: f64, to: f64| -> Line {
             // Of the segment before angle 0 the law is that of a turn earlier.
@@ -148,6 +160,7 @@ impl Subject {
             after: [law(1, 0.0, window), law(1, -window, 0.0)],
             states: [at.state, coming, leaving],
             neighbours,
+            far,
         })
     }
 }

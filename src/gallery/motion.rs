@@ -8,7 +8,7 @@ use crate::simulate::{Event, Machine, Unobserved, angular_velocity};
 /// Revolutions before anything is shown.
 const TRANSIENT: u64 = 300;
 /// Samples of a revolution.
-const SAMPLES: u32 = 1440;
+const SAMPLES: u32 = 3600;
 
 /// A stretch of motion at one speed.
 #[derive(Clone, Debug, PartialEq)]

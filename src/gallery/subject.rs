@@ -14,6 +14,8 @@ pub struct Subject {
     pub model: Model,
     /// Its cam.
     pub cam: Cam,
+    /// Whether follower and cam are the paper's.
+    pub is_paper: bool,
     /// What `verify` found for it, or why it found nothing.
     pub findings: Result<Findings, String>,
     /// The speeds that are shown.
@@ -124,7 +126,7 @@ impl Subject {
             }
             Err(why) => Err(why.clone()),
         };
-        Ok(Self { model: model.clone(), cam, findings, shown: Shown { slow, fast } })
+        Ok(Self { model: model.clone(), cam, is_paper: paper, findings, shown: Shown { slow, fast } })
     }
 
     /// What `verify` found, or why it found nothing.

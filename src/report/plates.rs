@@ -143,7 +143,7 @@ const TABLE: [Entry; 14] = [
     Entry {
         id: "composition",
         place: "Figure 6",
-        title: |subject| format!("{}: the map as a composition, P = P₂ ∘ P_D ∘ P₁", subject.model.name),
+        title: |subject| format!("{}: the map of one revolution, composed of three", subject.model.name),
         draw: drawn::composition,
     },
     Entry {

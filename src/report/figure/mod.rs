@@ -168,6 +168,14 @@ pub enum Beside {
     Above,
     /// Below it.
     Below,
+    /// Above it and to the right.
+    AboveRight,
+    /// Above it and to the left.
+    AboveLeft,
+    /// Below it and to the right.
+    BelowRight,
+    /// Below it and to the left.
+    BelowLeft,
 }
 
 /// How a line is stroked.

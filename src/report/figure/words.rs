@@ -21,6 +21,10 @@ pub(super) fn write(out: &mut impl Write, word: &Word, [x, y]: [f64; 2], colour:
         Beside::Left => (x - AWAY, y + 0.35 * TEXT, "end"),
         Beside::Above => (x, y - AWAY, "middle"),
         Beside::Below => (x, y + AWAY + 0.75 * TEXT, "middle"),
+        Beside::AboveRight => (x + 0.7 * AWAY, y - 0.7 * AWAY, "start"),
+        Beside::AboveLeft => (x - 0.7 * AWAY, y - 0.7 * AWAY, "end"),
+        Beside::BelowRight => (x + 0.7 * AWAY, y + 0.7 * AWAY + 0.75 * TEXT, "start"),
+        Beside::BelowLeft => (x - 0.7 * AWAY, y + 0.7 * AWAY + 0.75 * TEXT, "end"),
     };
     let (x, y, text) = (number(x), number(y), marked_up(&word.text));
     let place = format!(r#"x="{x}" y="{y}" text-anchor="{anchor}""#);

@@ -29,7 +29,7 @@ impl CornerMark {
     }
 
     /// Its letter, or the angle in degrees where it has none.
-    pub(super) fn label(&self) -> String {
+    pub(in crate::report) fn label(&self) -> String {
         if self.name.is_empty() { self.mark().label } else { self.name.clone() }
     }
 }

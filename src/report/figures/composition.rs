@@ -22,12 +22,12 @@ fn arrow(from: [f64; 2], to: [f64; 2], stroke: Stroke) -> Data {
 /// The whole of it: one revolution on either side of the corner, on the neighbour whose impact is before the corner.
 pub fn composition_figure(title: &str, shown: &Composition) -> Figure {
     let in_periods = |line: &[[f64; 2]]| line.iter().map(|[time, q]| [time / shown.period, *q]).collect::<Vec<_>>();
-    let [near, _] = &shown.neighbours;
+    let near = &shown.far;
     let [first, minus, plus, last] = near.sections.map(|state| state.position);
     let [star, ..] = shown.states;
     let mut series = vec![
         named("cam c", Colour::Grey, Data::Area { points: in_periods(&shown.cam), stroke: Stroke::Thin }),
-        named("orbit x*", Colour::Blue, Data::Line { points: in_periods(&shown.orbit), stroke: Stroke::Thick }),
+        named("orbit x*", Colour::Blue, Data::Line { points: in_periods(&shown.orbit), stroke: Stroke::Solid }),
     ];
     let [real, past] = [0, 1].map(|index| in_periods(&near.coming[index]));
     let going = in_periods(&near.going[0]);
@@ -35,7 +35,7 @@ pub fn composition_figure(title: &str, shown: &Composition) -> Figure {
     neighbour.extend(going);
     series.push(named("neighbour", Colour::Vermilion, Data::Line { points: neighbour, stroke: Stroke::Solid }));
     series.push(named("as if no impact", Colour::Vermilion, Data::Line { points: past, stroke: Stroke::Dashed }));
-    series.push(named("P_D", Colour::Purple, arrow([0.0, minus], [0.0, plus], Stroke::Thick)));
+    series.push(named("discontinuity mapping", Colour::Purple, arrow([0.0, minus], [0.0, plus], Stroke::Solid)));
     let top = shown.orbit.iter().map(|[_, q]| *q).fold(f64::NEG_INFINITY, f64::max);
     let bottom = minus.min(shown.cam.iter().map(|[_, c]| *c).fold(f64::INFINITY, f64::min));
     let height = top - bottom;
@@ -64,6 +64,7 @@ pub fn composition_figure(title: &str, shown: &Composition) -> Figure {
             word([0.0, plus], "x_d^+", Beside::Right),
             word(quarter(&near.coming[0]), "P_1", Beside::Left),
             word(quarter(&near.going[0]), "P_2", Beside::Right),
+            word([0.0, 0.5 * (minus + plus)], "P_D", Beside::Left),
         ]),
     ));
     Figure {
@@ -116,6 +117,7 @@ fn mapping(shown: &Composition, near: &Neighbour) -> Panel {
     };
     let sides = |points| Data::Line { points, stroke: Stroke::Dotted };
     let foot = range[0];
+    let end = |line: &[[f64; 2]]| line.last().map_or([f64::NAN; 2], |[time, c]| [time * MILLI, *c]);
     let time = vec![hit, [hit[0], foot]];
     let (beside_minus, beside_plus) =
         if before { (Beside::Right, Beside::Right) } else { (Beside::Left, Beside::Left) };
@@ -127,7 +129,7 @@ fn mapping(shown: &Composition, near: &Neighbour) -> Panel {
         named("orbit x*", Colour::Blue, Data::Line { points: scaled(&shown.orbit), stroke: Stroke::Thin }),
         named("neighbour", Colour::Vermilion, Data::Line { points: real, stroke: Stroke::Solid }),
         named(label, Colour::Vermilion, Data::Arrow { points: unreal, stroke: Stroke::Dashed }),
-        named("P_D", Colour::Purple, arrow([0.0, minus], [0.0, plus], Stroke::Thin)),
+        named("discontinuity mapping", Colour::Purple, arrow([0.0, minus], [0.0, plus], Stroke::Solid)),
         named(
             "",
             Colour::Vermilion,
@@ -137,10 +139,13 @@ fn mapping(shown: &Composition, near: &Neighbour) -> Panel {
             "",
             Colour::Ink,
             Data::Words(vec![
-                word([0.0, range[1] - 0.5 * room], "Π_D", if before { Beside::Right } else { Beside::Left }),
+                word([0.0, range[1] - 0.5 * room], "Π_D", if before { Beside::Left } else { Beside::Right }),
+                word([0.0, 0.5 * (minus + plus)], "P_D", if before { Beside::Right } else { Beside::Left }),
                 word([0.0, minus], "x_d^−", beside_minus),
                 word([0.0, plus], "x_d^+", beside_plus),
-                word(hit, "x^−_{−t_i}, x^+_{−t_i}", if before { Beside::Left } else { Beside::Right }),
+                word(hit, "x^−, x^+", if before { Beside::AboveLeft } else { Beside::AboveRight }),
+                word(end(&shown.after[1]), "law after the corner", Beside::BelowRight),
+                word(end(&shown.before[1]), "law before the corner", Beside::AboveLeft),
                 word([hit[0], foot + 0.5 * room], "−t_i", if before { Beside::Left } else { Beside::Right }),
             ]),
         ),

@@ -5,7 +5,7 @@ use super::{panel, plain, zero};
 use crate::flight::State;
 use crate::gallery::Crossings;
 use crate::report::figure::layout::widened;
-use crate::report::figure::{Axis, Beside, Colour, Data, Density, Figure, Marker, Panel, Series, Stroke, Word};
+use crate::report::figure::{Axis, Colour, Data, Density, Figure, Marker, Panel, Series, Stroke};
 
 /// What a sweep over speeds found.
 #[derive(Clone, Debug)]
@@ -44,9 +44,13 @@ pub fn shown_impacts(points: &Density) -> Option<[f64; 2]> {
     Some([low.max(0.0), high.min(360.0)])
 }
 
-/// Positions at the section against speed, with the branches of orbits over what runs settle on.
-pub fn section_diagram(title: &str, runs: Density, branches: &[Crossings]) -> Figure {
+/// Positions at the section against speed, with the branches of orbits over what runs settle on, and the corner impact at a
+/// speed, rpm, and position, m.
+pub fn section_diagram(title: &str, runs: Density, branches: &[Crossings], corner: [f64; 2]) -> Figure {
     let [rpm, all] = runs.ranges();
+    let shown = |[speed, _]: &&[f64; 2]| (rpm[0]..=rpm[1]).contains(speed);
+    let heights = branches.iter().flat_map(|line| &line.points).chain([&corner]).filter(shown).map(|[_, q]| *q);
+    let all = widened(heights.fold(all, |[low, high], q| [low.min(q), high.max(q)]), 0.03);
     let mut series = vec![Series { label: "runs".into(), colour: Colour::Grey, data: Data::Density(runs) }];
     for (stable, label, colour, stroke) in
         [(true, "stable", Colour::Blue, Stroke::Solid), (false, "unstable", Colour::Vermilion, Stroke::Dashed)]
@@ -57,6 +61,8 @@ pub fn section_diagram(title: &str, runs: Density, branches: &[Crossings]) -> Fi
             series.push(Series { label: label.into(), ..plain(points, colour, stroke) });
         }
     }
+    let data = Data::Points { points: vec![corner], marker: Marker::Ring };
+    series.push(Series { label: "corner impact".into(), colour: Colour::Ink, data });
     Figure {
         title: title.into(),
         x: Axis::new("cam speed ω", "rpm").over(rpm),
@@ -66,29 +72,23 @@ pub fn section_diagram(title: &str, runs: Density, branches: &[Crossings]) -> Fi
     }
 }
 
-/// The states of a long run at the section, and where an orbit that is gone was.
+/// The states of a long run at the section; and where an orbit that is gone was, if that is among them.
 pub fn attractor(title: &str, states: &[State], gone: State) -> Figure {
     let ends = |value: fn(&State) -> f64| {
-        let all = states.iter().chain([&gone]).map(value);
+        let all = states.iter().map(value);
         widened(all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)]), 0.03)
     };
     let (x, y) = (ends(|state| state.position), ends(|state| state.velocity));
     let mut cloud = Density::new(x, y);
     states.iter().for_each(|state| cloud.push(state.position, state.velocity));
     let at = [gone.position, gone.velocity];
-    let series = vec![
-        Series { label: "states, once a revolution".into(), colour: Colour::Blue, data: Data::Density(cloud) },
-        Series {
-            label: "x* of the corner impact".into(),
-            colour: Colour::Vermilion,
-            data: Data::Points { points: vec![at], marker: Marker::Disc },
-        },
-        Series {
-            label: String::new(),
-            colour: Colour::Ink,
-            data: Data::Words(vec![Word { at, text: "x^*".into(), beside: Beside::Left }]),
-        },
-    ];
+    let inside = (x[0]..=x[1]).contains(&at[0]) && (y[0]..=y[1]).contains(&at[1]);
+    let mut series =
+        vec![Series { label: "states, once a revolution".into(), colour: Colour::Blue, data: Data::Density(cloud) }];
+    if inside {
+        let data = Data::Points { points: vec![at], marker: Marker::Disc };
+        series.push(Series { label: "x* of the corner impact".into(), colour: Colour::Vermilion, data });
+    }
     Figure {
         title: title.into(),
         x: Axis::new("follower position q at the section", "m").over(x),

@@ -23,8 +23,10 @@ pub fn local_map_figure(title: &str, shown: &NextToCorner) -> Figure {
     let room = 0.15 * (high - low);
     let mut panels = vec![drawn(shown, [low - room, high + room], "position less that of x*", true)];
     if flattest < SEEN * steepest {
-        let size = 1.6 * flattest;
-        panels.push(drawn(shown, [-size, size], "the same, enlarged", false));
+        let flat = shown.rays.iter().flat_map(|ray| &ray.positions).find(|slope| slope.abs() * shown.reach == flattest);
+        let side = flat.map_or(1.0, |slope| slope.signum());
+        let ends = [-0.4 * side * flattest, 1.6 * side * flattest];
+        panels.push(drawn(shown, [ends[0].min(ends[1]), ends[0].max(ends[1])], "the same, enlarged", false));
     }
     let rpm = |change: f64| 60.0 / (shown.period + change);
     Figure {
@@ -67,14 +69,22 @@ fn drawn(shown: &NextToCorner, range: [f64; 2], name: &str, with_names: bool) ->
             series.push(Series { label: label(text), colour, data: Data::Line { points, stroke } });
         }
     }
-    let gone = [-1.0, 1.0].into_iter().filter(|sign| !shown.rays.iter().any(|ray| ray.sign == *sign));
+    let gone = [-1.0, 1.0].into_iter().filter(|sign| with_names && !shown.rays.iter().any(|ray| ray.sign == *sign));
     let words: Vec<Word> = gone
         .map(|sign| {
             let at = [0.5 * sign * shown.reach * MICRO, 0.5 * (range[0] + range[1])];
             Word { at, text: "no orbit: motions leave".into(), beside: Beside::Above }
         })
         .collect();
-    if with_names && !words.is_empty() {
+    let fixed = shown.rays.iter().filter(|ray| ray.positions.len() == 1).filter_map(|ray| {
+        let name = if ray.word == "L" { "x^− before the corner" } else { "x^+ after the corner" };
+        let along = 0.7 * shown.reach;
+        let at = [ray.sign * along * MICRO, ray.positions.first()? * along];
+        let beside = if ray.sign < 0.0 { Beside::BelowRight } else { Beside::BelowLeft };
+        (range[0] < at[1] && at[1] < range[1]).then(|| Word { at, text: name.into(), beside })
+    });
+    let words: Vec<Word> = words.into_iter().chain(fixed).collect();
+    if !words.is_empty() {
         series.push(Series { label: String::new(), colour: Colour::Ink, data: Data::Words(words) });
     }
     panel(Axis::new(name, "m").over(range), 0.3, series, vec![zero()])

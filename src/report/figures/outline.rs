@@ -10,8 +10,8 @@ use crate::report::figure::{Axis, Beside, Colour, Data, Figure, Marker, Series, 
 /// The circles of a cam of three circles and its top, in order from angle 0 to half a turn, and how they are drawn.
 const CIRCLES: [(&str, Colour, Stroke); 4] = [
     ("base circle", Colour::Ink, Stroke::Solid),
-    ("flank", Colour::Blue, Stroke::Thick),
-    ("nose", Colour::Vermilion, Stroke::Dashed),
+    ("flank", Colour::Blue, Stroke::Dashed),
+    ("nose", Colour::Vermilion, Stroke::Thick),
     ("top", Colour::Green, Stroke::Dotted),
 ];
 /// Other cams: one way after another.
@@ -49,11 +49,12 @@ pub fn outline_figure(title: &str, cam: &Cam, outline: &Outline) -> Figure {
     let letters = marks.iter().filter_map(|mark| {
         let (_, at) = outline.corners.iter().find(|(angle, _)| *angle == mark.angle_rad)?;
         let steep = at[1].abs() > 2.0 * at[0].abs();
+        // A little up where it is beside the axis: the line of centres may run there.
         let beside = match (steep, at[0] > 0.0, at[1] > 0.0) {
             (true, _, true) => Beside::Above,
             (true, _, false) => Beside::Below,
-            (false, true, _) => Beside::Right,
-            (false, false, _) => Beside::Left,
+            (false, true, _) => Beside::AboveRight,
+            (false, false, _) => Beside::AboveLeft,
         };
         Some(Word { at: *at, text: mark.label(), beside })
     });
@@ -76,7 +77,7 @@ pub fn outline_figure(title: &str, cam: &Cam, outline: &Outline) -> Figure {
     ));
     series.push(unnamed(Colour::Purple, Data::Arrow { points: turn.collect(), stroke: Stroke::Thin }));
     let words = vec![
-        Word { at: [0.0, 0.0], text: "O".into(), beside: Beside::Left },
+        Word { at: [0.0, 0.0], text: "O".into(), beside: Beside::BelowRight },
         Word { at: [0.0, first + 0.45 * farthest], text: "q".into(), beside: Beside::Right },
         Word { at: [0.0, 0.25 * farthest], text: "ω".into(), beside: Beside::Above },
     ];
@@ -99,7 +100,7 @@ pub fn outline_figure(title: &str, cam: &Cam, outline: &Outline) -> Figure {
 /// Centres and radii of flank and nose on the way up, as the paper constructs them.
 fn construction(pieces: &[Piece]) -> Vec<Series> {
     let (mut lines, mut centres, mut words) = (Vec::new(), Vec::new(), Vec::new());
-    for (piece, (text, beside)) in pieces.iter().skip(1).zip([("O_1", Beside::Left), ("O_2", Beside::Left)]) {
+    for (piece, (text, beside)) in pieces.iter().skip(1).zip([("O_1", Beside::BelowLeft), ("O_2", Beside::Left)]) {
         let (Some(centre), Some(first), Some(last)) = (piece.centre, piece.points.first(), piece.points.last()) else {
             continue;
         };

@@ -1,8 +1,8 @@
 //! What stands in each figure of the table, and what is to be seen in it.
 
 use super::Drawn;
-use crate::gallery::{Composition, Outline, Run, Subject};
-use crate::report::figure::{Cloud, Density, Figure};
+use crate::gallery::{Outline, Run, Subject};
+use crate::report::figure::{Beside, Cloud, Colour, Data, Density, Figure, Marker, Series, Word};
 use crate::report::figures::{
     Against, Branches, Diagram, Trace, attractor, branches_figure, cam_figure, composition_figure, corner_marks,
     discontinuity_mapping_figure, impact_diagram, local_map_figure, outline_figure, phase_plane, section_diagram,
@@ -59,8 +59,12 @@ pub(super) fn slow_trace(subject: &Subject, title: &str) -> Result {
     let run = subject.settled(subject.shown.slow.clone()?.chattering, SLOW_TURNS)?;
     drawn(
         trace(title, &run),
-        "Follower and cam above, the gap between them below. The follower leaves the cam, comes down, and bounces lower and lower \
-         in less and less time until it stays on the cam: the chattering that the paper describes.",
+        if subject.is_paper {
+            "Follower and cam above, the gap between them below. The follower leaves the cam at P, comes down, and bounces lower and \
+             lower in less and less time until it stays on the cam: the chattering that the paper describes."
+        } else {
+            "Follower and cam above, the gap between them below, at a speed that is to the one of detachment as in the paper's trace."
+        },
     )
 }
 
@@ -69,8 +73,8 @@ pub(super) fn slow_phase_plane(subject: &Subject, title: &str) -> Result {
     let (points, _) = run::trace_points(&run.samples, &run.events, run.angular_velocity);
     drawn(
         phase_plane(title, &points),
-        "The same motion as gap against the velocity of the gap. Each impact jumps from below to above at gap 0; the loops \
-         shrink into the origin, where the follower rides on the cam.",
+        "The same motion as gap against the velocity of the gap. Each impact jumps from below to above at gap 0; what shrinks \
+         into the origin comes to rest on the cam. A kink away from gap 0 is where the cam passes a corner below the follower.",
     )
 }
 
@@ -83,17 +87,20 @@ pub(super) fn slow_impacts(subject: &Subject, title: &str) -> Result {
     drawn(
         impact_diagram(Diagram { title, points, shown, corners: &corners, lyapunov: None }),
         "Where on the cam the impacts of the settled motion fall, speed by speed; horizontal lines are the corners. Each curve is \
-         one impact, they crowd where they accumulate before the follower comes to rest, and they bend where one crosses a corner.",
+         one impact; they crowd where impacts accumulate before the follower comes to rest, and bend where one crosses a corner.",
     )
 }
 
 pub(super) fn interrupted_trace(subject: &Subject, title: &str) -> Result {
     let run = subject.settled(subject.shown.slow.clone()?.interrupted, SLOW_TURNS)?;
-    drawn(
-        trace(title, &run),
-        "Follower, cam and gap at the speed of the paper's second trace, in proportion to where the follower leaves the cam. The \
-         bounces are cut short where the cam falls away under the follower.",
-    )
+    let caption = if subject.is_paper {
+        "Follower, cam and gap at the speed of the paper's second trace. The follower comes down onto the base circle and bounces \
+         there; before the bounces have died out the flank begins to rise, and the chattering ends on it, shortly before the \
+         follower leaves the cam at P."
+    } else {
+        "Follower, cam and gap at another slow speed, which is to the one of detachment as in the paper's second trace."
+    };
+    drawn(trace(title, &run), caption)
 }
 
 pub(super) fn fast_impacts(subject: &Subject, title: &str) -> Result {
@@ -122,9 +129,10 @@ pub(super) fn fast_section(subject: &Subject, title: &str) -> Result {
     let mut runs = Cloud::new(range);
     subject.fast_runs(range, true)?.iter().for_each(|[rpm, position]| runs.push(*rpm, *position));
     let crossings = subject.crossings(&subject.branches(range)?)?;
-    let degrees = subject.found()?.at.section_angle().to_degrees();
+    let at = &subject.found()?.at;
+    let degrees = at.section_angle().to_degrees();
     drawn(
-        section_diagram(title, runs.finish(), &crossings),
+        section_diagram(title, runs.finish(), &crossings, [at.speed_rpm(), at.state.position]),
         format!(
             "The same runs and orbits, looked at once a revolution: the position of the follower when the cam is at {degrees:.2}°, \
              half a turn from the corner."
@@ -136,13 +144,37 @@ pub(super) fn corner_orbit(subject: &Subject, title: &str) -> Result {
     let run = subject.corner_orbit()?;
     let at = &subject.found()?.at;
     drawn(
-        trace(title, &run),
+        marked(trace(title, &run), &corner_name(subject, at.corner.angle)),
         format!(
             "One revolution of the orbit that repeats with a single impact exactly at the corner at {:.2}°, from the section on. At \
              this one speed the law before the corner and the law behind it both hold for the impact.",
             at.corner.angle.to_degrees()
         ),
     )
+}
+
+/// What the corner at an angle, rad, is called.
+fn corner_name(subject: &Subject, angle: f64) -> String {
+    let marks = corner_marks(&subject.cam);
+    let mark = marks.iter().find(|mark| mark.angle_rad == angle);
+    mark.map_or_else(|| "the corner".into(), |mark| format!("the corner {}", mark.label()))
+}
+
+/// A trace with its impacts named.
+fn marked(mut figure: Figure, name: &str) -> Figure {
+    for panel in &mut figure.panels {
+        let hits = panel.series.iter().find_map(|series| match &series.data {
+            Data::Points { points, marker: Marker::Below } => Some(points.clone()),
+            _ => None,
+        });
+        let hits = hits.unwrap_or_default();
+        let word = |at: &[f64; 2]| Word { at: *at, text: format!("impact at {name}"), beside: Beside::Above };
+        let words: Vec<Word> = hits.iter().map(word).collect();
+        for data in [Data::Points { points: hits, marker: Marker::Ring }, Data::Words(words)] {
+            panel.series.push(Series { label: String::new(), colour: Colour::Ink, data });
+        }
+    }
+    figure
 }
 
 pub(super) fn beyond_trace(subject: &Subject, title: &str) -> Result {
@@ -155,21 +187,19 @@ pub(super) fn beyond_trace(subject: &Subject, title: &str) -> Result {
 
 pub(super) fn beyond_attractor(subject: &Subject, title: &str) -> Result {
     let states = subject.section_states(subject.shown.fast.clone()?.beyond, STATES)?;
+    let star = subject.found()?.at.state;
     drawn(
-        attractor(title, &states, subject.found()?.at.state),
+        attractor(title, &states, star),
         format!(
-            "The states of {STATES} revolutions of that motion at the section of the map, half a turn from the corner, and x*, the \
-             state of the orbit that is gone."
+            "The states of {STATES} revolutions of that motion at the section of the map, half a turn from the corner. x*, the \
+             state of the orbit that is gone, was at q = {:.4} m, q' = {:.4} m/s.",
+            star.position, star.velocity
         ),
     )
 }
 
-fn composed(subject: &Subject) -> std::result::Result<Composition, String> {
-    subject.composition()
-}
-
 pub(super) fn composition(subject: &Subject, title: &str) -> Result {
-    let shown = composed(subject)?;
+    let shown = subject.composition()?;
     drawn(
         composition_figure(title, &shown),
         "The orbit x* comes to the corner once in a period T*. A neighbour starts at x₁ on Π₁: P₁ flies it to Π_D as if there were \
@@ -179,7 +209,7 @@ pub(super) fn composition(subject: &Subject, title: &str) -> Result {
 }
 
 pub(super) fn discontinuity_mapping(subject: &Subject, title: &str) -> Result {
-    let shown = composed(subject)?;
+    let shown = subject.composition()?;
     drawn(
         discontinuity_mapping_figure(title, &shown),
         "P_D near the corner: from x_d⁻ on Π_D back along the flight to the impact at time −t_i, through the impact (x⁻ to x⁺, the \
