@@ -1,20 +1,20 @@
 //! `corner-impact continue [MODEL] --from-rpm R --parameter NAME=LO:HI`.
 
 use std::io::Write;
-use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use super::start::{finite, positive, rpm};
 use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
 use crate::cam::Cam;
+use crate::diagram::settled_impacts;
 use crate::model::Model;
 use crate::orbit::branch::{Branch, Following};
-use crate::orbit::{Family, OrbitError, Parameter, PeriodicOrbit, Search, search};
+use crate::orbit::{Family, Parameter, PeriodicOrbit, Search, search};
 use crate::report::branch;
 use crate::report::figure::Density;
 use crate::report::figures::{Branches, branches_figure, corner_marks};
 use crate::report::file::Output;
-use crate::simulate::{Event, EventKind, Machine, angular_velocity};
+use crate::simulate::{Machine, angular_velocity};
 
 /// Follows the orbits of one speed through a parameter, round folds and through corners.
 #[derive(clap::Args)]
@@ -179,21 +179,8 @@ fn settled(
         let value = low + (high - low) * (f64::from(index) + 0.5) / f64::from(arguments.runs);
         // The edge of what the model allows has been told already.
         let Ok((machine, _)) = family.machine(&[value]) else { continue };
-        let run = || -> Result<Vec<f64>, OrbitError> {
-            let mut motion = machine.start_on_cam(0.0, 0.0)?;
-            let goal = motion.after(TRANSIENT);
-            let _ = machine.advance(&mut motion, goal, &mut |_: &Event| ControlFlow::Continue(()))?;
-            let (goal, mut phases) = (motion.after(RECORD), Vec::new());
-            let _ = machine.advance(&mut motion, goal, &mut |event: &Event| {
-                if event.kind == EventKind::Impact {
-                    phases.push(event.cam_angle.to_degrees());
-                }
-                ControlFlow::Continue(())
-            })?;
-            Ok(phases)
-        };
-        for phase in run().map_err(CommandError::input)? {
-            density.push(value, phase);
+        for angle in settled_impacts(&machine, TRANSIENT, RECORD).map_err(CommandError::input)? {
+            density.push(value, angle.to_degrees());
         }
     }
     Ok(Some(density))

@@ -9,13 +9,13 @@ use clap::ValueEnum;
 use super::start::{StartArguments, count, finite, speeds, turn};
 use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
 use crate::cam::Cam;
-use crate::diagram::{Block, Counted, Following, Row, Section, Seen, Speeds, Sweep, SweepError, Tally};
+use crate::diagram::{Counted, Following, Places, Section, Speeds, Sweep, SweepError, Tally};
 use crate::report::figure::layout::widened;
 use crate::report::figure::{Cloud, Density, Figure};
-use crate::report::figures::{Diagram, corner_marks, impact_diagram, strobe_diagram};
+use crate::report::figures::{Diagram, corner_marks, impact_diagram, shown_impacts, strobe_diagram};
 use crate::report::file::Output;
 use crate::report::{SweepSummary, csv, json};
-use crate::simulate::{EventKind, Machine, angular_velocity};
+use crate::simulate::{Machine, angular_velocity};
 
 /// Sweeps over speeds: what the motion settles on, as a table or a picture.
 #[derive(clap::Args)]
@@ -73,30 +73,6 @@ enum FollowingName {
     Fixed,
     Up,
     Down,
-}
-
-/// Points of a picture, as a worker makes them.
-#[derive(Default)]
-struct Points {
-    places: Vec<[f64; 2]>,
-    exponent: Option<[f64; 2]>,
-}
-
-impl Block for Points {
-    fn push(&mut self, row: &Row) {
-        self.exponent = row.lyapunov.map(|exponent| [row.rpm, exponent]);
-        match row.seen {
-            Seen::Event(event) if event.kind == EventKind::Impact => {
-                self.places.push([row.rpm, event.cam_angle.to_degrees()]);
-            }
-            Seen::Event(_) => {}
-            Seen::Section(state) => self.places.push([row.rpm, state.position]),
-        }
-    }
-
-    fn is_full(&self) -> bool {
-        self.places.len() >= 1024
-    }
 }
 
 impl From<SweepError> for CommandError {
@@ -222,10 +198,9 @@ fn table(sweep: &Sweep, threads: usize, path: &Path, out: &mut dyn Write) -> Res
     Ok(tally)
 }
 
-/// The range that the points take up, with a little room; of impacts no more than the whole cam.
+/// The range that the points take up, with a little room.
 fn shown(points: &Density, section: Section) -> Option<[f64; 2]> {
-    let [low, high] = widened(points.extent()?, 0.02);
-    Some(if section == Section::Impacts { [low.max(0.0), high.min(360.0)] } else { [low, high] })
+    if section == Section::Impacts { shown_impacts(points) } else { Some(widened(points.extent()?, 0.02)) }
 }
 
 type Found = (Density, Vec<[f64; 2]>, Tally);
@@ -235,9 +210,11 @@ fn points(sweep: &Sweep, threads: usize) -> Result<Found, CommandError> {
     let mut cloud = Cloud::new(if high > low { [low, high] } else { [0.99 * low, 1.01 * low] });
     let mut exponents: Vec<[f64; 2]> = Vec::new();
     let progress = Progress::new(sweep.speeds.count as u64);
-    let tally = sweep.run(Some(threads), |index, points: Points| {
+    // Angles are shown in degrees.
+    let shown = |place: f64| if sweep.section == Section::Impacts { place.to_degrees() } else { place };
+    let tally = sweep.run(Some(threads), |index, points: Places| {
         progress.set(index as u64);
-        points.places.iter().for_each(|[rpm, place]| cloud.push(*rpm, *place));
+        points.places.iter().for_each(|[rpm, place]| cloud.push(*rpm, shown(*place)));
         if let Some(exponent) = points.exponent.filter(|new| exponents.last().is_none_or(|last| last[0] != new[0])) {
             exponents.push(exponent);
         }

@@ -6,6 +6,7 @@ mod claims;
 mod continuation;
 mod curve;
 mod diagram;
+mod figure;
 mod help;
 mod locate;
 mod model;
@@ -84,6 +85,7 @@ subcommands! {
         Simulate = simulate,
         Speeds = speeds,
         Diagram = diagram,
+        Figure = figure,
     "Periodic orbits and what lies between them":
         Orbit = orbit,
         Continue = continuation,

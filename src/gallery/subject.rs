@@ -14,8 +14,10 @@ pub struct Subject {
     pub model: Model,
     /// Its cam.
     pub cam: Cam,
-    /// What `verify` found for it.
-    pub findings: Option<Findings>,
+    /// Whether follower and cam are the paper's.
+    pub is_paper: bool,
+    /// What `verify` found for it, or why it found nothing.
+    pub findings: Result<Findings, String>,
     /// The speeds that are shown.
     pub shown: Shown,
 }
@@ -124,6 +126,11 @@ impl Subject {
             }
             Err(why) => Err(why.clone()),
         };
-        Ok(Self { model: model.clone(), cam, findings: findings.ok(), shown: Shown { slow, fast } })
+        Ok(Self { model: model.clone(), cam, is_paper: paper, findings, shown: Shown { slow, fast } })
+    }
+
+    /// What `verify` found, or why it found nothing.
+    pub fn found(&self) -> Result<&Findings, String> {
+        self.findings.as_ref().map_err(Clone::clone)
     }
 }

@@ -4,6 +4,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use serde::Serialize;
 
+use super::command::command;
 use super::document::{AgreementEntry, SideEntry, Verification};
 use super::figures::corner_marks;
 use super::plates::{Plate, plates};
@@ -253,25 +254,15 @@ fn speeds(model: &Model, watch: &dyn Watch) -> Result<RegimesDocument, String> {
 }
 
 fn commands(model: &Model, verified: bool) -> Vec<(String, &'static str)> {
-    let file = model.path().map_or_else(String::new, |path| format!(" {}", shell_word(&path.to_string_lossy())));
-    let mut commands = vec![(format!("corner-impact report{file}"), "writes this page")];
+    let again = |name: &str, what| (command(name, model, ""), what);
+    let mut commands = vec![again("report", "writes this page")];
     if verified {
-        commands.extend([
-            (format!("corner-impact verify{file}"), "finds the corner impact, its map by every route, and compares"),
-            (format!("corner-impact claims{file}"), "holds the paper's statements against it"),
-        ]);
+        commands.push(again("verify", "finds the corner impact, its map by every route, and compares"));
+        commands.push(again("claims", "holds the paper's statements against it"));
     }
-    commands.extend([
-        (format!("corner-impact cam{file}"), "lists segments and corners of the cam"),
-        (format!("corner-impact speeds{file}"), "what the follower does at each speed, with more speeds than here"),
-    ]);
+    commands.push(again("cam", "lists segments and corners of the cam"));
+    commands.push(again("speeds", "what the follower does at each speed, with more speeds than here"));
     commands
-}
-
-/// A word as a shell takes it: in quotes where it has anything but plain letters.
-fn shell_word(word: &str) -> String {
-    let plain = |letter: char| letter.is_ascii_alphanumeric() || "/._-+:@%,".contains(letter);
-    if !word.is_empty() && word.chars().all(plain) { word.into() } else { format!("'{}'", word.replace('\'', "'\\''")) }
 }
 
 /// A route's name as words.

@@ -7,6 +7,7 @@ mod border_collision_text;
 pub mod branch;
 pub mod cam;
 pub mod claims;
+pub mod command;
 pub mod csv;
 pub mod curve;
 pub mod document;
