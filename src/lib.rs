@@ -33,13 +33,15 @@
 //!    ▼
 //!  claims                the paper's statements, one by one: holds, misprint, refuted, open
 //!    ▼
+//!  gallery               what the report's figures show, as numbers
+//!    ▼
 //!  report                document values; text, JSON, Markdown; figures: SVG, PNG
 //!    ▼
 //!  cli                   parse, one library call, exit code
 //! ```
 //!
 //! Data moves down; no stage uses one below it, and a test holds the code to that. `tolerance` stands above all: every
-//! threshold is a row of its one table.
+//! threshold is a row of its one table; and so does `progress`, by which long work tells how far it has come.
 //!
 //! ```
 //! use corner_impact::{model::{Model, OSORIO_2008}, verify::{External, verify}};
@@ -53,6 +55,8 @@
 #![doc = include_str!("symbols.md")]
 
 pub mod tolerance;
+
+pub mod progress;
 
 pub mod model;
 
@@ -87,6 +91,8 @@ pub mod verify;
 pub mod survey;
 
 pub mod claims;
+
+pub mod gallery;
 
 pub mod report;
 

@@ -1,4 +1,4 @@
-//! `corner-impact diagram MODEL --rpm LO:HI:N`.
+//! `corner-impact diagram [MODEL] --rpm LO:HI:N`.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -7,25 +7,26 @@ use std::time::Instant;
 use clap::ValueEnum;
 
 use super::start::{StartArguments, count, finite, speeds, turn};
-use super::{CommandError, Exit, picture, progress::Progress};
+use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
 use crate::cam::Cam;
-use crate::diagram::{Block, Counted, Following, Row, Section, Seen, Speeds, Sweep, SweepError, Tally};
-use crate::model::Model;
+use crate::diagram::{Counted, Following, Places, Section, Speeds, Sweep, SweepError, Tally};
 use crate::report::figure::layout::widened;
 use crate::report::figure::{Cloud, Density, Figure};
-use crate::report::figures::{Diagram, corner_marks, impact_diagram, strobe_diagram};
+use crate::report::figures::{Diagram, corner_marks, impact_diagram, shown_impacts, strobe_diagram};
 use crate::report::file::Output;
 use crate::report::{SweepSummary, csv, json};
-use crate::simulate::{EventKind, Machine, angular_velocity};
+use crate::simulate::{Machine, angular_velocity};
 
 /// Sweeps over speeds: what the motion settles on, as a table or a picture.
 #[derive(clap::Args)]
-#[command(after_help = "Examples: corner-impact diagram models/osorio-2008.toml --rpm 660:750:400 --out impacts.svg\n\
-    \x20         corner-impact diagram models/osorio-2008.toml --rpm 660:750:400 --start down --out impacts.csv\n\n\
+#[command(after_help = "Examples:\n\
+    \x20 corner-impact diagram --rpm 660:750:400 --out impacts.svg\n\
+    \x20 corner-impact diagram models/osorio-2008.toml --rpm 660:750:400 --start down --out impacts.csv\n\
+    \n\
     Exit code: 0 done, 2 bad model file, usage or file, or a run that cannot go on.")]
 pub(super) struct Arguments {
-    /// Model file (TOML).
-    model: PathBuf,
+    #[command(flatten)]
+    model: ModelArgument,
     /// Lowest speed, highest speed, and how many.
     #[arg(long, value_name = "LO:HI:N", value_parser = speeds, allow_hyphen_values = true)]
     rpm: Speeds,
@@ -74,30 +75,6 @@ enum FollowingName {
     Down,
 }
 
-/// Points of a picture, as a worker makes them.
-#[derive(Default)]
-struct Points {
-    places: Vec<[f64; 2]>,
-    exponent: Option<[f64; 2]>,
-}
-
-impl Block for Points {
-    fn push(&mut self, row: &Row) {
-        self.exponent = row.lyapunov.map(|exponent| [row.rpm, exponent]);
-        match row.seen {
-            Seen::Event(event) if event.kind == EventKind::Impact => {
-                self.places.push([row.rpm, event.cam_angle.to_degrees()]);
-            }
-            Seen::Event(_) => {}
-            Seen::Section(state) => self.places.push([row.rpm, state.position]),
-        }
-    }
-
-    fn is_full(&self) -> bool {
-        self.places.len() >= 1024
-    }
-}
-
 impl From<SweepError> for CommandError {
     fn from(error: SweepError) -> Self {
         Self::Input(error.to_string())
@@ -111,7 +88,7 @@ enum Target<'a> {
     Picture(&'a Path),
 }
 
-pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, CommandError> {
+pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let target = match &arguments.out {
         None => Target::Nowhere,
         Some(path) if picture::kind(path).is_some() => Target::Picture(path),
@@ -124,7 +101,7 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Co
     if arguments.strobe.is_some() && matches!(arguments.section, SectionName::Impact) {
         return Err(CommandError::Input("--strobe is the angle of --section strobe, which is not there".into()));
     }
-    let model = Model::read(&arguments.model).map_err(CommandError::input)?;
+    let model = arguments.model.read(session)?;
     let cam = Cam::new(&model).map_err(CommandError::input)?;
     let corners = corner_marks(&cam);
     let sweep = Sweep {
@@ -152,13 +129,13 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Co
     let clock = Instant::now();
     let tally = match target {
         Target::Nowhere => {
-            let mut progress = Progress::new(sweep.speeds.count as u64);
+            let progress = Progress::new(sweep.speeds.count as u64);
             sweep.run(Some(threads), |index, _: Counted| {
                 progress.set(index as u64);
                 Ok::<(), CommandError>(())
             })?
         }
-        Target::Table(path) => table(&sweep, threads, path, out)?,
+        Target::Table(path) => table(&sweep, threads, path, &mut *session.out)?,
         Target::Picture(path) => {
             let mut nobody = std::io::sink();
             let canvas = picture::Canvas::create(path, &mut nobody)?;
@@ -187,7 +164,7 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Co
     } else {
         summary.text().map_err(CommandError::report)?
     };
-    out.write_all(page.as_bytes()).and_then(|()| out.flush()).map_err(CommandError::standard)?;
+    session.print(&page)?;
     Ok(Exit::Agrees)
 }
 
@@ -212,7 +189,7 @@ fn table(sweep: &Sweep, threads: usize, path: &Path, out: &mut dyn Write) -> Res
     };
     let lyapunov = if sweep.lyapunov { csv::LYAPUNOV } else { "" };
     writeln!(file, "{columns}{lyapunov}").map_err(CommandError::write)?;
-    let mut progress = Progress::new(sweep.speeds.count as u64);
+    let progress = Progress::new(sweep.speeds.count as u64);
     let tally = sweep.run(Some(threads), |index, lines: csv::Lines| {
         progress.set(index as u64);
         file.write_all(lines.0.as_bytes()).map_err(CommandError::write)
@@ -221,10 +198,9 @@ fn table(sweep: &Sweep, threads: usize, path: &Path, out: &mut dyn Write) -> Res
     Ok(tally)
 }
 
-/// The range that the points take up, with a little room; of impacts no more than the whole cam.
+/// The range that the points take up, with a little room.
 fn shown(points: &Density, section: Section) -> Option<[f64; 2]> {
-    let [low, high] = widened(points.extent()?, 0.02);
-    Some(if section == Section::Impacts { [low.max(0.0), high.min(360.0)] } else { [low, high] })
+    if section == Section::Impacts { shown_impacts(points) } else { Some(widened(points.extent()?, 0.02)) }
 }
 
 type Found = (Density, Vec<[f64; 2]>, Tally);
@@ -233,10 +209,12 @@ fn points(sweep: &Sweep, threads: usize) -> Result<Found, CommandError> {
     let Speeds { low, high, .. } = sweep.speeds;
     let mut cloud = Cloud::new(if high > low { [low, high] } else { [0.99 * low, 1.01 * low] });
     let mut exponents: Vec<[f64; 2]> = Vec::new();
-    let mut progress = Progress::new(sweep.speeds.count as u64);
-    let tally = sweep.run(Some(threads), |index, points: Points| {
+    let progress = Progress::new(sweep.speeds.count as u64);
+    // Angles are shown in degrees.
+    let shown = |place: f64| if sweep.section == Section::Impacts { place.to_degrees() } else { place };
+    let tally = sweep.run(Some(threads), |index, points: Places| {
         progress.set(index as u64);
-        points.places.iter().for_each(|[rpm, place]| cloud.push(*rpm, *place));
+        points.places.iter().for_each(|[rpm, place]| cloud.push(*rpm, shown(*place)));
         if let Some(exponent) = points.exponent.filter(|new| exponents.last().is_none_or(|last| last[0] != new[0])) {
             exponents.push(exponent);
         }

@@ -6,10 +6,15 @@ mod claims;
 mod continuation;
 mod curve;
 mod diagram;
+mod figure;
+mod help;
 mod locate;
+mod model;
 mod orbit;
 mod picture;
 mod progress;
+mod report;
+mod session;
 mod simulate;
 mod speeds;
 mod start;
@@ -18,7 +23,11 @@ mod verify;
 use std::ffi::OsString;
 use std::io::{ErrorKind, Write};
 
-use clap::{Parser, Subcommand};
+use clap::{FromArgMatches, Parser, Subcommand};
+
+use model::ModelArgument;
+pub use session::Terminal;
+use session::{ColorChoice, Session};
 
 use crate::report::file::{FileError, Output};
 
@@ -39,21 +48,49 @@ pub enum Exit {
 struct Arguments {
     #[command(subcommand)]
     command: Command,
+    /// Whether pages, complaints and help are coloured.
+    #[arg(long, global = true, value_enum, value_name = "WHEN", default_value = "auto")]
+    color: ColorChoice,
 }
 
-#[derive(Subcommand)]
-enum Command {
-    Verify(verify::Arguments),
-    Claims(claims::Arguments),
-    Cam(cam::Arguments),
-    Simulate(simulate::Arguments),
-    Diagram(diagram::Arguments),
-    Orbit(orbit::Arguments),
-    Continue(continuation::Arguments),
-    Curve(curve::Arguments),
-    Speeds(speeds::Arguments),
-    Locate(locate::Arguments),
-    Basins(basins::Arguments),
+/// The subcommands: one line each, under the heading that `--help` lists it by. A module has `Arguments` and `run`.
+macro_rules! subcommands {
+    ($($heading:literal: $($name:ident = $module:ident,)+)+) => {
+        #[derive(Subcommand)]
+        enum Command {
+            $($($name($module::Arguments),)+)+
+        }
+
+        impl Command {
+            fn run(&self, session: &mut Session<'_>) -> Result<Exit, CommandError> {
+                match self {
+                    $($(Self::$name(arguments) => $module::run(arguments, session),)+)+
+                }
+            }
+        }
+
+        /// The headings of `--help`, and what is under each.
+        const GROUPS: &[(&str, &[&str])] = &[$(($heading, &[$(stringify!($name)),+])),+];
+    };
+}
+
+subcommands! {
+    "The paper's result, on its model or yours":
+        Verify = verify,
+        Report = report,
+        Claims = claims,
+        Locate = locate,
+    "What a machine does":
+        Cam = cam,
+        Simulate = simulate,
+        Speeds = speeds,
+        Diagram = diagram,
+        Figure = figure,
+    "Periodic orbits and what lies between them":
+        Orbit = orbit,
+        Continue = continuation,
+        Curve = curve,
+        Basins = basins,
 }
 
 /// Why a command has no result.
@@ -103,46 +140,31 @@ fn commit(mut files: Vec<Output<'_>>) -> Result<(), CommandError> {
     files.into_iter().try_for_each(Output::commit).map_err(CommandError::file)
 }
 
-/// Prints a page whole.
-fn print(page: Result<(String, Exit), CommandError>, out: &mut dyn Write) -> Result<Exit, CommandError> {
-    let (text, exit) = page?;
-    let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
-    written.map_err(CommandError::standard)?;
-    Ok(exit)
+/// Runs one command line, program name first; neither stream is a terminal.
+pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, err: &mut dyn Write) -> Exit {
+    run_at(Terminal::default(), arguments, out, err)
 }
 
-/// Runs one command line, program name first.
-pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, err: &mut dyn Write) -> Exit {
-    let arguments = match Arguments::try_parse_from(arguments) {
+/// Runs one command line, program name first, with streams that `terminal` describes.
+pub fn run_at(
+    terminal: Terminal,
+    arguments: impl IntoIterator<Item = OsString>,
+    out: &mut dyn Write,
+    err: &mut dyn Write,
+) -> Exit {
+    let words: Vec<OsString> = arguments.into_iter().collect();
+    // What is wrong with a command line is coloured as it says itself.
+    let mut session = Session { out, err, terminal, color: ColorChoice::said(&words) };
+    let matches = help::command(session.width()).try_get_matches_from(words);
+    let arguments = match matches.and_then(|matches| Arguments::from_arg_matches(&matches)) {
         Ok(arguments) => arguments,
-        Err(error) => {
-            let help = !error.use_stderr();
-            let text = error.render().to_string();
-            // A closed pipe leaves nobody to tell.
-            let _ = if help { out.write_all(text.as_bytes()) } else { err.write_all(text.as_bytes()) };
-            return if help { Exit::Agrees } else { Exit::BadInput };
-        }
+        Err(error) => return session.refuse(&error),
     };
-    let result = match &arguments.command {
-        Command::Verify(arguments) => print(verify::run(arguments, err), out),
-        Command::Claims(arguments) => print(claims::run(arguments), out),
-        Command::Cam(arguments) => {
-            let page = cam::run(arguments, out);
-            print(page, out)
-        }
-        Command::Simulate(arguments) => simulate::run(arguments, out),
-        Command::Diagram(arguments) => diagram::run(arguments, out),
-        Command::Orbit(arguments) => print(orbit::run(arguments), out),
-        Command::Speeds(arguments) => print(speeds::run(arguments), out),
-        Command::Curve(arguments) => curve::run(arguments, out, err),
-        Command::Continue(arguments) => continuation::run(arguments, out, err),
-        Command::Locate(arguments) => print(locate::run(arguments), out),
-        Command::Basins(arguments) => basins::run(arguments, out),
-    };
-    result.unwrap_or_else(|error| {
+    session.color = arguments.color;
+    arguments.command.run(&mut session).unwrap_or_else(|error| {
         // Whoever closes a pipe early, as `head` does, wants no more, nor a complaint.
         if !matches!(error, CommandError::Unread) {
-            let _ = writeln!(err, "error: {error}");
+            session.complain(&error.to_string());
         }
         Exit::BadInput
     })

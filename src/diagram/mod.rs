@@ -6,13 +6,15 @@
 
 mod growth;
 mod pipeline;
+mod places;
 
 use std::ops::ControlFlow;
 
 use crate::flight::State;
-use crate::simulate::{Event, Machine, Motion, SimulateError, Unobserved};
+use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError, Unobserved};
 pub use growth::{Exponent, exponent, growth};
 pub use pipeline::{Block, Counted, Tally};
+pub use places::Places;
 
 /// What is recorded.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -120,6 +122,22 @@ pub struct Row {
     pub seen: Seen,
     /// The exponent of this speed per revolution, if asked for.
     pub lyapunov: Option<f64>,
+}
+
+/// Cam angles, rad, of the impacts that a machine settles on: those of `record` revolutions after `transient` from rest on
+/// the cam at angle 0.
+pub fn settled_impacts(machine: &Machine, transient: u64, record: u64) -> Result<Vec<f64>, SimulateError> {
+    let mut motion = machine.start_on_cam(0.0, 0.0)?;
+    let goal = motion.after(transient);
+    let _ = machine.advance(&mut motion, goal, &mut Unobserved)?;
+    let (goal, mut angles) = (motion.after(record), Vec::new());
+    let _ = machine.advance(&mut motion, goal, &mut |event: &Event| {
+        if event.kind == EventKind::Impact {
+            angles.push(event.cam_angle);
+        }
+        ControlFlow::Continue(())
+    })?;
+    Ok(angles)
 }
 
 /// An event, or the state on the section.

@@ -72,6 +72,14 @@ impl Model {
         Self::parse(&file, &text)
     }
 
+    /// What complaints call the built-in model where others have a file.
+    const BUILT_IN: &str = "the built-in model";
+
+    /// The paper's model, which needs no file.
+    pub fn built_in() -> Result<Self, ModelError> {
+        Self::parse(Self::BUILT_IN, OSORIO_2008)
+    }
+
     /// Checks the text of a model file; `file` is the name that complaints carry.
     pub fn parse(file: &str, text: &str) -> Result<Self, ModelError> {
         Self::from_fields(Fields::parse(file, text)?)
@@ -115,7 +123,7 @@ impl Model {
 
     /// Whether follower and cam are the paper's, whatever the model is called.
     pub fn is_the_papers(&self) -> Result<bool, ModelError> {
-        let paper = Self::parse("the built-in model", OSORIO_2008)?;
+        let paper = Self::built_in()?;
         Ok(self.follower == paper.follower && self.cam == paper.cam)
     }
 
@@ -134,6 +142,11 @@ impl Model {
     /// A complaint about `line` of another file that the model names.
     pub fn reject_line(&self, file: &str, line: usize, allowed: impl Into<String>) -> ModelError {
         ModelError { line: Some(line), ..ModelError::file(file, allowed.into()) }
+    }
+
+    /// The file that commands are to be given for this model; none for the built-in one.
+    pub fn path(&self) -> Option<&Path> {
+        (self.file() != Self::BUILT_IN).then(|| Path::new(self.file()))
     }
 
     /// Name of the file that the model came from.

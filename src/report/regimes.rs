@@ -165,7 +165,8 @@ impl RegimesDocument {
 }
 
 impl MotionEntry {
-    fn words(&self) -> String {
+    /// In words.
+    pub(super) fn words(&self) -> String {
         let turns = |n: u64| if n == 1 { "a revolution".to_owned() } else { format!("{n} revolutions") };
         match (self.regime, self.revolutions, self.impacts) {
             ("regular", Some(n), Some(1)) => format!("1 impact in {}", turns(n)),

@@ -151,14 +151,18 @@ fn extent(panel: &Panel, direction: usize) -> Option<[f64; 2]> {
     };
     let drawable = |point: &&[f64; 2]| point.iter().all(|part| part.abs() < LARGEST);
     panel.series.iter().fold(None, |found, series| match &series.data {
-        Data::Line { points, .. } | Data::Area { points, .. } | Data::Points { points, .. } => {
+        Data::Line { points, .. }
+        | Data::Arrow { points, .. }
+        | Data::Area { points, .. }
+        | Data::Points { points, .. } => {
             points.iter().filter(drawable).fold(found, |found, point| join(found, point[direction], point[direction]))
         }
-        Data::Density(density) if density.occupied() > 0 => {
+        Data::Density(density) | Data::Region(density) if density.occupied() > 0 => {
             let [low, high] = density.ranges()[direction];
             join(found, low, high)
         }
-        Data::Density(_) => found,
+        // Words stand at what is drawn.
+        Data::Density(_) | Data::Region(_) | Data::Words(_) => found,
     })
 }
 
@@ -295,7 +299,7 @@ fn legend(panel: &Panel, name: &str, left: f64, right: f64) -> (Vec<(usize, [f64
 impl Layout {
     /// Lays a figure out.
     pub fn new(figure: &Figure) -> Self {
-        let heights: Vec<f64> = figure
+        let mut heights: Vec<f64> = figure
             .panels
             .iter()
             .map(|panel| WIDTH * if panel.height.is_nan() { 0.5 } else { panel.height.clamp(0.08, 2.0) })
@@ -321,6 +325,12 @@ impl Layout {
         };
         let right = WIDTH - EDGE - right.max(overhang(WIDTH - left - right - EDGE));
         let across = (right - left).max(0.3 * WIDTH);
+        for ((panel, height), range_y) in figure.panels.iter().zip(&mut heights).zip(&ranges) {
+            let ratio = range_y.map_or(f64::NAN, |[low, high]| (high - low) / (range[1] - range[0]));
+            if panel.y.to_scale && ratio.is_finite() {
+                *height = (across * ratio).clamp(0.08 * WIDTH, 2.0 * WIDTH);
+            }
+        }
         let horizontal = horizontal_ticks(&figure.x, known, across);
 
         let mut y = EDGE;

@@ -13,6 +13,7 @@ mod sheet;
 pub mod svg;
 pub mod thin;
 pub mod ticks;
+mod words;
 
 use serde::Serialize;
 
@@ -45,12 +46,14 @@ pub struct Axis {
     pub range: Option<[f64; 2]>,
     /// Where its ticks may stand.
     pub spacing: Spacing,
+    /// Of a vertical axis: whether a unit is as long as one of the horizontal axis, so that a circle is one.
+    pub to_scale: bool,
 }
 
 impl Axis {
     /// An axis that takes the extent of the data.
     pub fn new(label: &str, unit: &str) -> Self {
-        Self { label: label.into(), unit: unit.into(), range: None, spacing: Spacing::Decimal }
+        Self { label: label.into(), unit: unit.into(), range: None, spacing: Spacing::Decimal, to_scale: false }
     }
 
     /// An axis of degrees.
@@ -61,6 +64,11 @@ impl Axis {
     /// The axis with its ends set.
     pub fn over(self, range: [f64; 2]) -> Self {
         Self { range: Some(range), ..self }
+    }
+
+    /// The vertical axis with units as long as those of the horizontal one; its frame is as high as that makes it.
+    pub fn to_scale(self) -> Self {
+        Self { to_scale: true, ..self }
     }
 }
 
@@ -115,6 +123,13 @@ pub enum Data {
         /// How its upper edge is stroked.
         stroke: Stroke,
     },
+    /// A line with the head of an arrow at the end of each of its runs.
+    Arrow {
+        /// `[x, y]`.
+        points: Vec<[f64; 2]>,
+        /// How it is stroked.
+        stroke: Stroke,
+    },
     /// One marker each.
     Points {
         /// `[x, y]`.
@@ -122,8 +137,45 @@ pub enum Data {
         /// What stands there.
         marker: Marker,
     },
+    /// Words at points, over whatever else is there.
+    Words(Vec<Word>),
     /// More points than there is paper, counted on a grid.
     Density(Density),
+    /// Parts of the plane, as the cells of a grid.
+    Region(Density),
+}
+
+/// A word at a point.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Word {
+    /// `[x, y]`.
+    pub at: [f64; 2],
+    /// What it says; `_` lowers and `^` raises the letter after it, or the letters in braces.
+    pub text: String,
+    /// On which side of the point it stands.
+    pub beside: Beside,
+}
+
+/// A side of a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Beside {
+    /// Right of it.
+    Right,
+    /// Left of it.
+    Left,
+    /// Above it.
+    Above,
+    /// Below it.
+    Below,
+    /// Above it and to the right.
+    AboveRight,
+    /// Above it and to the left.
+    AboveLeft,
+    /// Below it and to the right.
+    BelowRight,
+    /// Below it and to the left.
+    BelowLeft,
 }
 
 /// How a line is stroked.
@@ -136,6 +188,8 @@ pub enum Stroke {
     Solid,
     /// Broken.
     Dashed,
+    /// Of points.
+    Dotted,
     /// Unbroken, three times as wide.
     Thick,
 }
@@ -146,8 +200,12 @@ pub enum Stroke {
 pub enum Marker {
     /// A small disc.
     Dot,
+    /// A disc.
+    Disc,
     /// An open circle.
     Ring,
+    /// A small open circle.
+    SmallRing,
     /// A triangle, its tip at the point, standing below it.
     Below,
 }

@@ -7,7 +7,7 @@ use super::grid::Grid;
 use super::layout::share;
 use super::sheet::Sheet;
 use super::svg::{FAR, fill, markers, number, stroked};
-use super::{Colour, Data, Marker, Series, Stroke, thin};
+use super::{Colour, Data, Marker, Series, Stroke, thin, words};
 
 /// More points of a line than this are counted on a grid instead.
 const MOST_POINTS: usize = 40_000;
@@ -35,8 +35,15 @@ impl Page {
         match &series.data {
             Data::Line { points, stroke } => self.line(out, points, *stroke, colour, false),
             Data::Area { points, stroke } => self.line(out, points, *stroke, colour, true),
+            Data::Arrow { points, stroke } => {
+                self.line(out, points, *stroke, colour, false)?;
+                self.heads(out, points, colour)
+            }
             Data::Points { points, marker } => self.points(out, points, *marker, colour),
+            Data::Words(words) => words.iter().try_for_each(|word| words::write(out, word, self.at(word.at), colour)),
             Data::Density(density) => self.density(out, density, colour),
+            Data::Region(density) if density.occupied() == 0 => Ok(()),
+            Data::Region(density) => out.grid(self.cells(density), colour),
         }
     }
 
@@ -70,6 +77,30 @@ impl Page {
             writeln!(out, r#"<path d="{area}" fill-opacity="0.22" {}/>"#, fill(colour))?;
         }
         if edge.is_empty() { Ok(()) } else { stroked(out, &edge, how, colour) }
+    }
+
+    /// A head at the end of each run of a line.
+    fn heads(&self, out: &mut Sheet, points: &[[f64; 2]], colour: Colour) -> fmt::Result {
+        const LENGTH: f64 = 9.0;
+        const HALF: f64 = 3.2;
+        let mut path = String::new();
+        let places: Vec<[f64; 2]> = points.iter().map(|point| self.at(*point)).collect();
+        for run in places.split(|place| place[0].is_nan()) {
+            let Some(tip) = run.last() else { continue };
+            let away = |place: &[f64; 2]| [tip[0] - place[0], tip[1] - place[1]];
+            // The direction of the last stretch that is as long as the head.
+            let along = run.iter().rev().map(away).find(|[x, y]| x.hypot(*y) >= 0.7 * LENGTH);
+            let Some([x, y]) = along.or_else(|| run.first().map(away)) else { continue };
+            let length = x.hypot(y);
+            if length > 0.0 {
+                let ([x, y], [back, side]) = ([x / length, y / length], [LENGTH, HALF]);
+                let foot = [tip[0] - back * x, tip[1] - back * y];
+                let (one, other) = ([foot[0] - side * y, foot[1] + side * x], [foot[0] + side * y, foot[1] - side * x]);
+                let [tip, one, other] = [*tip, one, other].map(|place| place.map(number).join(" "));
+                write!(path, "M{tip}L{one}L{other}z")?;
+            }
+        }
+        if path.is_empty() { Ok(()) } else { writeln!(out, r#"<path d="{path}" {}/>"#, fill(colour)) }
     }
 
     fn points(&self, out: &mut Sheet, points: &[[f64; 2]], marker: Marker, colour: Colour) -> fmt::Result {

@@ -74,7 +74,7 @@ fn style(out: &mut Sheet) -> fmt::Result {
     for (class, _, dark) in Colour::ALL.map(Colour::shades) {
         write!(out, " .s-{class} {{ stroke: {dark} }} .f-{class} {{ fill: {dark} }}")?;
     }
-    writeln!(out, " .dense {{ filter: {DARK_IMAGE} }} }}</style>")
+    writeln!(out, " .halo {{ stroke: {DARK_PAPER} }} .dense {{ filter: {DARK_IMAGE} }} }}</style>")
 }
 
 fn panel(out: &mut Sheet, panel: &Panel, layout: &Layout, place: &super::layout::PanelLayout) -> fmt::Result {
@@ -155,7 +155,12 @@ fn sample(out: &mut Sheet, series: &Series, [x, y]: [f64; 2]) -> fmt::Result {
     let across = format!("M{} {}h{SAMPLE}", number(x), number(y));
     let colour = series.colour;
     match &series.data {
-        Data::Line { stroke, .. } => stroked(out, &across, *stroke, colour),
+        Data::Line { stroke, .. } | Data::Arrow { stroke, .. } => stroked(out, &across, *stroke, colour),
+        Data::Words(_) => Ok(()),
+        Data::Region(_) => {
+            let block = format!("M{} {}h{SAMPLE}v10h-{SAMPLE}z", number(x), number(y - 5.0));
+            writeln!(out, r#"<path d="{block}" {}/>"#, fill(colour))
+        }
         Data::Area { stroke, .. } => {
             let block = format!("M{} {}h{SAMPLE}v8h-{SAMPLE}z", number(x), number(y - 1.5));
             writeln!(out, r#"<path d="{block}" fill-opacity="0.22" {}/>"#, fill(colour))?;
@@ -177,6 +182,7 @@ pub(super) fn stroked(out: &mut Sheet, path: &str, how: Stroke, colour: Colour) 
         Stroke::Thin => (0.9, ""),
         Stroke::Solid => (1.5, ""),
         Stroke::Dashed => (1.5, r#" stroke-dasharray="6 3""#),
+        Stroke::Dotted => (1.5, r#" stroke-dasharray="1.5 2.5""#),
         Stroke::Thick => (4.5, ""),
     };
     let colour = stroke(colour);
@@ -185,7 +191,8 @@ pub(super) fn stroked(out: &mut Sheet, path: &str, how: Stroke, colour: Colour) 
 
 pub(super) fn markers(out: &mut Sheet, points: &[[f64; 2]], marker: Marker, colour: Colour) -> fmt::Result {
     let shape = match marker {
-        Marker::Dot => "h0",
+        Marker::Dot | Marker::Disc => "h0",
+        Marker::SmallRing => "m-1.4 0a1.4 1.4 0 1 0 2.8 0a1.4 1.4 0 1 0 -2.8 0z",
         Marker::Ring => "m-2.4 0a2.4 2.4 0 1 0 4.8 0a2.4 2.4 0 1 0 -4.8 0z",
         Marker::Below => "m0 1.5l3.2 5.5h-6.4z",
     };
@@ -196,6 +203,8 @@ pub(super) fn markers(out: &mut Sheet, points: &[[f64; 2]], marker: Marker, colo
     let (stroke, fill) = (stroke(colour), fill(colour));
     match marker {
         Marker::Dot => writeln!(out, r#"<path d="{path}" stroke-width="3.4" stroke-linecap="round" {stroke}/>"#),
+        Marker::Disc => writeln!(out, r#"<path d="{path}" stroke-width="6.4" stroke-linecap="round" {stroke}/>"#),
+        Marker::SmallRing => writeln!(out, r#"<path d="{path}" fill="none" stroke-width="0.6" {stroke}/>"#),
         Marker::Ring => writeln!(out, r#"<path d="{path}" fill="none" stroke-width="1" {stroke}/>"#),
         Marker::Below => writeln!(out, r#"<path d="{path}" {fill}/>"#),
     }

@@ -41,7 +41,7 @@ pub fn basins_figure(picture: &BasinsPicture<'_>) -> Figure {
     }
     let mut series: Vec<Series> = Vec::new();
     for ((area, part), colour) in areas.into_iter().zip(&picture.basins.parts).zip(COLOURS) {
-        series.push(Series { label: described(&part.ending), colour, data: Data::Density(area) });
+        series.push(Series { label: described(&part.ending), colour, data: Data::Region(area) });
     }
     let at = |state: &State| [state.position, state.velocity];
     let mut line: Vec<[f64; 2]> = Vec::new();

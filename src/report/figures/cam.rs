@@ -27,6 +27,11 @@ impl CornerMark {
         let angle = format!("{at:.1}°");
         Mark { at, label: if self.name.is_empty() { angle } else { format!("{} {angle}", self.name) } }
     }
+
+    /// Its letter, or the angle in degrees where it has none.
+    pub(in crate::report) fn label(&self) -> String {
+        if self.name.is_empty() { self.mark().label } else { self.name.clone() }
+    }
 }
 
 /// The corners worth a label: a dozen at most, those of the lowest order first, then those of the largest jump, in order of
@@ -63,7 +68,7 @@ fn jump(corner: &Corner) -> f64 {
 }
 
 /// Whether the cam is base circle, flank, nose, top and the same back.
-fn of_circles(cam: &Cam, corners: &[Corner]) -> bool {
+pub(super) fn of_circles(cam: &Cam, corners: &[Corner]) -> bool {
     let dwells: Vec<bool> = cam.segments().iter().map(|segment| matches!(segment.law, Law::Dwell(_))).collect();
     let arcs = cam.segments().iter().all(|segment| matches!(segment.law, Law::Dwell(_) | Law::Arc(_)));
     arcs && corners.len() == 6 && dwells == [true, false, false, true, false, false, true]

@@ -3,15 +3,21 @@
 mod basins;
 mod branches;
 mod cam;
+mod composition;
 mod curve;
 mod diagram;
+mod local_map;
+mod outline;
 mod trace;
 
 pub use basins::{BasinsPicture, basins_figure};
 pub use branches::{Branches, branches_figure};
 pub use cam::{CornerMark, cam_figure, corner_marks};
+pub use composition::{composition_figure, discontinuity_mapping_figure};
 pub use curve::curve_figure;
-pub use diagram::{Diagram, impact_diagram, strobe_diagram};
+pub use diagram::{Diagram, attractor, impact_diagram, section_diagram, shown_impacts, strobe_diagram};
+pub use local_map::local_map_figure;
+pub use outline::outline_figure;
 pub use trace::{Against, ImpactPoint, Trace, TracePoint, phase_plane, time_trace};
 
 use super::figure::{Axis, Colour, Data, Mark, Panel, Series, Stroke};

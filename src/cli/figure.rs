@@ -1,0 +1,118 @@
+//! `corner-impact figure [MODEL] [ID]`.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use serde::Serialize;
+
+use super::{CommandError, Exit, Session, picture};
+use crate::gallery::Subject;
+use crate::model::Model;
+use crate::report::json;
+use crate::report::plates::{Listed, Plate, listed, plate};
+
+/// Lists the figures of the report, or draws one of them.
+#[derive(clap::Args)]
+#[command(after_help = "Examples: corner-impact figure\n\
+    \x20         corner-impact figure fast-impacts --out fast-impacts.svg\n\
+    \x20         corner-impact figure models/damped-heavy.toml composition --out composition.png\n\n\
+    Exit code: 0 done, 2 bad model file, usage or file, or a figure that the model has not.")]
+pub(super) struct Arguments {
+    /// Model file (TOML) [default: the paper's], then the figure to draw, from the list; a name with a dot or a slash is a file.
+    #[arg(value_name = "MODEL] [ID", num_args = 0..=2)]
+    words: Vec<String>,
+    /// The picture (.svg or .png).
+    #[arg(long, value_name = "FILE", value_parser = picture::picture)]
+    out: Option<PathBuf>,
+    /// Print one JSON document: the list, or the figure with every number that it shows.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct List {
+    schema: &'static str,
+    model: String,
+    figures: Vec<Listed>,
+}
+
+#[derive(Serialize)]
+struct One {
+    schema: &'static str,
+    model: String,
+    #[serde(flatten)]
+    plate: Plate,
+}
+
+const SCHEMA: &str = "corner-impact/figure/1";
+
+/// A model file, and a figure's name, from one or two words.
+fn named(words: &[String]) -> Result<(Option<&str>, Option<&str>), CommandError> {
+    let is_file = |word: &str| word.contains(['.', '/', '\\']);
+    match words {
+        [] => Ok((None, None)),
+        [word] if is_file(word) => Ok((Some(word), None)),
+        [word] => Ok((None, Some(word))),
+        [model, id] => Ok((Some(model), Some(id))),
+        _ => Err(CommandError::Input("at most a model file and a figure".into())),
+    }
+}
+
+pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
+    let (file, id) = named(&arguments.words)?;
+    let model = match file {
+        Some(file) => Model::read(&PathBuf::from(file)),
+        None => Model::built_in(),
+    };
+    let model = model.map_err(CommandError::input)?;
+    if id.is_none() && arguments.out.is_some() {
+        return Err(CommandError::Input("--out is for one figure: name it, from the list without --out".into()));
+    }
+    let subject = Subject::new(&model).map_err(CommandError::input)?;
+    let page = match id {
+        None => list(&model, &subject, arguments.json)?,
+        Some(id) => {
+            if !listed(&subject).iter().any(|figure| figure.id == id) {
+                let there = listed(&subject).iter().map(|figure| figure.id).collect::<Vec<_>>().join(", ");
+                return Err(CommandError::Input(format!("no figure called \"{id}\"; there are: {there}")));
+            }
+            // Opened before the work: a name that cannot be is told at once.
+            let mut nobody = std::io::sink();
+            let canvas = arguments.out.as_ref().map(|path| picture::Canvas::create(path, &mut nobody)).transpose()?;
+            let Some(plate) = plate(&subject, id) else { return Ok(Exit::BadInput) };
+            if let (Some(why), false) = (&plate.absent, arguments.json) {
+                return Err(CommandError::Input(format!("{}: no figure {id}: {why}", model.file())));
+            }
+            if let Some((canvas, figure)) = canvas.zip(plate.figure.as_ref()) {
+                super::commit(vec![canvas.draw(figure)?])?;
+            }
+            one(&model, plate, arguments)?
+        }
+    };
+    session.print(&page)?;
+    Ok(Exit::Agrees)
+}
+
+fn list(model: &Model, subject: &Subject, as_json: bool) -> Result<String, CommandError> {
+    let figures = listed(subject);
+    if as_json {
+        return json::render(&List { schema: SCHEMA, model: model.name.clone(), figures })
+            .map_err(CommandError::report);
+    }
+    let wide = |part: fn(&Listed) -> &str| figures.iter().map(|figure| part(figure).len()).max().unwrap_or(0);
+    let (ids, places) = (wide(|figure| figure.id), wide(|figure| figure.place));
+    let mut page = String::new();
+    for Listed { id, place, title } in &figures {
+        writeln!(page, "{id:ids$}  {place:places$}  {title}").map_err(CommandError::report)?;
+    }
+    Ok(page)
+}
+
+fn one(model: &Model, plate: Plate, arguments: &Arguments) -> Result<String, CommandError> {
+    if arguments.json {
+        return json::render(&One { schema: SCHEMA, model: model.name.clone(), plate }).map_err(CommandError::report);
+    }
+    let of = if plate.place.is_empty() { String::new() } else { format!(" ({} of the paper)", plate.place) };
+    let how = if arguments.out.is_some() { String::new() } else { format!("Draw it: {}\n", plate.command) };
+    Ok(format!("{}{of}\n{}\n{how}", plate.title, plate.caption))
+}

@@ -1,0 +1,86 @@
+//! `corner-impact report [MODEL]`.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use super::progress::Progress;
+use super::{CommandError, Exit, ModelArgument, Session};
+use crate::model::Model;
+use crate::report::file::Output;
+use crate::report::{Dossier, html, json};
+use crate::verify::External;
+
+/// Writes everything about a model as one HTML page that opens from disk.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:\n\
+    \x20 corner-impact report\n\
+    \x20 corner-impact report models/damped-light.toml --out page.html\n\
+    \x20 corner-impact report models/osorio-2008.toml --no-external --json\n\
+    \n\
+    The page needs no network and no other file; its name is printed. A model without a corner impact has a page too, which\n\
+    says why there is none.\n\
+    Exit code: 0 everything checked agrees, 1 something disagrees, 2 bad model file, usage or file.")]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    model: ModelArgument,
+    /// The page [default: the model file's name with -report.html, in this folder]; - for standard output.
+    #[arg(long, value_name = "FILE", value_parser = page)]
+    out: Option<PathBuf>,
+    /// Print one JSON document instead; the page only where --out names it.
+    #[arg(long)]
+    json: bool,
+    /// Leave out the routes that need Python (symbolic, scipy), and say so.
+    #[arg(long)]
+    no_external: bool,
+}
+
+/// A file name of a page, for clap.
+fn page(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let other = path
+        .extension()
+        .is_some_and(|extension| !["html", "htm"].iter().any(|known| extension.eq_ignore_ascii_case(known)));
+    if other { Err("must end in .html, or be -".into()) } else { Ok(path) }
+}
+
+pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
+    if arguments.json && arguments.out.as_deref() == Some(Path::new("-")) {
+        return Err(CommandError::Input("--json and --out - both want standard output".into()));
+    }
+    let model = arguments.model.read(session)?;
+    let path = match (&arguments.out, arguments.json) {
+        (Some(path), _) => Some(path.clone()),
+        (None, true) => None,
+        (None, false) => Some(default_name(&model)),
+    };
+    // The file is begun before the work: a name that cannot be is told at once.
+    let file = match &path {
+        Some(path) => Some(Output::create(path, &mut *session.out).map_err(CommandError::file)?),
+        None => None,
+    };
+    let external = if arguments.no_external { External::LeftOut } else { External::Run };
+    let progress = Progress::spinner("");
+    let dossier = Dossier::of(&model, external, &progress).map_err(CommandError::input)?;
+    drop(progress);
+    let write = |mut file: Output<'_>| {
+        let page = html::render(&dossier).map_err(CommandError::report)?;
+        file.write_all(page.as_bytes()).map_err(CommandError::write)?;
+        super::commit(vec![file])
+    };
+    file.map(write).transpose()?;
+    for route in &dossier.headline.failed {
+        session.complain(&format!("{route} did not run; the page says why"));
+    }
+    match (arguments.json, &path) {
+        (true, _) => session.print(&json::render(&dossier).map_err(CommandError::report)?)?,
+        (false, Some(path)) if path.as_path() != Path::new("-") => session.print(&format!("{}\n", path.display()))?,
+        _ => {}
+    }
+    Ok(if dossier.agrees { Exit::Agrees } else { Exit::Disagrees })
+}
+
+/// Named after the model file, where the command is run.
+fn default_name(model: &Model) -> PathBuf {
+    let stem = model.path().and_then(Path::file_stem).map(|stem| stem.to_string_lossy().into_owned());
+    PathBuf::from(format!("{}-report.html", stem.unwrap_or_else(|| model.name.clone())))
+}

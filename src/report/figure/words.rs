@@ -1,0 +1,64 @@
+//! Words in a frame, with lowered and raised letters, on a rim of paper so that lines do not cross them out.
+
+use std::fmt::{self, Write};
+
+use super::layout::TEXT;
+use super::svg::{escaped, fill, number};
+use super::{Beside, Colour, Word};
+
+/// From a point to the word beside it.
+const AWAY: f64 = 7.0;
+/// How far letters are lowered or raised.
+const SHIFT: f64 = 4.0;
+
+/// A word beside a place on the page; nothing where the place is none.
+pub(super) fn write(out: &mut impl Write, word: &Word, [x, y]: [f64; 2], colour: Colour) -> fmt::Result {
+    if x.is_nan() || y.is_nan() {
+        return Ok(());
+    }
+    let (x, y, anchor) = match word.beside {
+        Beside::Right => (x + AWAY, y + 0.35 * TEXT, "start"),
+        Beside::Left => (x - AWAY, y + 0.35 * TEXT, "end"),
+        Beside::Above => (x, y - AWAY, "middle"),
+        Beside::Below => (x, y + AWAY + 0.75 * TEXT, "middle"),
+        Beside::AboveRight => (x + 0.7 * AWAY, y - 0.7 * AWAY, "start"),
+        Beside::AboveLeft => (x - 0.7 * AWAY, y - 0.7 * AWAY, "end"),
+        Beside::BelowRight => (x + 0.7 * AWAY, y + 0.7 * AWAY + 0.75 * TEXT, "start"),
+        Beside::BelowLeft => (x - 0.7 * AWAY, y + 0.7 * AWAY + 0.75 * TEXT, "end"),
+    };
+    let (x, y, text) = (number(x), number(y), marked_up(&word.text));
+    let place = format!(r#"x="{x}" y="{y}" text-anchor="{anchor}""#);
+    // The rim is a text of its own: not every reader knows paint-order.
+    writeln!(
+        out,
+        r##"<text {place} class="halo" stroke="#ffffff" stroke-width="3.5" stroke-linejoin="round">{text}</text>"##
+    )?;
+    writeln!(out, r#"<text {place} {}>{text}</text>"#, fill(colour))
+}
+
+/// `_` and `^` as lowered and raised letters.
+fn marked_up(text: &str) -> String {
+    let (mut out, mut letters, mut shifted) = (String::new(), text.chars().peekable(), 0.0);
+    while let Some(letter) = letters.next() {
+        let to = match letter {
+            '_' => SHIFT,
+            '^' => -SHIFT,
+            _ => 0.0,
+        };
+        let mut part = String::new();
+        if to == 0.0 {
+            part.push(letter);
+            while let Some(next) = letters.next_if(|next| !"_^".contains(*next)) {
+                part.push(next);
+            }
+        } else if letters.next_if_eq(&'{').is_some() {
+            part.extend(letters.by_ref().take_while(|letter| *letter != '}'));
+        } else {
+            part.extend(letters.next());
+        }
+        let (by, size) = (number(to - shifted), if to == 0.0 { "" } else { r#" font-size="9.5""# });
+        out.push_str(&format!(r#"<tspan dy="{by}"{size}>{}</tspan>"#, escaped(&part)));
+        shifted = to;
+    }
+    out
+}

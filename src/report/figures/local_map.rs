@@ -1,0 +1,91 @@
+//! The local map's own orbits against the change of period, and the machine's beside them.
+
+use super::{panel, zero};
+use crate::gallery::NextToCorner;
+use crate::report::figure::{Axis, Beside, Colour, Data, Figure, Mark, Series, Stroke, Word};
+
+const MICRO: f64 = 1e6;
+/// How much of the height of a panel the lower of two rays with slopes of another size takes, at least.
+const SEEN: f64 = 0.15;
+
+/// Positions less that of x* against the change of the period; a second panel shows the flatter rays enlarged.
+pub fn local_map_figure(title: &str, shown: &NextToCorner) -> Figure {
+    let reach = shown.reach * MICRO;
+    let slopes: Vec<f64> =
+        shown.rays.iter().flat_map(|ray| &ray.positions).map(|slope| slope.abs() * shown.reach).collect();
+    let steepest = slopes.iter().copied().fold(0.0, f64::max);
+    let flattest = slopes.iter().copied().filter(|size| *size > 0.0).fold(f64::INFINITY, f64::min);
+    let signs = |at: fn(f64, f64) -> f64, start: f64| {
+        let ends = shown.rays.iter().flat_map(|ray| &ray.positions).copied();
+        ends.fold(start, at) * shown.reach
+    };
+    let (low, high) = (signs(f64::min, 0.0), signs(f64::max, 0.0));
+    let room = 0.15 * (high - low);
+    let mut panels = vec![drawn(shown, [low - room, high + room], "position less that of x*", true)];
+    if flattest < SEEN * steepest {
+        let flat = shown.rays.iter().flat_map(|ray| &ray.positions).find(|slope| slope.abs() * shown.reach == flattest);
+        let side = flat.map_or(1.0, |slope| slope.signum());
+        let ends = [-0.4 * side * flattest, 1.6 * side * flattest];
+        panels.push(drawn(shown, [ends[0].min(ends[1]), ends[0].max(ends[1])], "the same, enlarged", false));
+    }
+    let rpm = |change: f64| 60.0 / (shown.period + change);
+    Figure {
+        title: title.into(),
+        x: Axis::new("change of the period δT; faster to the left", "µs").over([-reach, reach]),
+        marks: vec![Mark { at: 0.0, label: format!("{:.4} rpm", rpm(0.0)) }],
+        panels,
+        note: format!(
+            "At the left end the cam turns at {:.4} rpm, at the right end at {:.4}.",
+            rpm(-shown.reach),
+            rpm(shown.reach)
+        ),
+    }
+}
+
+fn drawn(shown: &NextToCorner, range: [f64; 2], name: &str, with_names: bool) -> crate::report::figure::Panel {
+    let label = |name: &str| if with_names { name.to_owned() } else { String::new() };
+    let mut series = Vec::new();
+    let machine = shown
+        .machine
+        .iter()
+        .flat_map(|line| line.points.iter().map(|[change, q]| [change * MICRO, *q]).chain([[f64::NAN; 2]]));
+    series.push(Series {
+        label: label("the machine's own orbits"),
+        colour: Colour::Grey,
+        data: Data::Line { points: machine.collect(), stroke: Stroke::Thick },
+    });
+    for (stable, text, colour, stroke) in [
+        (true, "of the local map: stable", Colour::Blue, Stroke::Solid),
+        (false, "unstable", Colour::Vermilion, Stroke::Dashed),
+    ] {
+        let rays = shown.rays.iter().filter(|ray| ray.stable == stable);
+        let points: Vec<[f64; 2]> = rays
+            .flat_map(|ray| {
+                ray.positions.iter().map(move |position| [ray.sign * shown.reach * MICRO, position * shown.reach])
+            })
+            .flat_map(|end| [[0.0, 0.0], end, [f64::NAN; 2]])
+            .collect();
+        if !points.is_empty() {
+            series.push(Series { label: label(text), colour, data: Data::Line { points, stroke } });
+        }
+    }
+    let gone = [-1.0, 1.0].into_iter().filter(|sign| with_names && !shown.rays.iter().any(|ray| ray.sign == *sign));
+    let words: Vec<Word> = gone
+        .map(|sign| {
+            let at = [0.5 * sign * shown.reach * MICRO, 0.5 * (range[0] + range[1])];
+            Word { at, text: "no orbit: motions leave".into(), beside: Beside::Above }
+        })
+        .collect();
+    let fixed = shown.rays.iter().filter(|ray| ray.positions.len() == 1).filter_map(|ray| {
+        let name = if ray.word == "L" { "x^− before the corner" } else { "x^+ after the corner" };
+        let along = 0.7 * shown.reach;
+        let at = [ray.sign * along * MICRO, ray.positions.first()? * along];
+        let beside = if ray.sign < 0.0 { Beside::BelowRight } else { Beside::BelowLeft };
+        (range[0] < at[1] && at[1] < range[1]).then(|| Word { at, text: name.into(), beside })
+    });
+    let words: Vec<Word> = words.into_iter().chain(fixed).collect();
+    if !words.is_empty() {
+        series.push(Series { label: String::new(), colour: Colour::Ink, data: Data::Words(words) });
+    }
+    panel(Axis::new(name, "m").over(range), 0.3, series, vec![zero()])
+}

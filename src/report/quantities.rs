@@ -1,0 +1,83 @@
+//! The numbers of a model file, each with its symbol, meaning and unit.
+
+use serde::Serialize;
+
+use crate::flight::Flight;
+use crate::model::Model;
+
+/// A number of a model.
+#[derive(Clone, Debug, Serialize)]
+pub struct Quantity {
+    /// Its path in the model file; empty for what follows from others.
+    pub field: String,
+    /// The paper's symbol, where it has one.
+    pub symbol: &'static str,
+    /// What it is.
+    pub meaning: String,
+    /// Its value.
+    pub value: f64,
+    /// Its unit; empty for a pure number.
+    pub unit: &'static str,
+}
+
+/// Fields that are known by name: path, symbol, meaning, unit.
+const KNOWN: [(&str, &str, &str, &str); 14] = [
+    ("follower.mass", "m", "mass of the follower", "kg"),
+    ("follower.damping", "b", "damping", "N s/m"),
+    ("follower.stiffness", "k", "stiffness of the spring", "N/m"),
+    ("follower.gravity", "g", "gravity", "m/s²"),
+    ("follower.rest_position", "", "position where the spring is slack", "m"),
+    ("follower.restitution", "r", "coefficient of restitution", ""),
+    ("cam.base_radius", "ρ₀", "radius of the base circle", "m"),
+    ("cam.flank_radius", "ρ₁", "radius of the flank", "m"),
+    ("cam.nose_radius", "ρ₂", "radius of the nose", "m"),
+    ("cam.flank_start_deg", "", "cam angle where the flank starts", "deg"),
+    ("cam.nose_end_deg", "", "cam angle where the nose ends", "deg"),
+    ("cam.offset", "", "middle of the lift", "m"),
+    ("cam.amplitude", "", "amplitude of the lift", "m"),
+    ("cam.base", "", "lift at angle 0", "m"),
+];
+
+/// Every number of the model in the order of its file, then what follows from them.
+pub fn quantities(model: &Model) -> Vec<Quantity> {
+    let place = |field: &str| KNOWN.iter().position(|(path, ..)| *path == field);
+    let mut numbers: Vec<(&str, f64)> = model.numbers().collect();
+    // Those of the table in its order, the others after them as they come.
+    numbers.sort_by_key(|(field, _)| place(field).unwrap_or(KNOWN.len()));
+    let mut quantities: Vec<Quantity> = numbers.into_iter().map(|(field, value)| written(field, value)).collect();
+    if let Some(study) = model.study {
+        for (field, meaning, value) in [
+            ("study.rpm_min", "lowest speed at which a corner impact is looked for", study.rpm_min),
+            ("study.rpm_max", "highest speed at which a corner impact is looked for", study.rpm_max),
+        ] {
+            quantities.push(Quantity { field: field.into(), symbol: "", meaning: meaning.into(), value, unit: "rpm" });
+        }
+    }
+    let flight = Flight::new(&model.follower);
+    let follows = |symbol, meaning: &str, value, unit| Quantity {
+        field: String::new(),
+        symbol,
+        meaning: meaning.into(),
+        value,
+        unit,
+    };
+    quantities.push(follows("ζ", "damping over twice the mass", flight.zeta(), "1/s"));
+    quantities.push(follows("ω₀", "root of stiffness over mass", flight.omega0_squared().sqrt(), "rad/s"));
+    quantities
+}
+
+fn written(field: &str, value: f64) -> Quantity {
+    if let Some((_, symbol, meaning, unit)) = KNOWN.iter().find(|(path, ..)| *path == field) {
+        return Quantity { field: field.into(), symbol, meaning: (*meaning).into(), value, unit };
+    }
+    let name = field.rsplit('.').next().unwrap_or(field);
+    let unit = match name.split('[').next().unwrap_or(name) {
+        "amplitudes" | "rise" => "m",
+        "phases_deg" | "span_deg" | "start_deg" => "deg",
+        // A coefficient's power is its place in the list.
+        "coefficients" => "m/rad^place",
+        _ => "",
+    };
+    let words = name.split('[').next().unwrap_or(name).trim_end_matches("_deg").replace('_', " ");
+    Quantity { field: field.into(), symbol: "", meaning: words, value, unit }
+}

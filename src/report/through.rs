@@ -1,0 +1,286 @@
+//! The motion at speeds on either side of the corner impact, as a document: what the slider of the page shows. Numbers are
+//! rounded to what a picture or its readout can show.
+
+use std::collections::BTreeSet;
+
+use serde::Serialize;
+
+use super::document::EigenvalueEntry;
+use super::figure::Spacing;
+use super::figure::ticks::{ticks, unit};
+use super::figures::CornerMark;
+use crate::gallery::ThroughCorner;
+use crate::gallery::through_corner::{Moment, Place, Run, Shown};
+
+/// What the slider shows.
+#[derive(Clone, Debug, Serialize)]
+pub struct ThroughEntry {
+    /// Letter of the corner, or its angle.
+    pub corner: String,
+    /// Its cam angle.
+    pub corner_deg: f64,
+    /// Index of the frame at the corner impact.
+    pub at_corner: usize,
+    /// Axes of the drawings.
+    pub axes: Axes,
+    /// Angle, deg; lift, m; acceleration, m/rad^2; each corner twice, with the law before it and the law after it.
+    pub cam: Vec<[f64; 3]>,
+    /// Added to the lift where the cam is drawn as a shape, m.
+    pub drawn_on_m: f64,
+    /// Largest radius of that shape, m.
+    pub drawn_radius_m: f64,
+    /// Corners that have a label: angle, deg, and label.
+    pub corners: Vec<(f64, String)>,
+    /// By rising speed.
+    pub frames: Vec<FrameEntry>,
+}
+
+/// The axes.
+#[derive(Clone, Debug, Serialize)]
+pub struct Axes {
+    /// Speed, rpm.
+    pub speed: AxisEntry,
+    /// Cam angle, deg, once round.
+    pub angle: AxisEntry,
+    /// Position, m.
+    pub position: AxisEntry,
+    /// Cam angles of impacts near the corner, deg.
+    pub near: AxisEntry,
+    /// Acceleration of the cam there, m/rad^2.
+    pub acceleration: AxisEntry,
+    /// Real and imaginary part.
+    pub plane: AxisEntry,
+}
+
+/// An axis.
+#[derive(Clone, Debug, Serialize)]
+pub struct AxisEntry {
+    /// Its ends.
+    pub range: [f64; 2],
+    /// Its unit, with the power of ten that labels are to be multiplied by.
+    pub unit: String,
+    /// Where ticks stand, and their labels.
+    pub ticks: Vec<(f64, String)>,
+}
+
+/// One speed.
+#[derive(Clone, Debug, Serialize)]
+pub struct FrameEntry {
+    /// The speed.
+    pub rpm: f64,
+    /// Orbits of one impact a revolution.
+    pub orbits: Vec<OrbitFrame>,
+    /// What a run settles on that came from faster speeds.
+    pub slowing: RunFrame,
+    /// What a run settles on that came from slower speeds.
+    pub speeding: RunFrame,
+}
+
+/// An orbit at one speed.
+#[derive(Clone, Debug, Serialize)]
+pub struct OrbitFrame {
+    /// `before`, `after` or `elsewhere`: where the impact is, seen from the corner.
+    pub place: &'static str,
+    /// Whether it is stable.
+    pub stable: bool,
+    /// Cam angle of the impact.
+    pub angle_deg: f64,
+    /// That angle less the corner's.
+    pub from_corner_deg: f64,
+    /// Where it hits the cam.
+    pub position_m: f64,
+    /// v-.
+    pub velocity_before_m_s: f64,
+    /// v+.
+    pub velocity_after_m_s: f64,
+    /// Both.
+    pub multipliers: [EigenvalueEntry; 2],
+    /// The larger modulus.
+    pub modulus: f64,
+    /// One revolution: cam angle, deg, and position, m.
+    pub path: Vec<[f64; 2]>,
+}
+
+/// What a run settles on.
+#[derive(Clone, Debug, Serialize)]
+pub struct RunFrame {
+    /// Cam angles of its impacts, deg, each once.
+    pub impacts_deg: Vec<f64>,
+    /// In words.
+    pub words: String,
+    /// Some of its revolutions: cam angle, deg, and position, m.
+    pub paths: Vec<Vec<[f64; 2]>>,
+}
+
+/// Places after the point of an angle in degrees, a position, a velocity, a multiplier, a speed.
+const ANGLE: i32 = 4;
+const POSITION: i32 = 4;
+const VELOCITY: i32 = 3;
+const MULTIPLIER: i32 = 6;
+const SPEED: i32 = 4;
+/// Of angles that are only drawn.
+const DRAWN_ANGLE: i32 = 1;
+/// The largest part of a multiplier that the plane has room for.
+const WIDEST: f64 = 2.5;
+/// Margins of an axis, of what it shows.
+const MARGIN: f64 = 0.06;
+
+fn rounded(value: f64, places: i32) -> f64 {
+    let scale = 10_f64.powi(places);
+    // Without the sign of a zero.
+    (value * scale).round() / scale + 0.0
+}
+
+fn drawn([angle, position]: [f64; 2]) -> [f64; 2] {
+    [rounded(angle.to_degrees(), DRAWN_ANGLE), rounded(position, POSITION)]
+}
+
+fn path(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let mut path: Vec<[f64; 2]> = points.iter().copied().map(drawn).collect();
+    path.dedup();
+    path
+}
+
+impl ThroughEntry {
+    /// What was computed, with the labels of the cam's corners.
+    pub fn new(through: &ThroughCorner, corner: f64, marks: &[CornerMark]) -> Self {
+        let corner_deg = corner.to_degrees();
+        let frames: Vec<FrameEntry> =
+            through.moments.iter().map(|moment| FrameEntry::new(moment, corner_deg)).collect();
+        let cam: Vec<[f64; 3]> = through
+            .cam
+            .iter()
+            .map(|(angle, lift)| {
+                let angle = rounded(angle.to_degrees(), ANGLE);
+                [angle, rounded(lift.value, POSITION + 1), rounded(lift.curvature, POSITION)]
+            })
+            .collect();
+        let label = |mark: &CornerMark| {
+            if mark.name.is_empty() { format!("{:.1}°", mark.angle_rad.to_degrees()) } else { mark.name.clone() }
+        };
+        let named = marks
+            .iter()
+            .min_by(|one, other| (one.angle_rad - corner).abs().total_cmp(&(other.angle_rad - corner).abs()));
+        let [low, high] = extent(cam.iter().map(|point| point[1]));
+        // A shape needs a middle: where the lift leaves none, a base circle as large as the cam's travel.
+        let drawn_on_m = if low > 0.5 * (high - low) { 0.0 } else { rounded((high - low) - low, POSITION) };
+        Self {
+            corner: named.map(label).unwrap_or_default(),
+            corner_deg: rounded(corner_deg, ANGLE),
+            at_corner: through.at_corner,
+            axes: Axes::new(&frames, &cam, corner_deg),
+            drawn_on_m,
+            drawn_radius_m: rounded(high + drawn_on_m, POSITION),
+            corners: marks.iter().map(|mark| (rounded(mark.angle_rad.to_degrees(), ANGLE), label(mark))).collect(),
+            cam,
+            frames,
+        }
+    }
+}
+
+impl FrameEntry {
+    fn new(moment: &Moment, corner_deg: f64) -> Self {
+        Self {
+            rpm: rounded(moment.rpm, SPEED),
+            orbits: moment.orbits.iter().map(|orbit| OrbitFrame::new(orbit, corner_deg)).collect(),
+            slowing: RunFrame::new(&moment.slowing, true),
+            speeding: RunFrame::new(&moment.speeding, false),
+        }
+    }
+}
+
+impl OrbitFrame {
+    fn new(shown: &Shown, corner_deg: f64) -> Self {
+        let Shown { place, impact, multipliers, stable, path: points } = shown;
+        let angle = impact.cam_angle.to_degrees();
+        let modulus = multipliers.iter().fold(0.0_f64, |largest, multiplier| largest.max(multiplier.modulus()));
+        Self {
+            place: place.name(),
+            stable: *stable,
+            angle_deg: rounded(angle, ANGLE),
+            from_corner_deg: rounded((angle - corner_deg + 540.0).rem_euclid(360.0) - 180.0, ANGLE),
+            position_m: rounded(impact.position, POSITION),
+            velocity_before_m_s: rounded(impact.velocity_before, VELOCITY),
+            velocity_after_m_s: rounded(impact.velocity_after, VELOCITY),
+            multipliers: multipliers.map(|multiplier| EigenvalueEntry {
+                re: rounded(multiplier.re, MULTIPLIER),
+                im: rounded(multiplier.im, MULTIPLIER),
+            }),
+            modulus: rounded(modulus, MULTIPLIER),
+            path: path(points),
+        }
+    }
+}
+
+impl RunFrame {
+    /// Different places of impact that are still told one by one.
+    const TOLD: usize = 4;
+
+    fn new(run: &Run, paths: bool) -> Self {
+        let tenths: BTreeSet<i64> =
+            run.impacts.iter().map(|angle| (angle.to_degrees() * 10.0).round() as i64).collect();
+        let impacts_deg: Vec<f64> = tenths.into_iter().map(|tenth| rounded(tenth as f64 / 10.0, DRAWN_ANGLE)).collect();
+        let words = match impacts_deg.as_slice() {
+            [] => "no impact: the follower stays on the cam, or clear of it".to_owned(),
+            [angle] => format!("an impact at {angle}° in every revolution that has one"),
+            angles if angles.len() <= Self::TOLD => {
+                let angles: Vec<String> = angles.iter().map(|angle| format!("{angle}°")).collect();
+                format!("impacts at {}", angles.join(", "))
+            }
+            angles => format!("impacts at {} different angles in {} revolutions", angles.len(), run.revolutions),
+        };
+        let paths = if paths { run.paths.iter().map(|points| path(points)).collect() } else { Vec::new() };
+        Self { impacts_deg, words, paths }
+    }
+}
+
+fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
+}
+
+impl AxisEntry {
+    fn over([low, high]: [f64; 2], name: &str, spacing: Spacing, most: usize) -> Self {
+        let found = ticks([low, high], spacing, most, |_| true);
+        Self {
+            range: [low, high],
+            unit: unit(name, found.exponent),
+            ticks: found.ticks.into_iter().map(|tick| (tick.at, tick.label)).collect(),
+        }
+    }
+
+    fn around([low, high]: [f64; 2], name: &str, most: usize) -> Self {
+        let margin = MARGIN * (high - low).max(f64::MIN_POSITIVE);
+        Self::over([rounded(low - margin, POSITION), rounded(high + margin, POSITION)], name, Spacing::Decimal, most)
+    }
+}
+
+impl Axes {
+    fn new(frames: &[FrameEntry], cam: &[[f64; 3]], corner_deg: f64) -> Self {
+        let orbits = || frames.iter().flat_map(|frame| &frame.orbits);
+        let of_orbits = orbits().flat_map(|orbit| &orbit.path);
+        let of_runs = frames.iter().flat_map(|frame| frame.slowing.paths.iter().flatten());
+        let lifts = cam.iter().map(|point| point[1]);
+        let positions = extent(of_orbits.chain(of_runs).map(|point| point[1]).chain(lifts));
+        let beside = orbits().filter(|orbit| orbit.place != Place::Elsewhere.name());
+        let [first, last] = extent(beside.map(|orbit| corner_deg + orbit.from_corner_deg).chain([corner_deg]));
+        // At least a few degrees, so that a corner shows that nothing moves over.
+        let reach = 0.12 * (last - first).max(20.0);
+        let near = [rounded(first - reach, 1), rounded(last + reach, 1)];
+        let seen = |point: &&[f64; 3]| {
+            [-360.0, 0.0, 360.0].iter().any(|turn| (near[0]..=near[1]).contains(&(point[0] + turn)))
+        };
+        let accelerations = extent(cam.iter().filter(seen).map(|point| point[2]));
+        let parts = orbits().flat_map(|orbit| orbit.multipliers).flat_map(|multiplier| [multiplier.re, multiplier.im]);
+        let widest = parts.fold(1.0_f64, |widest, part| widest.max(part.abs())).min(WIDEST);
+        let plane = rounded(1.15 * widest, 2);
+        let speeds = extent(frames.iter().map(|frame| frame.rpm));
+        Self {
+            speed: AxisEntry::over(speeds, "rpm", Spacing::Decimal, 6),
+            angle: AxisEntry::over([0.0, 360.0], "deg", Spacing::Degrees, 5),
+            position: AxisEntry::around(positions, "m", 6),
+            near: AxisEntry::over(near, "deg", Spacing::Degrees, 6),
+            acceleration: AxisEntry::around(accelerations, "m/rad²", 6),
+            plane: AxisEntry::over([-plane, plane], "", Spacing::Decimal, 5),
+        }
+    }
+}
