@@ -86,6 +86,24 @@ fn by_bisection([mut low, mut high]: [f64; 2], holds: impl Fn(f64) -> bool) -> f
     0.5 * (low + high)
 }
 
+/// The number moves the corner itself. The branch turns round there, and what a search finds
+/// beside the first orbit is on it too.
+#[test]
+fn a_corner_that_moves_with_the_number_is_passed() {
+    let model = common::osorio();
+    let two = |model: &Model| {
+        let found = orbits(model, 700.0, 1).into_iter().filter(|orbit| orbit.impacts().count() == 2);
+        found.collect::<Vec<_>>()
+    };
+    let branch = follow(&model, 700.0, &two(&model)[0], "nose_end_deg", [90.0, 170.0]);
+    let corner = special(&branch, "corner", 93.36);
+    is_at(corner, 93.358406931957);
+    let nearby = model.with_number("cam.nose_end_deg", 100.0).unwrap();
+    let found = two(&nearby);
+    let on_it = found.iter().filter(|orbit| branch.holds(100.0, orbit)).count();
+    assert_eq!((found.len(), on_it), (2, 2), "{:?}", specials(&branch));
+}
+
 /// Where the simulated map has a multiplier 1 at an orbit of two impacts: Newton's method on the map finds it on one side.
 #[test]
 fn the_papers_two_impact_orbits_fold() {

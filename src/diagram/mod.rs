@@ -11,7 +11,7 @@ use std::ops::ControlFlow;
 
 use crate::flight::State;
 use crate::simulate::{Event, Machine, Motion, SimulateError, Unobserved};
-pub use growth::{Exponent, exponent, growth};
+pub use growth::{Exponent, exponent, growth, growth_and_error};
 pub use pipeline::{Block, Counted, Tally};
 
 /// What is recorded.
