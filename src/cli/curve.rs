@@ -7,7 +7,7 @@ use super::continuation::parameter;
 use super::start::{positive, range};
 use super::{CommandError, Exit, picture, progress::Progress};
 use crate::model::Model;
-use crate::orbit::branch::{Branch, BranchPoint, Following, Kind, Special, corner_impacts, survey};
+use crate::orbit::branch::{Branch, BranchPoint, Following, Kind, Special, corner_impacts, find_branches};
 use crate::orbit::{Parameter, Search};
 use crate::report::curve::{self, AtCorner};
 use crate::report::figure::layout::widened;
@@ -67,8 +67,8 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write, err: &mut dyn Writ
         (None, Some(Output::create(&arguments.out, out).map_err(CommandError::file)?))
     };
     let wanted = Search { revolutions: arguments.revolutions, impacts: arguments.impacts };
-    let surveyed = survey(&model, arguments.rpm, &wanted).map_err(CommandError::input)?;
-    let corners = corner_impacts(&surveyed.branches);
+    let found = find_branches(&model, arguments.rpm, &wanted).map_err(CommandError::input)?;
+    let corners = corner_impacts(&found.branches);
     let following = Following {
         parameter: parameter.clone(),
         range: *range,

@@ -6,7 +6,7 @@ use std::sync::Mutex;
 use super::start::range;
 use super::{CommandError, Exit, progress::Progress};
 use crate::model::Model;
-use crate::regime::{Care, survey};
+use crate::regime::{Care, regimes};
 use crate::report::{RegimesDocument, json};
 
 /// Tells at which speeds the follower leaves the cam, chatters, bounces regularly, is chaotic, and where hysteresis is.
@@ -45,9 +45,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(String, Exit), CommandError>
             bar.set(*done);
         }
     };
-    let survey = survey(&model, rpm, care, &passed).map_err(CommandError::input)?;
+    let found = regimes(&model, rpm, care, &passed).map_err(CommandError::input)?;
     drop(progress);
-    let document = RegimesDocument::new(&model.name, &survey);
+    let document = RegimesDocument::new(&model.name, &found);
     let page = if arguments.json {
         json::render(&document).map_err(CommandError::report)?
     } else {

@@ -7,21 +7,21 @@
 
 mod chatter;
 mod cut;
+mod find;
 mod follow;
 mod gap;
 mod halved;
 mod problem;
 mod special;
-mod survey;
 mod switch;
 
 use nalgebra::Matrix2;
 
 use super::{Family, OrbitError, Parameter, PeriodicOrbit};
 use crate::model::Model;
+pub use find::{FoundBranches, corner_impacts, find_branches};
 pub use problem::{Pinned, Problem, Units};
 pub use special::{Kind, Special};
-pub use survey::{Survey, corner_impacts, survey};
 
 /// What is followed, and how far.
 #[derive(Clone, Debug, PartialEq)]
