@@ -86,8 +86,30 @@ fn by_bisection([mut low, mut high]: [f64; 2], holds: impl Fn(f64) -> bool) -> f
     0.5 * (low + high)
 }
 
-/// The number moves the corner itself. The branch turns round there, and what a search finds
-/// beside the first orbit is on it too.
+/// An impact that passes angle 0 changes the numbers of all. A line is one impact still: it goes from orbit to orbit without a
+/// jump, along every impact of every orbit.
+#[test]
+fn a_line_is_one_impact() {
+    let model = common::osorio();
+    let mut passed = 0;
+    for orbit in orbits(&model, 320.0, 1) {
+        let branch = follow(&model, 320.0, &orbit, "rpm", [310.0, 340.0]);
+        let lines = branch.lines();
+        for line in &lines {
+            let jump = line.points.windows(2).map(|two| (two[1][1] - two[0][1]).abs()).fold(0.0, f64::max);
+            assert!(jump < 0.05, "{jump} rad in {line:?}");
+        }
+        for point in branch.points.iter().filter(|point| point.special.is_none()) {
+            let drawn = lines.iter().flat_map(|line| &line.points).filter(|[value, _]| *value == point.value);
+            assert!(drawn.count() >= point.orbit.impacts().count(), "{} rpm", point.value);
+        }
+        passed += usize::from(lines.iter().any(|line| line.points.iter().all(|point| point[1] > 6.0)));
+    }
+    assert!(passed > 0, "none passes angle 0");
+}
+
+/// The number moves the corner itself. The branch turns round there, and what a search finds beside the first orbit is on it
+/// too.
 #[test]
 fn a_corner_that_moves_with_the_number_is_passed() {
     let model = common::osorio();

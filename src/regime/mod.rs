@@ -2,7 +2,7 @@
 //!
 //! Speeds are run through upwards and downwards, each from where the last one ended, so that hysteresis shows. A change
 //! between two speeds is narrowed down by halving, and then explained: by the special point of the branch of orbits that
-//! ends there, if there is one.
+//! begins or ends there, if there is one. Two changes between two speeds that are run are told apart where each is explained.
 
 mod change;
 mod walk;
