@@ -13,7 +13,7 @@
 //!    ▼
 //!  orbit                 periodic orbits, their multipliers, branches of them and the points where these change
 //!    ▼
-//!  regime                what the follower does over a range of speeds, and where that changes
+//!  regime                what the follower does over a range of speeds, and where that changes (`speeds`)
 //!    ▼
 //!  basin                 what a start ends on; the curves that part the basins
 //!    ▼
@@ -21,15 +21,15 @@
 //!    ▼
 //!  corner                where the corner impact is (x*, T*), and its map {A∓, B∓, C, D} by several routes
 //!    ▼
-//!  agreement             routes pairwise against the table of tolerances
+//!  agreement             do two routes give one number? Pairwise, against the table of tolerances
 //!    ▼
 //!  border_collision      normal form, Feigin's classification, the local map's own motions and how far it holds
 //!    ▼
-//!  published             the numbers that the paper prints, against those computed
+//!  published             the digits that the paper prints, each right or wrong as it was found to be
 //!    ▼
-//!  verify                all of the above on one model
+//!  verify                one model: its slowest corner impact by every route, compared and classified (`verify`)
 //!    ▼
-//!  survey                every corner impact of a range of speeds, with its map by routes that agree
+//!  survey                every corner impact of a range of speeds, each with its map and class (`locate`)
 //!    ▼
 //!  claims                the paper's statements, one by one: holds, misprint, refuted, open
 //!    ▼

@@ -13,7 +13,7 @@ use crate::corner::border::border;
 use crate::corner::locate::Rejected;
 use crate::corner::map::Uncertainty;
 use crate::corner::one_sided::SampleError;
-use crate::corner::range::{self, RangeError, Survey};
+use crate::corner::range::{FoundCornerImpacts, RangeError, find_corner_impacts};
 use crate::corner::varied::Varied;
 use crate::corner::{CornerImpact, CornerMap, Route, SideMap};
 use crate::corner::{closed_form, finite_difference, least_squares, variational};
@@ -26,8 +26,8 @@ use crate::verify::Skipped;
 pub struct Surveyed {
     /// Each corner impact, by rising speed.
     pub found: Vec<Located>,
-    /// What was looked at besides.
-    pub survey: Survey,
+    /// What was looked at for them, and refused.
+    pub looked_at: FoundCornerImpacts,
     /// The range, rpm.
     pub range: Study,
     /// Turns of the cam in one period of the orbits looked for.
@@ -39,7 +39,7 @@ pub struct Surveyed {
 impl Surveyed {
     /// Speeds at which the equations hold and there is no orbit.
     pub fn rejected(&self) -> &[Rejected] {
-        &self.survey.rejected
+        &self.looked_at.rejected
     }
 }
 
@@ -87,10 +87,10 @@ pub enum SurveyError {
 /// Finds every corner impact of orbits of `revolutions` in `range`, and computes its map by every route of this program.
 pub fn survey(model: &Model, range: Study, revolutions: u64) -> Result<Surveyed, SurveyError> {
     let cam = Cam::new(model)?;
-    let survey = range::survey(model, &cam, range, revolutions)?;
-    let found: Vec<Located> = survey.found.iter().map(|at| located(model, &cam, at)).collect();
+    let looked_at = find_corner_impacts(model, &cam, range, revolutions)?;
+    let found: Vec<Located> = looked_at.found.iter().map(|at| located(model, &cam, at)).collect();
     let agrees = found.iter().all(|located| located.agrees);
-    Ok(Surveyed { found, survey, range, revolutions, agrees })
+    Ok(Surveyed { found, looked_at, range, revolutions, agrees })
 }
 
 /// A corner impact with its map by each route that its corner has.

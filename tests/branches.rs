@@ -86,6 +86,46 @@ fn by_bisection([mut low, mut high]: [f64; 2], holds: impl Fn(f64) -> bool) -> f
     0.5 * (low + high)
 }
 
+/// An impact that passes angle 0 changes the numbers of all. A line is one impact still: it goes from orbit to orbit without a
+/// jump, along every impact of every orbit.
+#[test]
+fn a_line_is_one_impact() {
+    let model = common::osorio();
+    let mut passed = 0;
+    for orbit in orbits(&model, 320.0, 1) {
+        let branch = follow(&model, 320.0, &orbit, "rpm", [310.0, 340.0]);
+        let lines = branch.lines();
+        for line in &lines {
+            let jump = line.points.windows(2).map(|two| (two[1][1] - two[0][1]).abs()).fold(0.0, f64::max);
+            assert!(jump < 0.05, "{jump} rad in {line:?}");
+        }
+        for point in branch.points.iter().filter(|point| point.special.is_none()) {
+            let drawn = lines.iter().flat_map(|line| &line.points).filter(|[value, _]| *value == point.value);
+            assert!(drawn.count() >= point.orbit.impacts().count(), "{} rpm", point.value);
+        }
+        passed += usize::from(lines.iter().any(|line| line.points.iter().all(|point| point[1] > 6.0)));
+    }
+    assert!(passed > 0, "none passes angle 0");
+}
+
+/// The number moves the corner itself. The branch turns round there, and what a search finds beside the first orbit is on it
+/// too.
+#[test]
+fn a_corner_that_moves_with_the_number_is_passed() {
+    let model = common::osorio();
+    let two = |model: &Model| {
+        let found = orbits(model, 700.0, 1).into_iter().filter(|orbit| orbit.impacts().count() == 2);
+        found.collect::<Vec<_>>()
+    };
+    let branch = follow(&model, 700.0, &two(&model)[0], "nose_end_deg", [90.0, 170.0]);
+    let corner = special(&branch, "corner", 93.36);
+    is_at(corner, 93.358406931957);
+    let nearby = model.with_number("cam.nose_end_deg", 100.0).unwrap();
+    let found = two(&nearby);
+    let on_it = found.iter().filter(|orbit| branch.holds(100.0, orbit)).count();
+    assert_eq!((found.len(), on_it), (2, 2), "{:?}", specials(&branch));
+}
+
 /// Where the simulated map has a multiplier 1 at an orbit of two impacts: Newton's method on the map finds it on one side.
 #[test]
 fn the_papers_two_impact_orbits_fold() {

@@ -26,7 +26,7 @@ struct Case {
 fn case(model: Model, rpm: f64, revolutions: u64) -> Case {
     let cam = common::cam(&model);
     let near = Study { rpm_min: rpm - 1.0, rpm_max: rpm + 1.0 };
-    let found = range::survey(&model, &cam, near, revolutions).unwrap().found;
+    let found = range::find_corner_impacts(&model, &cam, near, revolutions).unwrap().found;
     let at = found.into_iter().find(|at| (at.speed_rpm() - rpm).abs() < 1e-3).unwrap();
     Case { model, cam, at }
 }

@@ -3,8 +3,8 @@
 
 use std::process::{Command, Output};
 
-use approx::assert_relative_eq;
-use serde_json::Value;
+use approx::{assert_abs_diff_eq, assert_relative_eq};
+use serde_json::{Value, json};
 use tempfile::TempDir;
 
 const MODEL: &str = "models/osorio-2008.toml";
@@ -242,6 +242,30 @@ fn speeds_gives_the_short_answer() {
     assert!(range[0].as_f64().unwrap() > 673.0 && range[1].as_f64().unwrap() < 683.0, "{range}");
     let (page, _) = done(&["speeds", MODEL, "--rpm", "100:130", "--speeds", "10"]);
     assert!(page.contains("leaves the cam first at   114.979327 rpm"), "{page}");
+}
+
+/// A flip and the corner impact after it, 0.06 rpm apart, between two speeds that are run; and on another cam the corner
+/// impact that an orbit of one impact begins in, and not that in which what was there before ends.
+#[test]
+fn changes_between_two_speeds_are_told_apart() {
+    let answer = document(&["speeds", MODEL, "--rpm", "735:745", "--speeds", "31", "--json"]);
+    for walk in ["rising", "falling"] {
+        let stretches = answer[walk].as_array().unwrap();
+        let kinds: Vec<_> =
+            stretches.iter().map(|stretch| (&stretch["regime"], stretch["revolutions"].as_u64())).collect();
+        assert_eq!(kinds, [(&json!("regular"), Some(1)), (&json!("regular"), Some(2)), (&json!("chaotic"), None)]);
+        let begins = |index: usize| stretches[index]["begins"]["rpm"].as_f64().unwrap();
+        assert_relative_eq!(begins(1), 739.319_780_216, max_relative = 1e-10);
+        assert_relative_eq!(begins(2), 739.377_929_649, max_relative = 1e-10);
+        let cause = stretches[2]["begins"]["cause"].as_str().unwrap();
+        assert!(cause.starts_with("corner impact at 160.0000 deg"), "{cause}");
+    }
+    let law = concat!(env!("CARGO_MANIFEST_DIR"), "/models/laws/rectified-sine.toml");
+    let answer = document(&["speeds", law, "--rpm", "15:22", "--speeds", "15", "--json"]);
+    let rising = answer["rising"].as_array().unwrap();
+    let one = rising.iter().find(|stretch| stretch["revolutions"] == 1 && stretch["impacts"] == 1).unwrap();
+    // Others begin and end within a thousandth of an rpm of it.
+    assert_abs_diff_eq!(one["rpm"][0].as_f64().unwrap(), 18.479_838_427, epsilon = 1e-3);
 }
 
 #[test]

@@ -6,9 +6,10 @@ use std::path::PathBuf;
 use super::continuation::parameter;
 use super::start::{positive, range};
 use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
-use crate::orbit::branch::{Branch, BranchPoint, Following, Kind, Special, corner_impacts, survey};
+use crate::border_collision::{AtCorner, ImpactCurve};
+use crate::orbit::branch::{Branch, Following, corner_impacts, find_branches};
 use crate::orbit::{Parameter, Search};
-use crate::report::curve::{self, AtCorner};
+use crate::report::curve;
 use crate::report::figure::layout::widened;
 use crate::report::figures::curve_figure;
 use crate::report::file::Output;
@@ -68,9 +69,9 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     };
     let wanted = Search { revolutions: arguments.revolutions, impacts: arguments.impacts };
     let progress = Progress::spinner("looking for corner impacts of the model");
-    let surveyed = survey(&model, arguments.rpm, &wanted).map_err(CommandError::input)?;
+    let found = find_branches(&model, arguments.rpm, &wanted).map_err(CommandError::input)?;
     drop(progress);
-    let corners = corner_impacts(&surveyed.branches);
+    let corners = corner_impacts(&found.branches);
     let following = Following {
         parameter: parameter.clone(),
         range: *range,
@@ -81,9 +82,9 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let progress = Progress::new(corners.len() as u64);
     for (index, corner) in corners.iter().enumerate() {
         progress.set(index as u64);
-        let Some(at) = at_corner(corner) else { continue };
+        let Some(at) = AtCorner::of(corner) else { continue };
         let found = Branch::of_corner_impacts(&model, corner, arguments.rpm, &following);
-        curves.push((found.map_err(CommandError::input)?, at));
+        curves.push(ImpactCurve::new(&found.map_err(CommandError::input)?, at));
     }
     let mut say = |words: &str| {
         // Nobody is left to tell where standard error is closed.
@@ -96,33 +97,25 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
             wanted.revolutions
         ));
     }
-    for (index, (found, at)) in curves.iter().enumerate() {
-        say(&curve::account(found, parameter.name(), index + 1, *at).map_err(CommandError::report)?);
+    for (index, found) in curves.iter().enumerate() {
+        say(&curve::account(found, parameter.name(), index + 1).map_err(CommandError::report)?);
     }
     if let Some(mut table) = table {
         table.write_all(curve::COLUMNS.as_bytes()).map_err(CommandError::write)?;
-        for (index, (found, at)) in curves.iter().enumerate() {
+        for (index, found) in curves.iter().enumerate() {
             let mut lines = String::new();
-            found.points.iter().for_each(|point| curve::line(&mut lines, parameter.name(), index + 1, *at, point));
+            curve::lines(&mut lines, parameter.name(), index + 1, found);
             table.write_all(lines.as_bytes()).map_err(CommandError::write)?;
         }
         super::commit(vec![table])?;
     }
     if let Some(canvas) = canvas {
         let title = format!("{}: corner impacts against {}", model.name, parameter.name());
-        let speeds = curves.iter().flat_map(|(found, _)| &found.points).map(|point| point.rpm);
+        let speeds = curves.iter().flat_map(|found| &found.impacts).map(|impact| impact.rpm);
         let extent = speeds.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], rpm| [low.min(rpm), high.max(rpm)]);
         let shown = if extent[0] < extent[1] { widened(extent, 0.04) } else { arguments.rpm };
         let figure = curve_figure(&title, (parameter.name(), *range), shown, &curves);
         super::commit(vec![canvas.draw(&figure)?])?;
     }
     Ok(Exit::Agrees)
-}
-
-/// Which impact of a corner impact is at the corner, and the order of the jump.
-fn at_corner(point: &BranchPoint) -> Option<AtCorner> {
-    match point.special {
-        Some(Special { kind: Kind::Corner { contact, jump_order, .. }, .. }) => Some(AtCorner { contact, jump_order }),
-        _ => None,
-    }
 }

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use super::start::{StartArguments, count, finite, rpm, turn};
 use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
 use crate::cam::Cam;
-use crate::diagram::{exponent as exponent_with_error, growth};
+use crate::diagram::growth_and_error;
 use crate::model::Model;
 use crate::report::figures::{Against, Trace, phase_plane, time_trace};
 use crate::report::file::Output;
@@ -136,19 +136,9 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let (run, mut files) = simulate(arguments, &machine, first, drawn, [&mut *session.out, of_tables])?;
     let Run { motion, seen, wall, before_drawn } = run;
     let turned = (motion.revolution as f64) + (motion.cam_angle - first.cam_angle) / std::f64::consts::TAU;
-    let exponent = if arguments.lyapunov {
-        Some(Exponent(growth(&machine, first, arguments.revolutions).map_err(CommandError::input)?))
-    } else {
-        None
-    };
-    // The error of a mean that sticking leaves no number of is none.
-    let per_block = arguments.revolutions / u64::from(BLOCKS);
-    let error = if exponent.is_some_and(|Exponent(mean)| mean.is_finite()) && per_block > 0 {
-        let known = exponent_with_error(&machine, first, BLOCKS, per_block).map_err(CommandError::input)?;
-        (known.blocks == BLOCKS as usize).then_some(known.standard_error)
-    } else {
-        None
-    };
+    // A run of its own: it begins where the follower leaves the cam, and stops after each revolution.
+    let grown = || growth_and_error(&machine, first, arguments.revolutions, BLOCKS);
+    let grown = arguments.lyapunov.then(grown).transpose().map_err(CommandError::input)?;
     files.extend(draw(arguments, &model, &machine, before_drawn, [trace, plane])?);
     super::commit(files)?;
     let summary = RunSummary {
@@ -160,8 +150,8 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         sticks: seen.sticks,
         releases: seen.releases,
         end: run::End::from(&motion),
-        lyapunov_per_revolution: exponent,
-        lyapunov_standard_error: error,
+        lyapunov_per_revolution: grown.map(|(mean, _)| Exponent(mean)),
+        lyapunov_standard_error: grown.and_then(|(_, error)| error),
         wall_s: wall.as_secs_f64(),
     };
     let page = if arguments.summary {

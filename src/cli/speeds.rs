@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::start::range;
 use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
-use crate::regime::{Care, survey};
+use crate::regime::{Care, regimes};
 use crate::report::{RegimesDocument, json};
 
 /// Tells at which speeds the follower leaves the cam, chatters, bounces regularly, is chaotic, and where hysteresis is.
@@ -38,9 +38,9 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let care = Care { speeds: arguments.speeds as usize, settling: arguments.settling, ..Care::default() };
     let (progress, done) = (Progress::new(2 * u64::from(arguments.speeds)), AtomicU64::new(0));
     let passed = || progress.set(done.fetch_add(1, Ordering::Relaxed) + 1);
-    let survey = survey(&model, rpm, care, &passed).map_err(CommandError::input)?;
+    let found = regimes(&model, rpm, care, &passed).map_err(CommandError::input)?;
     drop(progress);
-    let document = RegimesDocument::new(&model.name, &survey);
+    let document = RegimesDocument::new(&model.name, &found);
     let page = if arguments.json {
         json::render(&document).map_err(CommandError::report)?
     } else {

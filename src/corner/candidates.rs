@@ -1,21 +1,24 @@
-//! Guesses at corner impacts of orbits with several impacts: where the branches of a range of speeds pass a corner.
+//! Corner impacts of orbits with several impacts: where the branches of a range of speeds pass a corner.
 //!
 //! Branches are found by searches at some speeds, which may miss orbits: what is yielded here need not be all.
 
-use super::pinned::Candidate;
+use std::f64::consts::TAU;
+
+use super::confirm::Candidate;
+use super::period_equation::at_corner;
 use crate::cam::{Cam, Side};
 use crate::model::{Model, Study};
-use crate::orbit::branch::{BranchPoint, Kind, corner_impacts, survey};
-use crate::orbit::{Course, Search};
+use crate::orbit::branch::{BranchPoint, Kind, corner_impacts, find_branches};
+use crate::orbit::{Contact, Course, Search};
 
 /// Impacts in a revolution of the orbits that are looked at: with more a follower is about to chatter, and its last hops
 /// are too short for the cam to be continued past a corner among them, as the estimators need.
 pub const MOST_IMPACTS: usize = 12;
 
-/// The guesses, and what was looked at.
+/// The corner impacts, and what was looked at.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Candidates {
-    /// Each once or more.
+    /// Each once.
     pub list: Vec<Candidate>,
     /// Speeds at which orbits were searched for, rpm.
     pub speeds: Vec<f64>,
@@ -25,10 +28,10 @@ pub struct Candidates {
     pub failed: Option<String>,
 }
 
-/// Guesses over a range of speeds, for orbits of several impacts in `revolutions`.
+/// The corner impacts over a range of speeds of orbits of several impacts in `revolutions`.
 pub fn candidates(model: &Model, cam: &Cam, range: Study, revolutions: u64) -> Candidates {
     let wanted = Search { revolutions, impacts: None };
-    match survey(model, [range.rpm_min, range.rpm_max], &wanted) {
+    match find_branches(model, [range.rpm_min, range.rpm_max], &wanted) {
         Ok(found) => Candidates {
             list: corner_impacts(&found.branches).iter().filter_map(|point| candidate(cam, point)).collect(),
             speeds: found.speeds,
@@ -39,7 +42,7 @@ pub fn candidates(model: &Model, cam: &Cam, range: Study, revolutions: u64) -> C
     }
 }
 
-/// The corner impact of a branch as a guess, if it is one of several impacts.
+/// The corner impact that a branch passes, if it is one of several impacts.
 fn candidate(cam: &Cam, point: &BranchPoint) -> Option<Candidate> {
     let special = point.special?;
     let (Kind::Corner { contact, segment, jump_order }, Course::Impacts(cycle)) = (special.kind, &point.orbit.course)
@@ -53,5 +56,14 @@ fn candidate(cam: &Cam, point: &BranchPoint) -> Option<Candidate> {
     // Where the velocity jumps, both sides have an orbit on the corner, at speeds of their own.
     let is_before = cycle.contacts[contact].segment != segment;
     let side = if jump_order == 1 && is_before { Side::Minus } else { Side::Plus };
-    Some(Candidate { cycle: cycle.clone(), contact, corner, side, rpm: point.rpm })
+    let old = &cycle.contacts[contact];
+    let on_corner = at_corner(cam, &corner, side, 0, old.velocity_before);
+    // The angle may be named by the revolution before or after.
+    let turns = ((old.cam_angle - on_corner.cam_angle) / TAU).round() as i64;
+    let revolution = old.revolution + turns;
+    let mut cycle = cycle.clone();
+    cycle.contacts[contact] = Contact { revolution, ..on_corner };
+    let [slow, fast] = special.bracket.map(|rpm| 60.0 / rpm);
+    let (period, bracket) = (60.0 / point.rpm, [fast, slow]);
+    Some(Candidate { cycle, contact, corner, side, period, bracket, residual: special.residual })
 }

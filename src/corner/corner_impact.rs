@@ -17,10 +17,10 @@ pub struct CornerImpact {
     pub corner: Corner,
     /// T*, s: one revolution of the cam.
     pub period: f64,
-    /// The two neighbouring doubles, or nearly, that T* was bracketed by; for an orbit of several impacts the last step of
-    /// Newton's method to either side.
+    /// The two neighbouring doubles, or nearly, that T* was bracketed by.
     pub bracket: [f64; 2],
-    /// Left side of the equation for T*, over the sum of its terms' sizes; of several impacts Newton's last correction.
+    /// Left side of the equation for T*, over the sum of its terms' sizes; of several impacts the angle between the impact and
+    /// the corner, rad.
     pub residual: f64,
     /// v- at the corner, m/s.
     pub velocity_before: f64,

@@ -7,8 +7,8 @@
 //! | module | finds |
 //! |---|---|
 //! | [`period_equation`] | the speeds at which the one impact of an orbit is on a corner: all of a range, the roots of one equation |
-//! | [`candidates`] | guesses for orbits of several impacts, from searches at some speeds |
-//! | [`pinned`] | the speed at which such an orbit has an impact on the corner, by Newton's method |
+//! | [`candidates`] | corner impacts of several impacts, where branches of orbits pass a corner |
+//! | [`confirm`] | whether a corner impact of the equations is an orbit of the cam as it is |
 //! | [`mod@locate`] | the paper's kind, for `verify`; [`range`] all kinds |
 //!
 //! Each route then computes the matrices by means of its own:
@@ -28,6 +28,7 @@
 pub mod border;
 pub mod candidates;
 pub mod closed_form;
+pub mod confirm;
 pub mod corner_impact;
 pub mod external;
 mod extrapolation;
@@ -38,7 +39,6 @@ pub mod locate;
 pub mod map;
 pub mod one_sided;
 pub mod period_equation;
-pub mod pinned;
 pub mod range;
 pub mod simulated_orbit;
 pub mod variational;

@@ -9,8 +9,8 @@ use std::ops::ControlFlow;
 
 use nalgebra::{Vector2, Vector3};
 
+use super::confirm::apart;
 use super::corner_impact::CornerImpact;
-use super::pinned::apart;
 use super::varied::{NoChange, Varied, value_of};
 use crate::cam::{Cam, Corner, Side};
 use crate::flight::State;

@@ -13,8 +13,8 @@
 use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;
 
+use super::confirm::Candidate;
 use super::corner_impact::{CornerImpact, origin};
-use super::pinned::Candidate;
 use crate::cam::{Cam, Corner, Lift, Side};
 use crate::flight::{Flight, State};
 use crate::model::{Follower, Model, Study};
@@ -250,12 +250,13 @@ impl<'a> PeriodEquation<'a> {
         Cycle { revolutions: self.revolutions, contacts: vec![contact] }
     }
 
-    /// A root as its impact and speed, whether or not it is an orbit of the cam; `None` in resonance.
+    /// A root as its impact and period, whether or not it is an orbit of the cam; `None` in resonance.
     pub fn candidate(&self, cam: &Cam, root: Root) -> Option<Candidate> {
         let [velocity_before, _] = self.velocities(root.period);
         let cycle = self.cycle(cam, velocity_before);
-        let (corner, side, rpm) = (*self.corner, self.side, 60.0 / root.period);
-        velocity_before.is_finite().then_some(Candidate { cycle, contact: 0, corner, side, rpm })
+        let (corner, side, Root { period, bracket, residual }) = (*self.corner, self.side, root);
+        let candidate = Candidate { cycle, contact: 0, corner, side, period, bracket, residual };
+        velocity_before.is_finite().then_some(candidate)
     }
 
     /// Impacts and end of one period, or why it is no orbit with impacts only where `from_corner(turned)` is 0.

@@ -1,20 +1,18 @@
 //! Every corner impact of a range of speeds that can be found: exhaustively those of one impact, by search those of more.
 
-use std::f64::consts::TAU;
-
 use super::candidates::{Candidates, candidates};
+use super::confirm::Candidate;
 use super::corner_impact::CornerImpact;
 use super::locate::Rejected;
 use super::period_equation::{PeriodEquation, Root, Roots, Verdict};
-use super::pinned::Pinned;
 use crate::cam::{Cam, Corner, Side};
 use crate::model::{Model, Study};
-use crate::simulate::{Machine, angular_velocity};
+use crate::simulate::angular_velocity;
 use crate::tolerance;
 
 /// What was found in a range of speeds, and what was looked at.
 #[derive(Clone, Debug)]
-pub struct Survey {
+pub struct FoundCornerImpacts {
     /// By rising speed.
     pub found: Vec<CornerImpact>,
     /// Speeds at which the equations hold and the cam has no such orbit, by rising speed.
@@ -61,13 +59,19 @@ pub enum RangeError {
 }
 
 /// Looks through a range of speeds for orbits that repeat after `revolutions`, with an impact on any corner.
-pub fn survey(model: &Model, cam: &Cam, range: Study, revolutions: u64) -> Result<Survey, RangeError> {
+pub fn find_corner_impacts(
+    model: &Model,
+    cam: &Cam,
+    range: Study,
+    revolutions: u64,
+) -> Result<FoundCornerImpacts, RangeError> {
     let Study { rpm_min: low, rpm_max: high } = range;
     if !(low > 0.0 && high > low && angular_velocity(high).is_finite()) {
         return Err(RangeError::NoRange { low, high });
     }
     let corners = cam.corners();
-    let mut all = Survey { found: Vec::new(), rejected: Vec::new(), corners, searched: Candidates::default() };
+    let mut all =
+        FoundCornerImpacts { found: Vec::new(), rejected: Vec::new(), corners, searched: Candidates::default() };
     for corner in all.corners.clone() {
         // Where the velocity jumps, each side throws its own way.
         let sides = if corner.jump_order == 1 { &[Side::Minus, Side::Plus][..] } else { &[Side::Plus] };
@@ -96,17 +100,12 @@ pub fn survey(model: &Model, cam: &Cam, range: Study, revolutions: u64) -> Resul
             }
         }
     }
-    let machine = Machine::new(cam.clone(), &model.follower, angular_velocity(low));
     all.searched = candidates(model, cam, range, revolutions);
-    for candidate in std::mem::take(&mut all.searched.list) {
-        let corner = candidate.corner;
-        let Ok(pinned) = candidate.clone().pin(&machine) else { continue };
-        let rpm = pinned.at.rpm;
-        if low <= rpm && rpm <= high && !all.has(&pinned) {
-            let confirmed = pinned.confirmed(model, cam, None);
-            all.keep(&corner, rpm, confirmed.map_or_else(Verdict::Rejected, |orbit| Verdict::Orbit(Box::new(orbit))));
+    for candidate in all.searched.list.clone() {
+        let (corner, rpm) = (candidate.corner, 60.0 / candidate.period);
+        if low <= rpm && rpm <= high && !all.has(&candidate) {
+            all.keep(&corner, rpm, verdict(candidate, model, cam));
         }
-        all.searched.list.push(candidate);
     }
     all.found.sort_by(|one, two| one.speed_rpm().total_cmp(&two.speed_rpm()));
     all.rejected.sort_by(|one, two| one.speed_rpm.total_cmp(&two.speed_rpm));
@@ -115,16 +114,17 @@ pub fn survey(model: &Model, cam: &Cam, range: Study, revolutions: u64) -> Resul
 
 /// A root at a corner of velocity, where a simulation in doubles cannot tell which side is hit: its flight is simulated.
 fn one_side(model: &Model, cam: &Cam, equation: &PeriodEquation<'_>, root: Root) -> Verdict {
-    let Some(at) = equation.candidate(cam, root) else {
-        return Verdict::Rejected("the flight would need an unbounded velocity: the period is in resonance".into());
-    };
-    let angular_velocity = TAU / root.period;
-    let confirmed =
-        Pinned { at, angular_velocity, correction: root.residual }.confirmed(model, cam, Some(root.bracket));
-    confirmed.map_or_else(Verdict::Rejected, |orbit| Verdict::Orbit(Box::new(orbit)))
+    match equation.candidate(cam, root) {
+        Some(candidate) => verdict(candidate, model, cam),
+        None => Verdict::Rejected("the flight would need an unbounded velocity: the period is in resonance".into()),
+    }
 }
 
-impl Survey {
+fn verdict(candidate: Candidate, model: &Model, cam: &Cam) -> Verdict {
+    candidate.confirmed(model, cam).map_or_else(Verdict::Rejected, |orbit| Verdict::Orbit(Box::new(orbit)))
+}
+
+impl FoundCornerImpacts {
     fn keep(&mut self, corner: &Corner, speed_rpm: f64, verdict: Verdict) {
         let cam_angle = corner.angle;
         let why = match verdict {
@@ -142,13 +142,12 @@ impl Survey {
         }
     }
 
-    /// Whether a corner impact has been found already, from another guess.
-    fn has(&self, pinned: &Pinned) -> bool {
-        let at = &pinned.at;
+    /// Whether a corner impact has been found already, on another branch.
+    fn has(&self, at: &Candidate) -> bool {
         self.found.iter().any(|known| {
             known.corner.segment == at.corner.segment
                 && (known.corner.jump_order > 1 || known.side == at.side)
-                && is_same_speed(known.speed_rpm(), at.rpm)
+                && is_same_speed(known.speed_rpm(), 60.0 / at.period)
                 && known.cycle.is_same(&at.cycle)
         })
     }

@@ -18,6 +18,27 @@ pub fn growth(machine: &Machine, motion: Motion, revolutions: u64) -> Result<f64
     Ok(sum / revolutions.max(1) as f64)
 }
 
+/// The [`growth`] over `revolutions`, and its standard error over as many `blocks` of them: none where the follower sticks, or
+/// where there are fewer revolutions than blocks.
+pub fn growth_and_error(
+    machine: &Machine,
+    motion: Motion,
+    revolutions: u64,
+    blocks: u32,
+) -> Result<(f64, Option<f64>), SimulateError> {
+    let per_block = revolutions / u64::from(blocks.max(1));
+    let (mut sum, mut means) = (0.0, Means::over(per_block));
+    stretches(machine, motion, revolutions, |stretch| {
+        sum += stretch;
+        means.take(stretch);
+    })?;
+    let mean = sum / revolutions.max(1) as f64;
+    let full = per_block > 0 && mean.is_finite();
+    // What is left over is less than a block for each of them: it counts for the mean alone.
+    means.of_blocks.truncate(blocks as usize);
+    Ok((mean, full.then(|| means.standard_error())))
+}
+
 /// A Lyapunov exponent and how well it is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exponent {
@@ -37,19 +58,45 @@ pub struct Exponent {
 ///
 /// Blocks are taken for independent: a chaotic motion has forgotten, after some dozen revolutions, what it was.
 pub fn exponent(machine: &Machine, motion: Motion, blocks: u32, revolutions: u64) -> Result<Exponent, SimulateError> {
-    let (mut means, mut sum, mut seen) = (Vec::new(), 0.0, 0);
-    stretches(machine, motion, u64::from(blocks) * revolutions, |stretch| {
-        (sum, seen) = (sum + stretch, seen + 1);
-        if seen == revolutions && sum > f64::NEG_INFINITY {
-            means.push(sum / revolutions as f64);
-            (sum, seen) = (0.0, 0);
+    let mut means = Means::over(revolutions);
+    stretches(machine, motion, u64::from(blocks) * revolutions, |stretch| means.take(stretch))?;
+    let rests = means.sum == f64::NEG_INFINITY;
+    let (mean, standard_error) = (means.mean(), means.standard_error());
+    Ok(Exponent { mean, standard_error, blocks: means.of_blocks.len(), rests })
+}
+
+/// The mean growth of each block of revolutions that is over.
+struct Means {
+    per_block: u64,
+    of_blocks: Vec<f64>,
+    /// Of the block that is not over.
+    sum: f64,
+    seen: u64,
+}
+
+impl Means {
+    fn over(per_block: u64) -> Self {
+        Self { per_block, of_blocks: Vec::new(), sum: 0.0, seen: 0 }
+    }
+
+    fn take(&mut self, stretch: f64) {
+        (self.sum, self.seen) = (self.sum + stretch, self.seen + 1);
+        if self.seen == self.per_block && self.sum > f64::NEG_INFINITY {
+            self.of_blocks.push(self.sum / self.per_block as f64);
+            (self.sum, self.seen) = (0.0, 0);
         }
-    })?;
-    let rests = sum == f64::NEG_INFINITY;
-    let count = means.len() as f64;
-    let mean = means.iter().sum::<f64>() / count;
-    let variance = means.iter().map(|block| (block - mean).powi(2)).sum::<f64>() / (count - 1.0);
-    Ok(Exponent { mean, standard_error: (variance / count).sqrt(), blocks: means.len(), rests })
+    }
+
+    fn mean(&self) -> f64 {
+        self.of_blocks.iter().sum::<f64>() / self.of_blocks.len() as f64
+    }
+
+    /// The standard deviation of the blocks' means over the root of their number.
+    fn standard_error(&self) -> f64 {
+        let (mean, count) = (self.mean(), self.of_blocks.len() as f64);
+        let variance = self.of_blocks.iter().map(|block| (block - mean).powi(2)).sum::<f64>() / (count - 1.0);
+        (variance / count).sqrt()
+    }
 }
 
 /// The growth of each revolution in turn; minus infinity, once, where the follower sticks.

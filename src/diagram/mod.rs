@@ -12,7 +12,7 @@ use std::ops::ControlFlow;
 
 use crate::flight::State;
 use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError, Unobserved};
-pub use growth::{Exponent, exponent, growth};
+pub use growth::{Exponent, exponent, growth, growth_and_error};
 pub use pipeline::{Block, Counted, Tally};
 pub use places::Places;
 

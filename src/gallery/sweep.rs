@@ -2,7 +2,7 @@
 
 use super::Subject;
 use crate::diagram::{Following, Placed, Places, Section, Speeds, Start, Sweep, SweepError};
-use crate::orbit::branch::{Branch, BranchPoint, survey};
+use crate::orbit::branch::{Branch, BranchPoint, find_branches};
 use crate::orbit::{Course, Cycle, Search};
 use crate::simulate::{Machine, angular_velocity};
 
@@ -75,7 +75,7 @@ impl Subject {
         let wanted = [Search { revolutions: 1, impacts: Some(1) }, Search { revolutions: 2, impacts: Some(2) }];
         let mut branches = Vec::new();
         for wanted in wanted {
-            branches.extend(survey(&self.model, range, &wanted).map_err(|error| error.to_string())?.branches);
+            branches.extend(find_branches(&self.model, range, &wanted).map_err(|error| error.to_string())?.branches);
         }
         Ok(branches)
     }

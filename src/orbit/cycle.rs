@@ -12,14 +12,13 @@
 //! the cam as it is, is for the simulator to say ([`Cycle::departure`]).
 
 use std::f64::consts::TAU;
-use std::ops::ControlFlow;
 
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
 use crate::cam::Lift;
 use crate::flight::State;
 use crate::impact::{ImpactRates, rebound};
-use crate::simulate::{Event, EventKind, Goal, Machine, SimulateError};
+use crate::simulate::{Event, EventKind, Machine};
 use crate::tolerance;
 
 /// One impact of a cycle.
@@ -56,40 +55,13 @@ pub struct NotClosed {
     pub residual: f64,
 }
 
-/// How the motion of the cam as it is leaves a cycle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Departure {
-    /// An impact lies outside of its segment.
-    Beyond {
-        /// Index of the contact.
-        contact: usize,
-    },
-    /// The follower would come out of the cam at an impact, or touches it only.
-    Tangent {
-        /// Index of the contact.
-        contact: usize,
-    },
-    /// The flight that starts at this contact meets the cam before it should.
-    Earlier {
-        /// Index of the contact that the flight starts at.
-        contact: usize,
-        /// What it meets.
-        event: Event,
-    },
-    /// The flight that starts at this contact does not come to the next; or there is none, since the follower sticks.
-    Elsewhere {
-        /// Index of the contact that the flight starts at.
-        contact: usize,
-    },
-}
-
 /// What the equations need of one impact.
-struct Impact {
-    lift: Lift,
+pub(super) struct Impact {
+    pub(super) lift: Lift,
     /// c', m/s.
-    cam_velocity: f64,
+    pub(super) cam_velocity: f64,
     /// Right after.
-    leaving: State,
+    pub(super) leaving: State,
 }
 
 impl Cycle {
@@ -105,7 +77,7 @@ impl Cycle {
         Self { revolutions, contacts: impacts.map(contact).collect() }
     }
 
-    fn impact(&self, machine: &Machine, index: usize) -> Impact {
+    pub(super) fn impact(&self, machine: &Machine, index: usize) -> Impact {
         let contact = &self.contacts[index];
         let lift = machine.cam().segments()[contact.segment].law.lift(contact.cam_angle);
         let cam_velocity = machine.angular_velocity() * lift.slope;
@@ -214,123 +186,6 @@ impl Cycle {
         Err(NotClosed { steps: STEPS, residual: last })
     }
 
-    /// Angles moved into their segments' own revolution and names: an angle past the end of a revolution or of a segment
-    /// that meets the next smoothly belongs to the next.
-    ///
-    /// An angle past a corner stays where it is.
-    pub fn renamed(&self, machine: &Machine, is_corner: impl Fn(usize) -> bool) -> Self {
-        let segments = machine.cam().segments();
-        let mut renamed = self.clone();
-        for contact in &mut renamed.contacts {
-            // As many moves as there are segments lead once round.
-            for _ in 0..segments.len() {
-                let segment = &segments[contact.segment];
-                if contact.cam_angle < segment.start && !is_corner(contact.segment) {
-                    if contact.segment == 0 {
-                        contact.segment = segments.len() - 1;
-                        contact.cam_angle += TAU;
-                        contact.revolution -= 1;
-                    } else {
-                        contact.segment -= 1;
-                    }
-                } else if contact.cam_angle >= segment.end && !is_corner((contact.segment + 1) % segments.len()) {
-                    if contact.segment + 1 == segments.len() {
-                        contact.segment = 0;
-                        contact.cam_angle -= TAU;
-                        contact.revolution += 1;
-                    } else {
-                        contact.segment += 1;
-                    }
-                } else {
-                    break;
-                }
-            }
-        }
-        renamed
-    }
-
-    /// The same cycle with its revolutions counted from 0, and its contacts in order.
-    pub fn in_order(mut self) -> Self {
-        let revolutions = self.revolutions.max(1) as i64;
-        for contact in &mut self.contacts {
-            contact.revolution = contact.revolution.rem_euclid(revolutions);
-        }
-        self.contacts.sort_by(|one, other| {
-            one.revolution.cmp(&other.revolution).then(one.cam_angle.total_cmp(&other.cam_angle))
-        });
-        self
-    }
-
-    /// Where a contact stands once the contacts are [in order](Self::in_order).
-    pub fn place_in_order(&self, contact: usize) -> usize {
-        let key =
-            |contact: &Contact| (contact.revolution.rem_euclid(self.revolutions.max(1) as i64), contact.cam_angle);
-        let (revolution, angle) = key(&self.contacts[contact]);
-        let earlier = |other: &&Contact| {
-            let (turn, place) = key(other);
-            (turn, place) < (revolution, angle)
-        };
-        self.contacts.iter().filter(earlier).count()
-    }
-
-    /// The same cycle begun `revolutions` later.
-    pub fn begun_later(&self, revolutions: u64) -> Self {
-        let mut later = self.clone();
-        for contact in &mut later.contacts {
-            contact.revolution -= revolutions as i64;
-        }
-        later.in_order()
-    }
-
-    /// Whether two cycles are the same motion, whichever revolution they begin with.
-    pub fn is_same(&self, other: &Self) -> bool {
-        let near = |one: &Contact, other: &Contact| {
-            let turns = one.revolution as f64 - other.revolution as f64;
-            (one.cam_angle - other.cam_angle + TAU * turns).abs() <= tolerance::SAME_ORBIT.value
-        };
-        let same = |other: &Self| self.contacts.iter().zip(&other.contacts).all(|(one, other)| near(one, other));
-        self.revolutions == other.revolutions
-            && self.contacts.len() == other.contacts.len()
-            && (0..self.revolutions).any(|later| same(&other.begun_later(later)))
-    }
-
-    /// Whether the motion repeats sooner than after `revolutions`.
-    pub fn repeats_sooner(&self) -> bool {
-        let divides = |sooner: &u64| self.revolutions.is_multiple_of(*sooner);
-        (1..self.revolutions).filter(divides).any(|sooner| self.repeats_after(sooner))
-    }
-
-    fn repeats_after(&self, revolutions: u64) -> bool {
-        let later = self.begun_later(revolutions);
-        let near = |(one, other): (&Contact, &Contact)| {
-            one.revolution == other.revolution && (one.cam_angle - other.cam_angle).abs() <= tolerance::SAME_ORBIT.value
-        };
-        let itself = self.clone().in_order();
-        itself.contacts.iter().zip(&later.contacts).all(near)
-    }
-
-    /// The contact half a period after `contact`, if it is one on the same segment.
-    pub fn second_half(&self, contact: usize) -> Option<usize> {
-        let half = self.contacts.len() / 2;
-        let even = self.revolutions.is_multiple_of(2) && self.contacts.len().is_multiple_of(2);
-        let (one, two) = (self.contacts.get(contact)?, self.contacts.get(contact + half)?);
-        let later = two.revolution - one.revolution == self.revolutions as i64 / 2;
-        (even && later && one.segment == two.segment).then_some(contact + half)
-    }
-
-    /// The same motion over as few revolutions as it repeats after.
-    pub fn shortest(self) -> Self {
-        let cycle = self.in_order();
-        let sooner = |revolutions: &u64| cycle.repeats_after(*revolutions);
-        match (1..cycle.revolutions).filter(|sooner| cycle.revolutions.is_multiple_of(*sooner)).find(sooner) {
-            None => cycle,
-            Some(revolutions) => {
-                let contacts = cycle.contacts.iter().filter(|contact| contact.revolution < revolutions as i64);
-                Self { revolutions, contacts: contacts.copied().collect() }
-            }
-        }
-    }
-
     /// The contacts in the order that a cam meets them from `cam_angle`, rad, in `[0, 2 pi)`, each with the angle turned.
     fn turned_from(&self, cam_angle: f64) -> Vec<(f64, usize)> {
         let period = self.revolutions as f64 * TAU;
@@ -397,59 +252,6 @@ impl Cycle {
             }
         };
         self.contacts.iter().enumerate().map(event).collect()
-    }
-
-    /// Where the cam as it is leaves this cycle, flight by flight, by simulation; `None` where it does not.
-    pub fn departure(&self, machine: &Machine) -> Result<Option<Departure>, SimulateError> {
-        let segments = machine.cam().segments();
-        let count = self.contacts.len();
-        for (index, contact) in self.contacts.iter().enumerate() {
-            let segment = &segments[contact.segment];
-            let slack = tolerance::CORNER_ANGLE.value;
-            if !(contact.cam_angle >= segment.start - slack && contact.cam_angle <= segment.end + slack) {
-                return Ok(Some(Departure::Beyond { contact: index }));
-            }
-            let impact = self.impact(machine, index);
-            let scale = impact.cam_velocity.abs() + contact.velocity_before.abs();
-            if !(impact.cam_velocity - contact.velocity_before > tolerance::GRAZING.value * scale) {
-                return Ok(Some(Departure::Tangent { contact: index }));
-            }
-        }
-        for index in 0..count {
-            let turn = self.turn(index);
-            if !(turn > 0.0) {
-                return Ok(Some(Departure::Elsewhere { contact: index }));
-            }
-            let Some((met, turned)) = self.next_event(machine, index, turn)? else {
-                return Ok(Some(Departure::Elsewhere { contact: index }));
-            };
-            if turned < turn - tolerance::SAME_ORBIT.value {
-                return Ok(Some(Departure::Earlier { contact: index, event: met }));
-            }
-        }
-        Ok(None)
-    }
-
-    /// The first event after a contact, and the angle turned to it, rad; `None` where there is none for somewhat longer than
-    /// `turn`.
-    fn next_event(&self, machine: &Machine, index: usize, turn: f64) -> Result<Option<(Event, f64)>, SimulateError> {
-        let contact = &self.contacts[index];
-        let impact = self.impact(machine, index);
-        // A contact that rounding puts outside of its revolution is at the end of it.
-        let cam_angle = if contact.cam_angle >= TAU || contact.cam_angle < 0.0 { 0.0 } else { contact.cam_angle };
-        let relative = impact.leaving.velocity - machine.angular_velocity() * machine.cam().lift(cam_angle).slope;
-        if relative <= 0.0 {
-            return Ok(None);
-        }
-        let mut motion = machine.start_on_cam(cam_angle, relative)?;
-        let end = cam_angle + turn + tolerance::SAME_ORBIT.value;
-        let goal = Goal { revolution: (end / TAU) as u64, cam_angle: end % TAU };
-        let mut met = None;
-        let _ = machine.advance(&mut motion, goal, &mut |event: &Event| {
-            met = Some((*event, event.turned_since(cam_angle)));
-            ControlFlow::Break(())
-        })?;
-        Ok(met)
     }
 }
 

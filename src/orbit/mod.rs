@@ -4,6 +4,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`cycle`] | an orbit as its impacts, the equations that close it, Newton's method |
+//! | [`mod@departure`] | whether a cycle is an orbit of the cam as it is, by simulation |
 //! | [`mod@search`] | orbits of one machine: exhaustively those of one impact, by many starts the others |
 //! | [`family`] | machines that differ in a speed or a number of the model |
 //! | [`curve`] | pseudo-arclength steps along the solutions of one equation fewer than unknowns |
@@ -12,8 +13,10 @@
 pub mod branch;
 pub mod curve;
 pub mod cycle;
+pub mod departure;
 pub mod family;
 mod multipliers;
+mod naming;
 pub mod search;
 pub mod sticking;
 
@@ -23,7 +26,8 @@ use nalgebra::Matrix2;
 
 use crate::flight::State;
 use crate::simulate::{Event, EventKind, Machine, SimulateError};
-pub use cycle::{Contact, Cycle, Departure, NotClosed};
+pub use cycle::{Contact, Cycle, NotClosed};
+pub use departure::Departure;
 pub use family::{Family, FamilyError, Parameter};
 pub use multipliers::{Eigenvalue, eigenvalues};
 pub use search::{Search, search};

@@ -2,7 +2,7 @@
 //!
 //! Speeds are run through upwards and downwards, each from where the last one ended, so that hysteresis shows. A change
 //! between two speeds is narrowed down by halving, and then explained: by the special point of the branch of orbits that
-//! ends there, if there is one.
+//! begins or ends there, if there is one. Two changes between two speeds that are run are told apart where each is explained.
 
 mod change;
 mod walk;
@@ -110,7 +110,7 @@ pub struct Hysteresis {
 
 /// What a machine does over a range of speeds.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Survey {
+pub struct Regimes {
     /// The range, rpm.
     pub rpm: [f64; 2],
     /// Where the follower first leaves the cam, rpm; `None` where it never does, or even at rest would not stay on it.
@@ -140,9 +140,9 @@ impl Default for Care {
     }
 }
 
-/// Why there is no survey.
+/// Why it could not be told.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum SurveyError {
+pub enum RegimeError {
     /// The model is impossible.
     #[error(transparent)]
     Model(#[from] ModelError),
@@ -160,13 +160,13 @@ pub enum SurveyError {
 }
 
 /// Walks through `rpm` upwards and downwards; `passed` is called after each speed of either walk.
-pub fn survey(model: &Model, rpm: [f64; 2], care: Care, passed: &(dyn Fn() + Sync)) -> Result<Survey, SurveyError> {
+pub fn regimes(model: &Model, rpm: [f64; 2], care: Care, passed: &(dyn Fn() + Sync)) -> Result<Regimes, RegimeError> {
     let machine = walk::machine(model)?;
     let detachment = detachment(model, rpm)?;
     let walk = |rising| walk::walk(model, &machine, rpm, care, rising, passed);
     let (rising, falling) = rayon::join(|| walk(true), || walk(false));
     let ((rising, up), (falling, down)) = (rising?, falling?);
-    Ok(Survey { rpm, detachment, rising, falling, hysteresis: hysteresis(&up, &down) })
+    Ok(Regimes { rpm, detachment, rising, falling, hysteresis: hysteresis(&up, &down) })
 }
 
 /// The stretches of speeds at which `up` and `down`, both by rising speed, are not the same motion.

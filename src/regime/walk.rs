@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use super::change::{self, Change};
-use super::{Care, Regime, Settled, Stretch, SurveyError, Walk};
+use super::{Care, Regime, RegimeError, Settled, Stretch, Walk};
 use crate::cam::Cam;
 use crate::diagram::growth;
 use crate::model::Model;
@@ -13,15 +13,17 @@ use crate::tolerance;
 
 /// Revolutions over which the growth of a deviation is averaged.
 const AVERAGED: u64 = 400;
+/// How much longer a run is at most next to a change, if it neither repeats nor is chaotic.
+pub(super) const LONGER: u64 = 4;
 
 /// The machine of a model, at a speed to be chosen.
-pub(super) fn machine(model: &Model) -> Result<Machine, SurveyError> {
+pub(super) fn machine(model: &Model) -> Result<Machine, RegimeError> {
     Ok(Machine::new(Cam::new(model)?, &model.follower, 1.0))
 }
 
 /// Where the follower first leaves the cam between two speeds, rpm; `None` where it leaves at the lower already, or at
 /// neither.
-pub fn detachment(model: &Model, [low, high]: [f64; 2]) -> Result<Option<f64>, SurveyError> {
+pub fn detachment(model: &Model, [low, high]: [f64; 2]) -> Result<Option<f64>, RegimeError> {
     /// Speeds that are looked at before the first change is narrowed down.
     const SPEEDS: u32 = 200;
     let machine = machine(model)?;
@@ -38,8 +40,8 @@ pub fn detachment(model: &Model, [low, high]: [f64; 2]) -> Result<Option<f64>, S
 }
 
 /// Whether a follower that is put on the cam stays there for a revolution.
-fn stays(machine: &Machine, rpm: f64) -> Result<bool, SurveyError> {
-    let of_speed = |error| SurveyError::Simulate { rpm, error };
+fn stays(machine: &Machine, rpm: f64) -> Result<bool, RegimeError> {
+    let of_speed = |error| RegimeError::Simulate { rpm, error };
     let machine = machine.at_speed(angular_velocity(rpm));
     let mut motion = machine.start_on_cam(0.0, 0.0).map_err(of_speed)?;
     if !motion.contact {
@@ -52,7 +54,7 @@ fn stays(machine: &Machine, rpm: f64) -> Result<bool, SurveyError> {
 
 /// The neighbouring speeds, rpm, of which the follower stays on the cam at the first only; between one where it does and
 /// one where it does not.
-pub(super) fn between(machine: &Machine, mut on: f64, mut off: f64) -> Result<[f64; 2], SurveyError> {
+pub(super) fn between(machine: &Machine, mut on: f64, mut off: f64) -> Result<[f64; 2], RegimeError> {
     while (off - on).abs() > tolerance::ROOT_WIDTH.value * off {
         let middle = 0.5 * (on + off);
         if stays(machine, middle)? { on = middle } else { off = middle }
@@ -60,26 +62,34 @@ pub(super) fn between(machine: &Machine, mut on: f64, mut off: f64) -> Result<[f
     Ok([on, off])
 }
 
-/// The long run from `motion`, with where it ended.
+/// The long run from `motion`, with where it ended; up to `longer` times as long where it settles slowly.
 pub(super) fn long_run(
     machine: &Machine,
     rpm: f64,
     motion: &Motion,
     care: Care,
-) -> Result<(Settled, Motion), SurveyError> {
+    longer: u64,
+) -> Result<(Settled, Motion), RegimeError> {
     let run = || -> Result<(Settled, Motion), SimulateError> {
         let machine = machine.at_speed(angular_velocity(rpm));
-        let mut motion = machine.resume(motion)?;
-        let goal = motion.after(care.settling);
-        let _ = machine.advance(&mut motion, goal, &mut |_: &Event| ControlFlow::Continue(()))?;
-        if let Some(orbit) = settled(&machine, motion, 0, care.longest_period)? {
-            return Ok((Settled::of_orbit(rpm, orbit), motion));
+        let (mut motion, mut stretch) = (machine.resume(motion)?, care.settling);
+        loop {
+            let goal = motion.after(stretch);
+            let _ = machine.advance(&mut motion, goal, &mut |_: &Event| ControlFlow::Continue(()))?;
+            if let Some(orbit) = settled(&machine, motion, 0, care.longest_period)? {
+                return Ok((Settled::of_orbit(rpm, orbit), motion));
+            }
+            let rate = growth(&machine, motion, AVERAGED)?;
+            let is_chaotic = rate > tolerance::CHAOTIC_GROWTH.value;
+            // Next to where it begins a motion settles slowly; one that comes to rest on the cam only repeats.
+            if is_chaotic || rate == f64::NEG_INFINITY || stretch >= care.settling * longer {
+                let regime = if is_chaotic { Regime::Chaotic } else { Regime::Unsettled };
+                return Ok((Settled { rpm, regime, orbit: None, growth: Some(rate) }, motion));
+            }
+            stretch *= 2;
         }
-        let rate = growth(&machine, motion, AVERAGED)?;
-        let regime = if rate > tolerance::CHAOTIC_GROWTH.value { Regime::Chaotic } else { Regime::Unsettled };
-        Ok((Settled { rpm, regime, orbit: None, growth: Some(rate) }, motion))
     };
-    run().map_err(|error| SurveyError::Simulate { rpm, error })
+    run().map_err(|error| RegimeError::Simulate { rpm, error })
 }
 
 /// The walk, and the long run at each of its speeds, both by rising speed.
@@ -90,7 +100,7 @@ pub(super) fn walk(
     care: Care,
     rising: bool,
     passed: &dyn Fn(),
-) -> Result<(Walk, Vec<Settled>), SurveyError> {
+) -> Result<(Walk, Vec<Settled>), RegimeError> {
     let count = care.speeds.max(2);
     let at = |index: usize| low + (high - low) * index as f64 / (count - 1) as f64;
     let mut order: Vec<usize> = (0..count).collect();
@@ -99,20 +109,27 @@ pub(super) fn walk(
     }
     let first = at(order[0]);
     let start = machine.at_speed(angular_velocity(first)).start_on_cam(0.0, 0.0);
-    let mut motion = start.map_err(|error| SurveyError::Simulate { rpm: first, error })?;
+    let mut motion = start.map_err(|error| RegimeError::Simulate { rpm: first, error })?;
     let (mut runs, mut stretches, mut changes) = (Vec::<Settled>::new(), Vec::<Stretch>::new(), Vec::<Change>::new());
     for index in order {
         let before = motion;
-        let (now, end) = long_run(machine, at(index), &motion, care)?;
+        // Where the run before has not settled either, there is no change to be slow after.
+        let longer = if runs.last().is_some_and(|last| last.regime != Regime::Unsettled) { LONGER } else { 1 };
+        let (now, end) = long_run(machine, at(index), &motion, care, longer)?;
         motion = end;
         match (stretches.last_mut(), runs.last()) {
             (Some(stretch), Some(last)) if now.is_like(last) => stretch.rpm[usize::from(rising)] = now.rpm,
             (Some(stretch), Some(last)) => {
-                let change = change::narrowed(model, machine, (last, &before), &now, care)?;
-                stretch.rpm[usize::from(rising)] = change.rpm;
-                let rpm = if rising { [change.rpm, now.rpm] } else { [now.rpm, change.rpm] };
-                changes.push(change);
-                stretches.push(Stretch { rpm, settled: now.clone() });
+                let mut end = &mut stretch.rpm[usize::from(rising)];
+                let chain = change::narrowed(model, machine, (last, &before), &now, care)?;
+                for (change, settled) in chain {
+                    *end = change.rpm;
+                    let rpm = if rising { [change.rpm, now.rpm] } else { [now.rpm, change.rpm] };
+                    changes.push(change);
+                    stretches.push(Stretch { rpm, settled });
+                    let Some(last) = stretches.last_mut() else { break };
+                    end = &mut last.rpm[usize::from(rising)];
+                }
             }
             _ => stretches.push(Stretch { rpm: [now.rpm, now.rpm], settled: now.clone() }),
         }

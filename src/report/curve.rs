@@ -2,69 +2,48 @@
 
 use std::fmt::{self, Write};
 
-use crate::border_collision::scenario;
-use crate::orbit::branch::{Branch, BranchPoint, Kind, Special};
-use crate::orbit::eigenvalues;
+use crate::border_collision::ImpactCurve;
+use crate::border_collision::impact_curve::CurveImpact;
+use crate::orbit::branch::{Kind, Special};
 
 /// The columns of a table of curves.
 pub const COLUMNS: &str = "rpm,parameter,value,revolutions,impacts,cam_angle_rad,jump_order,scenario,multiplier_minus_1_re,\
     multiplier_minus_1_im,multiplier_minus_2_re,multiplier_minus_2_im,multiplier_plus_1_re,multiplier_plus_1_im,\
     multiplier_plus_2_re,multiplier_plus_2_im,special,curve\n";
 
-/// What is the same all along a curve: the impact at the corner, by its number, and the order of the jump.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct AtCorner {
-    /// Index of the impact, of those from angle 0 on.
-    pub contact: usize,
-    /// The lowest derivative that jumps.
-    pub jump_order: usize,
-}
-
-/// What Feigin's counts say at a point of the curve.
-pub fn kind(point: &BranchPoint, at: AtCorner) -> &'static str {
-    if at.jump_order != 2 {
-        return "not-piecewise-linear";
+/// Appends the corner impacts of a curve.
+pub fn lines(lines: &mut String, parameter: &str, index: usize, curve: &ImpactCurve) {
+    let order = curve.at.jump_order;
+    for impact in &curve.impacts {
+        let CurveImpact { rpm, value, cam_angle, revolutions, impacts, happening, multipliers, special } = impact;
+        let name = special.map_or("", |special| special.kind.name());
+        // Writing to a string does not fail.
+        let _ =
+            write!(lines, "{rpm},{parameter},{value},{revolutions},{impacts},{cam_angle},{order},{}", happening.name());
+        for value in multipliers {
+            let _ = write!(lines, ",{},{}", value.re, value.im);
+        }
+        let _ = writeln!(lines, ",{name},{index}");
     }
-    point.sides.as_ref().and_then(|sides| scenario(sides).ok()).map_or("degenerate", |scenario| scenario.name())
-}
-
-/// Appends one corner impact.
-pub fn line(lines: &mut String, parameter: &str, index: usize, at: AtCorner, point: &BranchPoint) {
-    let BranchPoint { rpm, value, orbit, special, sides } = point;
-    let angle = orbit.impacts().nth(at.contact).map_or(f64::NAN, |impact| impact.cam_angle);
-    let name = special.map_or("", |special| special.kind.name());
-    let impacts = orbit.impacts().count();
-    let _ = write!(
-        lines,
-        "{rpm},{parameter},{value},{},{impacts},{angle},{},{}",
-        orbit.revolutions,
-        at.jump_order,
-        kind(point, at)
-    );
-    for value in sides.iter().flatten().flat_map(eigenvalues) {
-        let _ = write!(lines, ",{},{}", value.re, value.im);
-    }
-    let _ = writeln!(lines, ",{name},{index}");
 }
 
 /// What a curve passes and where it ends, for people.
-pub fn account(curve: &Branch, parameter: &str, index: usize, at: AtCorner) -> Result<String, fmt::Error> {
+pub fn account(curve: &ImpactCurve, parameter: &str, index: usize) -> Result<String, fmt::Error> {
     let mut page = String::new();
-    let (Some(first), Some(last)) = (curve.points.first(), curve.points.last()) else { return Ok(page) };
-    let impacts = first.orbit.impacts().count();
-    let angle = first.orbit.impacts().nth(at.contact).map_or(f64::NAN, |impact| impact.cam_angle.to_degrees());
+    let (Some(first), Some(last)) = (curve.impacts.first(), curve.impacts.last()) else { return Ok(page) };
+    let (at, impacts, angle) = (curve.at, first.impacts, first.cam_angle.to_degrees());
     writeln!(
         page,
         "curve {index}: {} corner impacts, impact {} of {impacts} at {angle:.4} deg, jump of order {}",
-        curve.points.len(),
+        curve.impacts.len(),
         at.contact + 1,
         at.jump_order
     )?;
     writeln!(page, "  begins at {parameter} = {:.9}, {:.6} rpm: {}", first.value, first.rpm, curve.ends[0].words())?;
     let (mut before, mut place) = (None, first);
-    for pair in curve.points.windows(2) {
+    for pair in curve.impacts.windows(2) {
         let [point, next] = pair else { continue };
-        let now = kind(point, at);
+        let now = point.happening.name();
         if point.special.is_none() && before != Some(now) {
             // From the special point on, if one came right before.
             writeln!(page, "  {parameter} = {:.9}, {:.6} rpm: {now} from here", place.value, place.rpm)?;

@@ -18,7 +18,7 @@ use crate::claims::{Context, LedgerError, hold_watched};
 use crate::gallery::{Subject, through_corner};
 use crate::model::{Model, ModelError};
 use crate::progress::Watch;
-use crate::regime::{Care, survey};
+use crate::regime::{Care, regimes};
 use crate::verify::{External, Findings, verify_watched};
 
 /// A report on one model; serializes to the document `corner-impact/report/1`.
@@ -249,7 +249,7 @@ fn speeds(model: &Model, watch: &dyn Watch) -> Result<RegimesDocument, String> {
         let done = done.fetch_add(1, Ordering::Relaxed) + 1;
         watch.at("other speeds", done as u64, 2 * SPEEDS as u64);
     };
-    let found = survey(model, [0.05 * fastest, fastest], care, &passed).map_err(|error| error.to_string())?;
+    let found = regimes(model, [0.05 * fastest, fastest], care, &passed).map_err(|error| error.to_string())?;
     Ok(RegimesDocument::new(&model.name, &found))
 }
 

@@ -206,7 +206,7 @@ impl LocateDocument {
 
     /// Lays out what was found about `model`.
     pub fn new(model: &Model, found: &Surveyed) -> Self {
-        let survey = &found.survey;
+        let looked_at = &found.looked_at;
         let rejected = |Rejected { cam_angle, speed_rpm, why }: &Rejected| RejectedEntry {
             speed_rpm: *speed_rpm,
             cam_angle_rad: *cam_angle,
@@ -219,14 +219,14 @@ impl LocateDocument {
             rpm: [found.range.rpm_min, found.range.rpm_max],
             revolutions: found.revolutions,
             corner_impacts: found.found.iter().map(CornerImpactEntry::new).collect(),
-            rejected: survey.rejected.iter().map(rejected).collect(),
+            rejected: looked_at.rejected.iter().map(rejected).collect(),
             searched: SearchedEntry {
-                corners_rad: survey.corners.iter().map(|corner| corner.angle).collect(),
-                speeds_rpm: survey.searched.speeds.clone(),
-                branches: survey.searched.branches,
+                corners_rad: looked_at.corners.iter().map(|corner| corner.angle).collect(),
+                speeds_rpm: looked_at.searched.speeds.clone(),
+                branches: looked_at.searched.branches,
                 one_impact_exhaustive: true,
                 several_impacts_exhaustive: false,
-                failed: survey.searched.failed.clone(),
+                failed: looked_at.searched.failed.clone(),
             },
             agrees: found.agrees,
         }

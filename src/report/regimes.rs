@@ -5,7 +5,7 @@ use std::fmt::{self, Write};
 use serde::Serialize;
 
 use super::run::Exponent;
-use crate::regime::{Cause, Regime, Settled, Survey, Walk};
+use crate::regime::{Cause, Regime, Regimes, Settled, Walk};
 
 /// The answer.
 #[derive(Clone, Debug, Serialize)]
@@ -99,15 +99,15 @@ impl From<&Settled> for MotionEntry {
 }
 
 impl RegimesDocument {
-    /// What a survey of a model found.
-    pub fn new(model: &str, survey: &Survey) -> Self {
+    /// What was found about a model.
+    pub fn new(model: &str, found: &Regimes) -> Self {
         let order =
             [Regime::OnCam, Regime::Chattering, Regime::Regular, Regime::Chaotic, Regime::Free, Regime::Unsettled];
         let regimes = order.iter().filter_map(|regime| {
-            let ranges = ranges(survey, regime);
+            let ranges = ranges(found, regime);
             (!ranges.is_empty()).then(|| RegimeEntry { regime: regime.name(), ranges })
         });
-        let hysteresis = survey.hysteresis.iter().map(|found| HysteresisEntry {
+        let hysteresis = found.hysteresis.iter().map(|found| HysteresisEntry {
             rpm: found.rpm,
             rising: MotionEntry::from(&found.rising),
             falling: MotionEntry::from(&found.falling),
@@ -115,12 +115,12 @@ impl RegimesDocument {
         Self {
             schema: "corner-impact/speeds/1",
             model: model.into(),
-            rpm: survey.rpm,
-            detachment_rpm: survey.detachment,
+            rpm: found.rpm,
+            detachment_rpm: found.detachment,
             regimes: regimes.collect(),
             hysteresis: hysteresis.collect(),
-            rising: stretches(&survey.rising),
-            falling: stretches(&survey.falling),
+            rising: stretches(&found.rising),
+            falling: stretches(&found.falling),
         }
     }
 
@@ -200,8 +200,8 @@ fn listed(ranges: &[[f64; 2]]) -> String {
 }
 
 /// The ranges of one regime over both walks, joined where they overlap or meet.
-fn ranges(survey: &Survey, regime: &Regime) -> Vec<[f64; 2]> {
-    let walks = [&survey.rising, &survey.falling];
+fn ranges(found: &Regimes, regime: &Regime) -> Vec<[f64; 2]> {
+    let walks = [&found.rising, &found.falling];
     let stretches = walks.into_iter().flat_map(|walk| &walk.stretches);
     let mut all: Vec<[f64; 2]> =
         stretches.filter(|stretch| stretch.settled.regime == *regime).map(|stretch| stretch.rpm).collect();

@@ -4,6 +4,16 @@
 //! motion to a later angle and shows an [`Observer`] what happens on the way: impacts, the start of sticking, release.
 //! Time runs from the last event and the cam angle stays in `[0, 2 pi)`, so neither a short hop nor the hundred-millionth
 //! revolution loses digits.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `motion`, `event` | where cam and follower are; what happens on the way, and who looks on |
+//! | `terrain` | the cam as the loop sees it: seams, corners, bounds |
+//! | `window` | a stretch of flight over one segment: free, or its first contact |
+//! | `contact` | the first root of the gap in it, certified |
+//! | `again` | a settled motion's next impact, one turn on: checked, not searched |
+//! | `sticking` | infinitely many impacts, contact, release |
+//! | `variation` | how a small deviation is carried along |
 
 mod again;
 mod contact;

@@ -4,24 +4,33 @@
 //! An orbit that hits a corner goes over to the law behind it; one whose flight touches the cam gains the impact, one whose
 //! impact becomes a touch loses it. Beyond either the equations are those of another cycle, and the branch goes on with
 //! these: a branch is continuous, its direction is not.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `find` | every branch of a range of speeds that a search comes upon |
+//! | `follow` | one direction of a branch, step by step; `chatter` where the follower sticks |
+//! | `problem` | the equations, with numbers of the model free, or an impact pinned to a corner |
+//! | `cut`, `gap`, `halved` | what a step passes, and where: corners, folds, flips; grazes; the end of a doubled period |
+//! | `switch` | the cycle beyond a corner or a graze, and which way leads there |
+//! | `special` | the points where something changes; which impact of an orbit is which of the next |
 
 mod chatter;
 mod cut;
+mod find;
 mod follow;
 mod gap;
 mod halved;
 mod problem;
 mod special;
-mod survey;
 mod switch;
 
 use nalgebra::Matrix2;
 
 use super::{Family, OrbitError, Parameter, PeriodicOrbit};
 use crate::model::Model;
+pub use find::{FoundBranches, corner_impacts, find_branches};
 pub use problem::{Pinned, Problem, Units};
 pub use special::{Kind, Special};
-pub use survey::{Survey, corner_impacts, survey};
 
 /// What is followed, and how far.
 #[derive(Clone, Debug, PartialEq)]
@@ -97,6 +106,15 @@ impl End {
     }
 }
 
+/// One impact of the orbits of a branch, as far as it is the same impact and its orbit as stable.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImpactLine {
+    /// Whether the orbits are stable.
+    pub stable: bool,
+    /// The parameter, and the cam angle of the impact, rad.
+    pub points: Vec<[f64; 2]>,
+}
+
 /// A branch, from one end to the other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Branch {
@@ -164,6 +182,39 @@ impl Branch {
             points.extend(onward);
         }
         Ok(Self { points, ends: [first, last] })
+    }
+
+    /// The impacts along the branch, of orbits that do not stick: each impact is followed from orbit to orbit, whatever its
+    /// number is from angle 0 on.
+    ///
+    /// A line ends where the number of impacts or the stability changes, or where the impact passes angle 0.
+    pub fn lines(&self) -> Vec<ImpactLine> {
+        let (mut done, mut open) = (Vec::new(), Vec::<(usize, ImpactLine)>::new());
+        for pair in self.points.windows(2) {
+            let [one, other] = pair else { continue };
+            // A piece takes the stability of its end that is no special point.
+            let stable = if one.special.is_some() { other } else { one }.orbit.is_stable();
+            let mut onward = Vec::new();
+            for (from, to) in special::same_impacts(&one.orbit, &other.orbit) {
+                let [here, there] = [(one, from), (other, to)].map(|(point, index)| {
+                    [point.value, point.orbit.impacts().nth(index).map_or(f64::NAN, |impact| impact.cam_angle)]
+                });
+                let same = open.iter().position(|(index, line)| *index == from && line.stable == stable);
+                let over = (there[1] - here[1]).abs() > std::f64::consts::PI;
+                let (_, mut line) = same
+                    .map_or_else(|| (from, ImpactLine { stable, points: vec![here] }), |place| open.swap_remove(place));
+                if over {
+                    done.push(std::mem::replace(&mut line, ImpactLine { stable, points: vec![there] }));
+                } else {
+                    line.points.push(there);
+                }
+                onward.push((to, line));
+            }
+            done.extend(std::mem::replace(&mut open, onward).into_iter().map(|(_, line)| line));
+        }
+        done.extend(open.into_iter().map(|(_, line)| line));
+        done.retain(|line| line.points.len() > 1);
+        done
     }
 
     /// Whether an orbit at `value` of the parameter is on the branch.

@@ -1,6 +1,8 @@
 //! The points where something changes along a branch.
 
-use crate::orbit::{Course, PeriodicOrbit};
+use std::f64::consts::TAU;
+
+use crate::orbit::{Contact, Course, PeriodicOrbit};
 use crate::tolerance;
 
 /// What changes.
@@ -86,4 +88,28 @@ pub(super) fn is_near(one: &PeriodicOrbit, other: &PeriodicOrbit) -> bool {
         (Course::Sticking(_), Course::Sticking(_)) => one.revolutions == other.revolutions,
         _ => false,
     }
+}
+
+/// Which impact of one orbit is which of its neighbour's on a branch, by their numbers from angle 0 on; none where the orbits
+/// stick or have different numbers of impacts.
+///
+/// The order in which impacts follow one another stays the same along a branch: the numbers are as many places further on as
+/// moves the impacts least.
+pub(super) fn same_impacts(one: &PeriodicOrbit, other: &PeriodicOrbit) -> Vec<(usize, usize)> {
+    let (Course::Impacts(from), Course::Impacts(to)) = (&one.course, &other.course) else { return Vec::new() };
+    let count = from.contacts.len();
+    if count != to.contacts.len() || from.revolutions != to.revolutions {
+        return Vec::new();
+    }
+    let period = from.revolutions as f64 * TAU;
+    let turned = |contact: &Contact| contact.revolution as f64 * TAU + contact.cam_angle;
+    let moved = |further: usize| {
+        let pairs = (0..count).map(|index| (&from.contacts[index], &to.contacts[(index + further) % count]));
+        pairs.fold(0.0_f64, |most, (here, there)| {
+            let apart = (turned(there) - turned(here)).rem_euclid(period);
+            most.max(apart.min(period - apart))
+        })
+    };
+    let least = (0..count).min_by(|one, two| moved(*one).total_cmp(&moved(*two)));
+    least.map_or_else(Vec::new, |further| (0..count).map(|index| (index, (index + further) % count)).collect())
 }

@@ -83,8 +83,10 @@ pub(super) fn direction(
         let (cycle, machine, _) = problem.unpack(&(unknowns + &tangent * step))?;
         Ok(match exit {
             Exit::Corner { contact, past_end } => {
-                let angle = cycle.contacts[contact].cam_angle;
-                if past_end { angle } else { -angle }
+                // From the corner, which a number of the cam may move.
+                let contact = &cycle.contacts[contact];
+                let segment = &machine.cam().segments()[contact.segment];
+                if past_end { contact.cam_angle - segment.start } else { segment.end - contact.cam_angle }
             }
             // An impact needs an approach, a flight a gap.
             Exit::Touch { .. } => moved_contact(exit).map_or(f64::NAN, |contact| cycle.approach(&machine, contact)),

@@ -96,38 +96,13 @@ fn place(point: &BranchPoint, which: usize) -> Option<[f64; 2]> {
     Some([point.value, impact.cam_angle.to_degrees()])
 }
 
-/// The phases of each impact along the branches where they are stable, or not: one line for each impact, broken where the
-/// number of impacts changes or the stability does.
+/// The phases of each impact along the branches where they are stable, or not, with a break after each line.
 fn lines(branches: &[Branch], stable: bool) -> Vec<[f64; 2]> {
     const BREAK: [f64; 2] = [f64::NAN, f64::NAN];
-    let mut all = Vec::new();
-    for branch in branches {
-        let most = branch.points.iter().map(|point| point.orbit.impacts().count()).max().unwrap_or(0);
-        for index in 0..most {
-            let mut before: Option<[f64; 2]> = None;
-            for pair in branch.points.windows(2) {
-                let [one, other] = pair else { continue };
-                let phase = |point: &BranchPoint| {
-                    point.orbit.impacts().nth(index).map(|impact| [point.value, impact.cam_angle.to_degrees()])
-                };
-                // Of the impacts before a follower sticks no number is that of the next orbit's.
-                let flown = |point: &BranchPoint| matches!(point.orbit.course, Course::Impacts(_));
-                let same = one.orbit.impacts().count() == other.orbit.impacts().count() && flown(one) && flown(other);
-                // A piece takes the stability of its end that is no special point.
-                let at = if one.special.is_some() { other } else { one };
-                let ends = phase(one).zip(phase(other)).filter(|(from, to)| same && (to[1] - from[1]).abs() < 60.0);
-                match ends.filter(|_| at.orbit.is_stable() == stable) {
-                    Some((from, to)) => {
-                        if before != Some(from) {
-                            all.extend([BREAK, from]);
-                        }
-                        all.push(to);
-                        before = Some(to);
-                    }
-                    None => before = None,
-                }
-            }
-        }
-    }
-    all
+    let all = branches.iter().flat_map(Branch::lines).filter(|line| line.stable == stable);
+    all.flat_map(|line| {
+        let points = line.points.into_iter().map(|[value, angle]| [value, angle.to_degrees()]);
+        std::iter::once(BREAK).chain(points)
+    })
+    .collect()
 }

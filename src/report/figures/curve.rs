@@ -1,8 +1,8 @@
 //! Curves of corner impacts in the plane of the speed and a number of the model, by what happens at them.
 
 use super::panel;
-use crate::orbit::branch::{Branch, Kind};
-use crate::report::curve::{AtCorner, kind};
+use crate::border_collision::ImpactCurve;
+use crate::orbit::branch::Kind;
 use crate::report::figure::{Axis, Colour, Data, Figure, Marker, Series, Stroke};
 
 /// Kinds of corner impact, with the way in which they are drawn.
@@ -15,30 +15,20 @@ const KINDS: [(&str, Colour, Stroke); 5] = [
 ];
 
 /// Speed up, the parameter across.
-pub fn curve_figure(
-    title: &str,
-    (name, range): (&str, [f64; 2]),
-    speeds: [f64; 2],
-    curves: &[(Branch, AtCorner)],
-) -> Figure {
+pub fn curve_figure(title: &str, (name, range): (&str, [f64; 2]), speeds: [f64; 2], curves: &[ImpactCurve]) -> Figure {
     let mut series = Vec::new();
     for (label, colour, stroke) in KINDS {
         let mut points = Vec::new();
-        for (curve, at) in curves {
-            for pair in curve.points.windows(2) {
-                let [from, to] = pair else { continue };
-                // A piece is of the kind of its end that is no point of change.
-                let of = if from.special.is_some() { to } else { from };
-                if kind(of, *at) == label {
-                    points.extend([[from.value, from.rpm], [to.value, to.rpm], [f64::NAN; 2]]);
-                }
+        for ([from, to], happening) in curves.iter().flat_map(ImpactCurve::pieces) {
+            if happening.name() == label {
+                points.extend([[from.value, from.rpm], [to.value, to.rpm], [f64::NAN; 2]]);
             }
         }
         if !points.is_empty() {
             series.push(Series { label: label.into(), colour, data: Data::Line { points: joined(points), stroke } });
         }
     }
-    let all = curves.iter().flat_map(|(curve, _)| &curve.points);
+    let all = curves.iter().flat_map(|curve| &curve.impacts);
     let of_type = |kind: &Kind| matches!(kind, Kind::Type { .. });
     let changes: Vec<[f64; 2]> = all
         .filter(|point| point.special.is_some_and(|special| of_type(&special.kind)))

@@ -18,7 +18,7 @@ const MOST_POINTS: usize = 1000;
 
 /// The branches of a range of speeds, and how they were looked for.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Survey {
+pub struct FoundBranches {
     /// Those that were found, each once.
     pub branches: Vec<Branch>,
     /// Speeds at which orbits were searched for, rpm.
@@ -31,11 +31,11 @@ pub struct Survey {
 /// found.
 ///
 /// Found by searches at a few speeds: a branch that none of these meets is missing.
-pub fn survey(model: &Model, range: [f64; 2], wanted: &Search) -> Result<Survey, FamilyError> {
+pub fn find_branches(model: &Model, range: [f64; 2], wanted: &Search) -> Result<FoundBranches, FamilyError> {
     let machine = Machine::new(Cam::new(model)?, &model.follower, 1.0);
     let following = Following { parameter: Parameter::Speed, range, longest_step: STEP, most_points: MOST_POINTS };
     let speed = |index: usize| range[0] + (range[1] - range[0]) * (index as f64 + 0.5) / SPEEDS as f64;
-    let mut all = Survey { speeds: (0..SPEEDS).map(speed).collect(), ..Survey::default() };
+    let mut all = FoundBranches { speeds: (0..SPEEDS).map(speed).collect(), ..FoundBranches::default() };
     let searches = all.speeds.par_iter().map(|rpm| search(&machine.at_speed(angular_velocity(*rpm)), wanted));
     let found: Vec<_> = searches.collect();
     for (rpm, orbits) in all.speeds.clone().into_iter().zip(found) {

@@ -1,0 +1,119 @@
+//! Whether a cycle that closes with an impact on a corner is an orbit of the cam as it is.
+
+use std::f64::consts::TAU;
+
+use super::corner_impact::{CornerImpact, at_section, origin};
+use crate::cam::{Cam, Corner, Side};
+use crate::impact::rebound;
+use crate::model::Model;
+use crate::orbit::cycle::lift_size;
+use crate::orbit::{Cycle, Departure};
+use crate::simulate::Machine;
+use crate::tolerance;
+
+/// A cycle that closes with an impact on a corner, of the cam with its laws continued.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Candidate {
+    /// The impacts.
+    pub cycle: Cycle,
+    /// Index of the one on the corner.
+    pub contact: usize,
+    /// The corner.
+    pub corner: Corner,
+    /// Whose law the impact obeys.
+    pub side: Side,
+    /// T*, s.
+    pub period: f64,
+    /// Two periods, s, between which it is.
+    pub bracket: [f64; 2],
+    /// What is left of the equation that it is a root of: see [`CornerImpact::residual`].
+    pub residual: f64,
+}
+
+impl Candidate {
+    /// The corner impact, if the cycle is an orbit of the cam as it is; or why it is none.
+    pub fn confirmed(self, model: &Model, cam: &Cam) -> Result<CornerImpact, String> {
+        let Self { cycle, contact, corner, side, period, bracket, residual } = self;
+        let angular_velocity = TAU / period;
+        let machine = Machine::new(cam.clone(), &model.follower, angular_velocity);
+        let velocity_before = cycle.contacts[contact].velocity_before;
+        let rates = cycle.rates(&machine, contact);
+        let velocity_after = rebound(machine.restitution(), velocity_before, rates.cam_velocity);
+        for index in 0..cycle.contacts.len() {
+            let rates = cycle.rates(&machine, index);
+            let approach = rates.cam_velocity - rates.velocity_before;
+            if approach.abs() <= tolerance::GRAZE_FOUND.value * (rates.cam_velocity.abs() + rates.velocity_before.abs())
+            {
+                let angle = cycle.contacts[index].cam_angle.to_degrees();
+                let velocity = rates.cam_velocity;
+                return Err(format!(
+                    "a graze at {angle:.4} deg, v = c' = {velocity:.6} m/s: the map has no linear part"
+                ));
+            }
+        }
+        // Where the velocity jumps, an impact on one side may press the follower into the other.
+        let [before, after] = [corner.minus, corner.plus].map(|lift| angular_velocity * lift.slope);
+        if corner.jump_order == 1 && !(velocity_before < before.min(after)) {
+            return Err("the flight would come to the corner out of the cam's other side".into());
+        }
+        if corner.jump_order == 1 && !(velocity_after > before.max(after)) {
+            return Err("the cam's other side hits the follower again at once".into());
+        }
+        let slack = tolerance::CORNER_ANGLE.value;
+        let is_on_corner = |angle: f64| cam.corners().iter().any(|corner| apart(corner.angle, angle) <= slack);
+        let mut others = cycle.contacts.iter().enumerate().filter(|(index, _)| *index != contact);
+        if let Some((_, other)) = others.find(|(_, other)| is_on_corner(other.cam_angle)) {
+            let [one, two] = [corner.angle, other.cam_angle].map(f64::to_degrees);
+            return Err(format!(
+                "impacts at {one:.4} and {two:.4} deg are on corners at once: its map has more than two pieces"
+            ));
+        }
+        if cycle.repeats_sooner() {
+            return Err("it repeats sooner".into());
+        }
+        match cycle.departure(&machine) {
+            Err(error) => return Err(error.to_string()),
+            Ok(Some(departure)) => return Err(words(&cycle, departure)),
+            Ok(None) => {}
+        }
+        let closure = cycle.residual(&machine).norm() / lift_size(&machine);
+        Ok(CornerImpact {
+            corner,
+            period,
+            bracket,
+            residual,
+            velocity_before,
+            velocity_after,
+            cam_velocity: rates.cam_velocity,
+            state: at_section(&machine, &cycle, period),
+            origin: origin(&model.follower),
+            closure,
+            cycle,
+            contact,
+            side,
+        })
+    }
+}
+
+/// The angle between two angles, rad, the shorter way round.
+pub fn apart(one: f64, two: f64) -> f64 {
+    let turned = (one - two).rem_euclid(TAU);
+    turned.min(TAU - turned)
+}
+
+/// How the motion of the cam as it is leaves a cycle, in words.
+fn words(cycle: &Cycle, departure: Departure) -> String {
+    let angle = |contact: usize| cycle.contacts[contact].cam_angle.to_degrees();
+    match departure {
+        Departure::Beyond { contact } => {
+            format!("its impact at {:.4} deg is on another segment of the cam", angle(contact))
+        }
+        Departure::Tangent { contact } => format!("the flight would come out of the cam at {:.4} deg", angle(contact)),
+        Departure::Earlier { event, .. } => {
+            format!("the flight meets the cam elsewhere, at {:.4} deg", event.cam_angle.to_degrees())
+        }
+        Departure::Elsewhere { contact } => {
+            format!("the flight from {:.4} deg does not come to the next impact", angle(contact))
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! Whether a cycle that closes is an orbit of the cam as it is: its flights, simulated one by one.
+
+use std::f64::consts::TAU;
+use std::ops::ControlFlow;
+
+use super::cycle::Cycle;
+use crate::simulate::{Event, Goal, Machine, SimulateError};
+use crate::tolerance;
+
+/// How the motion of the cam as it is leaves a cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Departure {
+    /// An impact lies outside of its segment.
+    Beyond {
+        /// Index of the contact.
+        contact: usize,
+    },
+    /// The follower would come out of the cam at an impact, or touches it only.
+    Tangent {
+        /// Index of the contact.
+        contact: usize,
+    },
+    /// The flight that starts at this contact meets the cam before it should.
+    Earlier {
+        /// Index of the contact that the flight starts at.
+        contact: usize,
+        /// What it meets.
+        event: Event,
+    },
+    /// The flight that starts at this contact does not come to the next; or there is none, since the follower sticks.
+    Elsewhere {
+        /// Index of the contact that the flight starts at.
+        contact: usize,
+    },
+}
+
+impl Cycle {
+    /// Where the cam as it is leaves this cycle, flight by flight, by simulation; `None` where it does not.
+    pub fn departure(&self, machine: &Machine) -> Result<Option<Departure>, SimulateError> {
+        let segments = machine.cam().segments();
+        let count = self.contacts.len();
+        for (index, contact) in self.contacts.iter().enumerate() {
+            let segment = &segments[contact.segment];
+            let slack = tolerance::CORNER_ANGLE.value;
+            if !(contact.cam_angle >= segment.start - slack && contact.cam_angle <= segment.end + slack) {
+                return Ok(Some(Departure::Beyond { contact: index }));
+            }
+            let impact = self.impact(machine, index);
+            let scale = impact.cam_velocity.abs() + contact.velocity_before.abs();
+            if !(impact.cam_velocity - contact.velocity_before > tolerance::GRAZING.value * scale) {
+                return Ok(Some(Departure::Tangent { contact: index }));
+            }
+        }
+        for index in 0..count {
+            let turn = self.turn(index);
+            if !(turn > 0.0) {
+                return Ok(Some(Departure::Elsewhere { contact: index }));
+            }
+            let Some((met, turned)) = self.next_event(machine, index, turn)? else {
+                return Ok(Some(Departure::Elsewhere { contact: index }));
+            };
+            if turned < turn - tolerance::SAME_ORBIT.value {
+                return Ok(Some(Departure::Earlier { contact: index, event: met }));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The first event after a contact, and the angle turned to it, rad; `None` where there is none for somewhat longer than
+    /// `turn`.
+    fn next_event(&self, machine: &Machine, index: usize, turn: f64) -> Result<Option<(Event, f64)>, SimulateError> {
+        let contact = &self.contacts[index];
+        let impact = self.impact(machine, index);
+        // A contact that rounding puts outside of its revolution is at the end of it.
+        let cam_angle = if contact.cam_angle >= TAU || contact.cam_angle < 0.0 { 0.0 } else { contact.cam_angle };
+        let relative = impact.leaving.velocity - machine.angular_velocity() * machine.cam().lift(cam_angle).slope;
+        if relative <= 0.0 {
+            return Ok(None);
+        }
+        let mut motion = machine.start_on_cam(cam_angle, relative)?;
+        let end = cam_angle + turn + tolerance::SAME_ORBIT.value;
+        let goal = Goal { revolution: (end / TAU) as u64, cam_angle: end % TAU };
+        let mut met = None;
+        let _ = machine.advance(&mut motion, goal, &mut |event: &Event| {
+            met = Some((*event, event.turned_since(cam_angle)));
+            ControlFlow::Break(())
+        })?;
+        Ok(met)
+    }
+}

@@ -1,0 +1,127 @@
+//! One motion has many names: a cycle may begin with any revolution, and an angle near a seam of the cam belongs to either
+//! segment. What is the same motion, and the name that is kept.
+
+use std::f64::consts::TAU;
+
+use super::cycle::{Contact, Cycle};
+use crate::simulate::Machine;
+use crate::tolerance;
+
+impl Cycle {
+    /// Angles moved into their segments' own revolution and names: an angle past the end of a revolution or of a segment
+    /// that meets the next smoothly belongs to the next.
+    ///
+    /// An angle past a corner stays where it is.
+    pub fn renamed(&self, machine: &Machine, is_corner: impl Fn(usize) -> bool) -> Self {
+        let segments = machine.cam().segments();
+        let mut renamed = self.clone();
+        for contact in &mut renamed.contacts {
+            // As many moves as there are segments lead once round.
+            for _ in 0..segments.len() {
+                let segment = &segments[contact.segment];
+                if contact.cam_angle < segment.start && !is_corner(contact.segment) {
+                    if contact.segment == 0 {
+                        contact.segment = segments.len() - 1;
+                        contact.cam_angle += TAU;
+                        contact.revolution -= 1;
+                    } else {
+                        contact.segment -= 1;
+                    }
+                } else if contact.cam_angle >= segment.end && !is_corner((contact.segment + 1) % segments.len()) {
+                    if contact.segment + 1 == segments.len() {
+                        contact.segment = 0;
+                        contact.cam_angle -= TAU;
+                        contact.revolution += 1;
+                    } else {
+                        contact.segment += 1;
+                    }
+                } else {
+                    break;
+                }
+            }
+        }
+        renamed
+    }
+
+    /// The same cycle with its revolutions counted from 0, and its contacts in order.
+    pub fn in_order(mut self) -> Self {
+        let revolutions = self.revolutions.max(1) as i64;
+        for contact in &mut self.contacts {
+            contact.revolution = contact.revolution.rem_euclid(revolutions);
+        }
+        self.contacts.sort_by(|one, other| {
+            one.revolution.cmp(&other.revolution).then(one.cam_angle.total_cmp(&other.cam_angle))
+        });
+        self
+    }
+
+    /// Where a contact stands once the contacts are [in order](Self::in_order).
+    pub fn place_in_order(&self, contact: usize) -> usize {
+        let key =
+            |contact: &Contact| (contact.revolution.rem_euclid(self.revolutions.max(1) as i64), contact.cam_angle);
+        let (revolution, angle) = key(&self.contacts[contact]);
+        let earlier = |other: &&Contact| {
+            let (turn, place) = key(other);
+            (turn, place) < (revolution, angle)
+        };
+        self.contacts.iter().filter(earlier).count()
+    }
+
+    /// The same cycle begun `revolutions` later.
+    pub fn begun_later(&self, revolutions: u64) -> Self {
+        let mut later = self.clone();
+        for contact in &mut later.contacts {
+            contact.revolution -= revolutions as i64;
+        }
+        later.in_order()
+    }
+
+    /// Whether two cycles are the same motion, whichever revolution they begin with.
+    pub fn is_same(&self, other: &Self) -> bool {
+        let near = |one: &Contact, other: &Contact| {
+            let turns = one.revolution as f64 - other.revolution as f64;
+            (one.cam_angle - other.cam_angle + TAU * turns).abs() <= tolerance::SAME_ORBIT.value
+        };
+        let same = |other: &Self| self.contacts.iter().zip(&other.contacts).all(|(one, other)| near(one, other));
+        self.revolutions == other.revolutions
+            && self.contacts.len() == other.contacts.len()
+            && (0..self.revolutions).any(|later| same(&other.begun_later(later)))
+    }
+
+    /// Whether the motion repeats sooner than after `revolutions`.
+    pub fn repeats_sooner(&self) -> bool {
+        let divides = |sooner: &u64| self.revolutions.is_multiple_of(*sooner);
+        (1..self.revolutions).filter(divides).any(|sooner| self.repeats_after(sooner))
+    }
+
+    fn repeats_after(&self, revolutions: u64) -> bool {
+        let later = self.begun_later(revolutions);
+        let near = |(one, other): (&Contact, &Contact)| {
+            one.revolution == other.revolution && (one.cam_angle - other.cam_angle).abs() <= tolerance::SAME_ORBIT.value
+        };
+        let itself = self.clone().in_order();
+        itself.contacts.iter().zip(&later.contacts).all(near)
+    }
+
+    /// The contact half a period after `contact`, if it is one on the same segment.
+    pub fn second_half(&self, contact: usize) -> Option<usize> {
+        let half = self.contacts.len() / 2;
+        let even = self.revolutions.is_multiple_of(2) && self.contacts.len().is_multiple_of(2);
+        let (one, two) = (self.contacts.get(contact)?, self.contacts.get(contact + half)?);
+        let later = two.revolution - one.revolution == self.revolutions as i64 / 2;
+        (even && later && one.segment == two.segment).then_some(contact + half)
+    }
+
+    /// The same motion over as few revolutions as it repeats after.
+    pub fn shortest(self) -> Self {
+        let cycle = self.in_order();
+        let sooner = |revolutions: &u64| cycle.repeats_after(*revolutions);
+        match (1..cycle.revolutions).filter(|sooner| cycle.revolutions.is_multiple_of(*sooner)).find(sooner) {
+            None => cycle,
+            Some(revolutions) => {
+                let contacts = cycle.contacts.iter().filter(|contact| contact.revolution < revolutions as i64);
+                Self { revolutions, contacts: contacts.copied().collect() }
+            }
+        }
+    }
+}
