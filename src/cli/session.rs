@@ -3,17 +3,18 @@
 use std::ffi::OsString;
 use std::io::{IsTerminal, Write};
 
-use super::{CommandError, Exit};
+use super::{CommandError, Exit, complaint};
+use crate::model::ModelError;
 
 /// Whether to colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub(super) enum ColorChoice {
-    /// On a terminal, unless NO_COLOR is set; anywhere if CLICOLOR_FORCE is.
+    // On a terminal, unless NO_COLOR is set; anywhere if CLICOLOR_FORCE is.
     #[default]
     Auto,
-    /// On pipes and in files that a shell opened, too.
+    // On pipes and in files that a shell opened, too.
     Always,
-    /// Nowhere.
+    // Nowhere.
     Never,
 }
 
@@ -125,7 +126,14 @@ impl Session<'_> {
     /// Complains on standard error, in the words that every complaint begins with.
     pub(super) fn complain(&mut self, words: &str) {
         // A closed pipe leaves nobody to tell.
-        let _ = writeln!(self.err, "error: {words}");
+        let _ = writeln!(self.err, "{} {words}", complaint::word(self.colours_err()));
+    }
+
+    /// The same, with the line of the model file that it is about.
+    pub(super) fn complain_at(&mut self, words: &str, at: &ModelError) {
+        self.complain(words);
+        let shown = complaint::shown(words, at, self.colours_err(), self.terminal.err, self.width());
+        let _ = self.err.write_all(shown.as_bytes());
     }
 
     /// Says what is wrong with a command line, or what help was asked for.
