@@ -4,12 +4,15 @@ mod basins;
 mod cam;
 mod claims;
 mod complaint;
+mod completions;
 mod continuation;
 mod curve;
 mod diagram;
 mod help;
 mod locate;
+mod man;
 mod model;
+mod new;
 mod orbit;
 mod picture;
 mod progress;
@@ -89,6 +92,10 @@ subcommands! {
         Continue = continuation,
         Curve = curve,
         Basins = basins,
+    "Getting started, and the shell":
+        New = new,
+        Completions = completions,
+        Man = man,
 }
 
 /// Why a command has no result.
