@@ -9,6 +9,7 @@ use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progr
 use crate::border_collision::{AtCorner, ImpactCurve};
 use crate::orbit::branch::{Branch, Following, corner_impacts, find_branches};
 use crate::orbit::{Parameter, Search};
+use crate::progress::Watch;
 use crate::report::curve;
 use crate::report::figure::layout::widened;
 use crate::report::figures::curve_figure;
@@ -18,7 +19,7 @@ use crate::report::file::Output;
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact curve --rpm 600:760 --parameter restitution=0.5:0.95\n\
-    \x20 corner-impact curve models/osorio-2008.toml --rpm 600:760 --parameter restitution=0.5:0.95 --out curve.svg\n\
+    \x20 corner-impact curve --rpm 600:760 --parameter restitution=0.5:0.95 --out curve.svg\n\
     \n\
     Prints the table; what each curve passes and where it ends goes to standard error.\n\
     Exit code: 0 done, also where there is none, 2 bad model file, usage or file.")]
@@ -81,7 +82,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let mut curves = Vec::new();
     let progress = Progress::new(corners.len() as u64);
     for (index, corner) in corners.iter().enumerate() {
-        progress.set(index as u64);
+        progress.at("following the corner impacts found", index as u64, corners.len() as u64);
         let Some(at) = AtCorner::of(corner) else { continue };
         let found = Branch::of_corner_impacts(&model, corner, arguments.rpm, &following);
         curves.push(ImpactCurve::new(&found.map_err(CommandError::input)?, at));
