@@ -168,7 +168,7 @@ fn marked(mut figure: Figure, name: &str) -> Figure {
             _ => None,
         });
         let hits = hits.unwrap_or_default();
-        let word = |at: &[f64; 2]| Word { at: *at, text: format!("impact at {name}"), beside: Beside::Above };
+        let word = |at: &[f64; 2]| Word { at: *at, text: format!("impact at {name}"), beside: Beside::Right };
         let words: Vec<Word> = hits.iter().map(word).collect();
         for data in [Data::Points { points: hits, marker: Marker::Ring }, Data::Words(words)] {
             panel.series.push(Series { label: String::new(), colour: Colour::Ink, data });
