@@ -41,7 +41,7 @@
 //! ```
 //!
 //! Data moves down; no stage uses one below it, and a test holds the code to that. `tolerance` stands above all: every
-//! threshold is a row of its one table.
+//! threshold is a row of its one table; and so does `progress`, by which long work tells how far it has come.
 //!
 //! ```
 //! use corner_impact::{model::{Model, OSORIO_2008}, verify::{External, verify}};
@@ -55,6 +55,8 @@
 #![doc = include_str!("symbols.md")]
 
 pub mod tolerance;
+
+pub mod progress;
 
 pub mod model;
 

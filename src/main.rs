@@ -2,8 +2,10 @@
 
 use std::process::ExitCode;
 
+use corner_impact::cli::{Terminal, run_at};
+
 fn main() -> ExitCode {
-    let exit =
-        corner_impact::cli::run(std::env::args_os(), &mut std::io::stdout().lock(), &mut std::io::stderr().lock());
-    ExitCode::from(exit as u8)
+    // Standard error stays unlocked: a progress bar writes to it from a thread of its own.
+    let (mut out, mut err) = (std::io::stdout().lock(), std::io::stderr());
+    ExitCode::from(run_at(Terminal::of_process(), std::env::args_os(), &mut out, &mut err) as u8)
 }

@@ -16,6 +16,7 @@ use crate::corner::one_sided::SampleError;
 use crate::corner::{self, CornerImpact, CornerMap, LocateError, Route};
 use crate::corner::{closed_form, finite_difference, least_squares, simulated_orbit, variational};
 use crate::model::Model;
+use crate::progress::{Unwatched, Watch};
 use crate::published::{PrintedNumber, PublishedError, compare_published};
 use crate::python::PythonError;
 use crate::tolerance::Comparison;
@@ -84,12 +85,19 @@ pub enum External {
 ///
 /// Fails only where there is nothing to compare; a route that fails is listed as skipped, and then the whole disagrees.
 pub fn verify(model: &Model, external: External) -> Result<Findings, LocateError> {
+    verify_watched(model, external, &Unwatched)
+}
+
+/// The same, told to `watch` step by step.
+pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> Result<Findings, LocateError> {
+    watch.at("looking for the corner impact", 0, 0);
     let cam = Cam::new(model)?;
     let (at, others) = corner::locate(model, &cam)?;
     let mut log = Log::default();
     // The programs outside take seconds and this one's routes a few hundredths: they run beside each other.
     let outside = start_outside(model, external)?;
 
+    watch.at("the map by the routes of this program", 0, 0);
     let closed = closed_form::route(model, &at);
     let map = closed.map;
     let mut routes = vec![closed];
@@ -111,6 +119,7 @@ pub fn verify(model: &Model, external: External) -> Result<Findings, LocateError
     orbits.extend(simulated.map(|(x, period)| ("simulation", x, period)));
 
     for (program, answer) in outside {
+        watch.at(&format!("the map by {}, in Python", program.name), 0, 0);
         match answer.map(JoinHandle::join) {
             None if external == External::Run => log.leave_out(program.name, "knows cams of arcs only".into()),
             None => log.leave_out(program.name, "left out by --no-external".into()),
@@ -140,6 +149,7 @@ pub fn verify(model: &Model, external: External) -> Result<Findings, LocateError
             (None, Some(refusal))
         }
     };
+    watch.at("what the map does by itself", 0, 0);
     let local = LocalMap::new(&map, border);
     let (mut outcomes, mut ranges) = (Vec::new(), Vec::new());
     if classification.is_some() {

@@ -1,9 +1,12 @@
 //! A grid of starts on a section, and the motion that each ends on.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use rayon::prelude::*;
 
 use super::{Ending, Patience, ending};
 use crate::flight::State;
+use crate::progress::{Unwatched, Watch};
 use crate::simulate::{Machine, SimulateError};
 
 /// Starts on the section at one cam angle: the middles of cells, evenly spaced in position and velocity.
@@ -38,12 +41,25 @@ impl Grid {
 
     /// What every start ends on, on `threads` threads (all there are for `None`): the same for every number of them.
     pub fn basins(&self, machine: &Machine, patience: Patience, threads: Option<usize>) -> Result<Basins, GridError> {
+        self.basins_watched(machine, patience, threads, &Unwatched)
+    }
+
+    /// The same, told to `watch` start by start.
+    pub fn basins_watched(
+        &self,
+        machine: &Machine,
+        patience: Patience,
+        threads: Option<usize>,
+        watch: &dyn Watch,
+    ) -> Result<Basins, GridError> {
         let mut builder = rayon::ThreadPoolBuilder::new();
         if let Some(threads) = threads {
             builder = builder.num_threads(threads);
         }
         let pool = builder.build().map_err(|error| GridError::Threads(error.to_string()))?;
+        let (done, total) = (AtomicU64::new(0), (self.columns * self.rows) as u64);
         let one = |cell: usize| {
+            watch.at("runs", done.fetch_add(1, Ordering::Relaxed), total);
             let state = self.start(cell);
             let motion = match machine.start(self.cam_angle, state) {
                 Ok(motion) => motion,

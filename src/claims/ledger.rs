@@ -4,6 +4,7 @@ use serde::Deserialize;
 
 use super::checks;
 use super::context::{Context, Found, LedgerError};
+use crate::progress::{Unwatched, Watch};
 use crate::published::Verdict;
 
 /// The statements and the verdicts found.
@@ -50,12 +51,20 @@ pub fn claims() -> Result<Vec<Claim>, LedgerError> {
 
 /// Holds every statement against its check.
 pub fn hold(context: &Context<'_>) -> Result<Vec<Held>, LedgerError> {
-    let one = |claim: Claim| {
+    hold_watched(context, &Unwatched)
+}
+
+/// The same, told to `watch` statement by statement.
+pub fn hold_watched(context: &Context<'_>, watch: &dyn Watch) -> Result<Vec<Held>, LedgerError> {
+    let claims = claims()?;
+    let total = claims.len() as u64;
+    let one = |(done, claim): (usize, Claim)| {
+        watch.at(&claim.id, done as u64, total);
         let check = checks::find(&claim.id).ok_or_else(|| LedgerError::Unchecked(claim.id.clone()))?;
         let found = check.run(context);
         let elsewhere = !context.is_paper && check.is_about_the_papers_model() && found.verdict == Verdict::Open;
         let as_found = found.verdict == claim.verdict || elsewhere;
         Ok(Held { claim, found, as_found })
     };
-    claims()?.into_iter().map(one).collect()
+    claims.into_iter().enumerate().map(one).collect()
 }

@@ -1,11 +1,11 @@
-//! `corner-impact basins MODEL --rpm R --grid NxM`.
+//! `corner-impact basins [MODEL] --rpm R --grid NxM`.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use super::start::{finite, rpm, turn};
-use super::{CommandError, Exit, picture};
+use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
 use crate::basin::{Basins, Curve, Ending, Extent, Grid, Patience, Reversed, Saddle};
 use crate::cam::Cam;
 use crate::flight::State;
@@ -19,14 +19,14 @@ use crate::simulate::{Machine, angular_velocity};
 
 /// Runs a grid of starts at one speed and says what each ends on, as a table or a picture.
 #[derive(clap::Args)]
-#[command(
-    after_help = "Example: corner-impact basins models/osorio-2008.toml --rpm 678 --strobe 5.7627 --grid 200x150 \\\n\
-    \x20          --position 0.4:8 --velocity -60:60 --out basins.png\n\n\
-    Exit code: 0 done, 2 bad model file, usage or file, or a run that cannot go on."
-)]
+#[command(after_help = "Examples:\n\
+    \x20 corner-impact basins --rpm 678 --strobe 5.7627 --grid 60x40\n\
+    \x20 corner-impact basins models/osorio-2008.toml --rpm 678 --strobe 5.7627 --grid 200x150 --position 0.4:8 --velocity -60:60 --out basins.png\n\
+    \n\
+    Exit code: 0 done, 2 bad model file, usage or file, or a run that cannot go on.")]
 pub(super) struct Arguments {
-    /// Model file (TOML).
-    model: PathBuf,
+    #[command(flatten)]
+    model: ModelArgument,
     /// Speed of the cam, rpm.
     #[arg(long, value_name = "RPM", value_parser = rpm, allow_hyphen_values = true)]
     rpm: f64,
@@ -87,12 +87,12 @@ fn crossing(machine: &Machine, orbit: &PeriodicOrbit, cam_angle: f64) -> Option<
     }
 }
 
-pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, CommandError> {
+pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let to_standard = arguments.out.as_ref().is_some_and(|path| path.as_os_str() == "-");
     if to_standard && arguments.summary {
         return Err(CommandError::Input("--out - and --summary both print to standard output".into()));
     }
-    let model = Model::read(&arguments.model).map_err(CommandError::input)?;
+    let model = arguments.model.read(session)?;
     let cam = Cam::new(&model).map_err(CommandError::input)?;
     let machine = Machine::new(cam, &model.follower, angular_velocity(arguments.rpm));
     let map = StroboscopicMap { machine, cam_angle: turn(arguments.strobe) };
@@ -101,13 +101,15 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Co
     let patience = Patience { revolutions: arguments.revolutions, longest: arguments.longest };
     let clock = Instant::now();
     let threads = arguments.threads.map(usize::from);
-    let basins = grid.basins(&map.machine, patience, threads).map_err(CommandError::input)?;
+    let progress = Progress::new((grid.columns * grid.rows) as u64);
+    let basins = grid.basins_watched(&map.machine, patience, threads, &progress).map_err(CommandError::input)?;
+    drop(progress);
     let wall_s = clock.elapsed().as_secs_f64();
     match &arguments.out {
         None => {}
         Some(path) if picture::kind(path).is_some() => draw(path, &model, &map, &orbits, &basins, arguments.rpm)?,
         Some(path) => {
-            let mut file = Output::create(path, out).map_err(CommandError::file)?;
+            let mut file = Output::create(path, &mut *session.out).map_err(CommandError::file)?;
             file.write_all(csv::basins(&basins).as_bytes()).map_err(CommandError::write)?;
             file.commit().map_err(CommandError::file)?;
         }
@@ -120,7 +122,7 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Co
     } else {
         summary.text().map_err(CommandError::report)?
     };
-    out.write_all(page.as_bytes()).and_then(|()| out.flush()).map_err(CommandError::standard)?;
+    session.print(&page)?;
     Ok(Exit::Agrees)
 }
 

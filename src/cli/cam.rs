@@ -1,22 +1,22 @@
-//! `corner-impact cam MODEL`.
+//! `corner-impact cam [MODEL]`.
 
-use std::io::Write;
 use std::path::PathBuf;
 
-use super::{CommandError, Exit, picture};
+use super::{CommandError, Exit, ModelArgument, Session, picture};
 use crate::cam::{Cam, Jet};
-use crate::model::Model;
 use crate::report::figures::cam_figure;
 use crate::report::{CamDocument, json};
 
 /// Lists the segments of a model's cam and the corners where they meet.
 #[derive(clap::Args)]
-#[command(after_help = "Examples: corner-impact cam models/osorio-2008.toml\n\
-    \x20         corner-impact cam models/osorio-2008.toml --out cam.svg\n\n\
+#[command(after_help = "Examples:\n\
+    \x20 corner-impact cam\n\
+    \x20 corner-impact cam models/laws/program.toml --out cam.svg\n\
+    \n\
     Exit code: 0 done, 2 bad model file, usage or file.")]
 pub(super) struct Arguments {
-    /// Model file (TOML).
-    model: PathBuf,
+    #[command(flatten)]
+    model: ModelArgument,
     /// Print one JSON document instead of the page.
     #[arg(long)]
     json: bool,
@@ -28,11 +28,11 @@ pub(super) struct Arguments {
     out: Option<PathBuf>,
 }
 
-pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(String, Exit), CommandError> {
-    let model = Model::read(&arguments.model).map_err(CommandError::input)?;
+pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
+    let model = arguments.model.read(session)?;
     let cam = Cam::new(&model).map_err(CommandError::input)?;
     if let Some(path) = &arguments.out {
-        let drawn = picture::Canvas::create(path, out)?.draw(&cam_figure(&cam, &model.name))?;
+        let drawn = picture::Canvas::create(path, &mut *session.out)?.draw(&cam_figure(&cam, &model.name))?;
         drawn.commit().map_err(CommandError::file)?;
     }
     let document = CamDocument::new(&model, &cam, arguments.order);
@@ -41,5 +41,6 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<(String,
     } else {
         document.text().map_err(CommandError::report)?
     };
-    Ok((page, Exit::Agrees))
+    session.print(&page)?;
+    Ok(Exit::Agrees)
 }

@@ -1,22 +1,22 @@
-//! `corner-impact claims MODEL`.
+//! `corner-impact claims [MODEL]`.
 
-use std::path::PathBuf;
-
-use super::{CommandError, Exit};
+use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
 use crate::cam::Cam;
-use crate::claims::{Context, hold};
-use crate::model::Model;
+use crate::claims::{Context, hold_watched};
 use crate::report::{ClaimsDocument, json};
-use crate::verify::{External, verify};
+use crate::verify::{External, verify_watched};
 
 /// Prints what the paper states, statement by statement, with a verdict and its evidence.
 #[derive(clap::Args)]
-#[command(after_help = "Example: corner-impact claims models/osorio-2008.toml\n\n\
+#[command(after_help = "Examples:\n\
+    \x20 corner-impact claims\n\
+    \x20 corner-impact claims models/damped-light.toml --json\n\
+    \n\
     For another model than the paper's, statements about the paper's own numbers are open.\n\
     Exit code: 0 every check comes to the ledger's verdict, 1 one does not, 2 bad model file.")]
 pub(super) struct Arguments {
-    /// Model file (TOML).
-    model: PathBuf,
+    #[command(flatten)]
+    model: ModelArgument,
     /// Print one JSON document instead of the page.
     #[arg(long, conflicts_with = "markdown")]
     json: bool,
@@ -25,18 +25,19 @@ pub(super) struct Arguments {
     markdown: bool,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<(String, Exit), CommandError> {
-    let input = |error: &dyn std::fmt::Display| CommandError::Input(error.to_string());
-    let report = |error: &dyn std::fmt::Display| CommandError::Report(error.to_string());
-    let model = Model::read(&arguments.model).map_err(|error| input(&error))?;
-    let findings = verify(&model, External::LeftOut).map_err(|error| input(&error))?;
-    let cam = Cam::new(&model).map_err(|error| input(&error))?;
-    let context = Context::new(&model, &cam, &findings).map_err(|error| report(&error))?;
-    let document = ClaimsDocument::new(&model.name, &hold(&context).map_err(|error| report(&error))?);
+pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
+    let model = arguments.model.read(session)?;
+    let progress = Progress::spinner("verifying the model");
+    let findings = verify_watched(&model, External::LeftOut, &progress).map_err(CommandError::input)?;
+    let cam = Cam::new(&model).map_err(CommandError::input)?;
+    let context = Context::new(&model, &cam, &findings).map_err(CommandError::report)?;
+    let document = ClaimsDocument::new(&model.name, &hold_watched(&context, &progress).map_err(CommandError::report)?);
+    drop(progress);
     let page = match (arguments.json, arguments.markdown) {
-        (true, _) => json::render(&document).map_err(|error| report(&error))?,
-        (_, true) => document.markdown().map_err(|error| report(&error))?,
-        _ => document.text().map_err(|error| report(&error))?,
+        (true, _) => json::render(&document).map_err(CommandError::report)?,
+        (_, true) => document.markdown().map_err(CommandError::report)?,
+        _ => document.text().map_err(CommandError::report)?,
     };
-    Ok((page, if document.agrees { Exit::Agrees } else { Exit::Disagrees }))
+    session.print(&page)?;
+    Ok(if document.agrees { Exit::Agrees } else { Exit::Disagrees })
 }

@@ -1,10 +1,10 @@
-//! `corner-impact continue MODEL --from-rpm R --parameter NAME=LO:HI`.
+//! `corner-impact continue [MODEL] --from-rpm R --parameter NAME=LO:HI`.
 
 use std::io::Write;
 use std::path::PathBuf;
 
 use super::start::{finite, positive, rpm};
-use super::{CommandError, Exit, picture, progress::Progress};
+use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
 use crate::cam::Cam;
 use crate::diagram::settled_impacts;
 use crate::model::Model;
@@ -20,14 +20,16 @@ use crate::simulate::{Machine, angular_velocity};
 #[derive(clap::Args)]
 #[command(
     name = "continue",
-    after_help = "Examples: corner-impact continue models/osorio-2008.toml --from-rpm 700 --parameter rpm=660:760\n\
-    \x20         corner-impact continue models/osorio-2008.toml --from-rpm 700 --parameter restitution=0.5:0.95 --out branches.svg\n\n\
+    after_help = "Examples:\n\
+    \x20 corner-impact continue --from-rpm 700 --parameter rpm=660:760\n\
+    \x20 corner-impact continue models/osorio-2008.toml --from-rpm 700 --parameter restitution=0.5:0.95 --out branches.svg\n\
+    \n\
     Prints the table; what each branch passes and where it ends goes to standard error.\n\
     Exit code: 0 done, 2 bad model file, usage or file, or nothing to follow."
 )]
 pub(super) struct Arguments {
-    /// Model file (TOML).
-    model: PathBuf,
+    #[command(flatten)]
+    model: ModelArgument,
     /// Speed at which the orbits are looked for.
     #[arg(long, value_name = "R", value_parser = rpm, allow_hyphen_values = true)]
     from_rpm: f64,
@@ -64,8 +66,8 @@ pub(super) fn parameter(text: &str) -> Result<(String, [f64; 2]), String> {
     if range[0] < range[1] { Ok((name.trim().into(), range)) } else { Err(format!("{low} is not below {high}")) }
 }
 
-pub(super) fn run(arguments: &Arguments, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit, CommandError> {
-    let model = Model::read(&arguments.model).map_err(CommandError::input)?;
+pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
+    let model = arguments.model.read(session)?;
     let cam = Cam::new(&model).map_err(CommandError::input)?;
     let corners = corner_marks(&cam);
     let (name, range) = &arguments.parameter;
@@ -74,7 +76,7 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write, err: &mut dyn Writ
     if !(range[0] <= value && value <= range[1]) {
         let words = format!(
             "{}: orbits are looked for at {} = {value}, which is outside of {}:{}",
-            arguments.model.display(),
+            model.file(),
             parameter.name(),
             range[0],
             range[1]
@@ -87,7 +89,7 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write, err: &mut dyn Writ
     if orbits.is_empty() {
         let words = format!(
             "{}: no periodic orbit of {} revolution(s) found at {} rpm to follow",
-            arguments.model.display(),
+            model.file(),
             arguments.revolutions,
             arguments.from_rpm
         );
@@ -105,13 +107,13 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write, err: &mut dyn Writ
     let (canvas, table) = if is_picture {
         (Some(picture::Canvas::create(&arguments.out, &mut nobody)?), None)
     } else {
-        (None, Some(Output::create(&arguments.out, out).map_err(CommandError::file)?))
+        (None, Some(Output::create(&arguments.out, &mut *session.out).map_err(CommandError::file)?))
     };
     let branches = follow(&model, arguments.from_rpm, value, &orbits, &following)?;
     for (index, found) in branches.iter().enumerate() {
         let account = branch::account(found, parameter.name(), index + 1).map_err(CommandError::report)?;
         // Nobody is left to tell where standard error is closed.
-        let _ = err.write_all(account.as_bytes());
+        let _ = session.err.write_all(account.as_bytes());
     }
     if let Some(mut table) = table {
         table.write_all(branch::COLUMNS.as_bytes()).map_err(CommandError::write)?;
@@ -147,7 +149,7 @@ fn follow(
     following: &Following,
 ) -> Result<Vec<Branch>, CommandError> {
     let mut branches: Vec<Branch> = Vec::new();
-    let mut progress = Progress::new(orbits.len() as u64);
+    let progress = Progress::new(orbits.len() as u64);
     for (index, orbit) in orbits.iter().enumerate() {
         progress.set(index as u64);
         if !branches.iter().any(|branch| branch.holds(value, orbit)) {
@@ -171,7 +173,7 @@ fn settled(
     }
     let family = Family::new(model, arguments.from_rpm, vec![parameter.clone()]).map_err(CommandError::input)?;
     let mut density = Density::new([low, high], [0.0, 360.0]);
-    let mut progress = Progress::new(u64::from(arguments.runs));
+    let progress = Progress::new(u64::from(arguments.runs));
     for index in 0..arguments.runs {
         progress.set(u64::from(index));
         let value = low + (high - low) * (f64::from(index) + 0.5) / f64::from(arguments.runs);

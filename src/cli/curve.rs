@@ -1,12 +1,11 @@
-//! `corner-impact curve MODEL --rpm LO:HI --parameter NAME=LO:HI`.
+//! `corner-impact curve [MODEL] --rpm LO:HI --parameter NAME=LO:HI`.
 
 use std::io::Write;
 use std::path::PathBuf;
 
 use super::continuation::parameter;
 use super::start::{positive, range};
-use super::{CommandError, Exit, picture, progress::Progress};
-use crate::model::Model;
+use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
 use crate::orbit::branch::{Branch, BranchPoint, Following, Kind, Special, corner_impacts, survey};
 use crate::orbit::{Parameter, Search};
 use crate::report::curve::{self, AtCorner};
@@ -16,14 +15,15 @@ use crate::report::file::Output;
 
 /// Follows corner impacts through a number of the model: their speed, and where their type changes.
 #[derive(clap::Args)]
-#[command(
-    after_help = "Example: corner-impact curve models/osorio-2008.toml --rpm 600:760 --parameter restitution=0.5:0.95 --out curve.svg\n\n\
+#[command(after_help = "Examples:\n\
+    \x20 corner-impact curve --rpm 600:760 --parameter restitution=0.5:0.95\n\
+    \x20 corner-impact curve models/osorio-2008.toml --rpm 600:760 --parameter restitution=0.5:0.95 --out curve.svg\n\
+    \n\
     Prints the table; what each curve passes and where it ends goes to standard error.\n\
-    Exit code: 0 done, also where there is none, 2 bad model file, usage or file."
-)]
+    Exit code: 0 done, also where there is none, 2 bad model file, usage or file.")]
 pub(super) struct Arguments {
-    /// Model file (TOML).
-    model: PathBuf,
+    #[command(flatten)]
+    model: ModelArgument,
     /// Speeds between which corner impacts of the model are looked for.
     #[arg(long, value_name = "LO:HI", value_parser = range, allow_hyphen_values = true)]
     rpm: [f64; 2],
@@ -47,8 +47,8 @@ pub(super) struct Arguments {
 /// Corner impacts on a curve after which it is given up, in either direction.
 const MOST_POINTS: usize = 2000;
 
-pub(super) fn run(arguments: &Arguments, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit, CommandError> {
-    let model = Model::read(&arguments.model).map_err(CommandError::input)?;
+pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
+    let model = arguments.model.read(session)?;
     let (name, range) = &arguments.parameter;
     let parameter = Parameter::named(&model, name).map_err(CommandError::input)?;
     if parameter == Parameter::Speed {
@@ -64,10 +64,12 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write, err: &mut dyn Writ
     let (canvas, table) = if picture::kind(&arguments.out).is_some() {
         (Some(picture::Canvas::create(&arguments.out, &mut nobody)?), None)
     } else {
-        (None, Some(Output::create(&arguments.out, out).map_err(CommandError::file)?))
+        (None, Some(Output::create(&arguments.out, &mut *session.out).map_err(CommandError::file)?))
     };
     let wanted = Search { revolutions: arguments.revolutions, impacts: arguments.impacts };
+    let progress = Progress::spinner("looking for corner impacts of the model");
     let surveyed = survey(&model, arguments.rpm, &wanted).map_err(CommandError::input)?;
+    drop(progress);
     let corners = corner_impacts(&surveyed.branches);
     let following = Following {
         parameter: parameter.clone(),
@@ -76,7 +78,7 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write, err: &mut dyn Writ
         most_points: MOST_POINTS,
     };
     let mut curves = Vec::new();
-    let mut progress = Progress::new(corners.len() as u64);
+    let progress = Progress::new(corners.len() as u64);
     for (index, corner) in corners.iter().enumerate() {
         progress.set(index as u64);
         let Some(at) = at_corner(corner) else { continue };
@@ -85,7 +87,7 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write, err: &mut dyn Writ
     }
     let mut say = |words: &str| {
         // Nobody is left to tell where standard error is closed.
-        let _ = err.write_all(words.as_bytes());
+        let _ = session.err.write_all(words.as_bytes());
     };
     if curves.is_empty() {
         let [low, high] = arguments.rpm;

@@ -1,4 +1,4 @@
-//! `corner-impact diagram MODEL --rpm LO:HI:N`.
+//! `corner-impact diagram [MODEL] --rpm LO:HI:N`.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -7,10 +7,9 @@ use std::time::Instant;
 use clap::ValueEnum;
 
 use super::start::{StartArguments, count, finite, speeds, turn};
-use super::{CommandError, Exit, picture, progress::Progress};
+use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
 use crate::cam::Cam;
 use crate::diagram::{Counted, Following, Places, Section, Speeds, Sweep, SweepError, Tally};
-use crate::model::Model;
 use crate::report::figure::layout::widened;
 use crate::report::figure::{Cloud, Density, Figure};
 use crate::report::figures::{Diagram, corner_marks, impact_diagram, shown_impacts, strobe_diagram};
@@ -20,12 +19,14 @@ use crate::simulate::{Machine, angular_velocity};
 
 /// Sweeps over speeds: what the motion settles on, as a table or a picture.
 #[derive(clap::Args)]
-#[command(after_help = "Examples: corner-impact diagram models/osorio-2008.toml --rpm 660:750:400 --out impacts.svg\n\
-    \x20         corner-impact diagram models/osorio-2008.toml --rpm 660:750:400 --start down --out impacts.csv\n\n\
+#[command(after_help = "Examples:\n\
+    \x20 corner-impact diagram --rpm 660:750:400 --out impacts.svg\n\
+    \x20 corner-impact diagram models/osorio-2008.toml --rpm 660:750:400 --start down --out impacts.csv\n\
+    \n\
     Exit code: 0 done, 2 bad model file, usage or file, or a run that cannot go on.")]
 pub(super) struct Arguments {
-    /// Model file (TOML).
-    model: PathBuf,
+    #[command(flatten)]
+    model: ModelArgument,
     /// Lowest speed, highest speed, and how many.
     #[arg(long, value_name = "LO:HI:N", value_parser = speeds, allow_hyphen_values = true)]
     rpm: Speeds,
@@ -87,7 +88,7 @@ enum Target<'a> {
     Picture(&'a Path),
 }
 
-pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, CommandError> {
+pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let target = match &arguments.out {
         None => Target::Nowhere,
         Some(path) if picture::kind(path).is_some() => Target::Picture(path),
@@ -100,7 +101,7 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Co
     if arguments.strobe.is_some() && matches!(arguments.section, SectionName::Impact) {
         return Err(CommandError::Input("--strobe is the angle of --section strobe, which is not there".into()));
     }
-    let model = Model::read(&arguments.model).map_err(CommandError::input)?;
+    let model = arguments.model.read(session)?;
     let cam = Cam::new(&model).map_err(CommandError::input)?;
     let corners = corner_marks(&cam);
     let sweep = Sweep {
@@ -128,13 +129,13 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Co
     let clock = Instant::now();
     let tally = match target {
         Target::Nowhere => {
-            let mut progress = Progress::new(sweep.speeds.count as u64);
+            let progress = Progress::new(sweep.speeds.count as u64);
             sweep.run(Some(threads), |index, _: Counted| {
                 progress.set(index as u64);
                 Ok::<(), CommandError>(())
             })?
         }
-        Target::Table(path) => table(&sweep, threads, path, out)?,
+        Target::Table(path) => table(&sweep, threads, path, &mut *session.out)?,
         Target::Picture(path) => {
             let mut nobody = std::io::sink();
             let canvas = picture::Canvas::create(path, &mut nobody)?;
@@ -163,7 +164,7 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Co
     } else {
         summary.text().map_err(CommandError::report)?
     };
-    out.write_all(page.as_bytes()).and_then(|()| out.flush()).map_err(CommandError::standard)?;
+    session.print(&page)?;
     Ok(Exit::Agrees)
 }
 
@@ -188,7 +189,7 @@ fn table(sweep: &Sweep, threads: usize, path: &Path, out: &mut dyn Write) -> Res
     };
     let lyapunov = if sweep.lyapunov { csv::LYAPUNOV } else { "" };
     writeln!(file, "{columns}{lyapunov}").map_err(CommandError::write)?;
-    let mut progress = Progress::new(sweep.speeds.count as u64);
+    let progress = Progress::new(sweep.speeds.count as u64);
     let tally = sweep.run(Some(threads), |index, lines: csv::Lines| {
         progress.set(index as u64);
         file.write_all(lines.0.as_bytes()).map_err(CommandError::write)
@@ -208,7 +209,7 @@ fn points(sweep: &Sweep, threads: usize) -> Result<Found, CommandError> {
     let Speeds { low, high, .. } = sweep.speeds;
     let mut cloud = Cloud::new(if high > low { [low, high] } else { [0.99 * low, 1.01 * low] });
     let mut exponents: Vec<[f64; 2]> = Vec::new();
-    let mut progress = Progress::new(sweep.speeds.count as u64);
+    let progress = Progress::new(sweep.speeds.count as u64);
     // Angles are shown in degrees.
     let shown = |place: f64| if sweep.section == Section::Impacts { place.to_degrees() } else { place };
     let tally = sweep.run(Some(threads), |index, points: Places| {

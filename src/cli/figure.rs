@@ -1,22 +1,23 @@
 //! `corner-impact figure [MODEL] [ID]`.
 
-use std::fmt::Write as _;
-use std::io::Write;
-use std::path::PathBuf;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::{CommandError, Exit, picture};
+use super::{CommandError, Exit, ModelArgument, Session, picture};
 use crate::gallery::Subject;
-use crate::model::{Model, OSORIO_2008};
+use crate::model::Model;
 use crate::report::json;
 use crate::report::plates::{Listed, Plate, listed, plate};
 
 /// Lists the figures of the report, or draws one of them.
 #[derive(clap::Args)]
-#[command(after_help = "Examples: corner-impact figure\n\
-    \x20         corner-impact figure fast-impacts --out fast-impacts.svg\n\
-    \x20         corner-impact figure models/damped-heavy.toml composition --out composition.png\n\n\
+#[command(after_help = "Examples:\n\
+    \x20 corner-impact figure\n\
+    \x20 corner-impact figure fast-impacts --out fast-impacts.svg\n\
+    \x20 corner-impact figure models/damped-heavy.toml composition --out composition.png\n\
+    \n\
     Exit code: 0 done, 2 bad model file, usage or file, or a figure that the model has not.")]
 pub(super) struct Arguments {
     /// Model file (TOML) [default: the paper's], then the figure to draw, from the list; a name with a dot or a slash is a file.
@@ -59,13 +60,9 @@ fn named(words: &[String]) -> Result<(Option<&str>, Option<&str>), CommandError>
     }
 }
 
-pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, CommandError> {
+pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let (file, id) = named(&arguments.words)?;
-    let model = match file {
-        Some(file) => Model::read(&PathBuf::from(file)),
-        None => Model::parse("osorio-2008.toml", OSORIO_2008),
-    };
-    let model = model.map_err(CommandError::input)?;
+    let model = ModelArgument::of(file.map(Path::new)).read(session)?;
     if id.is_none() && arguments.out.is_some() {
         return Err(CommandError::Input("--out is for one figure: name it, from the list without --out".into()));
     }
@@ -90,7 +87,7 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Co
             one(&model, plate, arguments)?
         }
     };
-    out.write_all(page.as_bytes()).and_then(|()| out.flush()).map_err(CommandError::standard)?;
+    session.print(&page)?;
     Ok(Exit::Agrees)
 }
 

@@ -1,21 +1,21 @@
-//! `corner-impact locate MODEL`.
+//! `corner-impact locate [MODEL]`.
 
-use std::path::PathBuf;
-
-use super::{CommandError, Exit};
-use crate::model::{Model, Study};
+use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
+use crate::model::Study;
 use crate::orbit::Search;
 use crate::report::{LocateDocument, json};
-use crate::survey::survey;
+use crate::survey::{SurveyError, survey};
 
 /// Lists the speeds at which a periodic orbit has an impact on a corner of the cam, and what happens there.
 #[derive(clap::Args)]
-#[command(after_help = "Examples: corner-impact locate models/osorio-2008.toml --rpm 600:760\n\
-    \x20         corner-impact locate models/osorio-2008.toml --rpm 600:760 --revolutions 2 --json\n\n\
+#[command(after_help = "Examples:\n\
+    \x20 corner-impact locate --rpm 600:760\n\
+    \x20 corner-impact locate models/osorio-2008.toml --rpm 600:760 --revolutions 2 --json\n\
+    \n\
     Exit code: 0 done and the routes agree, 1 routes disagree at a corner impact, 2 bad model file or usage.")]
 pub(super) struct Arguments {
-    /// Model file (TOML).
-    model: PathBuf,
+    #[command(flatten)]
+    model: ModelArgument,
     /// Range of speeds, rpm.
     #[arg(long, value_name = "LO:HI", value_parser = range)]
     rpm: Study,
@@ -39,15 +39,20 @@ fn range(text: &str) -> Result<Study, String> {
     }
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<(String, Exit), CommandError> {
-    let model = Model::read(&arguments.model).map_err(CommandError::input)?;
-    let found = survey(&model, arguments.rpm, arguments.revolutions)
-        .map_err(|error| CommandError::Input(format!("{}: {error}", model.file())))?;
+pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
+    let model = arguments.model.read(session)?;
+    let progress = Progress::spinner("looking for orbits with an impact on a corner");
+    let found = survey(&model, arguments.rpm, arguments.revolutions).map_err(|error| match error {
+        SurveyError::Range(error) => CommandError::Input(format!("{}: {error}", model.file())),
+        error => CommandError::input(error),
+    })?;
+    drop(progress);
     let document = LocateDocument::new(&model, &found);
     let page = if arguments.json {
         json::render(&document).map_err(CommandError::report)?
     } else {
         document.text().map_err(CommandError::report)?
     };
-    Ok((page, if document.agrees { Exit::Agrees } else { Exit::Disagrees }))
+    session.print(&page)?;
+    Ok(if document.agrees { Exit::Agrees } else { Exit::Disagrees })
 }

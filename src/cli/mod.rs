@@ -3,14 +3,18 @@
 mod basins;
 mod cam;
 mod claims;
+mod complaint;
 mod continuation;
 mod curve;
 mod diagram;
 mod figure;
+mod help;
 mod locate;
+mod model;
 mod orbit;
 mod picture;
 mod progress;
+mod session;
 mod simulate;
 mod speeds;
 mod start;
@@ -19,8 +23,13 @@ mod verify;
 use std::ffi::OsString;
 use std::io::{ErrorKind, Write};
 
-use clap::{Parser, Subcommand};
+use clap::{FromArgMatches, Parser, Subcommand};
 
+use model::ModelArgument;
+pub use session::Terminal;
+use session::{ColorChoice, Session};
+
+use crate::model::ModelError;
 use crate::report::file::{FileError, Output};
 
 /// How a command ended; the process's exit code.
@@ -40,22 +49,49 @@ pub enum Exit {
 struct Arguments {
     #[command(subcommand)]
     command: Command,
+    /// Whether pages, complaints and help are coloured.
+    #[arg(long, global = true, value_enum, value_name = "WHEN", default_value = "auto")]
+    color: ColorChoice,
 }
 
-#[derive(Subcommand)]
-enum Command {
-    Verify(verify::Arguments),
-    Claims(claims::Arguments),
-    Cam(cam::Arguments),
-    Simulate(simulate::Arguments),
-    Diagram(diagram::Arguments),
-    Orbit(orbit::Arguments),
-    Continue(continuation::Arguments),
-    Curve(curve::Arguments),
-    Speeds(speeds::Arguments),
-    Locate(locate::Arguments),
-    Basins(basins::Arguments),
-    Figure(figure::Arguments),
+/// The subcommands: one line each, under the heading that `--help` lists it by. A module has `Arguments` and `run`.
+macro_rules! subcommands {
+    ($($heading:literal: $($name:ident = $module:ident,)+)+) => {
+        #[derive(Subcommand)]
+        enum Command {
+            $($($name($module::Arguments),)+)+
+        }
+
+        impl Command {
+            fn run(&self, session: &mut Session<'_>) -> Result<Exit, CommandError> {
+                match self {
+                    $($(Self::$name(arguments) => $module::run(arguments, session),)+)+
+                }
+            }
+        }
+
+        /// The headings of `--help`, and what is under each.
+        const GROUPS: &[(&str, &[&str])] = &[$(($heading, &[$(stringify!($name)),+])),+];
+    };
+}
+
+subcommands! {
+    "The paper's result, on its model or yours":
+        Verify = verify,
+        Claims = claims,
+        Locate = locate,
+    "What a machine does":
+        Cam = cam,
+        Simulate = simulate,
+        Speeds = speeds,
+        Diagram = diagram,
+    "Periodic orbits and what lies between them":
+        Orbit = orbit,
+        Continue = continuation,
+        Curve = curve,
+        Basins = basins,
+    "Pictures":
+        Figure = figure,
 }
 
 /// Why a command has no result.
@@ -63,6 +99,9 @@ enum Command {
 enum CommandError {
     #[error("{0}")]
     Input(String),
+    /// Something that points into a model file.
+    #[error("{words}")]
+    Model { words: String, at: Box<ModelError> },
     #[error("report: {0}")]
     Report(String),
     #[error("{0}")]
@@ -72,8 +111,17 @@ enum CommandError {
 }
 
 impl CommandError {
-    fn input(error: impl std::fmt::Display) -> Self {
-        Self::Input(error.to_string())
+    /// What is wrong with what a user gave; with its place where a model file has it.
+    fn input(error: impl std::error::Error + 'static) -> Self {
+        let words = error.to_string();
+        let mut cause: Option<&(dyn std::error::Error + 'static)> = Some(&error);
+        while let Some(error) = cause {
+            if let Some(at) = error.downcast_ref::<ModelError>() {
+                return Self::Model { words, at: Box::new(at.clone()) };
+            }
+            cause = error.source();
+        }
+        Self::Input(words)
     }
 
     fn report(error: impl std::fmt::Display) -> Self {
@@ -105,47 +153,33 @@ fn commit(mut files: Vec<Output<'_>>) -> Result<(), CommandError> {
     files.into_iter().try_for_each(Output::commit).map_err(CommandError::file)
 }
 
-/// Prints a page whole.
-fn print(page: Result<(String, Exit), CommandError>, out: &mut dyn Write) -> Result<Exit, CommandError> {
-    let (text, exit) = page?;
-    let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
-    written.map_err(CommandError::standard)?;
-    Ok(exit)
+/// Runs one command line, program name first; neither stream is a terminal.
+pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, err: &mut dyn Write) -> Exit {
+    run_at(Terminal::default(), arguments, out, err)
 }
 
-/// Runs one command line, program name first.
-pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, err: &mut dyn Write) -> Exit {
-    let arguments = match Arguments::try_parse_from(arguments) {
+/// Runs one command line, program name first, with streams that `terminal` describes.
+pub fn run_at(
+    terminal: Terminal,
+    arguments: impl IntoIterator<Item = OsString>,
+    out: &mut dyn Write,
+    err: &mut dyn Write,
+) -> Exit {
+    let words: Vec<OsString> = arguments.into_iter().collect();
+    // What is wrong with a command line is coloured as it says itself.
+    let mut session = Session { out, err, terminal, color: ColorChoice::said(&words) };
+    let matches = help::command(session.width()).try_get_matches_from(words);
+    let arguments = match matches.and_then(|matches| Arguments::from_arg_matches(&matches)) {
         Ok(arguments) => arguments,
-        Err(error) => {
-            let help = !error.use_stderr();
-            let text = error.render().to_string();
-            // A closed pipe leaves nobody to tell.
-            let _ = if help { out.write_all(text.as_bytes()) } else { err.write_all(text.as_bytes()) };
-            return if help { Exit::Agrees } else { Exit::BadInput };
-        }
+        Err(error) => return session.refuse(&error),
     };
-    let result = match &arguments.command {
-        Command::Verify(arguments) => print(verify::run(arguments, err), out),
-        Command::Claims(arguments) => print(claims::run(arguments), out),
-        Command::Cam(arguments) => {
-            let page = cam::run(arguments, out);
-            print(page, out)
-        }
-        Command::Simulate(arguments) => simulate::run(arguments, out),
-        Command::Diagram(arguments) => diagram::run(arguments, out),
-        Command::Orbit(arguments) => print(orbit::run(arguments), out),
-        Command::Speeds(arguments) => print(speeds::run(arguments), out),
-        Command::Curve(arguments) => curve::run(arguments, out, err),
-        Command::Continue(arguments) => continuation::run(arguments, out, err),
-        Command::Locate(arguments) => print(locate::run(arguments), out),
-        Command::Basins(arguments) => basins::run(arguments, out),
-        Command::Figure(arguments) => figure::run(arguments, out),
-    };
-    result.unwrap_or_else(|error| {
+    session.color = arguments.color;
+    arguments.command.run(&mut session).unwrap_or_else(|error| {
         // Whoever closes a pipe early, as `head` does, wants no more, nor a complaint.
-        if !matches!(error, CommandError::Unread) {
-            let _ = writeln!(err, "error: {error}");
+        match &error {
+            CommandError::Unread => {}
+            CommandError::Model { words, at } => session.complain_at(words, at),
+            _ => session.complain(&error.to_string()),
         }
         Exit::BadInput
     })

@@ -1,12 +1,9 @@
-//! `corner-impact orbit MODEL --rpm R`.
-
-use std::path::PathBuf;
+//! `corner-impact orbit [MODEL] --rpm R`.
 
 use super::start::{rpm, state, turn};
-use super::{CommandError, Exit};
+use super::{CommandError, Exit, ModelArgument, Session};
 use crate::cam::Cam;
 use crate::flight::State;
-use crate::model::Model;
 use crate::orbit::search::near;
 use crate::orbit::{Search, search};
 use crate::report::{OrbitDocument, json};
@@ -14,13 +11,15 @@ use crate::simulate::{Machine, angular_velocity};
 
 /// Finds periodic orbits at one speed, stable and unstable, with their multipliers.
 #[derive(clap::Args)]
-#[command(after_help = "Examples: corner-impact orbit models/osorio-2008.toml --rpm 680\n\
-    \x20         corner-impact orbit models/osorio-2008.toml --rpm 745 --revolutions 2 --json\n\n\
+#[command(after_help = "Examples:\n\
+    \x20 corner-impact orbit --rpm 680\n\
+    \x20 corner-impact orbit models/osorio-2008.toml --rpm 745 --revolutions 2 --json\n\
+    \n\
     One-impact orbits are found one and all; those of more impacts by a search from many starts, which may miss some.\n\
     Exit code: 0 done, also where there is none, 2 bad model file or usage.")]
 pub(super) struct Arguments {
-    /// Model file (TOML).
-    model: PathBuf,
+    #[command(flatten)]
+    model: ModelArgument,
     /// Speed of the cam.
     #[arg(long, value_name = "R", value_parser = rpm, allow_hyphen_values = true)]
     rpm: f64,
@@ -38,8 +37,8 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<(String, Exit), CommandError> {
-    let model = Model::read(&arguments.model).map_err(CommandError::input)?;
+pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
+    let model = arguments.model.read(session)?;
     let cam = Cam::new(&model).map_err(CommandError::input)?;
     let machine = Machine::new(cam, &model.follower, angular_velocity(arguments.rpm));
     let orbits = match arguments.guess {
@@ -58,5 +57,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<(String, Exit), CommandError>
     } else {
         document.text().map_err(CommandError::report)?
     };
-    Ok((page, Exit::Agrees))
+    session.print(&page)?;
+    Ok(Exit::Agrees)
 }

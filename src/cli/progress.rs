@@ -1,35 +1,87 @@
 //! A progress bar on standard error, for work that takes longer than a second in front of a person.
 
-use std::time::{Duration, Instant};
+use std::io::IsTerminal;
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::sync::{Mutex, PoisonError};
+use std::thread::JoinHandle;
+use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-/// How far a command has come.
+use crate::progress::Watch;
+
+/// How far a command has come: a bar where the total is known, a spinner where it is not, and what it is at.
 pub(super) struct Progress {
     bar: ProgressBar,
-    started: Instant,
-    shown: bool,
+    /// What the look of the bar was made for: the total.
+    total: Mutex<u64>,
+    /// Ends when this does.
+    shows: Option<(Sender<()>, JoinHandle<()>)>,
 }
 
 impl Progress {
     /// Work done before the bar appears.
     const PATIENCE: Duration = Duration::from_secs(1);
+    /// Between two looks of a bar that nobody moves.
+    const TICK: Duration = Duration::from_millis(120);
+
+    const BAR: &'static str = "{bar:30} {percent:>3} %  {elapsed} of about {duration}  {wide_msg}";
+    const SPINNER: &'static str = "{spinner} {elapsed}  {wide_msg}";
 
     /// None of `total` steps done.
     pub(super) fn new(total: u64) -> Self {
-        let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::hidden());
-        if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent:>3} %  {elapsed} of about {duration}") {
-            bar.set_style(style);
-        }
-        Self { bar, started: Instant::now(), shown: false }
+        Self::begun("", total)
+    }
+
+    /// At something that takes as long as it takes.
+    pub(super) fn spinner(what: &str) -> Self {
+        Self::begun(what, 0)
+    }
+
+    fn begun(what: &str, total: u64) -> Self {
+        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
+        look(&bar, total);
+        bar.set_message(what.to_owned());
+        // Appears by itself: what is watched may have nothing to tell for longer than patience lasts.
+        let shows = std::io::stderr().is_terminal().then(|| {
+            let (ended, end) = channel::<()>();
+            let shown = bar.clone();
+            let thread = std::thread::spawn(move || {
+                if end.recv_timeout(Self::PATIENCE) == Err(RecvTimeoutError::Timeout) {
+                    shown.set_draw_target(ProgressDrawTarget::stderr());
+                    shown.enable_steady_tick(Self::TICK);
+                }
+            });
+            (ended, thread)
+        });
+        Self { bar, total: Mutex::new(total), shows }
     }
 
     /// `done` steps of the total are done.
-    pub(super) fn set(&mut self, done: u64) {
-        if !self.shown && self.started.elapsed() > Self::PATIENCE {
-            // Draws nothing where standard error is no terminal.
-            self.bar.set_draw_target(ProgressDrawTarget::stderr());
-            self.shown = true;
+    pub(super) fn set(&self, done: u64) {
+        self.bar.set_position(done);
+    }
+}
+
+fn look(bar: &ProgressBar, total: u64) {
+    let template = if total == 0 { Progress::SPINNER } else { Progress::BAR };
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style);
+    }
+    if total > 0 {
+        bar.set_length(total);
+    }
+}
+
+impl Watch for Progress {
+    fn at(&self, what: &str, done: u64, total: u64) {
+        let mut known = self.total.lock().unwrap_or_else(PoisonError::into_inner);
+        if *known != total {
+            *known = total;
+            look(&self.bar, total);
+        }
+        if self.bar.message() != what {
+            self.bar.set_message(what.to_owned());
         }
         self.bar.set_position(done);
     }
@@ -37,6 +89,11 @@ impl Progress {
 
 impl Drop for Progress {
     fn drop(&mut self) {
+        if let Some((ended, thread)) = self.shows.take() {
+            drop(ended);
+            // It only waits, and then for nothing any more.
+            let _ = thread.join();
+        }
         self.bar.finish_and_clear();
     }
 }

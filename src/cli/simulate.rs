@@ -1,4 +1,4 @@
-//! `corner-impact simulate MODEL --rpm R`.
+//! `corner-impact simulate [MODEL] --rpm R`.
 
 use std::io::Write;
 use std::ops::ControlFlow;
@@ -6,7 +6,7 @@ use std::path::{Component, Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use super::start::{StartArguments, count, finite, rpm, turn};
-use super::{CommandError, Exit, picture, progress::Progress};
+use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
 use crate::cam::Cam;
 use crate::diagram::{exponent as exponent_with_error, growth};
 use crate::model::Model;
@@ -19,14 +19,14 @@ use crate::simulate::{Event, EventKind, Goal, Machine, Motion, angular_velocity}
 
 /// Runs one motion of a model and says what happened.
 #[derive(clap::Args)]
-#[command(
-    after_help = "Examples: corner-impact simulate models/osorio-2008.toml --rpm 183 --revolutions 10 --events -\n\
-    \x20         corner-impact simulate models/osorio-2008.toml --rpm 183 --trace trace.svg\n\n\
-    Exit code: 0 done, 2 bad model file, usage or file, or a run that cannot go on."
-)]
+#[command(after_help = "Examples:\n\
+    \x20 corner-impact simulate --rpm 183 --revolutions 10 --events -\n\
+    \x20 corner-impact simulate models/osorio-2008.toml --rpm 183 --trace trace.svg\n\
+    \n\
+    Exit code: 0 done, 2 bad model file, usage or file, or a run that cannot go on.")]
 pub(super) struct Arguments {
-    /// Model file (TOML).
-    model: PathBuf,
+    #[command(flatten)]
+    model: ModelArgument,
     /// Speed of the cam.
     #[arg(long, value_name = "R", value_parser = rpm, allow_hyphen_values = true)]
     rpm: f64,
@@ -100,7 +100,7 @@ impl Seen {
     }
 }
 
-pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, CommandError> {
+pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let to_standard = |path: &Option<PathBuf>| path.as_deref().is_some_and(|path| path.as_os_str() == "-");
     let streams = usize::from(to_standard(&arguments.events))
         + usize::from(to_standard(&arguments.strobe_out))
@@ -121,7 +121,7 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Co
             "--drawn says how much --trace and --phase-plane draw: neither is there".into(),
         ));
     }
-    let model = Model::read(&arguments.model).map_err(CommandError::input)?;
+    let model = arguments.model.read(session)?;
     let cam = Cam::new(&model).map_err(CommandError::input)?;
     let machine = Machine::new(cam, &model.follower, angular_velocity(arguments.rpm));
     let start = arguments.start.start();
@@ -133,7 +133,7 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Co
     let [of_trace, of_plane, of_tables] = &mut nobody;
     let trace = arguments.trace.as_deref().map(|path| picture::Canvas::create(path, of_trace)).transpose()?;
     let plane = arguments.phase_plane.as_deref().map(|path| picture::Canvas::create(path, of_plane)).transpose()?;
-    let (run, mut files) = simulate(arguments, &machine, first, drawn, [&mut *out, of_tables])?;
+    let (run, mut files) = simulate(arguments, &machine, first, drawn, [&mut *session.out, of_tables])?;
     let Run { motion, seen, wall, before_drawn } = run;
     let turned = (motion.revolution as f64) + (motion.cam_angle - first.cam_angle) / std::f64::consts::TAU;
     let exponent = if arguments.lyapunov {
@@ -171,7 +171,7 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Exit, Co
     } else {
         String::new()
     };
-    out.write_all(page.as_bytes()).and_then(|()| out.flush()).map_err(CommandError::standard)?;
+    session.print(&page)?;
     Ok(Exit::Agrees)
 }
 
@@ -219,7 +219,7 @@ fn simulate<'a>(
     let most = arguments.impacts.unwrap_or(u64::MAX);
     let revolutions = if arguments.impacts.is_some() { u64::MAX } else { arguments.revolutions };
     let end = first.after(revolutions);
-    let mut progress = Progress::new(arguments.impacts.unwrap_or(revolutions));
+    let progress = Progress::new(arguments.impacts.unwrap_or(revolutions));
 
     let (mut motion, mut before_drawn, mut seen) = (first, first, Seen::default());
     let (mut wall, mut lines, mut last_impact) = (Duration::ZERO, String::new(), 0);

@@ -1,20 +1,20 @@
-//! `corner-impact verify MODEL`.
+//! `corner-impact verify [MODEL]`.
 
-use std::io::Write;
-use std::path::PathBuf;
-
-use super::{CommandError, Exit};
-use crate::model::Model;
+use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
 use crate::report::{Verification, json, text};
-use crate::verify::{External, verify};
+use crate::verify::{External, verify_watched};
 
 /// Finds the corner impact of a model, computes its map by every route, and says whether they agree.
 #[derive(clap::Args)]
-#[command(after_help = "Example: corner-impact verify models/osorio-2008.toml\n\n\
+#[command(after_help = "Examples:\n\
+    \x20 corner-impact verify\n\
+    \x20 corner-impact verify models/damped-light.toml --no-external\n\
+    \x20 corner-impact verify models/osorio-2008.toml --json\n\
+    \n\
     Exit code: 0 everything agrees, 1 something disagrees, 2 bad model file or no corner impact to verify.")]
 pub(super) struct Arguments {
-    /// Model file (TOML).
-    model: PathBuf,
+    #[command(flatten)]
+    model: ModelArgument,
     /// Print one JSON document instead of the page.
     #[arg(long)]
     json: bool,
@@ -23,20 +23,22 @@ pub(super) struct Arguments {
     no_external: bool,
 }
 
-pub(super) fn run(arguments: &Arguments, err: &mut dyn Write) -> Result<(String, Exit), CommandError> {
-    let input = |error: &dyn std::fmt::Display| CommandError::Input(error.to_string());
-    let model = Model::read(&arguments.model).map_err(|error| input(&error))?;
+pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
+    let model = arguments.model.read(session)?;
     let external = if arguments.no_external { External::LeftOut } else { External::Run };
-    let findings = verify(&model, external).map_err(|error| input(&error))?;
+    let progress = Progress::spinner("");
+    let findings = verify_watched(&model, external, &progress).map_err(CommandError::input)?;
+    drop(progress);
     for failure in findings.skipped.iter().filter(|skipped| skipped.failed) {
-        // A closed pipe leaves nobody to tell; the page says the same.
-        let _ = writeln!(err, "error: {} did not run: {}", failure.route, failure.why);
+        // The page says the same.
+        session.complain(&format!("{} did not run: {}", failure.route, failure.why));
     }
     let document = Verification::new(&model, &findings);
     let page = if arguments.json {
-        json::render(&document).map_err(|error| CommandError::Report(error.to_string()))?
+        json::render(&document).map_err(CommandError::report)?
     } else {
-        text::render(&document).map_err(|error| CommandError::Report(error.to_string()))?
+        text::render(&document).map_err(CommandError::report)?
     };
-    Ok((page, if document.agrees { Exit::Agrees } else { Exit::Disagrees }))
+    session.print(&page)?;
+    Ok(if document.agrees { Exit::Agrees } else { Exit::Disagrees })
 }

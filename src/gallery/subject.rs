@@ -129,6 +129,17 @@ impl Subject {
         Ok(Self { model: model.clone(), cam, is_paper: paper, findings, shown: Shown { slow, fast } })
     }
 
+    /// The model as an argument of a command, with the space after it; nothing for the one that is built in.
+    pub fn argument(&self) -> String {
+        let file = self.model.file();
+        let is_plain = |letter: char| letter.is_alphanumeric() || "/._-+".contains(letter);
+        match Model::built_in() {
+            Ok(paper) if paper.file() == file => String::new(),
+            _ if file.chars().all(is_plain) => format!("{file} "),
+            _ => format!("'{}' ", file.replace('\'', r"'\''")),
+        }
+    }
+
     /// What `verify` found, or why it found nothing.
     pub fn found(&self) -> Result<&Findings, String> {
         self.findings.as_ref().map_err(Clone::clone)

@@ -4,14 +4,17 @@
 //! (circles that cannot touch) is found in [`crate::cam`], which reports it through
 //! [`Model::reject`], so that every complaint about a file names file, line, field and value.
 
+mod complaint;
 mod fields;
+mod nearest;
 mod profile;
 mod table;
 
 use std::path::Path;
 
-pub use fields::ModelError;
+pub use complaint::ModelError;
 use fields::{Allowed, Fields};
+pub use nearest::nearest;
 pub use profile::{
     ArcsProfile, CamProfile, HarmonicProfile, MOST_COEFFICIENTS, Motion, MotionSegment, PolynomialSegment,
     ProgramProfile, RectifiedSineProfile,
@@ -72,6 +75,11 @@ impl Model {
         Self::parse(&file, &text)
     }
 
+    /// The paper's model, which needs no file.
+    pub fn built_in() -> Result<Self, ModelError> {
+        Self::parse("the built-in model", OSORIO_2008)
+    }
+
     /// Checks the text of a model file; `file` is the name that complaints carry.
     pub fn parse(file: &str, text: &str) -> Result<Self, ModelError> {
         Self::from_fields(Fields::parse(file, text)?)
@@ -89,6 +97,7 @@ impl Model {
             restitution: fields.number("follower.restitution", Allowed::between(0.0, 1.0))?,
         };
         let cam = profile::read(&mut fields)?;
+        fields.may_hold("study.rpm_min");
         let study = if fields.has("study") {
             let rpm_min = fields.number("study.rpm_min", Allowed::POSITIVE)?;
             let rpm_max = fields.number("study.rpm_max", Allowed::POSITIVE)?;
@@ -115,7 +124,7 @@ impl Model {
 
     /// Whether follower and cam are the paper's, whatever the model is called.
     pub fn is_the_papers(&self) -> Result<bool, ModelError> {
-        let paper = Self::parse("the built-in model", OSORIO_2008)?;
+        let paper = Self::built_in()?;
         Ok(self.follower == paper.follower && self.cam == paper.cam)
     }
 
@@ -133,7 +142,12 @@ impl Model {
 
     /// A complaint about `line` of another file that the model names.
     pub fn reject_line(&self, file: &str, line: usize, allowed: impl Into<String>) -> ModelError {
-        ModelError { line: Some(line), ..ModelError::file(file, allowed.into()) }
+        let complaint = ModelError { line: Some(line), ..ModelError::file(file, allowed.into()) };
+        // The file has been read before, and is not kept; what has gone since is only not shown.
+        match std::fs::read_to_string(file) {
+            Ok(text) => complaint.in_line(&text, None),
+            Err(_) => complaint,
+        }
     }
 
     /// Name of the file that the model came from.

@@ -211,7 +211,7 @@ impl Entry {
             Ok(Drawn { figure, caption }) => (Some(figure), caption, None),
             Err(why) => (None, String::new(), Some(why)),
         };
-        let command = format!("corner-impact figure {} {} --out {}.svg", subject.model.file(), self.id, self.id);
+        let command = format!("corner-impact figure {}{} --out {}.svg", subject.argument(), self.id, self.id);
         Plate { id: self.id, place: self.place, title, caption, command, figure, absent }
     }
 }
