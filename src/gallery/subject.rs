@@ -109,7 +109,8 @@ impl Subject {
             match detachment(model, [0.01 * fastest, fastest]) {
                 Ok(Some(rpm)) => Ok(Shown::slow(rpm)),
                 Ok(None) => Err(format!(
-                    "there is no speed from which on the follower leaves the cam, from {} to {fastest} rpm",
+                    "from {} to {fastest} rpm there is no speed at which the follower begins to leave the cam: it leaves it at each, \
+                     or at none",
                     0.01 * fastest
                 )),
                 Err(error) => Err(error.to_string()),
@@ -124,6 +125,14 @@ impl Subject {
                 });
                 Ok(Shown::fast(&found.at, !rises))
             }
+            Err(_) if model.study.is_none() => {
+                Err("the model file has no [study], which says at which speeds to look for a corner impact".into())
+            }
+            Err(why) => Err(why.clone()),
+        };
+        // One reason for every figure of the corner impact.
+        let findings = match &fast {
+            Ok(_) => findings,
             Err(why) => Err(why.clone()),
         };
         Ok(Self { model: model.clone(), cam, is_paper: paper, findings, shown: Shown { slow, fast } })

@@ -36,7 +36,7 @@ pub fn composition_figure(title: &str, shown: &Composition) -> Figure {
     series.push(named("neighbour", Colour::Vermilion, Data::Line { points: neighbour, stroke: Stroke::Solid }));
     series.push(named("as if no impact", Colour::Vermilion, Data::Line { points: past, stroke: Stroke::Dashed }));
     series.push(named("discontinuity mapping", Colour::Purple, arrow([0.0, minus], [0.0, plus], Stroke::Solid)));
-    let top = shown.orbit.iter().map(|[_, q]| *q).fold(f64::NEG_INFINITY, f64::max);
+    let top = shown.orbit.iter().map(|[_, q]| *q).fold(first.max(last).max(plus), f64::max);
     let bottom = minus.min(shown.cam.iter().map(|[_, c]| *c).fold(f64::INFINITY, f64::min));
     let height = top - bottom;
     let sections = [-0.5, 0.0, 0.5]
