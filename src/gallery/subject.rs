@@ -1,9 +1,12 @@
 //! What the figures are of: a model, its corner impact where it has one, and the speeds that are shown.
 
+use std::sync::OnceLock;
+
 use crate::border_collision::feigin::{Scenario, Speeds};
 use crate::cam::Cam;
 use crate::corner::CornerImpact;
 use crate::model::{Model, ModelError};
+use crate::orbit::branch::Branch;
 use crate::regime::detachment;
 use crate::verify::{External, Findings, verify};
 
@@ -20,6 +23,8 @@ pub struct Subject {
     pub findings: Result<Findings, String>,
     /// The speeds that are shown.
     pub shown: Shown,
+    /// The branches over the fast ones, once they have been followed: more than one figure shows them.
+    pub(super) followed: OnceLock<Result<Vec<Branch>, String>>,
 }
 
 /// The speeds that are shown, rpm, or why there are none.
@@ -135,7 +140,14 @@ impl Subject {
             Ok(_) => findings,
             Err(why) => Err(why.clone()),
         };
-        Ok(Self { model: model.clone(), cam, is_paper: paper, findings, shown: Shown { slow, fast } })
+        Ok(Self {
+            model: model.clone(),
+            cam,
+            is_paper: paper,
+            findings,
+            shown: Shown { slow, fast },
+            followed: OnceLock::new(),
+        })
     }
 
     /// The model as an argument of a command, with the space after it; nothing for the one that is built in.

@@ -3,7 +3,7 @@
 use super::panel;
 use crate::orbit::branch::{Branch, Kind};
 use crate::report::curve::{AtCorner, kind};
-use crate::report::figure::{Axis, Colour, Data, Figure, Marker, Series, Stroke};
+use crate::report::figure::{Axis, Colour, Data, Figure, Mark, Marker, Series, Stroke};
 
 /// Kinds of corner impact, with the way in which they are drawn.
 const KINDS: [(&str, Colour, Stroke); 5] = [
@@ -14,10 +14,10 @@ const KINDS: [(&str, Colour, Stroke); 5] = [
     ("degenerate", Colour::Grey, Stroke::Thin),
 ];
 
-/// Speed up, the parameter across.
+/// Speed up, the parameter across; its name, its range, and its value in the model, which is marked.
 pub fn curve_figure(
     title: &str,
-    (name, range): (&str, [f64; 2]),
+    (name, range, own): (&str, [f64; 2], f64),
     speeds: [f64; 2],
     curves: &[(Branch, AtCorner)],
 ) -> Figure {
@@ -51,7 +51,7 @@ pub fn curve_figure(
     Figure {
         title: title.into(),
         x: Axis::new(name, "").over(range),
-        marks: Vec::new(),
+        marks: vec![Mark { at: own, label: format!("the model, {own}") }],
         panels: vec![panel(Axis::new("speed of the corner impact", "rpm").over(speeds), 0.52, series, Vec::new())],
         note: String::new(),
     }
