@@ -115,7 +115,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         let speeds = curves.iter().flat_map(|found| &found.impacts).map(|impact| impact.rpm);
         let extent = speeds.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], rpm| [low.min(rpm), high.max(rpm)]);
         let shown = if extent[0] < extent[1] { widened(extent, 0.04) } else { arguments.rpm };
-        let figure = curve_figure(&title, (parameter.name(), *range), shown, &curves);
+        let figure = curve_figure(&title, (parameter.name(), *range, value), shown, &curves);
         super::commit(vec![canvas.draw(&figure)?])?;
     }
     Ok(Exit::Agrees)

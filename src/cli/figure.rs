@@ -1,11 +1,11 @@
 //! `corner-impact figure [MODEL] [ID]`.
 
-use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::{CommandError, Exit, Session, picture};
+use super::{CommandError, Exit, ModelArgument, Session, picture};
 use crate::gallery::Subject;
 use crate::model::Model;
 use crate::report::json;
@@ -13,9 +13,11 @@ use crate::report::plates::{Listed, Plate, listed, plate};
 
 /// Lists the figures of the report, or draws one of them.
 #[derive(clap::Args)]
-#[command(after_help = "Examples: corner-impact figure\n\
-    \x20         corner-impact figure fast-impacts --out fast-impacts.svg\n\
-    \x20         corner-impact figure models/damped-heavy.toml composition --out composition.png\n\n\
+#[command(after_help = "Examples:\n\
+    \x20 corner-impact figure\n\
+    \x20 corner-impact figure fast-impacts --out fast-impacts.svg\n\
+    \x20 corner-impact figure models/damped-heavy.toml composition --out composition.png\n\
+    \n\
     Exit code: 0 done, 2 bad model file, usage or file, or a figure that the model has not.")]
 pub(super) struct Arguments {
     /// Model file (TOML) [default: the paper's], then the figure to draw, from the list; a name with a dot or a slash is a file.
@@ -60,11 +62,7 @@ fn named(words: &[String]) -> Result<(Option<&str>, Option<&str>), CommandError>
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let (file, id) = named(&arguments.words)?;
-    let model = match file {
-        Some(file) => Model::read(&PathBuf::from(file)),
-        None => Model::built_in(),
-    };
-    let model = model.map_err(CommandError::input)?;
+    let model = ModelArgument::of(file.map(Path::new)).read(session)?;
     if id.is_none() && arguments.out.is_some() {
         return Err(CommandError::Input("--out is for one figure: name it, from the list without --out".into()));
     }

@@ -1,6 +1,6 @@
 //! The argument that most subcommands take: which model.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::{CommandError, progress::Progress, session::Session};
 use crate::model::Model;
@@ -14,6 +14,11 @@ pub(super) struct ModelArgument {
 }
 
 impl ModelArgument {
+    /// The model in a file, or the one that is built in.
+    pub(super) fn of(file: Option<&Path>) -> Self {
+        Self { file: file.map(Path::to_path_buf) }
+    }
+
     /// Reads the model; says on standard error which one it is where none is named.
     pub(super) fn read(&self, session: &mut Session<'_>) -> Result<Model, CommandError> {
         match &self.file {

@@ -29,8 +29,8 @@ use crate::simulate::Machine;
 const FARTHEST: f64 = 0.27;
 /// Of the window of cam that is shown: where in it the impact is.
 const IMPACT: f64 = 0.6;
-/// Of the orbit's relative velocity at the impact: that of the neighbours.
-const SLOWER: f64 = 0.85;
+/// How much slower than the orbit's its impact is, of the relative velocity, at an impact as far from the corner as can be.
+const SLOWER: f64 = 0.15;
 /// Halvings that are tried until the simulator's revolution has one impact.
 const HALVINGS: u32 = 8;
 /// Samples of a curve.
@@ -128,7 +128,12 @@ impl Subject {
         let mut far = neighbours[0].clone();
         let mut wide = (FARTHEST / IMPACT).min(0.9 * widths[0]);
         while wide > reach {
-            if let Some(found) = neighbour(at, &machine, Side::Minus, wide) {
+            // Going back in time a damped follower is soon far away.
+            let seen = |found: &Neighbour| {
+                let off = (found.sections[0].position - at.state.position).abs();
+                off < 0.5 * (at.state.position - corner.minus.value).abs()
+            };
+            if let Some(found) = neighbour(at, &machine, Side::Minus, wide).filter(seen) {
                 far = found;
                 break;
             }
@@ -172,7 +177,8 @@ fn neighbour(at: &CornerImpact, machine: &Machine, side: Side, reach: f64) -> Op
     let time = turn / omega;
     let lift = machine.cam().lift((corner.angle + turn).rem_euclid(TAU) % TAU);
     let cam_velocity = omega * lift.slope;
-    let velocity = cam_velocity + SLOWER * (at.velocity_before - at.cam_velocity);
+    let share = 1.0 - SLOWER * (turn.abs() / FARTHEST);
+    let velocity = cam_velocity + share * (at.velocity_before - at.cam_velocity);
     let before = State { position: lift.value, velocity };
     let velocity = rebound(machine.restitution(), before.velocity, cam_velocity);
     let after = State { position: lift.value, velocity };

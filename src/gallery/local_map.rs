@@ -15,8 +15,8 @@ use crate::orbit::{Parameter, Search, search};
 const BEYOND: f64 = 3.0;
 /// Steps of a branch over that range.
 const STEP: f64 = 0.01;
-/// The longest period of an orbit of the map that is shown.
-const LONGEST: usize = 4;
+/// The longest period of an orbit of the map that is shown: longer ones come in crowds.
+const LONGEST: usize = 2;
 
 /// A periodic orbit of the local map.
 #[derive(Clone, Debug, PartialEq)]

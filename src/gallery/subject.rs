@@ -1,9 +1,12 @@
 //! What the figures are of: a model, its corner impact where it has one, and the speeds that are shown.
 
+use std::sync::OnceLock;
+
 use crate::border_collision::feigin::{Scenario, Speeds};
 use crate::cam::Cam;
 use crate::corner::CornerImpact;
 use crate::model::{Model, ModelError};
+use crate::orbit::branch::Branch;
 use crate::regime::detachment;
 use crate::verify::{External, Findings, verify};
 
@@ -20,6 +23,8 @@ pub struct Subject {
     pub findings: Result<Findings, String>,
     /// The speeds that are shown.
     pub shown: Shown,
+    /// The branches over the fast ones, once they have been followed: more than one figure shows them.
+    pub(super) followed: OnceLock<Result<Vec<Branch>, String>>,
 }
 
 /// The speeds that are shown, rpm, or why there are none.
@@ -109,7 +114,8 @@ impl Subject {
             match detachment(model, [0.01 * fastest, fastest]) {
                 Ok(Some(rpm)) => Ok(Shown::slow(rpm)),
                 Ok(None) => Err(format!(
-                    "there is no speed from which on the follower leaves the cam, from {} to {fastest} rpm",
+                    "from {} to {fastest} rpm there is no speed at which the follower begins to leave the cam: it leaves it at each, \
+                     or at none",
                     0.01 * fastest
                 )),
                 Err(error) => Err(error.to_string()),
@@ -124,9 +130,24 @@ impl Subject {
                 });
                 Ok(Shown::fast(&found.at, !rises))
             }
+            Err(_) if model.study.is_none() => {
+                Err("the model file has no [study], which says at which speeds to look for a corner impact".into())
+            }
             Err(why) => Err(why.clone()),
         };
-        Ok(Self { model: model.clone(), cam, is_paper: paper, findings, shown: Shown { slow, fast } })
+        // One reason for every figure of the corner impact.
+        let findings = match &fast {
+            Ok(_) => findings,
+            Err(why) => Err(why.clone()),
+        };
+        Ok(Self {
+            model: model.clone(),
+            cam,
+            is_paper: paper,
+            findings,
+            shown: Shown { slow, fast },
+            followed: OnceLock::new(),
+        })
     }
 
     /// What `verify` found, or why it found nothing.

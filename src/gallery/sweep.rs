@@ -15,7 +15,7 @@ struct Effort {
 }
 
 /// A follower that chatters has forgotten its start once it has come to rest.
-const SLOW: Effort = Effort { speeds: 900, transient: 60, record: 8 };
+const SLOW: Effort = Effort { speeds: 800, transient: 40, record: 5 };
 const FAST: Effort = Effort { speeds: 720, transient: 400, record: 150 };
 
 /// A piece of a branch at the section: one crossing of the orbits along it.
@@ -70,8 +70,13 @@ impl Subject {
         Ok(both)
     }
 
-    /// The branches of orbits of one impact in one revolution, and of two in two, over a range of speeds, rpm.
-    pub fn branches(&self, range: [f64; 2]) -> Result<Vec<Branch>, String> {
+    /// The branches of orbits of one impact in one revolution, and of two in two, over the fast speeds that are shown.
+    pub fn branches(&self) -> Result<&[Branch], String> {
+        let found = self.followed.get_or_init(|| self.follow(self.shown.fast.clone()?.range));
+        found.as_deref().map_err(Clone::clone)
+    }
+
+    fn follow(&self, range: [f64; 2]) -> Result<Vec<Branch>, String> {
         let wanted = [Search { revolutions: 1, impacts: Some(1) }, Search { revolutions: 2, impacts: Some(2) }];
         let mut branches = Vec::new();
         for wanted in wanted {

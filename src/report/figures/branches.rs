@@ -21,6 +21,9 @@ pub struct Branches<'a> {
     pub corners: &'a [CornerMark],
 }
 
+/// More points than this of one kind are small, or they would hide the branch.
+const MANY: usize = 40;
+
 /// The kinds of point that are marked, with name and colour.
 const MARKED: [(&str, Colour); 6] = [
     ("corner impact", Colour::Ink),
@@ -72,8 +75,8 @@ pub fn branches_figure(drawn: Branches<'_>) -> Figure {
         let points: Vec<[f64; 2]> =
             branches.iter().flat_map(|branch| &branch.points).filter_map(|point| place(point, which)).collect();
         if !points.is_empty() {
-            let data = Data::Points { points, marker: Marker::Ring };
-            series.push(Series { label: label.into(), colour, data });
+            let marker = if points.len() > MANY { Marker::SmallRing } else { Marker::Ring };
+            series.push(Series { label: label.into(), colour, data: Data::Points { points, marker } });
         }
     }
     let marks = corners.iter().map(CornerMark::mark).collect();

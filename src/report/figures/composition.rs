@@ -36,7 +36,7 @@ pub fn composition_figure(title: &str, shown: &Composition) -> Figure {
     series.push(named("neighbour", Colour::Vermilion, Data::Line { points: neighbour, stroke: Stroke::Solid }));
     series.push(named("as if no impact", Colour::Vermilion, Data::Line { points: past, stroke: Stroke::Dashed }));
     series.push(named("discontinuity mapping", Colour::Purple, arrow([0.0, minus], [0.0, plus], Stroke::Solid)));
-    let top = shown.orbit.iter().map(|[_, q]| *q).fold(f64::NEG_INFINITY, f64::max);
+    let top = shown.orbit.iter().map(|[_, q]| *q).fold(first.max(last).max(plus), f64::max);
     let bottom = minus.min(shown.cam.iter().map(|[_, c]| *c).fold(f64::INFINITY, f64::min));
     let height = top - bottom;
     let sections = [-0.5, 0.0, 0.5]
@@ -64,7 +64,7 @@ pub fn composition_figure(title: &str, shown: &Composition) -> Figure {
             word([0.0, plus], "x_d^+", Beside::Right),
             word(quarter(&near.coming[0]), "P_1", Beside::Left),
             word(quarter(&near.going[0]), "P_2", Beside::Right),
-            word([0.0, 0.5 * (minus + plus)], "P_D", Beside::Left),
+            word([0.0, 0.5 * (minus + plus)], "P_D", Beside::Right),
         ]),
     ));
     Figure {
@@ -117,7 +117,13 @@ fn mapping(shown: &Composition, near: &Neighbour) -> Panel {
     };
     let sides = |points| Data::Line { points, stroke: Stroke::Dotted };
     let foot = range[0];
-    let end = |line: &[[f64; 2]]| line.last().map_or([f64::NAN; 2], |[time, c]| [time * MILLI, *c]);
+    // The law that the impact obeys, where it is continued past the corner.
+    let far = |end: Option<&[f64; 2]>| end.map_or([f64::NAN; 2], |[time, c]| [time * MILLI, *c]);
+    let law = if before {
+        word(far(shown.before[1].last()), "law before the corner", Beside::AboveLeft)
+    } else {
+        word(far(shown.after[1].first()), "law after the corner", Beside::BelowRight)
+    };
     let time = vec![hit, [hit[0], foot]];
     let (beside_minus, beside_plus) =
         if before { (Beside::Right, Beside::Right) } else { (Beside::Left, Beside::Left) };
@@ -140,12 +146,11 @@ fn mapping(shown: &Composition, near: &Neighbour) -> Panel {
             Colour::Ink,
             Data::Words(vec![
                 word([0.0, range[1] - 0.5 * room], "Π_D", if before { Beside::Left } else { Beside::Right }),
-                word([0.0, 0.5 * (minus + plus)], "P_D", if before { Beside::Right } else { Beside::Left }),
+                word([0.0, minus + 0.25 * (plus - minus)], "P_D", if before { Beside::Right } else { Beside::Left }),
                 word([0.0, minus], "x_d^−", beside_minus),
                 word([0.0, plus], "x_d^+", beside_plus),
-                word(hit, "x^−, x^+", if before { Beside::AboveLeft } else { Beside::AboveRight }),
-                word(end(&shown.after[1]), "law after the corner", Beside::BelowRight),
-                word(end(&shown.before[1]), "law before the corner", Beside::AboveLeft),
+                word(hit, "x^−, x^+", if before { Beside::BelowLeft } else { Beside::BelowRight }),
+                law,
                 word([hit[0], foot + 0.5 * room], "−t_i", if before { Beside::Left } else { Beside::Right }),
             ]),
         ),

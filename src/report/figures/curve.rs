@@ -3,7 +3,7 @@
 use super::panel;
 use crate::border_collision::ImpactCurve;
 use crate::orbit::branch::Kind;
-use crate::report::figure::{Axis, Colour, Data, Figure, Marker, Series, Stroke};
+use crate::report::figure::{Axis, Colour, Data, Figure, Mark, Marker, Series, Stroke};
 
 /// Kinds of corner impact, with the way in which they are drawn.
 const KINDS: [(&str, Colour, Stroke); 5] = [
@@ -14,8 +14,13 @@ const KINDS: [(&str, Colour, Stroke); 5] = [
     ("degenerate", Colour::Grey, Stroke::Thin),
 ];
 
-/// Speed up, the parameter across.
-pub fn curve_figure(title: &str, (name, range): (&str, [f64; 2]), speeds: [f64; 2], curves: &[ImpactCurve]) -> Figure {
+/// Speed up, the parameter across; its name, its range, and its value in the model, which is marked.
+pub fn curve_figure(
+    title: &str,
+    (name, range, own): (&str, [f64; 2], f64),
+    speeds: [f64; 2],
+    curves: &[ImpactCurve],
+) -> Figure {
     let mut series = Vec::new();
     for (label, colour, stroke) in KINDS {
         let mut points = Vec::new();
@@ -41,7 +46,7 @@ pub fn curve_figure(title: &str, (name, range): (&str, [f64; 2]), speeds: [f64; 
     Figure {
         title: title.into(),
         x: Axis::new(name, "").over(range),
-        marks: Vec::new(),
+        marks: vec![Mark { at: own, label: format!("the model, {own}") }],
         panels: vec![panel(Axis::new("speed of the corner impact", "rpm").over(speeds), 0.52, series, Vec::new())],
         note: String::new(),
     }

@@ -4,13 +4,18 @@ use super::{panel, zero};
 use crate::gallery::NextToCorner;
 use crate::report::figure::{Axis, Beside, Colour, Data, Figure, Mark, Series, Stroke, Word};
 
-const MICRO: f64 = 1e6;
+/// Changes of the period in a unit that makes them some tens or hundreds.
+fn unit(reach: f64) -> (&'static str, f64) {
+    if reach < 1e-3 { ("µs", 1e6) } else { ("ms", 1e3) }
+}
+
 /// How much of the height of a panel the lower of two rays with slopes of another size takes, at least.
 const SEEN: f64 = 0.15;
 
 /// Positions less that of x* against the change of the period; a second panel shows the flatter rays enlarged.
 pub fn local_map_figure(title: &str, shown: &NextToCorner) -> Figure {
-    let reach = shown.reach * MICRO;
+    let (unit, per_second) = unit(shown.reach);
+    let reach = shown.reach * per_second;
     let slopes: Vec<f64> =
         shown.rays.iter().flat_map(|ray| &ray.positions).map(|slope| slope.abs() * shown.reach).collect();
     let steepest = slopes.iter().copied().fold(0.0, f64::max);
@@ -31,7 +36,7 @@ pub fn local_map_figure(title: &str, shown: &NextToCorner) -> Figure {
     let rpm = |change: f64| 60.0 / (shown.period + change);
     Figure {
         title: title.into(),
-        x: Axis::new("change of the period δT; faster to the left", "µs").over([-reach, reach]),
+        x: Axis::new("change of the period δT; faster to the left", unit).over([-reach, reach]),
         marks: vec![Mark { at: 0.0, label: format!("{:.4} rpm", rpm(0.0)) }],
         panels,
         note: format!(
@@ -44,11 +49,12 @@ pub fn local_map_figure(title: &str, shown: &NextToCorner) -> Figure {
 
 fn drawn(shown: &NextToCorner, range: [f64; 2], name: &str, with_names: bool) -> crate::report::figure::Panel {
     let label = |name: &str| if with_names { name.to_owned() } else { String::new() };
+    let (_, per_second) = unit(shown.reach);
     let mut series = Vec::new();
     let machine = shown
         .machine
         .iter()
-        .flat_map(|line| line.points.iter().map(|[change, q]| [change * MICRO, *q]).chain([[f64::NAN; 2]]));
+        .flat_map(|line| line.points.iter().map(|[change, q]| [change * per_second, *q]).chain([[f64::NAN; 2]]));
     series.push(Series {
         label: label("the machine's own orbits"),
         colour: Colour::Grey,
@@ -61,7 +67,7 @@ fn drawn(shown: &NextToCorner, range: [f64; 2], name: &str, with_names: bool) ->
         let rays = shown.rays.iter().filter(|ray| ray.stable == stable);
         let points: Vec<[f64; 2]> = rays
             .flat_map(|ray| {
-                ray.positions.iter().map(move |position| [ray.sign * shown.reach * MICRO, position * shown.reach])
+                ray.positions.iter().map(move |position| [ray.sign * shown.reach * per_second, position * shown.reach])
             })
             .flat_map(|end| [[0.0, 0.0], end, [f64::NAN; 2]])
             .collect();
@@ -72,14 +78,15 @@ fn drawn(shown: &NextToCorner, range: [f64; 2], name: &str, with_names: bool) ->
     let gone = [-1.0, 1.0].into_iter().filter(|sign| with_names && !shown.rays.iter().any(|ray| ray.sign == *sign));
     let words: Vec<Word> = gone
         .map(|sign| {
-            let at = [0.5 * sign * shown.reach * MICRO, 0.5 * (range[0] + range[1])];
+            let at = [0.5 * sign * shown.reach * per_second, 0.5 * (range[0] + range[1])];
             Word { at, text: "no orbit: motions leave".into(), beside: Beside::Above }
         })
         .collect();
     let fixed = shown.rays.iter().filter(|ray| ray.positions.len() == 1).filter_map(|ray| {
-        let name = if ray.word == "L" { "x^− before the corner" } else { "x^+ after the corner" };
-        let along = 0.7 * shown.reach;
-        let at = [ray.sign * along * MICRO, ray.positions.first()? * along];
+        let (name, along) =
+            if ray.word == "L" { ("x^− before the corner", 0.5) } else { ("x^+ after the corner", 0.85) };
+        let along = along * shown.reach;
+        let at = [ray.sign * along * per_second, ray.positions.first()? * along];
         let beside = if ray.sign < 0.0 { Beside::BelowRight } else { Beside::BelowLeft };
         (range[0] < at[1] && at[1] < range[1]).then(|| Word { at, text: name.into(), beside })
     });

@@ -50,11 +50,14 @@ pub fn outline_figure(title: &str, cam: &Cam, outline: &Outline) -> Figure {
         let (_, at) = outline.corners.iter().find(|(angle, _)| *angle == mark.angle_rad)?;
         let steep = at[1].abs() > 2.0 * at[0].abs();
         // A little up where it is beside the axis: the line of centres may run there.
-        let beside = match (steep, at[0] > 0.0, at[1] > 0.0) {
-            (true, _, true) => Beside::Above,
-            (true, _, false) => Beside::Below,
-            (false, true, _) => Beside::AboveRight,
-            (false, false, _) => Beside::AboveLeft,
+        let low = at[1] < -0.1 * farthest;
+        let beside = match (steep, at[0] > 0.0, low) {
+            (true, _, false) => Beside::Above,
+            (true, _, true) => Beside::Below,
+            (false, true, false) => Beside::AboveRight,
+            (false, true, true) => Beside::BelowRight,
+            (false, false, false) => Beside::AboveLeft,
+            (false, false, true) => Beside::BelowLeft,
         };
         Some(Word { at: *at, text: mark.label(), beside })
     });

@@ -107,12 +107,11 @@ pub(super) fn fast_impacts(subject: &Subject, title: &str) -> Result {
     let range = subject.shown.fast.clone()?.range;
     let mut runs = Density::new(range, [0.0, 360.0]);
     subject.fast_runs(range, false)?.iter().for_each(|[rpm, angle]| runs.push(*rpm, angle.to_degrees()));
-    let branches = subject.branches(range)?;
+    let branches = subject.branches()?;
     let corners = corner_marks(&subject.cam);
     let shown = shown_impacts(&runs);
     let parameter = ("rpm", range);
-    let mut figure =
-        branches_figure(Branches { title, parameter, branches: &branches, settled: Some(runs), corners: &corners });
+    let mut figure = branches_figure(Branches { title, parameter, branches, settled: Some(runs), corners: &corners });
     if let Some(panel) = figure.panels.first_mut() {
         panel.y.range = shown.or(panel.y.range);
     }
@@ -128,7 +127,7 @@ pub(super) fn fast_section(subject: &Subject, title: &str) -> Result {
     let range = subject.shown.fast.clone()?.range;
     let mut runs = Cloud::new(range);
     subject.fast_runs(range, true)?.iter().for_each(|[rpm, position]| runs.push(*rpm, *position));
-    let crossings = subject.crossings(&subject.branches(range)?)?;
+    let crossings = subject.crossings(subject.branches()?)?;
     let at = &subject.found()?.at;
     let degrees = at.section_angle().to_degrees();
     drawn(
@@ -168,7 +167,7 @@ fn marked(mut figure: Figure, name: &str) -> Figure {
             _ => None,
         });
         let hits = hits.unwrap_or_default();
-        let word = |at: &[f64; 2]| Word { at: *at, text: format!("impact at {name}"), beside: Beside::Above };
+        let word = |at: &[f64; 2]| Word { at: *at, text: format!("impact at {name}"), beside: Beside::Right };
         let words: Vec<Word> = hits.iter().map(word).collect();
         for data in [Data::Points { points: hits, marker: Marker::Ring }, Data::Words(words)] {
             panel.series.push(Series { label: String::new(), colour: Colour::Ink, data });
