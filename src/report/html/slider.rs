@@ -42,11 +42,13 @@ fn player(through: &ThroughEntry, data: &str) -> Markup {
                     button type="button" id="to-corner" { "Corner impact" }
                 }
             }
-            p.summary role="status" aria-live="polite" id="summary" {}
-            ul.key {
-                li.stable { "stable orbit" } li.unstable { "unstable orbit" } li.run { "run from faster speeds" }
-            }
             div.panels {
+                div.panel {
+                    p.summary role="status" aria-live="polite" id="summary" {}
+                    ul.key {
+                        li.stable { "stable orbit" } li.unstable { "unstable orbit" } li.run { "run that came from faster speeds" } li.rising { "run that came from slower speeds" }
+                    }
+                }
                 (panel("revolution", "One revolution.", html! { "Follower and cam against the cam angle; a ring is an impact." }))
                 (panel("shape", "The cam", html! { "turned to the impact, with the follower on it." }))
                 (panel("near", "The impact at the corner.", html! { "Acceleration of the cam; a line is where an orbit hits." }))
