@@ -137,7 +137,7 @@ pub enum PublishedError {
     #[error("the paper prints numbers for another follower or cam")]
     OtherModel,
     /// The built-in model does not read.
-    #[error(transparent)]
+    #[error("{0}")]
     Model(#[from] ModelError),
     /// The built-in digits do not read.
     #[error("golden/published: {0}")]

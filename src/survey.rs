@@ -77,7 +77,7 @@ pub enum LocalMap {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SurveyError {
     /// The cam.
-    #[error(transparent)]
+    #[error("{0}")]
     Model(#[from] ModelError),
     /// The range.
     #[error(transparent)]

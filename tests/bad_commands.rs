@@ -188,7 +188,6 @@ fn models_and_starts_that_cannot_be() {
         place.refuses(&format!("{command} none.toml {rest}"), &["none.toml", "cannot be read"]);
         place.refuses(&format!("{command} . {rest}"), &["cannot be read"]);
         place.refuses(&format!("{command} broken.toml {rest}"), &["broken.toml:2: follower.mass = -1.0", "above 0"]);
-        place.refuses(&format!("{command} {rest}"), &["<MODEL>", "not provided"]);
         place.refuses(&format!("{command} MODEL MODEL {rest}"), &["unexpected argument"]);
         place.refuses(&format!("{command} MODEL {rest} --no-such"), &["--no-such"]);
     }

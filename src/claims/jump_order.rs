@@ -71,7 +71,7 @@ pub static EXAMPLES: [Example; 11] = [
 #[derive(Debug, thiserror::Error)]
 pub enum ExampleError {
     /// Its model does not read.
-    #[error(transparent)]
+    #[error("{0}")]
     Model(#[from] ModelError),
     /// Its cam has no such corner.
     #[error("{name}: the cam has {count} corners, none with index {index}")]

@@ -4,7 +4,7 @@ use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
 use crate::model::Study;
 use crate::orbit::Search;
 use crate::report::{LocateDocument, json};
-use crate::survey::survey;
+use crate::survey::{SurveyError, survey};
 
 /// Lists the speeds at which a periodic orbit has an impact on a corner of the cam, and what happens there.
 #[derive(clap::Args)]
@@ -42,14 +42,16 @@ fn range(text: &str) -> Result<Study, String> {
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let model = arguments.model.read(session)?;
     let progress = Progress::spinner("looking for orbits with an impact on a corner");
-    let found = survey(&model, arguments.rpm, arguments.revolutions)
-        .map_err(|error| CommandError::Input(format!("{}: {error}", model.file())))?;
+    let found = survey(&model, arguments.rpm, arguments.revolutions).map_err(|error| match error {
+        SurveyError::Range(error) => CommandError::Input(format!("{}: {error}", model.file())),
+        error => CommandError::input(error),
+    })?;
     drop(progress);
     let document = LocateDocument::new(&model, &found);
     let page = if arguments.json {
         json::render(&document).map_err(CommandError::report)?
     } else {
-        document.text().map_err(CommandError::report)?
+        session.shown(&document.page(session.width()).map_err(CommandError::report)?)
     };
     session.print(&page)?;
     Ok(if document.agrees { Exit::Agrees } else { Exit::Disagrees })

@@ -3,13 +3,17 @@
 mod basins;
 mod cam;
 mod claims;
+mod complaint;
+mod completions;
 mod continuation;
 mod curve;
 mod diagram;
 mod figure;
 mod help;
 mod locate;
+mod man;
 mod model;
+mod new;
 mod orbit;
 mod picture;
 mod progress;
@@ -29,6 +33,7 @@ use model::ModelArgument;
 pub use session::Terminal;
 use session::{ColorChoice, Session};
 
+use crate::model::ModelError;
 use crate::report::file::{FileError, Output};
 
 /// How a command ended; the process's exit code.
@@ -91,6 +96,10 @@ subcommands! {
         Continue = continuation,
         Curve = curve,
         Basins = basins,
+    "Getting started, and the shell":
+        New = new,
+        Completions = completions,
+        Man = man,
 }
 
 /// Why a command has no result.
@@ -98,6 +107,9 @@ subcommands! {
 enum CommandError {
     #[error("{0}")]
     Input(String),
+    /// Something that points into a model file.
+    #[error("{words}")]
+    Model { words: String, at: Box<ModelError> },
     #[error("report: {0}")]
     Report(String),
     #[error("{0}")]
@@ -107,8 +119,17 @@ enum CommandError {
 }
 
 impl CommandError {
-    fn input(error: impl std::fmt::Display) -> Self {
-        Self::Input(error.to_string())
+    /// What is wrong with what a user gave; with its place where a model file has it.
+    fn input(error: impl std::error::Error + 'static) -> Self {
+        let words = error.to_string();
+        let mut cause: Option<&(dyn std::error::Error + 'static)> = Some(&error);
+        while let Some(error) = cause {
+            if let Some(at) = error.downcast_ref::<ModelError>() {
+                return Self::Model { words, at: Box::new(at.clone()) };
+            }
+            cause = error.source();
+        }
+        Self::Input(words)
     }
 
     fn report(error: impl std::fmt::Display) -> Self {
@@ -163,8 +184,10 @@ pub fn run_at(
     session.color = arguments.color;
     arguments.command.run(&mut session).unwrap_or_else(|error| {
         // Whoever closes a pipe early, as `head` does, wants no more, nor a complaint.
-        if !matches!(error, CommandError::Unread) {
-            session.complain(&error.to_string());
+        match &error {
+            CommandError::Unread => {}
+            CommandError::Model { words, at } => session.complain_at(words, at),
+            _ => session.complain(&error.to_string()),
         }
         Exit::BadInput
     })

@@ -3,17 +3,19 @@
 use std::ffi::OsString;
 use std::io::{IsTerminal, Write};
 
-use super::{CommandError, Exit};
+use super::{CommandError, Exit, complaint};
+use crate::model::ModelError;
+use crate::report::Page;
 
 /// Whether to colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub(super) enum ColorChoice {
-    /// On a terminal, unless NO_COLOR is set; anywhere if CLICOLOR_FORCE is.
+    // On a terminal, unless NO_COLOR is set; anywhere if CLICOLOR_FORCE is.
     #[default]
     Auto,
-    /// On pipes and in files that a shell opened, too.
+    // On pipes and in files that a shell opened, too.
     Always,
-    /// Nowhere.
+    // Nowhere.
     Never,
 }
 
@@ -50,8 +52,6 @@ pub struct Terminal {
 }
 
 impl Terminal {
-    /// Columns of a page where nothing says how many there are.
-    pub const COLUMNS: usize = 100;
     /// The fewest that a page is laid out for, and the most that can be read with ease.
     const ALLOWED: [usize; 2] = [40, 120];
 
@@ -75,7 +75,7 @@ impl Terminal {
     /// Columns of a page.
     pub(super) fn width(&self) -> usize {
         let [fewest, most] = Self::ALLOWED;
-        self.columns.unwrap_or(Self::COLUMNS).clamp(fewest, most)
+        self.columns.unwrap_or(crate::report::page::WIDTH).clamp(fewest, most)
     }
 
     fn coloured(&self, choice: ColorChoice, is_terminal: bool) -> bool {
@@ -125,7 +125,14 @@ impl Session<'_> {
     /// Complains on standard error, in the words that every complaint begins with.
     pub(super) fn complain(&mut self, words: &str) {
         // A closed pipe leaves nobody to tell.
-        let _ = writeln!(self.err, "error: {words}");
+        let _ = writeln!(self.err, "{} {words}", complaint::word(self.colours_err()));
+    }
+
+    /// The same, with the line of the model file that it is about.
+    pub(super) fn complain_at(&mut self, words: &str, at: &ModelError) {
+        self.complain(words);
+        let shown = complaint::shown(words, at, self.colours_err(), self.terminal.err, self.width());
+        let _ = self.err.write_all(shown.as_bytes());
     }
 
     /// Says what is wrong with a command line, or what help was asked for.
@@ -142,6 +149,11 @@ impl Session<'_> {
             let _ = self.out.write_all(text.as_bytes());
             Exit::Agrees
         }
+    }
+
+    /// A page as it is printed.
+    pub(super) fn shown(&self, page: &Page) -> String {
+        if self.colours_out() { page.coloured() } else { page.plain().to_owned() }
     }
 
     /// Prints a result whole.

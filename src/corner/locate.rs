@@ -22,11 +22,11 @@ pub struct Rejected {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LocateError {
     /// The model says nothing about where to look, or something impossible.
-    #[error(transparent)]
+    #[error("{0}")]
     Model(#[from] ModelError),
     /// Nothing in range.
     #[error("{}", .0)]
-    NotFound(Box<NotFound>),
+    NotFound(#[source] Box<NotFound>),
     /// The only candidate touches the corner without relative velocity.
     #[error(
         "{file}: grazing impact at {speed_rpm:.6} rpm: the follower touches the corner at {:.6} deg with v = c' = {velocity} m/s; \
@@ -51,6 +51,12 @@ pub struct NotFound {
     study: ModelError,
     corners: Vec<f64>,
     rejected: Vec<Rejected>,
+}
+
+impl std::error::Error for NotFound {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        Some(&self.study)
+    }
 }
 
 impl fmt::Display for NotFound {

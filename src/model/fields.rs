@@ -3,44 +3,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::ops::Range;
+use std::sync::Arc;
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// A complaint about a model file: where, what was found, what would be allowed.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub struct ModelError {
-    /// The file as the user named it.
-    pub file: String,
-    /// Line in the file, from 1; of the table where a field is missing.
-    pub line: Option<usize>,
-    /// Dotted path of the field.
-    pub field: Option<String>,
-    /// The value as written.
-    pub value: Option<String>,
-    /// What is wrong and what is allowed.
-    pub allowed: String,
-}
-
-impl ModelError {
-    pub(super) fn file(file: &str, allowed: String) -> Self {
-        Self { file: file.into(), line: None, field: None, value: None, allowed }
-    }
-}
-
-impl fmt::Display for ModelError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.file)?;
-        if let Some(line) = self.line {
-            write!(f, ":{line}")?;
-        }
-        match (&self.field, &self.value) {
-            (Some(field), Some(value)) => write!(f, ": {field} = {value}: {}", self.allowed),
-            (Some(field), None) => write!(f, ": {field} {}", self.allowed),
-            _ => write!(f, ": {}", self.allowed),
-        }
-    }
-}
+use super::{ModelError, nearest};
 
 /// A range of finite numbers.
 #[derive(Clone, Copy)]
@@ -96,6 +64,10 @@ enum Value {
 #[derive(Clone, Debug)]
 struct Field {
     line: usize,
+    /// Of its name in the text; of an element of an array, of its value.
+    key: Range<usize>,
+    /// Of its value in the text.
+    span: Range<usize>,
     written: String,
     value: Value,
 }
@@ -116,10 +88,49 @@ impl Field {
     }
 }
 
+/// Every name of a field or a table: none of them is a slip for another.
+const NAMES: [&str; 33] = [
+    "name",
+    "source",
+    "follower",
+    "cam",
+    "study",
+    "mass",
+    "damping",
+    "stiffness",
+    "gravity",
+    "rest_position",
+    "restitution",
+    "law",
+    "base_radius",
+    "flank_radius",
+    "nose_radius",
+    "flank_start_deg",
+    "nose_end_deg",
+    "offset",
+    "amplitude",
+    "amplitudes",
+    "phases_deg",
+    "base",
+    "segment",
+    "motion",
+    "span_deg",
+    "rise",
+    "start_deg",
+    "coefficients",
+    "file",
+    "spline",
+    "rpm_min",
+    "rpm_max",
+    "lift",
+];
+
 /// The fields of a model file by dotted path, and which of them have been asked for.
 #[derive(Clone, Debug)]
 pub(super) struct Fields {
     file: String,
+    /// As long as the fields are what it says.
+    text: Option<Arc<str>>,
     fields: BTreeMap<String, Field>,
     known: BTreeSet<String>,
 }
@@ -129,13 +140,13 @@ impl Fields {
         let line_ends: Vec<usize> = text.match_indices('\n').map(|(at, _)| at).collect();
         let line_of = |offset: usize| 1 + line_ends.partition_point(|end| *end < offset);
         let root = DeTable::parse(text).map_err(|error| ModelError {
-            file: file.into(),
             line: error.span().map(|span| line_of(span.start)),
-            field: None,
-            value: None,
-            allowed: format!("not valid TOML: {}", error.message()),
+            // Some of them are two lines long.
+            ..ModelError::file(file, format!("not valid TOML: {}", error.message().replace('\n', ", ")))
+                .at(Some(text.into()), error.span())
         })?;
-        let mut fields = Self { file: file.into(), fields: BTreeMap::new(), known: BTreeSet::new() };
+        let (fields, known) = (BTreeMap::new(), BTreeSet::new());
+        let mut fields = Self { file: file.into(), text: Some(text.into()), fields, known };
         let place = |span: Range<usize>| (line_of(span.start), text.get(span).unwrap_or_default().to_owned());
         fields.add_table("", root.get_ref(), &place);
         Ok(fields)
@@ -146,14 +157,14 @@ impl Fields {
             let path = format!("{prefix}{}", key.get_ref());
             // A table's own span is not its header's; the key's is.
             let (line, _) = place(key.span());
-            self.add(&path, line, value, place);
+            self.add(&path, (line, key.span()), value, place);
         }
     }
 
     fn add(
         &mut self,
         path: &str,
-        line: usize,
+        (line, key): (usize, Range<usize>),
         spanned: &Spanned<DeValue<'_>>,
         place: &dyn Fn(Range<usize>) -> (usize, String),
     ) {
@@ -166,7 +177,7 @@ impl Fields {
             DeValue::Array(items) => {
                 for (index, item) in items.iter().enumerate() {
                     let (line, _) = place(item.span());
-                    self.add(&format!("{path}[{index}]"), line, item, place);
+                    self.add(&format!("{path}[{index}]"), (line, item.span()), item, place);
                 }
                 Value::Array(items.len())
             }
@@ -176,7 +187,7 @@ impl Fields {
             DeValue::Float(float) => float.as_str().parse().map_or(Value::Other, Value::Number),
             _ => Value::Other,
         };
-        self.fields.insert(path.into(), Field { line, written, value });
+        self.fields.insert(path.into(), Field { line, key, span: spanned.span(), written, value });
     }
 
     pub(super) fn file(&self) -> &str {
@@ -199,6 +210,7 @@ impl Fields {
             Some(field @ Field { value: Value::Number(_), .. }) => {
                 field.value = Value::Number(number);
                 field.written = number.to_string();
+                fields.text = None;
                 Ok(fields)
             }
             _ => Err(self.reject(path, "is not a number of this model")),
@@ -267,13 +279,46 @@ impl Fields {
         self.fields.get(path).cloned().ok_or_else(|| {
             // A mistyped field is missing under its own name: show what stands there.
             let table = path.rsplit_once('.').map_or("", |(table, _)| table);
-            let inside = |name: &&String| name.rsplit_once('.').map_or("", |(table, _)| table) == table;
+            let inside =
+                |name: &&String| name.rsplit_once('.').map_or("", |(table, _)| table) == table && !name.ends_with(']');
             let present: Vec<&str> =
                 self.fields.keys().filter(inside).map(|name| name.rsplit('.').next().unwrap_or(name)).collect();
             let found =
                 if present.is_empty() { String::new() } else { format!("; found there: {}", present.join(", ")) };
-            self.reject(path, format!("is missing{found}"))
+            self.mistyped(path).unwrap_or_else(|| self.reject(path, "is missing")).found(&found)
         })
+    }
+
+    /// The complaint about a missing field where something stands that may be meant for it, or for its table.
+    fn mistyped(&self, path: &str) -> Option<ModelError> {
+        let (table, name) = path.rsplit_once('.').unwrap_or(("", path));
+        let in_table = |at: &str, name: &str| if at.is_empty() { name.to_owned() } else { format!("{at}.{name}") };
+        let (at, meant, shown) = if table.is_empty() || self.has(table) {
+            (table, name, name.to_owned())
+        } else {
+            let (at, meant) = table.rsplit_once('.').unwrap_or(("", table));
+            (at, meant, format!("[{meant}]"))
+        };
+        // What is a name of the format stands for itself.
+        let inside = |path: &str| path.strip_prefix(at).map(|rest| rest.trim_start_matches('.').to_owned());
+        let stray: Vec<String> = self.fields.keys().filter_map(|path| inside(path)).collect();
+        let stray = stray.iter().map(String::as_str).filter(|name| !name.contains(['.', '[']) && !NAMES.contains(name));
+        let written = stray.filter(|word| nearest(word, [meant]).is_some()).min()?;
+        let field = self.fields.get(&in_table(at, written))?;
+        let is_table = shown.starts_with('[');
+        let written = if is_table { format!("[{written}]") } else { written.to_owned() };
+        Some(ModelError {
+            line: Some(field.line),
+            ..self
+                .reject(path, "is missing")
+                .meaning(Some(format!("did you mean {shown} where line {} says {written}?", field.line)))
+                .at(self.text.clone(), Some(field.key.clone()))
+        })
+    }
+
+    /// Says that `path` is a field of the format, whether it is there or not.
+    pub(super) fn may_hold(&mut self, path: &str) {
+        self.known.insert(path.into());
     }
 
     /// The complaint about a field, present or not.
@@ -281,12 +326,19 @@ impl Fields {
         let field = self.fields.get(path);
         let table = path.rsplit_once('.').and_then(|(table, _)| self.fields.get(table));
         ModelError {
-            file: self.file.clone(),
             line: field.or(table).map(|field| field.line),
             field: Some(path.into()),
             value: field.and_then(Field::shown),
-            allowed: allowed.into(),
+            ..ModelError::file(&self.file, allowed.into())
+                .at(self.text.clone(), field.map(|field| field.span.clone()).or(table.map(|table| table.key.clone())))
         }
+    }
+
+    /// The complaint about a text that is none of `names`.
+    pub(super) fn reject_choice(&self, path: &str, text: &str, names: &[&str]) -> ModelError {
+        let known: Vec<_> = names.iter().map(|name| format!("\"{name}\"")).collect();
+        let meant = nearest(text, names.iter().copied()).map(|name| format!("did you mean \"{name}\"?"));
+        self.reject(path, format!("must be one of: {}", known.join(", "))).meaning(meant)
     }
 
     /// Complains about the first field in the file that nobody asked for.
@@ -309,13 +361,10 @@ impl Fields {
             siblings.chain(tables).map(|known| known.rsplit('.').next().unwrap_or(known)).collect();
         let place = if table.is_empty() { "at the top of the file".to_owned() } else { format!("in [{table}]") };
         let words = format!("unknown field; allowed {place}: {}", allowed.join(", "));
-        let value = field.shown();
-        Err(ModelError {
-            file: self.file.clone(),
-            line: Some(field.line),
-            field: Some(path.clone()),
-            value,
-            allowed: words,
-        })
+        let name = path.rsplit('.').next().unwrap_or(path);
+        let is_table = matches!(field.value, Value::Table);
+        let shown = |name: &str| if is_table { format!("[{name}]") } else { name.to_owned() };
+        let meant = nearest(name, allowed.iter().copied()).map(|name| format!("did you mean {}?", shown(name)));
+        Err(self.reject(path, words).meaning(meant).at(self.text.clone(), Some(field.key.clone())))
     }
 }

@@ -4,14 +4,17 @@
 //! (circles that cannot touch) is found in [`crate::cam`], which reports it through
 //! [`Model::reject`], so that every complaint about a file names file, line, field and value.
 
+mod complaint;
 mod fields;
+mod nearest;
 mod profile;
 mod table;
 
 use std::path::Path;
 
-pub use fields::ModelError;
+pub use complaint::{ModelError, Pointer};
 use fields::{Allowed, Fields};
+pub use nearest::nearest;
 pub use profile::{
     ArcsProfile, CamProfile, HarmonicProfile, MOST_COEFFICIENTS, Motion, MotionSegment, PolynomialSegment,
     ProgramProfile, RectifiedSineProfile,
@@ -97,6 +100,7 @@ impl Model {
             restitution: fields.number("follower.restitution", Allowed::between(0.0, 1.0))?,
         };
         let cam = profile::read(&mut fields)?;
+        fields.may_hold("study.rpm_min");
         let study = if fields.has("study") {
             let rpm_min = fields.number("study.rpm_min", Allowed::POSITIVE)?;
             let rpm_max = fields.number("study.rpm_max", Allowed::POSITIVE)?;
@@ -141,7 +145,12 @@ impl Model {
 
     /// A complaint about `line` of another file that the model names.
     pub fn reject_line(&self, file: &str, line: usize, allowed: impl Into<String>) -> ModelError {
-        ModelError { line: Some(line), ..ModelError::file(file, allowed.into()) }
+        let complaint = ModelError { line: Some(line), ..ModelError::file(file, allowed.into()) };
+        // The file has been read before, and is not kept; what has gone since is only not shown.
+        match std::fs::read_to_string(file) {
+            Ok(text) => complaint.in_line(&text, None),
+            Err(_) => complaint,
+        }
     }
 
     /// The file that commands are to be given for this model; none for the built-in one.

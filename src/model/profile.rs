@@ -1,6 +1,7 @@
 //! The `[cam]` table: one entry for every lift law, and the fields of each.
 
-use super::fields::{Allowed, Fields, ModelError};
+use super::ModelError;
+use super::fields::{Allowed, Fields};
 use super::table::{self, TableProfile};
 
 /// The lift law of a `[cam]` table.
@@ -164,8 +165,8 @@ pub(super) fn choice<T: Copy>(fields: &mut Fields, path: &str, choices: &[(&str,
     match choices.iter().find(|(name, _)| *name == text) {
         Some((_, entry)) => Ok(*entry),
         None => {
-            let known: Vec<_> = choices.iter().map(|(name, _)| format!("\"{name}\"")).collect();
-            Err(fields.reject(path, format!("must be one of: {}", known.join(", "))))
+            let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
+            Err(fields.reject_choice(path, &text, &names))
         }
     }
 }

@@ -3,7 +3,8 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::fields::{Fields, ModelError};
+use super::ModelError;
+use super::fields::Fields;
 use super::profile::choice;
 use crate::tolerance;
 
@@ -53,31 +54,32 @@ pub(super) fn read(fields: &mut Fields) -> Result<TableProfile, ModelError> {
     let shown = path.display().to_string();
     let text = std::fs::read_to_string(&path)
         .map_err(|error| fields.reject("cam.file", format!("cannot be read at {shown}: {error}")))?;
-    let table = Table { file: shown };
-    let rows = table.rows(&text)?;
+    // Spreadsheets begin UTF-8 with a mark.
+    let table = Table { file: shown, text: text.strip_prefix('\u{feff}').unwrap_or(&text) };
+    let rows = table.rows()?;
     Ok(TableProfile { file, spline, rows: rows.into() })
 }
 
 /// A file being read, for complaints.
-struct Table {
+struct Table<'a> {
     file: String,
+    text: &'a str,
 }
 
-impl Table {
+impl Table<'_> {
     fn reject(&self, line: usize, column: &str, value: &str, allowed: String) -> ModelError {
         let shown: String = value.chars().take(60).collect();
-        let (field, value) = (Some(column.into()), Some(shown));
-        ModelError { file: self.file.clone(), line: Some(line), field, value, allowed }
+        let (field, shown) = (Some(column.into()), Some(shown));
+        let complaint = ModelError { field, value: shown, ..self.complain(Some(line), allowed) };
+        complaint.in_line(self.text, Some(value))
     }
 
     fn complain(&self, line: Option<usize>, allowed: String) -> ModelError {
-        ModelError { line, ..ModelError::file(&self.file, allowed) }
+        ModelError { line, ..ModelError::file(&self.file, allowed) }.in_line(self.text, None)
     }
 
-    fn rows(&self, text: &str) -> Result<Vec<Row>, ModelError> {
-        // Spreadsheets begin UTF-8 with a mark.
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let mut lines = text.lines().enumerate().map(|(index, line)| (index + 1, line.trim()));
+    fn rows(&self) -> Result<Vec<Row>, ModelError> {
+        let mut lines = self.text.lines().enumerate().map(|(index, line)| (index + 1, line.trim()));
         match lines.next() {
             Some((_, found)) if found.split(',').map(str::trim).eq(HEADER.split(',')) => {}
             Some((line, found)) => return Err(self.reject(line, "header", found, format!("must be {HEADER}"))),

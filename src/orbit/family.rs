@@ -1,7 +1,7 @@
 //! Machines that differ in a few numbers: what a branch of orbits is followed through.
 
 use crate::cam::Cam;
-use crate::model::{Model, ModelError};
+use crate::model::{Model, ModelError, nearest};
 use crate::simulate::{Machine, angular_velocity};
 
 /// A number that may be varied.
@@ -17,7 +17,7 @@ pub enum Parameter {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FamilyError {
     /// The model does not allow them.
-    #[error(transparent)]
+    #[error("{0}")]
     Model(#[from] ModelError),
     /// The cam would not turn.
     #[error("{rpm} rpm: the speed must be a finite number above 0")]
@@ -26,12 +26,14 @@ pub enum FamilyError {
         rpm: f64,
     },
     /// Nothing in the model has this name.
-    #[error("no number called \"{name}\" to vary; there are: {there}")]
+    #[error("no number called \"{name}\" to vary; there are: {there}{}", meant.as_ref().map_or(String::new(), |meant| format!("; did you mean {meant}?")))]
     Unknown {
         /// The name.
         name: String,
         /// Those that there are.
         there: String,
+        /// The one that may be meant.
+        meant: Option<String>,
     },
     /// A name that more than one field has.
     #[error("\"{name}\" may be any of {fields}: write the whole path")]
@@ -54,8 +56,13 @@ impl Parameter {
         match fields.as_slice() {
             [field] => Ok(Self::Field((*field).into())),
             [] => {
-                let there = model.numbers().map(|(path, _)| path).collect::<Vec<_>>().join(", ");
-                Err(FamilyError::Unknown { name: name.into(), there: format!("rpm, {there}") })
+                let paths: Vec<&str> = model.numbers().map(|(path, _)| path).collect();
+                // Nearest by the whole path, or by its end where the name has no dot.
+                let ends = paths.iter().map(|path| path.rsplit('.').next().unwrap_or(path));
+                let names: Vec<&str> = if name.contains('.') { paths.clone() } else { ends.collect() };
+                let meant = nearest(name, names.into_iter().chain(["rpm"])).map(str::to_owned);
+                let there = format!("rpm, {}", paths.join(", "));
+                Err(FamilyError::Unknown { name: name.into(), there, meant })
             }
             _ => Err(FamilyError::Ambiguous { name: name.into(), fields: fields.join(", ") }),
         }

@@ -144,7 +144,7 @@ impl Default for Care {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SurveyError {
     /// The model is impossible.
-    #[error(transparent)]
+    #[error("{0}")]
     Model(#[from] ModelError),
     /// A run could not go on.
     #[error("at {rpm} rpm: {error}")]
