@@ -114,6 +114,18 @@ fn every_sample_is_a_cam() {
     assert_eq!(listed, samples.iter().map(|(law, _)| law.as_str()).collect());
 }
 
+#[test]
+fn every_law_has_a_model() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
+    let folders = [root.clone(), root.join("laws")];
+    let files = folders.iter().flat_map(|folder| std::fs::read_dir(folder).unwrap()).map(|entry| entry.unwrap().path());
+    let models = files.filter(|file| file.extension().is_some_and(|end| end == "toml"));
+    let used: BTreeSet<&str> = models.map(|file| common::read(&file).cam.law()).collect();
+    for (law, _) in samples(&page()) {
+        assert!(used.contains(law.as_str()), "no model in models/ uses {law}");
+    }
+}
+
 /// What the parser allows in a table is what it lists against an unknown field.
 #[test]
 fn the_page_has_every_field_and_no_other() {
