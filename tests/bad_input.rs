@@ -383,7 +383,7 @@ fn extreme_cams() {
 
 #[test]
 fn usage() {
-    for arguments in [&[][..], &["--no-such-flag", "x.toml"], &["a.toml", "b.toml"]] {
+    for arguments in [["--no-such-flag", "x.toml"], ["a.toml", "b.toml"]] {
         let arguments: Vec<_> = arguments.iter().map(std::ffi::OsStr::new).collect();
         let output = verify(&arguments);
         assert_eq!(output.status.code(), Some(2));

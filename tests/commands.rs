@@ -357,25 +357,3 @@ fn help_has_an_example() {
         assert!(help.contains("Exit code: 0 done, 2 "), "{help}");
     }
 }
-
-/// Each example of the help, as it stands there.
-#[test]
-fn the_examples_of_the_help_run() {
-    let folder = TempDir::new().unwrap();
-    std::os::unix::fs::symlink(Path::new(env!("CARGO_MANIFEST_DIR")).join("models"), folder.path().join("models"))
-        .unwrap();
-    let mut examples = 0;
-    for command in ["simulate", "diagram", "cam"] {
-        let help = prints(&[command, "--help"]);
-        for line in help.lines().filter_map(|line| line.split_once("corner-impact ").map(|(_, rest)| rest.trim())) {
-            let Some(arguments) = line.strip_prefix(command).filter(|rest| rest.starts_with(" models/")) else {
-                continue;
-            };
-            let mut program = Command::new(env!("CARGO_BIN_EXE_corner-impact"));
-            let output = program.arg(command).args(arguments.split_whitespace()).current_dir(&folder).output().unwrap();
-            assert_eq!(output.status.code(), Some(0), "{line}: {}", String::from_utf8_lossy(&output.stderr));
-            examples += 1;
-        }
-    }
-    assert_eq!(examples, 6);
-}

@@ -42,9 +42,9 @@ fn the_value_is_underlined_in_its_line() {
         ("mass.toml", paper, "error: mass.toml:7: follower.mass = -1.0: must be a finite number above 0", "-1.0"),
         (
             "umlaut.toml",
-            common::osorio_text(&[("name", "\"h\u{e4}\""), ("mass", "0 # \u{e4}")]),
-            "error: umlaut.toml:7: follower.mass = 0: must be a finite number above 0",
-            "0",
+            common::osorio_text(&[("name", "\"h\u{e4}\""), ("mass", "0.00 # \u{e4}")]),
+            "error: umlaut.toml:7: follower.mass = 0.00: must be a finite number above 0",
+            "0.00",
         ),
         (
             "circles.toml",
