@@ -164,7 +164,7 @@ fn help_and_version_go_to_standard_output() {
         assert!(!output.stdout.is_empty() && output.stderr.is_empty());
     }
     let help = String::from_utf8(corner_impact(&["verify", "--help"]).stdout).unwrap();
-    assert!(help.contains("Example: corner-impact verify models/osorio-2008.toml") && help.contains("--no-external"));
+    assert!(help.contains("Examples:\n  corner-impact verify\n") && help.contains("--no-external"));
     assert_eq!(corner_impact(&[]).status.code(), Some(2));
     assert_eq!(corner_impact(&["conquer"]).status.code(), Some(2));
 }

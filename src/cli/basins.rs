@@ -20,8 +20,8 @@ use crate::simulate::{Machine, angular_velocity};
 /// Runs a grid of starts at one speed and says what each ends on, as a table or a picture.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
-    \x20 corner-impact basins --rpm 678 --strobe 5.7627 --grid 60x40\n\
-    \x20 corner-impact basins models/osorio-2008.toml --rpm 678 --strobe 5.7627 --grid 200x150 --position 0.4:8 --velocity -60:60 --out basins.png\n\
+    \x20 corner-impact basins --rpm 678 --strobe 5.76 --grid 60x40\n\
+    \x20 corner-impact basins models/osorio-2008.toml --rpm 678 --strobe 5.76 --grid 200x150 --out basins.png\n\
     \n\
     Exit code: 0 done, 2 bad model file, usage or file, or a run that cannot go on.")]
 pub(super) struct Arguments {
@@ -120,7 +120,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     } else if to_standard {
         String::new()
     } else {
-        summary.text().map_err(CommandError::report)?
+        session.shown(&summary.page(session.width()).map_err(CommandError::report)?)
     };
     session.print(&page)?;
     Ok(Exit::Agrees)

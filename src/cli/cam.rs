@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::{CommandError, Exit, ModelArgument, Session, picture};
+use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
 use crate::cam::{Cam, Jet};
 use crate::report::figures::cam_figure;
 use crate::report::{CamDocument, json};
@@ -30,16 +30,18 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let model = arguments.model.read(session)?;
+    let progress = Progress::spinner("laying out the cam");
     let cam = Cam::new(&model).map_err(CommandError::input)?;
     if let Some(path) = &arguments.out {
         let drawn = picture::Canvas::create(path, &mut *session.out)?.draw(&cam_figure(&cam, &model.name))?;
         drawn.commit().map_err(CommandError::file)?;
     }
+    drop(progress);
     let document = CamDocument::new(&model, &cam, arguments.order);
     let page = if arguments.json {
         json::render(&document).map_err(CommandError::report)?
     } else {
-        document.text().map_err(CommandError::report)?
+        session.shown(&document.page(session.width()).map_err(CommandError::report)?)
     };
     session.print(&page)?;
     Ok(Exit::Agrees)

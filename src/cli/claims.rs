@@ -36,7 +36,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let page = match (arguments.json, arguments.markdown) {
         (true, _) => json::render(&document).map_err(CommandError::report)?,
         (_, true) => document.markdown().map_err(CommandError::report)?,
-        _ => document.text().map_err(CommandError::report)?,
+        _ => session.shown(&document.page(session.width()).map_err(CommandError::report)?),
     };
     session.print(&page)?;
     Ok(if document.agrees { Exit::Agrees } else { Exit::Disagrees })

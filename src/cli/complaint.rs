@@ -33,13 +33,13 @@ impl Diagnostic for Pointed<'_> {
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let span = self.at.span.clone()?;
+        let span = self.at.pointer.span.clone()?;
         let label = if self.at.allowed.chars().count() > LONGEST_LABEL { "here" } else { &self.at.allowed };
         Some(Box::new(std::iter::once(LabeledSpan::new_with_span(Some(label.to_owned()), span))))
     }
 
     fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        match &self.at.meant {
+        match &self.at.pointer.meant {
             Some(meant) => Some(Box::new(meant)),
             None if !self.is_of_the_file || self.at.file.ends_with(".csv") => None,
             None => Some(Box::new("`corner-impact new` writes a model file in which every field is explained")),
@@ -55,7 +55,7 @@ pub(super) fn word(coloured: bool) -> &'static str {
 /// The line of the file that a complaint is about, or nothing where there is none; in letters that any log can hold where
 /// nobody looks at a terminal.
 pub(super) fn shown(words: &str, at: &ModelError, coloured: bool, is_terminal: bool, width: usize) -> String {
-    let (Some(text), Some(_)) = (&at.text, &at.span) else { return String::new() };
+    let (Some(text), Some(_)) = (&at.pointer.text, &at.pointer.span) else { return String::new() };
     let theme = match (is_terminal, coloured) {
         (true, true) => GraphicalTheme::unicode(),
         (true, false) => GraphicalTheme::unicode_nocolor(),

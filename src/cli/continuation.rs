@@ -10,6 +10,7 @@ use crate::diagram::settled_impacts;
 use crate::model::Model;
 use crate::orbit::branch::{Branch, Following};
 use crate::orbit::{Family, Parameter, PeriodicOrbit, Search, search};
+use crate::progress::Watch;
 use crate::report::branch;
 use crate::report::figure::Density;
 use crate::report::figures::{Branches, branches_figure, corner_marks};
@@ -22,7 +23,7 @@ use crate::simulate::{Machine, angular_velocity};
     name = "continue",
     after_help = "Examples:\n\
     \x20 corner-impact continue --from-rpm 700 --parameter rpm=660:760\n\
-    \x20 corner-impact continue models/osorio-2008.toml --from-rpm 700 --parameter restitution=0.5:0.95 --out branches.svg\n\
+    \x20 corner-impact continue --from-rpm 700 --parameter restitution=0.5:0.95 --out branches.svg\n\
     \n\
     Prints the table; what each branch passes and where it ends goes to standard error.\n\
     Exit code: 0 done, 2 bad model file, usage or file, or nothing to follow."
@@ -85,7 +86,9 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     }
     let machine = Machine::new(cam, &model.follower, angular_velocity(arguments.from_rpm));
     let wanted = Search { revolutions: arguments.revolutions, impacts: arguments.impacts };
+    let progress = Progress::spinner("looking for periodic orbits");
     let orbits = search(&machine, &wanted).map_err(CommandError::input)?;
+    drop(progress);
     if orbits.is_empty() {
         let words = format!(
             "{}: no periodic orbit of {} revolution(s) found at {} rpm to follow",
@@ -151,7 +154,7 @@ fn follow(
     let mut branches: Vec<Branch> = Vec::new();
     let progress = Progress::new(orbits.len() as u64);
     for (index, orbit) in orbits.iter().enumerate() {
-        progress.set(index as u64);
+        progress.at("following the orbits found", index as u64, orbits.len() as u64);
         if !branches.iter().any(|branch| branch.holds(value, orbit)) {
             branches.push(Branch::through(model, rpm, orbit, following).map_err(CommandError::input)?);
         }
@@ -175,7 +178,7 @@ fn settled(
     let mut density = Density::new([low, high], [0.0, 360.0]);
     let progress = Progress::new(u64::from(arguments.runs));
     for index in 0..arguments.runs {
-        progress.set(u64::from(index));
+        progress.at("what runs settle on", u64::from(index), u64::from(arguments.runs));
         let value = low + (high - low) * (f64::from(index) + 0.5) / f64::from(arguments.runs);
         // The edge of what the model allows has been told already.
         let Ok((machine, _)) = family.machine(&[value]) else { continue };

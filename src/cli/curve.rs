@@ -8,6 +8,7 @@ use super::start::{positive, range};
 use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
 use crate::orbit::branch::{Branch, BranchPoint, Following, Kind, Special, corner_impacts, survey};
 use crate::orbit::{Parameter, Search};
+use crate::progress::Watch;
 use crate::report::curve::{self, AtCorner};
 use crate::report::figure::layout::widened;
 use crate::report::figures::curve_figure;
@@ -17,7 +18,7 @@ use crate::report::file::Output;
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact curve --rpm 600:760 --parameter restitution=0.5:0.95\n\
-    \x20 corner-impact curve models/osorio-2008.toml --rpm 600:760 --parameter restitution=0.5:0.95 --out curve.svg\n\
+    \x20 corner-impact curve --rpm 600:760 --parameter restitution=0.5:0.95 --out curve.svg\n\
     \n\
     Prints the table; what each curve passes and where it ends goes to standard error.\n\
     Exit code: 0 done, also where there is none, 2 bad model file, usage or file.")]
@@ -80,7 +81,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let mut curves = Vec::new();
     let progress = Progress::new(corners.len() as u64);
     for (index, corner) in corners.iter().enumerate() {
-        progress.set(index as u64);
+        progress.at("following the corner impacts found", index as u64, corners.len() as u64);
         let Some(at) = at_corner(corner) else { continue };
         let found = Branch::of_corner_impacts(&model, corner, arguments.rpm, &following);
         curves.push((found.map_err(CommandError::input)?, at));

@@ -162,7 +162,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     } else if to_standard {
         String::new()
     } else {
-        summary.text().map_err(CommandError::report)?
+        session.shown(&summary.page(session.width()).map_err(CommandError::report)?)
     };
     session.print(&page)?;
     Ok(Exit::Agrees)

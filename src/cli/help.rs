@@ -22,6 +22,11 @@ const EXAMPLES: &str = "Examples:
 
 `corner-impact COMMAND --help` has examples for each; where they name models/, they are run from the project's folder.";
 
+/// The command line as it is, in letters alone.
+pub(super) fn plain() -> Command {
+    Arguments::command().after_help(EXAMPLES)
+}
+
 /// The command line, laid out for so many columns.
 pub(super) fn command(width: usize) -> Command {
     let mut command = Arguments::command().styles(STYLES).term_width(width).max_term_width(width);

@@ -4,13 +4,16 @@ mod basins;
 mod cam;
 mod claims;
 mod complaint;
+mod completions;
 mod continuation;
 mod curve;
 mod diagram;
 mod figure;
 mod help;
 mod locate;
+mod man;
 mod model;
+mod new;
 mod orbit;
 mod picture;
 mod progress;
@@ -92,6 +95,10 @@ subcommands! {
         Basins = basins,
     "Pictures":
         Figure = figure,
+    "Getting started, and the shell":
+        New = new,
+        Completions = completions,
+        Man = man,
 }
 
 /// Why a command has no result.

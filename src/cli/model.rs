@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{CommandError, session::Session};
+use super::{CommandError, progress::Progress, session::Session};
 use crate::model::Model;
 
 /// Which model a command is about.
@@ -22,7 +22,11 @@ impl ModelArgument {
     /// Reads the model; says on standard error which one it is where none is named.
     pub(super) fn read(&self, session: &mut Session<'_>) -> Result<Model, CommandError> {
         match &self.file {
-            Some(path) => Model::read(path).map_err(CommandError::input),
+            Some(path) => {
+                // A table of a million lifts takes its time.
+                let _progress = Progress::spinner("reading the model");
+                Model::read(path).map_err(CommandError::input)
+            }
             None => {
                 let model = Model::built_in().map_err(CommandError::input)?;
                 session.note(&format!("no MODEL given: using the paper's, {}, which is built in", model.name));

@@ -1,7 +1,7 @@
 //! `corner-impact orbit [MODEL] --rpm R`.
 
 use super::start::{rpm, state, turn};
-use super::{CommandError, Exit, ModelArgument, Session};
+use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
 use crate::cam::Cam;
 use crate::flight::State;
 use crate::orbit::search::near;
@@ -41,6 +41,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let model = arguments.model.read(session)?;
     let cam = Cam::new(&model).map_err(CommandError::input)?;
     let machine = Machine::new(cam, &model.follower, angular_velocity(arguments.rpm));
+    let progress = Progress::spinner("looking for periodic orbits");
     let orbits = match arguments.guess {
         Some(state) => {
             let found = near(&machine, turn(0.0), state, arguments.revolutions).map_err(CommandError::input)?;
@@ -51,11 +52,12 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
             search(&machine, &wanted).map_err(CommandError::input)?
         }
     };
+    drop(progress);
     let document = OrbitDocument::new(&model.name, arguments.rpm, &orbits);
     let page = if arguments.json {
         json::render(&document).map_err(CommandError::report)?
     } else {
-        document.text().map_err(CommandError::report)?
+        session.shown(&document.page(session.width()).map_err(CommandError::report)?)
     };
     session.print(&page)?;
     Ok(Exit::Agrees)

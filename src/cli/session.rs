@@ -5,6 +5,7 @@ use std::io::{IsTerminal, Write};
 
 use super::{CommandError, Exit, complaint};
 use crate::model::ModelError;
+use crate::report::Page;
 
 /// Whether to colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
@@ -51,8 +52,6 @@ pub struct Terminal {
 }
 
 impl Terminal {
-    /// Columns of a page where nothing says how many there are.
-    pub const COLUMNS: usize = 100;
     /// The fewest that a page is laid out for, and the most that can be read with ease.
     const ALLOWED: [usize; 2] = [40, 120];
 
@@ -76,7 +75,7 @@ impl Terminal {
     /// Columns of a page.
     pub(super) fn width(&self) -> usize {
         let [fewest, most] = Self::ALLOWED;
-        self.columns.unwrap_or(Self::COLUMNS).clamp(fewest, most)
+        self.columns.unwrap_or(crate::report::page::WIDTH).clamp(fewest, most)
     }
 
     fn coloured(&self, choice: ColorChoice, is_terminal: bool) -> bool {
@@ -150,6 +149,11 @@ impl Session<'_> {
             let _ = self.out.write_all(text.as_bytes());
             Exit::Agrees
         }
+    }
+
+    /// A page as it is printed.
+    pub(super) fn shown(&self, page: &Page) -> String {
+        if self.colours_out() { page.coloured() } else { page.plain().to_owned() }
     }
 
     /// Prints a result whole.

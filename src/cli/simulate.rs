@@ -136,6 +136,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let (run, mut files) = simulate(arguments, &machine, first, drawn, [&mut *session.out, of_tables])?;
     let Run { motion, seen, wall, before_drawn } = run;
     let turned = (motion.revolution as f64) + (motion.cam_angle - first.cam_angle) / std::f64::consts::TAU;
+    let progress = arguments.lyapunov.then(|| Progress::spinner("how fast a small deviation grows"));
     let exponent = if arguments.lyapunov {
         Some(Exponent(growth(&machine, first, arguments.revolutions).map_err(CommandError::input)?))
     } else {
@@ -149,6 +150,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     } else {
         None
     };
+    drop(progress);
     files.extend(draw(arguments, &model, &machine, before_drawn, [trace, plane])?);
     super::commit(files)?;
     let summary = RunSummary {
@@ -167,7 +169,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let page = if arguments.summary {
         json::render(&summary).map_err(CommandError::report)?
     } else if streams == 0 {
-        summary.text().map_err(CommandError::report)?
+        session.shown(&summary.page(session.width()).map_err(CommandError::report)?)
     } else {
         String::new()
     };

@@ -37,7 +37,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let page = if arguments.json {
         json::render(&document).map_err(CommandError::report)?
     } else {
-        text::render(&document).map_err(CommandError::report)?
+        session.shown(&text::page(&document, session.width()).map_err(CommandError::report)?)
     };
     session.print(&page)?;
     Ok(if document.agrees { Exit::Agrees } else { Exit::Disagrees })

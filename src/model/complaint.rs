@@ -8,7 +8,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub struct ModelError {
     /// The file as the user named it.
-    pub file: String,
+    pub file: Box<str>,
     /// Line in the file, from 1; of the table where a field is missing.
     pub line: Option<usize>,
     /// Dotted path of the field.
@@ -17,17 +17,36 @@ pub struct ModelError {
     pub value: Option<String>,
     /// What is wrong and what is allowed.
     pub allowed: String,
-    /// What may have been meant, as a question.
-    pub meant: Option<String>,
+    /// Where exactly, and what may have been meant.
+    pub pointer: Box<Pointer>,
+}
+
+/// What a complaint points at.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Pointer {
     /// The file's text, where there is some.
     pub text: Option<Arc<str>>,
     /// What the complaint is about, in bytes of the text.
     pub span: Option<Range<usize>>,
+    /// What may have been meant, as a question.
+    pub meant: Option<String>,
 }
 
 impl ModelError {
     pub(super) fn file(file: &str, allowed: String) -> Self {
-        Self { file: file.into(), line: None, field: None, value: None, allowed, meant: None, text: None, span: None }
+        Self { file: file.into(), line: None, field: None, value: None, allowed, pointer: Box::default() }
+    }
+
+    /// The same complaint, pointing at `span` of `text`.
+    pub(super) fn at(mut self, text: Option<Arc<str>>, span: Option<Range<usize>>) -> Self {
+        (self.pointer.text, self.pointer.span) = (text, span);
+        self
+    }
+
+    /// The same complaint with what may have been meant, a question.
+    pub(super) fn meaning(mut self, meant: Option<String>) -> Self {
+        self.pointer.meant = meant;
+        self
     }
 
     /// The same complaint with what was found instead.
@@ -44,7 +63,7 @@ impl ModelError {
         let place =
             value.filter(|value| !value.is_empty()).and_then(|value| Some((written.rfind(value)?, value.len())));
         let (at, length) = place.unwrap_or((0, written.len()));
-        Self { text: Some(text.into()), span: Some(start + at..start + at + length), ..self }
+        self.at(Some(text.into()), Some(start + at..start + at + length))
     }
 }
 
@@ -59,6 +78,6 @@ impl fmt::Display for ModelError {
             (Some(field), None) => write!(f, ": {field} {}", self.allowed)?,
             _ => write!(f, ": {}", self.allowed)?,
         }
-        self.meant.as_ref().map_or(Ok(()), |meant| write!(f, "; {meant}"))
+        self.pointer.meant.as_ref().map_or(Ok(()), |meant| write!(f, "; {meant}"))
     }
 }

@@ -141,10 +141,9 @@ impl Fields {
         let line_of = |offset: usize| 1 + line_ends.partition_point(|end| *end < offset);
         let root = DeTable::parse(text).map_err(|error| ModelError {
             line: error.span().map(|span| line_of(span.start)),
-            text: Some(text.into()),
-            span: error.span(),
             // Some of them are two lines long.
             ..ModelError::file(file, format!("not valid TOML: {}", error.message().replace('\n', ", ")))
+                .at(Some(text.into()), error.span())
         })?;
         let (fields, known) = (BTreeMap::new(), BTreeSet::new());
         let mut fields = Self { file: file.into(), text: Some(text.into()), fields, known };
@@ -310,10 +309,10 @@ impl Fields {
         let written = if is_table { format!("[{written}]") } else { written.to_owned() };
         Some(ModelError {
             line: Some(field.line),
-            meant: Some(format!("did you mean {shown} where line {} says {written}?", field.line)),
-            text: self.text.clone(),
-            span: Some(field.key.clone()),
-            ..self.reject(path, "is missing")
+            ..self
+                .reject(path, "is missing")
+                .meaning(Some(format!("did you mean {shown} where line {} says {written}?", field.line)))
+                .at(self.text.clone(), Some(field.key.clone()))
         })
     }
 
@@ -330,9 +329,8 @@ impl Fields {
             line: field.or(table).map(|field| field.line),
             field: Some(path.into()),
             value: field.and_then(Field::shown),
-            text: self.text.clone(),
-            span: field.map(|field| field.span.clone()).or(table.map(|table| table.key.clone())),
             ..ModelError::file(&self.file, allowed.into())
+                .at(self.text.clone(), field.map(|field| field.span.clone()).or(table.map(|table| table.key.clone())))
         }
     }
 
@@ -340,7 +338,7 @@ impl Fields {
     pub(super) fn reject_choice(&self, path: &str, text: &str, names: &[&str]) -> ModelError {
         let known: Vec<_> = names.iter().map(|name| format!("\"{name}\"")).collect();
         let meant = nearest(text, names.iter().copied()).map(|name| format!("did you mean \"{name}\"?"));
-        ModelError { meant, ..self.reject(path, format!("must be one of: {}", known.join(", "))) }
+        self.reject(path, format!("must be one of: {}", known.join(", "))).meaning(meant)
     }
 
     /// Complains about the first field in the file that nobody asked for.
@@ -367,6 +365,6 @@ impl Fields {
         let is_table = matches!(field.value, Value::Table);
         let shown = |name: &str| if is_table { format!("[{name}]") } else { name.to_owned() };
         let meant = nearest(name, allowed.iter().copied()).map(|name| format!("did you mean {}?", shown(name)));
-        Err(ModelError { meant, span: Some(field.key.clone()), ..self.reject(path, words) })
+        Err(self.reject(path, words).meaning(meant).at(self.text.clone(), Some(field.key.clone())))
     }
 }

@@ -12,7 +12,7 @@ mod table;
 
 use std::path::Path;
 
-pub use complaint::ModelError;
+pub use complaint::{ModelError, Pointer};
 use fields::{Allowed, Fields};
 pub use nearest::nearest;
 pub use profile::{

@@ -4,6 +4,7 @@ use std::fmt::{self, Write};
 
 use serde::Serialize;
 
+use super::page::{Page, WIDTH};
 use crate::basin::{Basins, Ending, Part};
 
 /// The summary of a grid of starts.
@@ -102,9 +103,14 @@ impl BasinsSummary {
         }
     }
 
-    /// For people.
+    /// For people, as wide as where nothing says how wide, without marks.
     pub fn text(&self) -> Result<String, fmt::Error> {
-        let mut page = String::new();
+        Ok(self.page(WIDTH)?.plain().to_owned())
+    }
+
+    /// For people, in `width` columns.
+    pub fn page(&self, width: usize) -> Result<Page, fmt::Error> {
+        let mut page = Page::new(width);
         writeln!(
             page,
             "{} at {} rpm, {} starts at {:.4} deg",

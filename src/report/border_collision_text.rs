@@ -4,20 +4,20 @@ use std::fmt::{self, Write};
 
 use super::border_collision::{EndEntry, OutcomeEntry, RangeEntry};
 use super::document::Verification;
-use super::text::{heading, paragraph_at};
+use super::page::Page;
 
 /// Where the second column begins.
 const COLUMN: usize = 22;
 
 /// A line with a name in the first column and words, broken into lines, in the second.
-fn entry(out: &mut String, name: &str, words: &str) -> fmt::Result {
-    let mut lines = String::new();
-    paragraph_at(&mut lines, COLUMN, words)?;
-    writeln!(out, "  {name:<20}{}", lines.trim())
+fn entry(out: &mut Page, name: &str, words: &str) -> fmt::Result {
+    let mut lines = Page::new(out.width());
+    lines.paragraph_at(COLUMN, words)?;
+    writeln!(out, "  {name:<20}{}", lines.plain().trim())
 }
 
 /// The condition nearest to failing, and those that fail.
-pub(super) fn conditions(out: &mut String, document: &Verification) -> fmt::Result {
+pub(super) fn conditions(out: &mut Page, document: &Verification) -> fmt::Result {
     let (holding, count) =
         (document.conditions.iter().filter(|condition| condition.holds).count(), document.conditions.len());
     if let Some(nearest) = document.conditions.iter().min_by(|a, b| a.distance.total_cmp(&b.distance)) {
@@ -34,18 +34,18 @@ pub(super) fn conditions(out: &mut String, document: &Verification) -> fmt::Resu
 }
 
 /// The local map's own motions and how far it holds.
-pub(super) fn local_map(out: &mut String, document: &Verification) -> fmt::Result {
+pub(super) fn local_map(out: &mut Page, document: &Verification) -> fmt::Result {
     if document.local_map.is_empty() {
         return Ok(());
     }
-    heading(out, "What the local map does by itself, next to the corner impact")?;
+    out.heading("What the local map does by itself, next to the corner impact")?;
     for outcome in &document.local_map {
         motions(out, outcome)?;
     }
     if document.linear_range.is_empty() {
         return Ok(());
     }
-    heading(out, "How far it holds: within 10 % of the simulated machine")?;
+    out.heading("How far it holds: within 10 % of the simulated machine")?;
     for compared in ["one-revolution", "fixed-point-minus", "fixed-point-plus"] {
         let ranges = document.linear_range.iter().filter(|range| range.compared == compared);
         for (index, range) in ranges.enumerate() {
@@ -61,7 +61,7 @@ pub(super) fn local_map(out: &mut String, document: &Verification) -> fmt::Resul
     Ok(())
 }
 
-fn motions(out: &mut String, outcome: &OutcomeEntry) -> fmt::Result {
+fn motions(out: &mut Page, outcome: &OutcomeEntry) -> fmt::Result {
     let name = match outcome.speeds {
         "at" => "at omega*".to_owned(),
         speeds => format!("{speeds} than omega*"),

@@ -4,7 +4,8 @@ use std::fmt::{self, Write};
 
 use serde::Serialize;
 
-use super::text::{heading, paragraph, significant};
+use super::page::{Cell, Column, Page, Table, WIDTH};
+use super::text::significant;
 use crate::cam::{Cam, Corner, Jet, Segment};
 use crate::model::Model;
 
@@ -115,12 +116,16 @@ impl CamDocument {
         }
     }
 
-    /// The page for a terminal.
+    /// The page, as wide as where nothing says how wide, without marks.
     pub fn text(&self) -> Result<String, fmt::Error> {
-        let mut page = String::new();
-        let title = format!("Cam of {}", self.model);
-        writeln!(page, "{title}\n{}", "=".repeat(title.chars().count()))?;
-        paragraph(&mut page, &self.source)?;
+        Ok(self.page(WIDTH)?.plain().to_owned())
+    }
+
+    /// The page for a terminal of `width` columns.
+    pub fn page(&self, width: usize) -> Result<Page, fmt::Error> {
+        let mut page = Page::new(width);
+        page.title(&format!("Cam of {}", self.model))?;
+        page.paragraph_at(2, &self.source)?;
         let [low, high] = self.lift_m.map(|lift| significant(lift, 9));
         writeln!(page, "\n  law \"{}\", lift from {low} to {high} m", self.law)?;
         self.write_segments(&mut page)?;
@@ -128,8 +133,8 @@ impl CamDocument {
         Ok(page)
     }
 
-    fn write_segments(&self, page: &mut String) -> fmt::Result {
-        heading(page, &format!("Segments ({})", self.segments.len()))?;
+    fn write_segments(&self, page: &mut Page) -> fmt::Result {
+        page.heading(&format!("Segments ({})", self.segments.len()))?;
         if self.segments.len() > Self::LONGEST {
             let spans = self.segments.iter().map(|segment| segment.end_deg - segment.start_deg);
             let (least, most) =
@@ -137,40 +142,55 @@ impl CamDocument {
             let (least, most) = (significant(least, 6), significant(most, 6));
             return writeln!(page, "  spans from {least} to {most} degrees; --json lists them");
         }
-        writeln!(page, "{:>12}{:>12}  {:<12}{:>16}{:>16}", "from deg", "to deg", "law", "lowest m", "highest m")?;
+        let columns = [
+            Column::right("from deg", 12),
+            Column::right("to deg", 12),
+            Column::left("law", 2, 12),
+            Column::right("lowest m", 16),
+            Column::right("highest m", 16),
+        ];
+        let mut table = Table { columns, rows: Vec::new() };
         for segment in &self.segments {
             let [low, high] = segment.lift_m.map(|lift| significant(lift, 9));
             let SegmentEntry { start_deg, end_deg, law, .. } = segment;
-            writeln!(page, "{start_deg:>12.6}{end_deg:>12.6}  {law:<12}{low:>16}{high:>16}")?;
+            let [start, end] = [start_deg, end_deg].map(|angle| format!("{angle:.6}"));
+            table.rows.push([start, end, law.to_string(), low, high].map(Cell::from));
         }
-        Ok(())
+        table.write(page)
     }
 
-    fn write_corners(&self, page: &mut String) -> fmt::Result {
-        heading(page, &format!("Corners ({})", self.corners.len()))?;
+    fn write_corners(&self, page: &mut Page) -> fmt::Result {
+        page.heading(&format!("Corners ({})", self.corners.len()))?;
         if self.corners.is_empty() {
             let words = "No derivative of the lift up to order";
             return writeln!(page, "  {words} {} jumps as far as can be told.", self.highest_order);
         }
         let words = "order: of the lowest derivative of the lift that jumps (1 velocity, 2 acceleration, 3 jerk); jump: of \
                      that derivative, after less before, m/rad^order; slopes in m/rad.";
-        paragraph(page, words)?;
+        page.paragraph_at(2, words)?;
         writeln!(page)?;
         let of_order = |order: usize| self.corners.iter().filter(move |corner| corner.jump_order == order);
         let long: Vec<usize> =
             (1..=self.highest_order).filter(|order| of_order(*order).count() > Self::LONGEST).collect();
         let lines: Vec<_> = self.corners.iter().filter(|corner| !long.contains(&corner.jump_order)).collect();
-        if !lines.is_empty() {
-            let (angle, before, after) = ("angle deg", "slope before", "slope after");
-            writeln!(page, "{angle:>12}  order{:>16}{:>16}{before:>16}{after:>16}", "jump", "lift m")?;
-        }
+        let columns = [
+            Column::right("angle deg", 12),
+            Column::right("order", 7),
+            Column::right("jump", 16),
+            Column::right("lift m", 16),
+            Column::right("slope before", 16),
+            Column::right("slope after", 16),
+        ];
+        let mut table = Table { columns, rows: Vec::new() };
         for corner in lines {
             let CornerEntry { angle_deg, jump_order, .. } = corner;
-            write!(page, "{angle_deg:>12.6}{jump_order:>7}")?;
-            for number in [corner.jump, corner.lift_m, corner.slope_before, corner.slope_after] {
-                write!(page, "{:>16}", short(number))?;
-            }
-            writeln!(page)?;
+            let [jump, lift, before, after] =
+                [corner.jump, corner.lift_m, corner.slope_before, corner.slope_after].map(short);
+            let row = [format!("{angle_deg:.6}"), jump_order.to_string(), jump, lift, before, after];
+            table.rows.push(row.map(Cell::from));
+        }
+        if !table.rows.is_empty() {
+            table.write(page)?;
         }
         for order in long {
             let Some(largest) = of_order(order).max_by(|a, b| a.jump.abs().total_cmp(&b.jump.abs())) else { continue };

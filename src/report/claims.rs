@@ -4,6 +4,8 @@ use std::fmt::{self, Write};
 
 use serde::Serialize;
 
+use super::page::{Mark, Page, WIDTH};
+use super::text::mark;
 use crate::claims::Held;
 
 /// What `claims` found; serializes to the document `corner-impact/claims/1`.
@@ -91,28 +93,42 @@ impl ClaimsDocument {
         [("refuted", refuted), ("misprint", misprint), ("open", open), ("holds", holds)]
     }
 
-    /// The page for a terminal.
+    /// The page, as wide as where nothing says how wide, without marks.
     pub fn text(&self) -> Result<String, fmt::Error> {
-        let mut page = String::new();
-        writeln!(page, "What the paper states, held against {}", self.model)?;
+        Ok(self.page(WIDTH)?.plain().to_owned())
+    }
+
+    /// The page for a terminal of `width` columns.
+    pub fn page(&self, width: usize) -> Result<Page, fmt::Error> {
+        let mut page = Page::new(width);
+        page.marked(Mark::Heading, &format!("What the paper states, held against {}", self.model));
+        writeln!(page)?;
         for (verdict, count) in self.groups() {
-            writeln!(page, "\n{} ({count})", verdict.to_uppercase())?;
+            writeln!(page)?;
+            page.marked(mark(verdict), &verdict.to_uppercase());
+            writeln!(page, " ({count})")?;
             for claim in self.claims.iter().filter(|claim| claim.verdict == verdict) {
-                let flag = if claim.as_found { "" } else { "   OTHERWISE THAN THE LEDGER SAYS" };
-                writeln!(page, "\n  {} [{}]{flag}", claim.id, claim.place)?;
-                super::text::paragraph_at(&mut page, 4, &claim.statement)?;
-                if let Some(correct) = &claim.correct {
-                    super::text::paragraph_at(&mut page, 4, &format!("Right: {correct}"))?;
+                write!(page, "\n  {} [{}]", claim.id, claim.place)?;
+                if !claim.as_found {
+                    write!(page, "   ")?;
+                    page.marked(Mark::Bad, "OTHERWISE THAN THE LEDGER SAYS");
                 }
-                super::text::paragraph_at(&mut page, 4, &format!("Evidence: {}", claim.evidence))?;
+                writeln!(page)?;
+                page.paragraph_at(4, &claim.statement)?;
+                if let Some(correct) = &claim.correct {
+                    page.paragraph_at(4, &format!("Right: {correct}"))?;
+                }
+                page.paragraph_at(4, &format!("Evidence: {}", claim.evidence))?;
             }
         }
-        let agreement = if self.agrees {
-            "Every check comes to the ledger's verdict."
+        let (mark, agreement) = if self.agrees {
+            (Mark::Good, "Every check comes to the ledger's verdict.")
         } else {
-            "A CHECK DISAGREES WITH THE LEDGER."
+            (Mark::Bad, "A CHECK DISAGREES WITH THE LEDGER.")
         };
-        writeln!(page, "\n{agreement}")?;
+        writeln!(page)?;
+        page.marked(mark, agreement);
+        writeln!(page)?;
         Ok(page)
     }
 

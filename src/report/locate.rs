@@ -6,7 +6,8 @@ use serde::Serialize;
 
 use super::border_collision::ClassificationEntry;
 use super::document::{AgreementEntry, SideEntry, SkippedEntry};
-use super::text::{heading, paragraph, paragraph_at, significant};
+use super::page::{Cell, Column, Mark, Page, Table, WIDTH};
+use super::text::significant;
 use crate::cam::Side;
 use crate::corner::candidates::MOST_IMPACTS;
 use crate::corner::locate::Rejected;
@@ -232,22 +233,26 @@ impl LocateDocument {
         }
     }
 
-    /// The page for a terminal.
+    /// The page, as wide as where nothing says how wide, without marks.
     pub fn text(&self) -> Result<String, fmt::Error> {
-        let mut page = String::new();
+        Ok(self.page(WIDTH)?.plain().to_owned())
+    }
+
+    /// The page for a terminal of `width` columns.
+    pub fn page(&self, width: usize) -> Result<Page, fmt::Error> {
+        let mut page = Page::new(width);
         let out = &mut page;
-        let title = format!("Corner impacts of {}", self.model);
-        writeln!(out, "{title}\n{}", "=".repeat(title.chars().count()))?;
+        out.title(&format!("Corner impacts of {}", self.model))?;
         let [low, high] = self.rpm;
         let plural = if self.revolutions == 1 { "" } else { "s" };
-        paragraph(
-            out,
+        out.paragraph_at(
+            2,
             &format!("{low} to {high} rpm, orbits that repeat after {} revolution{plural}.", self.revolutions),
         )?;
         self.write_table(out)?;
         for (index, impact) in self.corner_impacts.iter().enumerate().filter(|(_, impact)| !impact.agrees) {
             writeln!(out)?;
-            paragraph(out, &format!("{}: {}. {}", index + 1, impact.verdict(), disagreement(impact)))?;
+            out.paragraph_at(2, &format!("{}: {}. {}", index + 1, impact.verdict(), disagreement(impact)))?;
         }
         self.write_meanings(out)?;
         self.write_rejected(out)?;
@@ -255,35 +260,42 @@ impl LocateDocument {
         Ok(page)
     }
 
-    fn write_table(&self, out: &mut String) -> fmt::Result {
-        heading(out, &format!("Found ({})", self.corner_impacts.len()))?;
+    fn write_table(&self, out: &mut Page) -> fmt::Result {
+        out.heading(&format!("Found ({})", self.corner_impacts.len()))?;
         if self.corner_impacts.is_empty() {
             return writeln!(out, "  No orbit of this kind has an impact on a corner in this range.");
         }
-        writeln!(
-            out,
-            "{:>4}{:>15}{:>13}  order  impacts{:>12}{:>12}  {:<17}routes",
-            "", "rpm", "corner deg", "v before", "v after", "what happens"
-        )?;
+        let columns = [
+            Column::right("", 4),
+            Column::right("rpm", 15),
+            Column::right("corner deg", 13),
+            Column::right("order", 7),
+            Column::right("impacts", 9),
+            Column::right("v before", 12),
+            Column::right("v after", 12),
+            Column::left("what happens", 2, 17),
+            Column::left("routes", 0, 0),
+        ];
+        let mut table = Table { columns, rows: Vec::new() };
         for (index, impact) in self.corner_impacts.iter().enumerate() {
             let CornerImpactEntry { speed_rpm, jump_order, impacts, classification, .. } = impact;
             let [before, after] =
                 [impact.velocity_before_m_s, impact.velocity_after_m_s].map(|velocity| significant(velocity, 8));
             let side = impact.side.map_or(String::new(), |side| format!(", {side}"));
             let scenario = format!("{}{side}", classification.scenario());
-            writeln!(
-                out,
-                "{:>4}{speed_rpm:>15.9}{:>13.6}{jump_order:>7}{impacts:>9}{before:>12}{after:>12}  {scenario:<17}{}",
-                index + 1,
-                impact.cam_angle_rad.to_degrees(),
-                impact.verdict()
-            )?;
+            let routes = Cell(impact.verdict().into(), Some(if impact.agrees { Mark::Good } else { Mark::Bad }));
+            let number = |number: usize| Cell::from(number.to_string());
+            let [speed, angle] =
+                [format!("{speed_rpm:.9}"), format!("{:.6}", impact.cam_angle_rad.to_degrees())].map(Cell::from);
+            let [before, after, scenario] = [before, after, scenario].map(Cell::from);
+            let [index, order, impacts] = [index + 1, *jump_order, *impacts].map(number);
+            table.rows.push([index, speed, angle, order, impacts, before, after, scenario, routes]);
         }
-        Ok(())
+        table.write(out)
     }
 
-    fn write_meanings(&self, out: &mut String) -> fmt::Result {
-        heading(out, "What happens there")?;
+    fn write_meanings(&self, out: &mut Page) -> fmt::Result {
+        out.heading("What happens there")?;
         let mut said: Vec<&str> = Vec::new();
         for (index, impact) in self.corner_impacts.iter().enumerate() {
             match &impact.classification {
@@ -297,11 +309,11 @@ impl LocateDocument {
                         entry.fixed_points_exist_for.plus,
                         if entry.stable.plus { "stable" } else { "unstable" },
                     );
-                    paragraph(out, &words)?;
+                    out.paragraph_at(2, &words)?;
                 }
                 LocalMapEntry::Other { scenario, meaning } if !said.contains(scenario) => {
                     said.push(scenario);
-                    paragraph(out, &format!("{scenario}: {meaning}."))?;
+                    out.paragraph_at(2, &format!("{scenario}: {meaning}."))?;
                 }
                 LocalMapEntry::Other { .. } => {}
             }
@@ -309,14 +321,14 @@ impl LocateDocument {
         if self.corner_impacts.is_empty() { writeln!(out, "  Nothing.") } else { Ok(()) }
     }
 
-    fn write_rejected(&self, out: &mut String) -> fmt::Result {
+    fn write_rejected(&self, out: &mut Page) -> fmt::Result {
         if self.rejected.is_empty() {
             return Ok(());
         }
-        heading(out, &format!("Speeds that solve the equations and are none ({})", self.rejected.len()))?;
+        out.heading(&format!("Speeds that solve the equations and are none ({})", self.rejected.len()))?;
         for RejectedEntry { speed_rpm, cam_angle_rad, why } in self.rejected.iter().take(Self::LONGEST) {
             let words = format!("{speed_rpm:.6} rpm at {:.4} deg: {why}", cam_angle_rad.to_degrees());
-            paragraph_at(out, 4, &words)?;
+            out.paragraph_at(4, &words)?;
         }
         if self.rejected.len() > Self::LONGEST {
             writeln!(out, "    and {} more; --json lists them", self.rejected.len() - Self::LONGEST)?;
@@ -324,8 +336,8 @@ impl LocateDocument {
         Ok(())
     }
 
-    fn write_searched(&self, out: &mut String) -> fmt::Result {
-        heading(out, "What was looked at")?;
+    fn write_searched(&self, out: &mut Page) -> fmt::Result {
+        out.heading("What was looked at")?;
         let SearchedEntry { corners_rad, speeds_rpm, branches, failed, .. } = &self.searched;
         let mut words = if corners_rad.is_empty() {
             "The cam has no corner: no derivative of its lift jumps as far as can be told.".to_owned()
@@ -341,7 +353,7 @@ impl LocateDocument {
         if let Some(error) = failed {
             write!(words, " A search could not go on: {error}.")?;
         }
-        paragraph(out, &words)
+        out.paragraph_at(2, &words)
     }
 }
 

@@ -5,6 +5,7 @@ use std::fmt::{self, Write};
 use serde::Serialize;
 
 use super::document::EigenvalueEntry;
+use super::page::{Mark, Page, WIDTH};
 use crate::orbit::{Course, Eigenvalue, PeriodicOrbit};
 use crate::simulate::Event;
 
@@ -75,14 +76,21 @@ impl OrbitDocument {
         Self { schema: "corner-impact/orbit/1", model: model.into(), speed_rpm, section_angle_rad: 0.0, orbits }
     }
 
-    /// For people.
+    /// For people, as wide as where nothing says how wide, without marks.
     pub fn text(&self) -> Result<String, fmt::Error> {
+        Ok(self.page(WIDTH)?.plain().to_owned())
+    }
+
+    /// For people, in `width` columns.
+    pub fn page(&self, width: usize) -> Result<Page, fmt::Error> {
         /// Impacts that are shown of each orbit.
         const SHOWN: usize = 8;
-        let mut page = String::new();
-        writeln!(page, "{} at {} rpm: {} found", self.model, self.speed_rpm, orbits(self.orbits.len()))?;
+        let mut page = Page::new(width);
+        let title = format!("{} at {} rpm: {} found", self.model, self.speed_rpm, orbits(self.orbits.len()));
+        page.marked(Mark::Heading, &title);
+        writeln!(page)?;
         for (index, orbit) in self.orbits.iter().enumerate() {
-            let stable = if orbit.stable { "stable" } else { "unstable" };
+            let (mark, stable) = if orbit.stable { (Mark::Good, "stable") } else { (Mark::Doubtful, "unstable") };
             let turns = if orbit.revolutions == 1 {
                 "1 revolution".into()
             } else {
@@ -94,7 +102,9 @@ impl OrbitDocument {
                 _ if orbit.impacts.len() == 1 => "1 impact".to_owned(),
                 _ => format!("{} impacts", orbit.impacts.len()),
             };
-            writeln!(page, "\n  {}. {turns}, {what}, {stable}", index + 1)?;
+            write!(page, "\n  {}. {turns}, {what}, ", index + 1)?;
+            page.marked(mark, stable);
+            writeln!(page)?;
             let [one, two] = orbit.multipliers;
             writeln!(page, "     multipliers   {}   {}", multiplier(one), multiplier(two))?;
             let [q, v] = orbit.state;

@@ -4,6 +4,7 @@ use std::fmt::{self, Write};
 
 use serde::Serialize;
 
+use super::page::{Cell, Column, Mark, Page, Table, WIDTH};
 use super::run::Exponent;
 use crate::regime::{Cause, Regime, Settled, Survey, Walk};
 
@@ -124,11 +125,17 @@ impl RegimesDocument {
         }
     }
 
-    /// For people.
+    /// For people, as wide as where nothing says how wide, without marks.
     pub fn text(&self) -> Result<String, fmt::Error> {
-        let mut page = String::new();
+        Ok(self.page(WIDTH)?.plain().to_owned())
+    }
+
+    /// For people, in `width` columns.
+    pub fn page(&self, width: usize) -> Result<Page, fmt::Error> {
+        let mut page = Page::new(width);
         let [low, high] = self.rpm;
-        writeln!(page, "{}, {low} to {high} rpm\n", self.model)?;
+        page.marked(Mark::Heading, &format!("{}, {low} to {high} rpm", self.model));
+        writeln!(page, "\n")?;
         match self.detachment_rpm {
             Some(rpm) => writeln!(page, "  leaves the cam first at   {rpm:.6} rpm")?,
             None if self.rising.first().is_some_and(|stretch| stretch.motion.regime == "on-cam") => {
@@ -154,11 +161,22 @@ impl RegimesDocument {
             writeln!(page, "  hysteresis                {}", listed(&hysteresis))?;
         }
         for (title, entries) in [("rising speed", &self.rising), ("falling speed", &self.falling)] {
-            writeln!(page, "\n{title}\n  {:>10} {:>11}  {:<36} at the lower end", "from (rpm)", "to (rpm)", "motion")?;
+            writeln!(page)?;
+            page.marked(Mark::Heading, title);
+            writeln!(page)?;
+            let columns = [
+                Column { gap: 2, ..Column::right("from (rpm)", 10) },
+                Column { gap: 1, ..Column::right("to (rpm)", 11) },
+                Column::left("motion", 2, 36),
+                Column::left("at the lower end", 1, 0),
+            ];
+            let mut table = Table { columns, rows: Vec::new() };
             for StretchEntry { rpm: [from, to], motion, begins } in entries {
                 let why = begins.as_ref().map_or("", |change| change.cause.as_str());
-                writeln!(page, "  {from:>10.4} {to:>11.4}  {:<36} {why}", motion.words())?;
+                let row = [format!("{from:.4}"), format!("{to:.4}"), motion.words(), why.to_owned()];
+                table.rows.push(row.map(Cell::from));
             }
+            table.write(&mut page)?;
         }
         Ok(page)
     }

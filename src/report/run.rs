@@ -5,6 +5,7 @@ use std::fmt::{self, Write};
 use serde::Serialize;
 
 use super::figures::{ImpactPoint, TracePoint};
+use super::page::{Page, WIDTH};
 use crate::diagram::Tally;
 use crate::section::Sample;
 use crate::simulate::{Event, EventKind, Motion};
@@ -75,9 +76,14 @@ impl From<&Motion> for End {
 }
 
 impl RunSummary {
-    /// For people.
+    /// For people, as wide as where nothing says how wide, without marks.
     pub fn text(&self) -> Result<String, fmt::Error> {
-        let mut page = String::new();
+        Ok(self.page(WIDTH)?.plain().to_owned())
+    }
+
+    /// For people, in `width` columns.
+    pub fn page(&self, width: usize) -> Result<Page, fmt::Error> {
+        let mut page = Page::new(width);
         let End { cam_angle_rad, position_m, velocity_m_s, contact } = self.end;
         let degrees = cam_angle_rad.to_degrees();
         writeln!(page, "{} at {} rpm, {} revolutions", self.model, self.rpm, self.revolutions)?;
@@ -121,9 +127,14 @@ impl SweepSummary {
         Self { schema: "corner-impact/diagram/1", model: model.into(), points, impacts, revolutions, threads, wall_s }
     }
 
-    /// For people.
+    /// For people, as wide as where nothing says how wide, without marks.
     pub fn text(&self) -> Result<String, fmt::Error> {
-        let mut page = String::new();
+        Ok(self.page(WIDTH)?.plain().to_owned())
+    }
+
+    /// For people, in `width` columns.
+    pub fn page(&self, width: usize) -> Result<Page, fmt::Error> {
+        let mut page = Page::new(width);
         let per_turn = per_turn(self.wall_s, self.revolutions as f64);
         writeln!(
             page,

@@ -1,16 +1,20 @@
-//! The document as one page of text for a terminal, at most 100 columns wide.
+//! The document as one page of text for a terminal.
 
 use std::fmt::{self, Write};
 
 use super::border_collision_text;
 use super::document::{AgreementEntry, PublishedEntry, SideEntry, Sides, Verification};
+use super::page::{Cell, Column, Mark, Page, Table, WIDTH};
 use crate::agreement::{shared_decimals, worse};
 
-const WIDTH: usize = 100;
-
-/// The verify page.
+/// The verify page, as wide as where nothing says how wide, without marks.
 pub fn render(document: &Verification) -> Result<String, fmt::Error> {
-    let mut page = String::new();
+    Ok(page(document, WIDTH)?.plain().to_owned())
+}
+
+/// The verify page, in `width` columns.
+pub fn page(document: &Verification, width: usize) -> Result<Page, fmt::Error> {
+    let mut page = Page::new(width);
     let out = &mut page;
     orbit(out, document)?;
     map(out, document)?;
@@ -22,16 +26,12 @@ pub fn render(document: &Verification) -> Result<String, fmt::Error> {
     Ok(page)
 }
 
-pub(super) fn heading(out: &mut String, text: &str) -> fmt::Result {
-    writeln!(out, "\n{text}\n{}", "-".repeat(text.chars().count()))
-}
-
-fn orbit(out: &mut String, document: &Verification) -> fmt::Result {
+fn orbit(out: &mut Page, document: &Verification) -> fmt::Result {
     let at = &document.corner_impact;
     let title = format!("Corner impact of {}", document.model.name);
-    writeln!(out, "{title}\n{}", "=".repeat(title.chars().count()))?;
-    paragraph(out, &document.model.source)?;
-    heading(out, "The orbit, solved for from the model")?;
+    out.title(&title)?;
+    out.paragraph_at(2, &document.model.source)?;
+    out.heading("The orbit, solved for from the model")?;
     writeln!(out, "  period   T* = {} s   ({:.9} rpm)", significant(at.period_s, 14), at.speed_rpm)?;
     writeln!(out, "  state    x* = ({}, {})", significant(at.state[0], 13), significant(at.state[1], 13))?;
     let origin = significant(at.state_origin_m, 9);
@@ -58,11 +58,9 @@ fn orbit(out: &mut String, document: &Verification) -> fmt::Result {
     Ok(())
 }
 
-fn map(out: &mut String, document: &Verification) -> fmt::Result {
-    heading(out, "Its local map:  dx' = A dx + B dT")?;
-    paragraph(
-        out,
-        "dx is the deviation of the state (position in m, velocity in m/s) from x*, dT that of the period from T* (s), dx' \
+fn map(out: &mut Page, document: &Verification) -> fmt::Result {
+    out.heading("Its local map:  dx' = A dx + B dT")?;
+    out.paragraph_at(2, "dx is the deviation of the state (position in m, velocity in m/s) from x*, dT that of the period from T* (s), dx' \
          the deviation one revolution later. minus holds where the impact comes before the corner, plus where it comes \
          after it. C = h (A+ - A-), D = h (B+ - B-), h = [1 0]: the sides meet where C dx + D dT = 0.",
     )?;
@@ -99,7 +97,7 @@ fn map(out: &mut String, document: &Verification) -> fmt::Result {
     Ok(())
 }
 
-fn side(out: &mut String, document: &Verification, name: &str, when: &str) -> fmt::Result {
+fn side(out: &mut Page, document: &Verification, name: &str, when: &str) -> fmt::Result {
     let of = |sides: &Sides<SideEntry>| {
         if name == "minus" { sides.minus } else { sides.plus }
     };
@@ -111,9 +109,9 @@ fn side(out: &mut String, document: &Verification, name: &str, when: &str) -> fm
         .collect();
     let printed =
         |quantity: &str| document.published.iter().find(|entry| entry.quantity == format!("{quantity}_{name}"));
-    let room = WIDTH - LABELS - if printed("A").is_some() { PRINTED } else { 0 };
+    let room = out.width().saturating_sub(LABELS + if printed("A").is_some() { PRINTED } else { 0 }).max(COLUMN);
     // As few blocks as hold all columns, and as even.
-    let blocks = (routes.len() * COLUMN).div_ceil(room).max(1);
+    let blocks = routes.len().div_ceil(room / COLUMN).max(1);
     for routes in routes.chunks(routes.len().div_ceil(blocks).max(1)) {
         columns(out, routes, printed)?;
     }
@@ -127,7 +125,7 @@ const PRINTED: usize = 19;
 
 /// One block of a side's table: some routes, and what the paper prints.
 fn columns<'a>(
-    out: &mut String,
+    out: &mut Page,
     routes: &[(String, SideEntry)],
     printed: impl Fn(&str) -> Option<&'a PublishedEntry>,
 ) -> fmt::Result {
@@ -186,9 +184,17 @@ fn largest(sides: &Sides<SideEntry>) -> (f64, f64) {
     (a, b)
 }
 
-fn agreement(out: &mut String, document: &Verification) -> fmt::Result {
-    heading(out, "Do the routes agree? Every pair, in every quantity; shown is the pair closest to its bound")?;
-    writeln!(out, "  {:<19}{:>5}{:>12}{:>10}  {:<14}between", "quantity", "pairs", "differ by", "allowed", "share")?;
+fn agreement(out: &mut Page, document: &Verification) -> fmt::Result {
+    out.heading("Do the routes agree? Every pair, in every quantity; shown is the pair closest to its bound")?;
+    let columns = [
+        Column::left("quantity", 2, 19),
+        Column::right("pairs", 5),
+        Column::right("differ by", 12),
+        Column::right("allowed", 10),
+        Column::left("share", 2, 14),
+        Column::left("between", 0, 0),
+    ];
+    let mut table = Table { columns, rows: Vec::new() };
     let mut quantities: Vec<&str> = Vec::new();
     for entry in &document.agreement {
         if !quantities.contains(&entry.quantity.as_str()) {
@@ -204,20 +210,25 @@ fn agreement(out: &mut String, document: &Verification) -> fmt::Result {
             let AgreementEntry { routes: [left, right], max_abs_diff, tolerance, agrees, .. } = entry;
             let pair = format!("{} - {}", spoken(left), spoken(right));
             let shared = share(*max_abs_diff);
-            let flag = if *agrees { "" } else { "  DISAGREE" };
+            let pair = match agrees {
+                true => Cell::from(pair),
+                false => Cell(format!("{pair}  DISAGREE"), Some(Mark::Bad)),
+            };
             let (name, count) = if index == 0 { (quantity, pairs.len().to_string()) } else { ("", String::new()) };
-            writeln!(out, "  {name:<19}{count:>5}{max_abs_diff:>12.1e}{tolerance:>10.1e}  {shared:<14}{pair}{flag}")?;
+            let [name, difference, allowed] =
+                [name.to_owned(), format!("{max_abs_diff:.1e}"), format!("{tolerance:.1e}")].map(Cell::from);
+            table.rows.push([name, count.into(), difference, allowed, shared.into(), pair]);
         }
     }
-    Ok(())
+    table.write(out)
 }
 
 fn share(diff: f64) -> String {
     shared_decimals(diff).map_or("all digits".to_owned(), |decimals| format!("{decimals} decimals"))
 }
 
-fn bifurcation(out: &mut String, document: &Verification) -> fmt::Result {
-    heading(out, "What happens there")?;
+fn bifurcation(out: &mut Page, document: &Verification) -> fmt::Result {
+    out.heading("What happens there")?;
     let eigenvalues = |pair: &[super::document::EigenvalueEntry; 2]| {
         let one = |re: f64, im: f64| {
             if im == 0.0 {
@@ -269,7 +280,7 @@ fn bifurcation(out: &mut String, document: &Verification) -> fmt::Result {
             }
             _ => "the fixed point crosses from one side to the other and lives on",
         };
-        paragraph_at(out, 22, meaning)?;
+        out.paragraph_at(22, meaning)?;
         let fate = |stable: bool, speeds: &str| {
             format!("{} one at speeds {speeds} than omega*", if stable { "a stable" } else { "an unstable" })
         };
@@ -286,24 +297,26 @@ fn bifurcation(out: &mut String, document: &Verification) -> fmt::Result {
     }
     if let Some(refusal) = &document.refusal {
         writeln!(out, "  verdict             none")?;
-        paragraph_at(out, 22, refusal)?;
+        out.paragraph_at(22, refusal)?;
     }
     border_collision_text::conditions(out, document)
 }
 
-fn published(out: &mut String, document: &Verification) -> fmt::Result {
+fn published(out: &mut Page, document: &Verification) -> fmt::Result {
     if document.published.is_empty() {
         return Ok(());
     }
-    heading(out, "The paper's printed numbers")?;
+    out.heading("The paper's printed numbers")?;
     for entry in &document.published {
         let PublishedEntry { quantity, place, max_abs_diff, verdict, as_found, .. } = entry;
         let shared = share(*max_abs_diff);
-        let flag = if *as_found { "" } else { "   UNEXPECTED" };
-        writeln!(
-            out,
-            "  {quantity:<20}{place:<20}differs by {max_abs_diff:>7.1e}, shares {shared:<13}{verdict}{flag}"
-        )?;
+        write!(out, "  {quantity:<20}{place:<20}differs by {max_abs_diff:>7.1e}, shares {shared:<13}")?;
+        out.marked(mark(verdict), verdict);
+        if !*as_found {
+            write!(out, "   ")?;
+            out.marked(Mark::Bad, "UNEXPECTED");
+        }
+        writeln!(out)?;
     }
     for entry in document.published.iter().filter(|entry| !entry.note.is_empty()) {
         let computed: Vec<_> = entry.computed.iter().map(|value| significant(*value, 10)).collect();
@@ -315,19 +328,19 @@ fn published(out: &mut String, document: &Verification) -> fmt::Result {
             entry.note
         );
         writeln!(out)?;
-        paragraph(out, &words)?;
+        out.paragraph_at(2, &words)?;
     }
     Ok(())
 }
 
-fn verdict(out: &mut String, document: &Verification) -> fmt::Result {
+fn verdict(out: &mut Page, document: &Verification) -> fmt::Result {
     if !document.skipped.is_empty() {
-        heading(out, "NOT RUN")?;
+        out.heading("NOT RUN")?;
         for skipped in &document.skipped {
-            paragraph(out, &format!("{}: {}", skipped.route, skipped.why))?;
+            out.paragraph_at(2, &format!("{}: {}", skipped.route, skipped.why))?;
         }
     }
-    heading(out, "Verdict")?;
+    out.heading("Verdict")?;
     let failed = document.agreement.iter().filter(|entry| !entry.agrees).count();
     let unexpected = document.published.iter().filter(|entry| !entry.as_found).count();
     let wrong = document.published.iter().filter(|entry| entry.as_found && !entry.agrees).count();
@@ -358,7 +371,23 @@ fn verdict(out: &mut String, document: &Verification) -> fmt::Result {
         [one] => format!("{one} did not run"),
         [most @ .., last] => format!("{} and {last} did not run", most.join(", ")),
     };
-    if document.agrees { writeln!(out, "  AGREES") } else { writeln!(out, "  DISAGREES: {reason}") }
+    write!(out, "  ")?;
+    if document.agrees {
+        out.marked(Mark::Good, "AGREES");
+        return writeln!(out);
+    }
+    out.marked(Mark::Bad, "DISAGREES");
+    writeln!(out, ": {reason}")
+}
+
+/// What a verdict's name is.
+pub(super) fn mark(verdict: &str) -> Mark {
+    match verdict {
+        "holds" => Mark::Good,
+        "misprint" => Mark::Doubtful,
+        "refuted" => Mark::Bad,
+        _ => Mark::Open,
+    }
 }
 
 /// Nine decimals, without trailing zeros.
@@ -382,29 +411,4 @@ pub(super) fn significant(value: f64, digits: usize) -> String {
 /// A route's name as words.
 fn spoken(name: &str) -> String {
     name.replace('_', " ")
-}
-
-/// Text in lines that fit, indented by two.
-pub(super) fn paragraph(out: &mut String, text: &str) -> fmt::Result {
-    paragraph_at(out, 2, text)
-}
-
-/// Text in lines that fit, indented by `indent`.
-pub(super) fn paragraph_at(out: &mut String, indent: usize, text: &str) -> fmt::Result {
-    let mut column = 0;
-    for word in text.split_whitespace() {
-        let length = word.chars().count();
-        if column > 0 && column + 1 + length > WIDTH {
-            writeln!(out)?;
-            column = 0;
-        }
-        if column == 0 {
-            write!(out, "{:indent$}{word}", "")?;
-            column = indent + length;
-        } else {
-            write!(out, " {word}")?;
-            column += 1 + length;
-        }
-    }
-    writeln!(out)
 }

@@ -1,0 +1,26 @@
+//! `corner-impact completions SHELL`.
+
+use clap_complete::Shell;
+
+use super::{CommandError, Exit, Session, help};
+
+/// Prints what a shell needs to complete this program's commands and options.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:\n\
+    \x20 corner-impact completions bash\n\
+    \x20 corner-impact completions zsh\n\
+    \n\
+    For bash, to have it in every shell: put it into ~/.local/share/bash-completion/completions/corner-impact; for zsh \
+    into a file _corner-impact in a folder of $fpath; for fish into ~/.config/fish/completions/corner-impact.fish.\n\
+    Exit code: 0 done, 2 bad usage.")]
+pub(super) struct Arguments {
+    /// Which shell.
+    shell: Shell,
+}
+
+pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
+    let mut script = Vec::new();
+    clap_complete::generate(arguments.shell, &mut help::plain(), "corner-impact", &mut script);
+    session.print(&String::from_utf8_lossy(&script))?;
+    Ok(Exit::Agrees)
+}
