@@ -127,6 +127,11 @@ fn near_names_are_asked_for() {
             follower.clone() + "[cam]\nlaw = \"table\"\nfile = \"x.csv\"\nspline = \"qubic\"\n",
             Some("did you mean \"cubic\"?"),
         ),
+        // Two slips in a long name.
+        (
+            paper.replace("flank_start_deg =", "flank_strat_dg ="),
+            Some("did you mean flank_start_deg where line 19 says flank_strat_dg?"),
+        ),
         // What is a name of its own, or like no other, is no slip.
         (paper.replace("rpm_min = 600.0", ""), None),
         (paper.replace("\"arcs\"", "\"helix\""), None),
