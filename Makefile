@@ -6,7 +6,7 @@ CARGO ?= cargo
 RELEASE := --release --locked
 
 .DEFAULT_GOAL := help
-.PHONY: help verify test check derive derive-check claims pictures review mutants bench bench-each bench-peers clean
+.PHONY: help verify report test check derive derive-check claims pictures review mutants bench bench-each bench-peers clean
 
 # Python and its packages, once; again when the list of packages changes.
 PYTHON ?= python3
@@ -18,11 +18,15 @@ $(VENV): derivations/requirements.txt
 
 help: ## list the targets
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 20
-	@echo "  MODEL=path.toml     the model that verify takes (now $(MODEL))"
+	@echo "  MODEL=path.toml     the model that verify and report take (now $(MODEL))"
 
 verify: $(VENV) ## find the corner impact of MODEL, compute its map by every route, compare
 	$(CARGO) build $(RELEASE) --quiet
 	@target/release/corner-impact verify $(MODEL)
+
+report: $(VENV) ## write all that is found about MODEL as one HTML page in this folder, NAME-report.html, and print its name
+	$(CARGO) build $(RELEASE) --quiet
+	@target/release/corner-impact report $(MODEL)
 
 test: $(VENV) ## run every test
 	$(CARGO) test $(RELEASE)

@@ -519,7 +519,7 @@ fn any_text_is_only_text() {
 #[test]
 fn light_on_paper_and_dark_on_a_dark_screen() {
     let svg = drawn(&parabola());
-    assert!(svg.contains("@media (prefers-color-scheme: dark)"));
+    assert!(svg.contains("@media screen and (prefers-color-scheme: dark)"));
     for colour in ["#ffffff", "#1a1a1a", "#0072b2"] {
         assert!(svg.contains(&format!("=\"{colour}\"")), "{colour}");
     }

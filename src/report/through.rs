@@ -221,8 +221,8 @@ impl RunFrame {
             run.impacts.iter().map(|angle| (angle.to_degrees() * 10.0).round() as i64).collect();
         let impacts_deg: Vec<f64> = tenths.into_iter().map(|tenth| rounded(tenth as f64 / 10.0, DRAWN_ANGLE)).collect();
         let words = match impacts_deg.as_slice() {
-            [] => "no impact: the follower stays on the cam, or clear of it".to_owned(),
-            [angle] => format!("an impact at {angle}° in every revolution that has one"),
+            [] => "no impact: it stays on the cam, or clear of it".to_owned(),
+            [angle] => format!("all its impacts at {angle}°"),
             angles if angles.len() <= Self::TOLD => {
                 let angles: Vec<String> = angles.iter().map(|angle| format!("{angle}°")).collect();
                 format!("impacts at {}", angles.join(", "))

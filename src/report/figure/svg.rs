@@ -70,7 +70,7 @@ pub(super) fn write(figure: &Figure, apart: bool) -> Result<Vec<Layer>, fmt::Err
 }
 
 fn style(out: &mut Sheet) -> fmt::Result {
-    write!(out, "<style>@media (prefers-color-scheme: dark) {{ .paper {{ fill: {DARK_PAPER} }}")?;
+    write!(out, "<style>@media screen and (prefers-color-scheme: dark) {{ .paper {{ fill: {DARK_PAPER} }}")?;
     for (class, _, dark) in Colour::ALL.map(Colour::shades) {
         write!(out, " .s-{class} {{ stroke: {dark} }} .f-{class} {{ fill: {dark} }}")?;
     }

@@ -84,7 +84,7 @@ fn conditions(found: &Verification) -> Markup {
         (wide("Conditions of the classification", &html! {
             table {
                 thead { tr {
-                    th scope="col" { "must not vanish" } th.n scope="col" { "value" } th.n scope="col" { "distance from failing" }
+                    th scope="col" { "looked at" } th.n scope="col" { "value" } th.n scope="col" { "distance from failing" }
                     th scope="col" { "holds" } th scope="col" { "or else" } th scope="col" { "decides" }
                 } }
                 tbody {

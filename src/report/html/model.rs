@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use super::numbers::number;
+use super::numbers::{given, number};
 use super::{HtmlError, Section, plates, wide};
 use crate::report::dossier::Dossier;
 
@@ -40,7 +40,7 @@ fn quantities(dossier: &Dossier) -> Markup {
                         tr {
                             th scope="row" { (quantity.meaning) }
                             td { i { (quantity.symbol) } }
-                            td.n { (number(quantity.value, 12)) }
+                            td.n { (given(quantity.value, 12)) }
                             td { (quantity.unit) }
                             td { @if quantity.field.is_empty() { "follows" } @else { code { (quantity.field) } } }
                         }

@@ -4,18 +4,27 @@ use maud::{Markup, PreEscaped, Render, html};
 
 use crate::report::document::EigenvalueEntry;
 use crate::report::text::significant;
+use crate::tolerance;
 
 /// A minus that is as wide as a plus.
 pub(super) fn signed(text: &str) -> String {
     text.replace('-', "\u{2212}")
 }
 
-/// Up to `digits` significant digits, without trailing zeros; a power of ten where zeros would take their place.
+/// A computed number, in which what rounding leaves of a zero is shown as one.
 pub(super) fn number(value: f64, digits: usize) -> Markup {
-    let exponent = if value == 0.0 { 0.0 } else { value.abs().log10() };
+    if value.abs() < tolerance::DISPLAYED_ZERO.value {
+        return html! { data value=(value) { "0" } };
+    }
+    given(value, digits)
+}
+
+/// Up to `digits` significant digits, without trailing zeros; a power of ten where zeros would take their place.
+pub(super) fn given(value: f64, digits: usize) -> Markup {
     if !value.is_finite() {
         return html! { (value) };
     }
+    let exponent = if value == 0.0 { 0.0 } else { value.abs().log10() };
     if !(-4.0..9.0).contains(&exponent) {
         return power(value, digits);
     }
@@ -30,12 +39,17 @@ pub(super) fn fixed(value: f64, places: usize) -> Markup {
     html! { data value=(value) { (signed(&text)) } }
 }
 
-/// Two digits and a power of ten: of a difference or a bound the size is all that matters.
+/// Two digits: of a difference or a bound the size is all that matters.
 pub(super) fn size(value: f64) -> Markup {
     if value == 0.0 {
         return html! { data value="0" { "0" } };
     }
-    power(value, 2)
+    let plain = (0.01..100.0).contains(&value.abs());
+    if plain {
+        html! { data value=(value) { (signed(&significant(value, 2))) } }
+    } else {
+        power(value, 2)
+    }
 }
 
 fn power(value: f64, digits: usize) -> Markup {

@@ -25,8 +25,16 @@
   const line = (points) => points.map(([x, y], index) => `${index ? "L" : "M"}${pixel(x)} ${pixel(y)}`).join("");
 
   // A frame with two axes; `moving` is emptied for each speed.
-  const panel = (id, width, height, x, y, names) => {
-    const box = { left: 46, top: 8, right: width - 10, bottom: height - 36 };
+  const WIDTH = 440;
+  const HEIGHT = 300;
+  const panel = (id, x, y, names, square = false) => {
+    const [width, height] = [WIDTH, HEIGHT];
+    const box = { left: 58, top: 8, right: width - 10, bottom: height - 36 };
+    if (square) {
+      const spare = (box.right - box.left - (box.bottom - box.top)) / 2;
+      box.left += spare;
+      box.right -= spare;
+    }
     const svg = element(get(id), "svg", { viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": names.label });
     const across = (value) => box.left + ((value - x.range[0]) / (x.range[1] - x.range[0])) * (box.right - box.left);
     const up = (value) => box.bottom - ((value - y.range[0]) / (y.range[1] - y.range[0])) * (box.bottom - box.top);
@@ -40,7 +48,7 @@
       element(svg, "text", { x: box.left - 5, y: up(at) + 4, "text-anchor": "end" }, minus(label));
     });
     element(svg, "text", { x: (box.left + box.right) / 2, y: height - 5, "text-anchor": "middle", class: "soft" }, titled(names.x, x.unit));
-    element(svg, "text", { x: 11, y: (box.top + box.bottom) / 2, "text-anchor": "middle", class: "soft", transform: `rotate(-90 11 ${(box.top + box.bottom) / 2})` }, titled(names.y, y.unit));
+    element(svg, "text", { x: 0, y: 0, "text-anchor": "middle", class: "soft", transform: `translate(${box.left - 45} ${(box.top + box.bottom) / 2}) rotate(-90)` }, titled(names.y, y.unit));
     // An svg of its own cuts off what lies outside.
     const inside = element(svg, "svg", { x: box.left, y: box.top, width: box.right - box.left, height: box.bottom - box.top, viewBox: `${box.left} ${box.top} ${box.right - box.left} ${box.bottom - box.top}` });
     const still = element(inside, "g", {});
@@ -70,38 +78,40 @@
     return done;
   };
 
-  const whole = panel("revolution", 440, 300, axes.angle, axes.position, { label: "Position of follower and cam against the cam angle", x: "cam angle", y: "position" });
+  const whole = panel("revolution", axes.angle, axes.position, { label: "Position of follower and cam against the cam angle", x: "cam angle", y: "position" });
   element(whole.still, "path", { class: "cam", d: line(data.cam.map(([angle, lift]) => whole.at([angle, lift]))) });
-  data.corners.forEach(([angle, name]) => {
+  data.corners.forEach(([angle, name], index) => {
     element(whole.still, "path", { class: "corner", d: `M${whole.across(angle)} ${whole.box.top}V${whole.box.bottom}` });
-    element(whole.still, "text", { x: whole.across(angle) + 3, y: whole.box.top + 13, class: "soft" }, name);
+    // Neighbours at two heights: their letters do not touch.
+    element(whole.still, "text", { x: whole.across(angle) + 3, y: whole.box.top + (index % 2 ? 27 : 13), class: "soft" }, name);
   });
 
-  const near = panel("near", 440, 260, axes.near, axes.acceleration, { label: "Acceleration of the cam near the corner, and where orbits hit it", x: "cam angle", y: "acceleration" });
+  const near = panel("near", axes.near, axes.acceleration, { label: "Acceleration of the cam near the corner, and where orbits hit it", x: "cam angle", y: "acceleration" });
   [-360, 0, 360].forEach((turn) => element(near.still, "path", { class: "cam", d: line(data.cam.map(([angle, , bend]) => near.at([angle + turn, bend]))) }));
   element(near.still, "path", { class: "corner", d: `M${near.across(data.corner_deg)} ${near.box.top}V${near.box.bottom}` });
   element(near.still, "text", { x: near.across(data.corner_deg) + 4, y: near.box.top + 13, class: "soft" }, data.corner);
 
-  const plane = panel("plane", 440, 420, axes.plane, axes.plane, { label: "Multipliers in the complex plane", x: "real part", y: "imaginary part" });
+  const plane = panel("plane", axes.plane, axes.plane, { label: "Multipliers in the complex plane", x: "real part", y: "imaginary part" }, true);
   element(plane.still, "ellipse", { class: "cam", cx: plane.across(0), cy: plane.up(0), rx: plane.across(1) - plane.across(0), ry: plane.up(0) - plane.up(1) });
-  const held = (part) => Math.max(axes.plane.range[0], Math.min(axes.plane.range[1], part));
+  // What lies outside is held at the edge, where it can be seen; the readout has its value.
+  const held = (part) => Math.max(0.96 * axes.plane.range[0], Math.min(0.96 * axes.plane.range[1], part));
   [0, 1].forEach((index) => {
     traces((frame, orbit) => plane.at([orbit.multipliers[index].re, orbit.multipliers[index].im]))
       .forEach(({ orbit, points }) => element(plane.still, "path", { class: `${kind(orbit)} trace`, d: line(points) }));
   });
 
-  const diagram = panel("diagram", 440, 300, axes.speed, axes.angle, { label: "Cam angle of impacts against speed", x: "speed", y: "cam angle" });
+  const diagram = panel("diagram", axes.speed, axes.angle, { label: "Cam angle of impacts against speed", x: "speed", y: "cam angle" });
   element(diagram.still, "path", { class: "corner", d: `M${diagram.box.left} ${diagram.up(data.corner_deg)}H${diagram.box.right}` });
-  element(diagram.still, "text", { x: diagram.box.right - 4, y: diagram.up(data.corner_deg) - 4, "text-anchor": "end", class: "soft" }, data.corner);
+  element(diagram.still, "text", { x: diagram.box.left + 4, y: diagram.up(data.corner_deg) - 4, class: "soft" }, data.corner);
   const dots = (run) => frames.flatMap((frame) => run(frame).impacts_deg.map((angle) => diagram.at([frame.rpm, angle]))).map(([x, y]) => `M${pixel(x)} ${pixel(y)}h0`).join("");
+  element(diagram.still, "path", { class: "dot rising", d: dots((frame) => frame.speeding) });
   element(diagram.still, "path", { class: "dot", d: dots((frame) => frame.slowing) });
   traces((frame, orbit) => diagram.at([frame.rpm, orbit.angle_deg])).forEach(({ orbit, points }) => element(diagram.still, "path", { class: kind(orbit), d: line(points) }));
 
   // The cam as a shape: its angles run clockwise from the follower above as it turns.
-  const size = 420;
-  const middle = [size / 2, size / 2 + 50];
-  const scale = (size * 0.34) / data.drawn_radius_m;
-  const shape = element(get("shape"), "svg", { viewBox: `0 0 ${size} ${size}`, role: "img", "aria-label": "The cam turned to the impact, with the follower on it" });
+  const middle = [WIDTH / 2, HEIGHT - 118];
+  const scale = 112 / data.drawn_radius_m;
+  const shape = element(get("shape"), "svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": "The cam turned to the impact, with the follower on it" });
   const placed = (angle, height, shown) => {
     const turn = ((angle - shown) * Math.PI) / 180;
     const radius = (height + data.drawn_on_m) * scale;
@@ -112,7 +122,7 @@
   element(cam, "path", { class: "body", d: `${line(data.cam.map(([angle, lift]) => placed(angle, lift, 0)))}z` });
   data.corners.forEach(([angle, name]) => {
     const at = placed(angle, lifted(angle), 0);
-    const label = placed(angle, lifted(angle) - (data.drawn_radius_m - data.drawn_on_m) * 0.11, 0);
+    const label = placed(angle, lifted(angle) - data.drawn_radius_m * 0.13, 0);
     element(cam, "circle", { cx: at[0], cy: at[1], r: 3 });
     const text = element(cam, "text", { x: label[0], y: label[1] + 4, "text-anchor": "middle" }, name);
     text.dataset.at = label.join(" ");
@@ -155,7 +165,9 @@
     });
   };
   const words = (frame, index) => {
-    const run = `A run that came from faster speeds has ${frame.slowing.words}.`;
+    const [slowing, speeding] = [frame.slowing.words, frame.speeding.words];
+    const other = slowing === speeding ? "; so has one from slower speeds" : `; one from slower speeds has ${speeding}`;
+    const run = `A run that came from faster speeds has ${slowing}${other}.`;
     if (index === data.at_corner) return `${rpm(frame)}: the orbit hits the corner ${data.corner}. It is shown with the law before the corner and with the law after it. ${run}`;
     if (!frame.orbits.length) return `${rpm(frame)}: there is no orbit with one impact a revolution. ${run}`;
     const found = frame.orbits.map((orbit) => `${kind(orbit)} at ${orbit.angle_deg.toFixed(2)}\u00b0`).join(", ");

@@ -10,8 +10,9 @@ use crate::report::through::{OrbitFrame, ThroughEntry};
 pub(super) fn section(dossier: &Dossier) -> Result<Section, HtmlError> {
     let body = match (&dossier.through, &dossier.no_through) {
         (Some(through), _) => player(through, &serde_json::to_string(through)?),
+        _ if dossier.verification.is_none() => html! { p { "There is no corner impact to lead a motion through." } },
         (_, why) => html! {
-            p { "There is no motion to lead through a corner impact" @if let Some(why) = why { ": " (why) } "." }
+            p { "There is no motion to lead through the corner impact" @if let Some(why) = why { ": " (why) } "." }
         },
     };
     Ok(Section { id: "through", title: "Through the corner impact", body })
@@ -42,11 +43,13 @@ fn player(through: &ThroughEntry, data: &str) -> Markup {
                     button type="button" id="to-corner" { "Corner impact" }
                 }
             }
-            p.summary role="status" aria-live="polite" id="summary" {}
-            ul.key {
-                li.stable { "stable orbit" } li.unstable { "unstable orbit" } li.run { "run from faster speeds" }
-            }
             div.panels {
+                div.panel {
+                    p.summary role="status" aria-live="polite" id="summary" {}
+                    ul.key {
+                        li.stable { "stable orbit" } li.unstable { "unstable orbit" } li.run { "run that came from faster speeds" } li.rising { "run that came from slower speeds" }
+                    }
+                }
                 (panel("revolution", "One revolution.", html! { "Follower and cam against the cam angle; a ring is an impact." }))
                 (panel("shape", "The cam", html! { "turned to the impact, with the follower on it." }))
                 (panel("near", "The impact at the corner.", html! { "Acceleration of the cam; a line is where an orbit hits." }))
