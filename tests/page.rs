@@ -9,7 +9,7 @@ use std::process::Command;
 use std::sync::OnceLock;
 
 use corner_impact::border_collision::feigin::Speeds;
-use corner_impact::gallery::through_corner::{Moment, Place, through_corner};
+use corner_impact::gallery::through_corner::{Moment, Place, Shown, through_corner};
 use corner_impact::model::{Model, OSORIO_2008};
 use corner_impact::orbit::eigenvalues;
 use corner_impact::progress::Unwatched;
@@ -75,7 +75,10 @@ fn every_number_on_the_page_is_one_of_the_document_and_shows_it() {
         let (read, half) = read(text);
         // The sign of an imaginary part stands before it.
         let apart = (read - value).abs().min((read - value.abs()).abs());
-        assert!(apart <= half * 1.000_001 || (read == 0.0 && value.abs() < 1e-12), "{number}: {read} within {half}");
+        assert!(
+            apart <= half + 4.0 * f64::EPSILON * value.abs() || (read == 0.0 && value.abs() < 1e-12),
+            "{number}: {read} within {half}"
+        );
     }
     let at = &dossier.verification.as_ref().unwrap().corner_impact;
     for value in [at.period_s, at.speed_rpm, at.state[0], at.velocity_before_m_s] {
@@ -253,7 +256,10 @@ fn orbits_on_either_side_are_those_of_the_classification() {
         let [slower, faster] = [&through.moments[through.at_corner - 1], &through.moments[through.at_corner + 1]];
         for (place, side) in [(Place::Before, &kind.minus), (Place::After, &kind.plus)] {
             let of = |moment: &Moment| {
-                moment.orbits.iter().filter(|orbit| orbit.place == place).map(|orbit| orbit.stable).collect::<Vec<_>>()
+                // Another orbit on the same segment, far from the corner, is none of the local map's.
+                let beside = |orbit: &&Shown| (orbit.impact.cam_angle - findings.at.corner.angle).abs() < 0.05;
+                let here = moment.orbits.iter().filter(|orbit| orbit.place == place).filter(beside);
+                here.map(|orbit| orbit.stable).collect::<Vec<_>>()
             };
             let expected = |there: bool| if there { vec![side.stable] } else { vec![] };
             let (on_faster, on_slower) = match side.exists_for {
@@ -313,9 +319,10 @@ fn drawn_orbits_are_those_of_the_simulator() {
         }
     }
     assert!(checked >= 18, "{checked}");
-    // Slower there is no such orbit, and a run has impacts all over the cam.
+    // Slower there is no such orbit; a run has other impacts, once it is far enough not to dwell where the orbit was.
     for moment in &through.moments[..through.at_corner] {
         assert!(moment.orbits.is_empty(), "{}", moment.rpm);
-        assert!(moment.slowing.impacts.len() > 24, "{}", moment.rpm);
+        let near = findings.at.speed_rpm() - moment.rpm < 1.0;
+        assert!(near || moment.slowing.impacts.len() > 24, "{}", moment.rpm);
     }
 }

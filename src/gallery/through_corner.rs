@@ -23,13 +23,13 @@ const RECORDED: u64 = 24;
 /// Revolutions of a run that are drawn in full, and samples of each, and of an orbit.
 const DRAWN: u64 = 2;
 const SAMPLES: u32 = 72;
-/// Samples of the cam: one to a degree.
-const CAM_SAMPLES: usize = 360;
+/// Samples of the cam: four to a degree.
+const CAM_SAMPLES: usize = 1440;
 
 /// What there is at speeds on either side of a corner impact.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ThroughCorner {
-    /// The cam at every degree and on both sides of every corner: angle, rad, and lift with its derivatives.
+    /// The cam, four times a degree and on both sides of every corner: angle, rad, and lift with its derivatives.
     pub cam: Vec<(f64, Lift)>,
     /// By rising speed; the one at the corner impact among them.
     pub moments: Vec<Moment>,
@@ -240,7 +240,7 @@ fn paths(machine: &Machine, motion: Motion) -> Result<Vec<Vec<[f64; 2]>>, Simula
     Ok(paths)
 }
 
-/// The cam at every degree, and on both sides of every corner.
+/// The cam four times a degree, and on both sides of every corner.
 fn profile(cam: &Cam) -> Vec<(f64, Lift)> {
     let mut points = Vec::new();
     for segment in cam.segments() {

@@ -24,7 +24,11 @@ pub const ELSEWHERE: &[(&str, &str, Held)] = &[
     ("make test", "is what runs this test", Held::Landing),
     ("make derive-check", "takes a minute of computer algebra", Held::Landing),
     ("make verify", "needs Python's packages; tests/routes.rs runs the same", Held::Landing),
-    ("make report", "is corner-impact report with Python's packages, whose own test opens the page", Held::Target),
+    (
+        "make report",
+        "is corner-impact report with Python's packages, whose own test, tests/browser, opens the page",
+        Held::Target,
+    ),
     ("make claims", "writes docs/claims.md; tests/ledger.rs holds it fresh", Held::Target),
     ("make pictures", "writes docs/*.svg; tests/documents.rs draws them again", Held::Target),
 ];

@@ -61,7 +61,8 @@ pub fn render(dossier: &Dossier) -> Result<String, HtmlError> {
     .into_iter()
     .flatten()
     .collect();
-    let title = format!("Corner impact of {}", dossier.model.name);
+    let what = if dossier.verification.is_some() { "Corner impact" } else { "Cam and follower" };
+    let title = format!("{what} of {}", dossier.model.name);
     let page = html! {
         (DOCTYPE)
         html lang="en" {

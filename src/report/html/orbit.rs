@@ -9,8 +9,7 @@ use crate::report::dossier::Dossier;
 pub(super) fn section(dossier: &Dossier) -> Section {
     let body = match &dossier.verification {
         None => html! {
-            p { "There is none to verify. What follows is what the cam and the follower do without it." }
-            @if let Some(why) = &dossier.nothing_to_verify { pre.why { (why) } }
+            p { "There is none to verify; " a href="#findings" { "the findings" } " say why. What follows is what cam and follower do without it." }
         },
         Some(found) => {
             let at = &found.corner_impact;

@@ -93,7 +93,8 @@
 
   const plane = panel("plane", axes.plane, axes.plane, { label: "Multipliers in the complex plane", x: "real part", y: "imaginary part" }, true);
   element(plane.still, "ellipse", { class: "cam", cx: plane.across(0), cy: plane.up(0), rx: plane.across(1) - plane.across(0), ry: plane.up(0) - plane.up(1) });
-  const held = (part) => Math.max(axes.plane.range[0], Math.min(axes.plane.range[1], part));
+  // What lies outside is held at the edge, where it can be seen; the readout has its value.
+  const held = (part) => Math.max(0.96 * axes.plane.range[0], Math.min(0.96 * axes.plane.range[1], part));
   [0, 1].forEach((index) => {
     traces((frame, orbit) => plane.at([orbit.multipliers[index].re, orbit.multipliers[index].im]))
       .forEach(({ orbit, points }) => element(plane.still, "path", { class: `${kind(orbit)} trace`, d: line(points) }));

@@ -10,8 +10,9 @@ use crate::report::through::{OrbitFrame, ThroughEntry};
 pub(super) fn section(dossier: &Dossier) -> Result<Section, HtmlError> {
     let body = match (&dossier.through, &dossier.no_through) {
         (Some(through), _) => player(through, &serde_json::to_string(through)?),
+        _ if dossier.verification.is_none() => html! { p { "There is no corner impact to lead a motion through." } },
         (_, why) => html! {
-            p { "There is no motion to lead through a corner impact" @if let Some(why) = why { ": " (why) } "." }
+            p { "There is no motion to lead through the corner impact" @if let Some(why) = why { ": " (why) } "." }
         },
     };
     Ok(Section { id: "through", title: "Through the corner impact", body })
