@@ -108,14 +108,14 @@
   element(diagram.still, "path", { class: "dot", d: dots((frame) => frame.slowing) });
   traces((frame, orbit) => diagram.at([frame.rpm, orbit.angle_deg])).forEach(({ orbit, points }) => element(diagram.still, "path", { class: kind(orbit), d: line(points) }));
 
-  // The cam as a shape: its angles run clockwise from the follower above as it turns.
+  // The cam as a shape: it turns anticlockwise, as in the figures, and its next angles come up from the right.
   const middle = [WIDTH / 2, HEIGHT - 118];
   const scale = 112 / data.drawn_radius_m;
   const shape = element(get("shape"), "svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": "The cam turned to the impact, with the follower on it" });
   const placed = (angle, height, shown) => {
     const turn = ((angle - shown) * Math.PI) / 180;
     const radius = (height + data.drawn_on_m) * scale;
-    return [middle[0] - radius * Math.sin(turn), middle[1] - radius * Math.cos(turn)];
+    return [middle[0] + radius * Math.sin(turn), middle[1] - radius * Math.cos(turn)];
   };
   const cam = element(shape, "g", {});
   const lifted = (angle) => data.cam.reduce((best, point) => (Math.abs(point[0] - angle) < Math.abs(best[0] - angle) ? point : best))[1];
@@ -135,10 +135,10 @@
     const main = frame.orbits.find((orbit) => orbit.stable) || frame.orbits[0];
     const shown = main ? main.angle_deg : frame.slowing.impacts_deg[0];
     if (shown === undefined) return;
-    cam.setAttribute("transform", `rotate(${pixel(shown)} ${middle[0]} ${middle[1]})`);
+    cam.setAttribute("transform", `rotate(${-pixel(shown)} ${middle[0]} ${middle[1]})`);
     cam.querySelectorAll("text").forEach((text) => {
       const [x, y] = text.dataset.at.split(" ");
-      text.setAttribute("transform", `rotate(${-pixel(shown)} ${x} ${y})`);
+      text.setAttribute("transform", `rotate(${pixel(shown)} ${x} ${y})`);
     });
     const tip = placed(shown, main ? main.position_m : lifted(shown), shown);
     element(onCam, "path", { class: "rod", d: `M${pixel(tip[0])} ${pixel(tip[1] - 3)}V14` });
