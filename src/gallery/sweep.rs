@@ -16,7 +16,7 @@ struct Effort {
 
 /// A follower that chatters has forgotten its start once it has come to rest.
 const SLOW: Effort = Effort { speeds: 800, transient: 40, record: 5 };
-const FAST: Effort = Effort { speeds: 720, transient: 400, record: 150 };
+const FAST: Effort = Effort { speeds: 480, transient: 300, record: 150 };
 
 /// A piece of a branch at the section: one crossing of the orbits along it.
 #[derive(Clone, Debug, PartialEq)]

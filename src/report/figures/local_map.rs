@@ -6,7 +6,7 @@ use crate::report::figure::{Axis, Beside, Colour, Data, Figure, Mark, Series, St
 
 /// Changes of the period in a unit that makes them some tens or hundreds.
 fn unit(reach: f64) -> (&'static str, f64) {
-    if reach < 1e-3 { ("µs", 1e6) } else { ("ms", 1e3) }
+    if reach * 1e3 < 1.0 { ("µs", 1e6) } else { ("ms", 1e3) }
 }
 
 /// How much of the height of a panel the lower of two rays with slopes of another size takes, at least.
