@@ -195,7 +195,8 @@ fn commands_and_options_that_are_named_exist() {
         match words.next() {
             Some("corner-impact") => {
                 let Some(subcommand) = words.next().filter(|word| !word.starts_with('-')) else { continue };
-                if matches!(subcommand, "COMMAND" | "help") {
+                // A name in capitals stands for any.
+                if subcommand == "help" || subcommand.chars().all(|c| c.is_ascii_uppercase()) {
                     continue;
                 }
                 assert!(known.iter().any(|name| name == subcommand), "{place}: `{code}`");
