@@ -1,7 +1,7 @@
 //! A browser spoken to over its DevTools protocol: one page, its console, its requests, its hands.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Write};
 use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -38,12 +38,9 @@ impl Page {
     /// Opens a file from disk in a browser that starts for it; `None`, said plainly, where there is none.
     pub fn open(file: &Path) -> Option<Self> {
         let Some(program) = found() else {
-            eprintln!(
-                "SKIPPED: no Chromium on this machine, so the page was not opened ({VARIABLE} names another browser)"
-            );
-            println!(
-                "SKIPPED: no Chromium on this machine, so the page was not opened ({VARIABLE} names another browser)"
-            );
+            // Past what the test harness keeps to itself of a test that passes.
+            let words = "SKIPPED: no Chromium on this machine, so the page was not opened";
+            let _ = writeln!(std::io::stderr(), "{words} ({VARIABLE} names another browser)");
             return None;
         };
         let mut page = Self::start(&program);
