@@ -136,30 +136,6 @@ fn subcommands() -> Vec<String> {
     found
 }
 
-#[test]
-fn every_example_of_the_help_runs() {
-    let folder = run::folder(root());
-    let mut examples = Vec::new();
-    for subcommand in subcommands() {
-        let help = run(root(), root(), &format!("corner-impact {subcommand} --help"));
-        let text = help.replace("\\\n", " ");
-        let of_this = |line: &str| {
-            let line = line.trim().trim_start_matches("Example: ").trim_start_matches("Examples: ");
-            let command = line.split("   ").next().unwrap();
-            command.starts_with(&format!("corner-impact {subcommand}")).then(|| command.to_owned())
-        };
-        let found: Vec<String> = text.lines().filter_map(of_this).collect();
-        assert!(!found.is_empty(), "{subcommand} --help has no example:\n{help}");
-        examples.extend(found);
-    }
-    let failed = |example: &String| {
-        let printed = run(root(), folder.path(), example);
-        printed.starts_with("? ").then(|| format!("$ {example}\n{printed}"))
-    };
-    let failures: Vec<String> = examples.par_iter().filter_map(failed).collect();
-    assert!(failures.is_empty(), "{}", failures.join("\n"));
-}
-
 /// The text of the pages, and of the comments in the program, with the place of each piece of inline code.
 fn inline_code() -> Vec<(String, String)> {
     let mut found = Vec::new();

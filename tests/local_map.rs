@@ -16,7 +16,7 @@ use corner_impact::cam::Side;
 use corner_impact::diagram::growth;
 use corner_impact::flight::State;
 use corner_impact::model::Model;
-use corner_impact::report::{Verification, text};
+use corner_impact::report::Verification;
 use corner_impact::section::StroboscopicMap;
 use corner_impact::simulate::Machine;
 use corner_impact::verify::{External, Findings, verify};
@@ -213,7 +213,7 @@ fn sticking_is_refused_with_its_reason() {
     let found = verify(&plastic, External::LeftOut).unwrap();
     assert!(matches!(found.refusal, Some(Refusal::Sticking { .. })), "{:?}", found.refusal);
     assert!(found.classification.is_none() && found.outcomes.is_empty() && found.ranges.is_empty());
-    let page = text::render(&Verification::new(&plastic, &found)).unwrap();
+    let page = Verification::new(&plastic, &found).text().unwrap();
     assert!(page.contains("verdict             none") && page.contains("sticking: next to the corner"), "{page}");
 }
 
@@ -297,7 +297,7 @@ fn a_degenerate_case_has_no_verdict_but_a_reason() {
     (found.outcomes, found.ranges) = (Vec::new(), Vec::new());
     let document = Verification::new(&model, &found);
     assert_eq!(document.refusal.as_deref(), Some("degenerate: the determinant of I - A is 1e-17, zero to rounding"));
-    let page = text::render(&document).unwrap();
+    let page = document.text().unwrap();
     assert!(page.contains("degenerate: the determinant of I - A is 1e-17") && page.contains("11 of 12 hold"), "{page}");
     assert!(page.contains("  fails               det(I - A-) ="), "{page}");
     assert!(!page.contains("nonsmooth-fold") && !page.contains("How far it holds"), "{page}");

@@ -17,8 +17,8 @@ use crate::verify::External;
     \x20 corner-impact report models/damped-light.toml --out page.html\n\
     \x20 corner-impact report models/osorio-2008.toml --no-external --json\n\
     \n\
-    The page needs no network and no other file; its name is printed. A model without a corner impact has a page too, which\n\
-    says why there is none.\n\
+    The page needs no network and no other file; its name is printed. A model without a corner impact has\n\
+    a page, too, which says why there is none.\n\
     Exit code: 0 everything checked agrees, 1 something disagrees, 2 bad model file, usage or file.")]
 pub(super) struct Arguments {
     #[command(flatten)]

@@ -1,7 +1,7 @@
 //! `corner-impact verify [MODEL]`.
 
 use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
-use crate::report::{Verification, json, text};
+use crate::report::{Verification, json};
 use crate::verify::{External, verify_watched};
 
 /// Finds the corner impact of a model, computes its map by every route, and says whether they agree.
@@ -37,7 +37,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let page = if arguments.json {
         json::render(&document).map_err(CommandError::report)?
     } else {
-        session.shown(&text::page(&document, session.width()).map_err(CommandError::report)?)
+        session.shown(&document.page(session.width()).map_err(CommandError::report)?)
     };
     session.print(&page)?;
     Ok(if document.agrees { Exit::Agrees } else { Exit::Disagrees })

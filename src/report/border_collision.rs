@@ -3,7 +3,7 @@
 use nalgebra::RowVector2;
 use serde::Serialize;
 
-use super::document::{EigenvalueEntry, Sides, rows};
+use super::verification::{EigenvalueEntry, Sides, rows};
 use crate::border_collision::conditions::Condition;
 use crate::border_collision::local_map::PeriodicOrbit;
 use crate::border_collision::long_run::End;

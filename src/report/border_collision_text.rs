@@ -3,8 +3,8 @@
 use std::fmt::{self, Write};
 
 use super::border_collision::{EndEntry, OutcomeEntry, RangeEntry};
-use super::document::Verification;
 use super::page::Page;
+use super::verification::Verification;
 
 /// Where the second column begins.
 const COLUMN: usize = 22;

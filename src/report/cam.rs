@@ -4,8 +4,7 @@ use std::fmt::{self, Write};
 
 use serde::Serialize;
 
-use super::page::{Cell, Column, Page, Table, WIDTH};
-use super::text::significant;
+use super::page::{Cell, Column, Page, Table, WIDTH, significant};
 use crate::cam::{Cam, Corner, Jet, Segment};
 use crate::model::Model;
 

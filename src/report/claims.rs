@@ -4,8 +4,7 @@ use std::fmt::{self, Write};
 
 use serde::Serialize;
 
-use super::page::{Mark, Page, WIDTH};
-use super::text::mark;
+use super::page::{Mark, Page, WIDTH, mark};
 use crate::claims::Held;
 
 /// What `claims` found; serializes to the document `corner-impact/claims/1`.

@@ -5,12 +5,12 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use serde::Serialize;
 
 use super::command::command;
-use super::document::{AgreementEntry, SideEntry, Verification};
 use super::figures::corner_marks;
 use super::plates::{Plate, plates};
 use super::quantities::{Quantity, quantities};
 use super::regimes::RegimesDocument;
 use super::through::ThroughEntry;
+use super::verification::{AgreementEntry, SideEntry, Verification};
 use super::{CamDocument, ClaimsDocument};
 use crate::agreement::shared_decimals;
 use crate::cam::{Cam, Jet};
@@ -301,7 +301,8 @@ impl Headline {
 
 impl MapTable {
     fn new(found: &Verification, side: &'static str) -> Self {
-        let of = |entry: &super::document::RouteEntry| if side == "minus" { entry.map.minus } else { entry.map.plus };
+        let of =
+            |entry: &super::verification::RouteEntry| if side == "minus" { entry.map.minus } else { entry.map.plus };
         let sides: Vec<[f64; 6]> = found
             .routes
             .values()

@@ -5,9 +5,8 @@ use std::fmt::{self, Write};
 use serde::Serialize;
 
 use super::border_collision::ClassificationEntry;
-use super::document::{AgreementEntry, SideEntry, SkippedEntry};
-use super::page::{Cell, Column, Mark, Page, Table, WIDTH};
-use super::text::significant;
+use super::page::{Cell, Column, Mark, Page, Table, WIDTH, significant};
+use super::verification::{AgreementEntry, SideEntry, SkippedEntry};
 use crate::cam::Side;
 use crate::corner::candidates::MOST_IMPACTS;
 use crate::corner::locate::Rejected;

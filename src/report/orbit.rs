@@ -4,8 +4,8 @@ use std::fmt::{self, Write};
 
 use serde::Serialize;
 
-use super::document::EigenvalueEntry;
 use super::page::{Mark, Page, WIDTH};
+use super::verification::EigenvalueEntry;
 use crate::orbit::{Course, Eigenvalue, PeriodicOrbit};
 use crate::simulate::Event;
 

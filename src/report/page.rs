@@ -331,3 +331,24 @@ impl<const N: usize> Table<N> {
         Ok(())
     }
 }
+
+/// What a verdict's name is.
+pub(super) fn mark(verdict: &str) -> Mark {
+    match verdict {
+        "holds" => Mark::Good,
+        "misprint" => Mark::Doubtful,
+        "refuted" => Mark::Bad,
+        _ => Mark::Open,
+    }
+}
+
+/// A number with so many significant digits, without trailing zeros.
+pub(super) fn significant(value: f64, digits: usize) -> String {
+    if !value.is_finite() || value == 0.0 {
+        return format!("{value:.0}");
+    }
+    let places = (digits as f64 - 1.0 - value.abs().log10().floor()).clamp(0.0, digits as f64) as usize;
+    let text = format!("{value:.places$}");
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    if text.trim_matches(['-', '0', '.']).is_empty() { "0".into() } else { text.into() }
+}

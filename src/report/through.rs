@@ -5,10 +5,10 @@ use std::collections::BTreeSet;
 
 use serde::Serialize;
 
-use super::document::EigenvalueEntry;
 use super::figure::Spacing;
 use super::figure::ticks::{ticks, unit};
 use super::figures::CornerMark;
+use super::verification::EigenvalueEntry;
 use crate::gallery::ThroughCorner;
 use crate::gallery::through_corner::{Moment, Place, Run, Shown};
 

@@ -93,10 +93,8 @@ pub fn run(root: &Path, folder: &Path, command: &str) -> String {
     let program = Path::new(env!("CARGO_BIN_EXE_corner-impact"));
     let path = std::env::var_os("PATH").unwrap_or_default();
     let path = [program.parent().unwrap().to_path_buf()].into_iter().chain(std::env::split_paths(&path));
-    // Examples are the project's, wherever the folder is, and in this test's profile: they are compiled already.
-    let profile = if cfg!(debug_assertions) { "dev" } else { "release" };
-    let manifest =
-        format!("cargo run --quiet --locked --profile {profile} --manifest-path {}/Cargo.toml ", root.display());
+    // Examples are the project's, wherever the folder is.
+    let manifest = format!("cargo run --quiet --locked --manifest-path {}/Cargo.toml ", root.display());
     let output = Command::new("sh")
         .args(["-c", &format!("{{ {}\n}} 2>&1", command.replace("cargo run ", &manifest))])
         .current_dir(folder)

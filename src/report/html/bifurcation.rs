@@ -5,8 +5,8 @@ use maud::{Markup, html};
 use super::numbers::{complex, fixed, matrix, number, size, symbol};
 use super::{Section, wide};
 use crate::report::border_collision::{ClassificationEntry, EndEntry, NormalFormEntry, OutcomeEntry, RangeEntry};
-use crate::report::document::Verification;
 use crate::report::dossier::Dossier;
+use crate::report::verification::Verification;
 
 pub(super) fn section(dossier: &Dossier) -> Option<Section> {
     let found = dossier.verification.as_ref()?;

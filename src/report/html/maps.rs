@@ -4,8 +4,8 @@ use maud::{Markup, html};
 
 use super::numbers::{entry, number, quantity, shared, signed, size};
 use super::{Section, wide};
-use crate::report::document::Verification;
 use crate::report::dossier::{Dossier, MapTable, spoken};
+use crate::report::verification::Verification;
 
 pub(super) fn section(dossier: &Dossier) -> Option<Section> {
     let found = dossier.verification.as_ref()?;
@@ -109,7 +109,7 @@ fn uncertainties(found: &Verification) -> Markup {
     }
 }
 
-fn errors(sides: &crate::report::document::Sides<crate::report::document::SideEntry>) -> Markup {
+fn errors(sides: &crate::report::verification::Sides<crate::report::verification::SideEntry>) -> Markup {
     wide(
         "Errors of the entries",
         &html! {

@@ -2,8 +2,8 @@
 
 use maud::{Markup, PreEscaped, Render, html};
 
-use crate::report::document::EigenvalueEntry;
-use crate::report::text::significant;
+use crate::report::page::significant;
+use crate::report::verification::EigenvalueEntry;
 use crate::tolerance;
 
 /// A minus that is as wide as a plus.

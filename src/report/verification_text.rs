@@ -1,29 +1,31 @@
-//! The document as one page of text for a terminal.
+//! The document of a verification as one page of text for a terminal.
 
 use std::fmt::{self, Write};
 
 use super::border_collision_text;
-use super::document::{AgreementEntry, PublishedEntry, SideEntry, Sides, Verification};
-use super::page::{Cell, Column, Mark, Page, Table, WIDTH};
+use super::page::{Cell, Column, Mark, Page, Table, WIDTH, mark, significant};
+use super::verification::{AgreementEntry, EigenvalueEntry, PublishedEntry, SideEntry, Sides, Verification};
 use crate::agreement::{shared_decimals, worse};
 
-/// The verify page, as wide as where nothing says how wide, without marks.
-pub fn render(document: &Verification) -> Result<String, fmt::Error> {
-    Ok(page(document, WIDTH)?.plain().to_owned())
-}
+impl Verification {
+    /// The page, as wide as where nothing says how wide, without marks.
+    pub fn text(&self) -> Result<String, fmt::Error> {
+        Ok(self.page(WIDTH)?.plain().to_owned())
+    }
 
-/// The verify page, in `width` columns.
-pub fn page(document: &Verification, width: usize) -> Result<Page, fmt::Error> {
-    let mut page = Page::new(width);
-    let out = &mut page;
-    orbit(out, document)?;
-    map(out, document)?;
-    agreement(out, document)?;
-    bifurcation(out, document)?;
-    border_collision_text::local_map(out, document)?;
-    published(out, document)?;
-    verdict(out, document)?;
-    Ok(page)
+    /// The page, in `width` columns.
+    pub fn page(&self, width: usize) -> Result<Page, fmt::Error> {
+        let mut page = Page::new(width);
+        let out = &mut page;
+        orbit(out, self)?;
+        map(out, self)?;
+        agreement(out, self)?;
+        bifurcation(out, self)?;
+        border_collision_text::local_map(out, self)?;
+        published(out, self)?;
+        verdict(out, self)?;
+        Ok(page)
+    }
 }
 
 fn orbit(out: &mut Page, document: &Verification) -> fmt::Result {
@@ -229,7 +231,7 @@ fn share(diff: f64) -> String {
 
 fn bifurcation(out: &mut Page, document: &Verification) -> fmt::Result {
     out.heading("What happens there")?;
-    let eigenvalues = |pair: &[super::document::EigenvalueEntry; 2]| {
+    let eigenvalues = |pair: &[EigenvalueEntry; 2]| {
         let one = |re: f64, im: f64| {
             if im == 0.0 {
                 format!("{re:.9}")
@@ -380,32 +382,11 @@ fn verdict(out: &mut Page, document: &Verification) -> fmt::Result {
     writeln!(out, ": {reason}")
 }
 
-/// What a verdict's name is.
-pub(super) fn mark(verdict: &str) -> Mark {
-    match verdict {
-        "holds" => Mark::Good,
-        "misprint" => Mark::Doubtful,
-        "refuted" => Mark::Bad,
-        _ => Mark::Open,
-    }
-}
-
 /// Nine decimals, without trailing zeros.
 fn entry(value: f64) -> String {
     let text = format!("{value:.9}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" { "0".into() } else { text.into() }
-}
-
-/// `significant` digits, without trailing zeros.
-pub(super) fn significant(value: f64, digits: usize) -> String {
-    if !value.is_finite() || value == 0.0 {
-        return format!("{value:.0}");
-    }
-    let places = (digits as f64 - 1.0 - value.abs().log10().floor()).clamp(0.0, digits as f64) as usize;
-    let text = format!("{value:.places$}");
-    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-    if text.trim_matches(['-', '0', '.']).is_empty() { "0".into() } else { text.into() }
 }
 
 /// A route's name as words.
