@@ -7,12 +7,13 @@ use std::path::{Path, PathBuf};
 use approx::assert_relative_eq;
 use corner_impact::cam::Side;
 use corner_impact::flight::State;
-use corner_impact::gallery::{Outline, Subject};
+use corner_impact::gallery::{Effort, Outline, Subject};
 use corner_impact::model::{Model, OSORIO_2008};
 use corner_impact::report::figure::layout::Layout;
 use corner_impact::report::figure::{Data, Figure, svg};
 use corner_impact::report::plates::{Plate, listed, plate, plates};
 use corner_impact::simulate::EventKind;
+use rayon::prelude::*;
 
 /// An independent computation's values for the paper's model.
 const THETA_P: f64 = 2.62112450116623235;
@@ -36,7 +37,7 @@ fn points(data: &Data) -> &[[f64; 2]] {
     match data {
         Data::Line { points, .. } | Data::Area { points, .. } | Data::Arrow { points, .. } => points,
         Data::Points { points, .. } => points,
-        Data::Words(_) | Data::Density(_) | Data::Region(_) => &[],
+        Data::Words(_) | Data::Density(_) | Data::Region { .. } => &[],
     }
 }
 
@@ -59,7 +60,7 @@ fn check(plate: &Plate) {
                 let across = (layout.range[0]..=layout.range[1]).contains(x);
                 seen |= across && (place.range[0]..=place.range[1]).contains(y);
             }
-            if let Data::Density(density) | Data::Region(density) = &series.data {
+            if let Data::Density(density) | Data::Region { cells: density, .. } = &series.data {
                 seen |= density.occupied() > 0;
             }
             if let Data::Words(words) = &series.data {
@@ -132,9 +133,12 @@ fn every_model_has_its_figures_or_a_reason() {
     let mut files = Vec::new();
     models(&Path::new(env!("CARGO_MANIFEST_DIR")).join("models"), &mut files);
     assert!(files.len() >= 15, "{files:?}");
-    for file in files {
-        let model = Model::read(&file).unwrap();
-        let subject = Subject::new(&model).unwrap();
+    files.par_iter().for_each(|file| {
+        let model = Model::read(file).unwrap();
+        let mut subject = Subject::new(&model).unwrap();
+        // Whether there is a figure, and one that can be read, does not depend on how fine the sweeps are.
+        subject.slow_effort.speeds = 80;
+        subject.fast_effort = Effort { speeds: 60, transient: 100, record: 30 };
         let plates = plates(&subject, &mut |_, _| {});
         for plate in &plates {
             assert_eq!(plate.figure.is_none(), plate.absent.is_some(), "{}: {}", file.display(), plate.id);
@@ -149,7 +153,7 @@ fn every_model_has_its_figures_or_a_reason() {
         for id in ["corner-orbit", "fast-impacts", "composition", "local-map"] {
             assert_eq!(drawn(id), subject.found().is_ok(), "{}: {id}", file.display());
         }
-    }
+    });
 }
 
 /// Without gravity a stiffness four times as large doubles every speed.
@@ -221,7 +225,7 @@ fn the_orbit_at_the_corner_is_the_papers() {
         assert_relative_eq!(sample.state.velocity, 0.0, epsilon = 1e-8);
     }
     let figure = drawn(&subject, "corner-orbit");
-    let [impact] = series(&figure, 0, "impact")[..] else { panic!("not one impact") };
+    let [impact] = series(&figure, 0, "impact at the corner P")[..] else { panic!("not one impact") };
     assert_relative_eq!(impact[0], 0.5, epsilon = 1e-10);
     assert_relative_eq!(impact[1], LIFT_P, epsilon = 1e-10);
 }
