@@ -1,4 +1,4 @@
-# The two commands that most people need are `make verify` and `make test`; both set up what they use.
+# Most people need `make verify` and `make report`, and who changes something `make test`; all set up what they use.
 
 MODEL ?= models/osorio-2008.toml
 CARGO ?= cargo

@@ -13,6 +13,8 @@ use corner_impact::gallery::through_corner::{Moment, Place, Shown, through_corne
 use corner_impact::model::{Model, OSORIO_2008};
 use corner_impact::orbit::eigenvalues;
 use corner_impact::progress::Unwatched;
+use corner_impact::report::figures::corner_marks;
+use corner_impact::report::through::ThroughEntry;
 use corner_impact::report::{Dossier, html};
 use corner_impact::section::StroboscopicMap;
 use corner_impact::simulate::{Machine, angular_velocity};
@@ -165,10 +167,11 @@ fn a_models_name_is_text_whatever_it_holds() {
     let evil = "</script><script>alert(1)</script><img src=x onerror=alert(2)> \\\" & 'x'";
     let text = OSORIO_2008.replacen("name = \"osorio-2008\"", &format!("name = \"{evil}\""), 1);
     let text = text.replacen("source = \"\"\"", &format!("source = \"\"\"{} ", evil.replace("\\\"", "'")), 1);
-    let text = text.lines().take_while(|line| !line.starts_with("[study]")).collect::<Vec<_>>().join("\n");
     let model = Model::parse("<b>evil</b>.toml", &text).unwrap();
     assert!(model.name.contains("<script>"));
-    let page = html::render(&Dossier::of(&model, External::LeftOut, &Unwatched).unwrap()).unwrap();
+    let dossier = Dossier::of(&model, External::LeftOut, &Unwatched).unwrap();
+    assert!(dossier.through.is_some() && dossier.claims.is_some());
+    let page = html::render(&dossier).unwrap();
     for raw in ["<script>alert", "<img src=x", "<b>evil"] {
         assert!(!page.contains(raw), "{raw}");
     }
@@ -247,10 +250,12 @@ fn the_command_says_what_it_cannot_do() {
 /// The orbits next to the corner impact are those that Feigin's classification counts, for every model that has one.
 #[test]
 fn orbits_on_either_side_are_those_of_the_classification() {
+    let mut checked = 0;
     for file in common::model_files() {
         let model = common::read(&file);
         let findings = verify(&model, External::LeftOut).unwrap();
         let Some(kind) = &findings.classification else { continue };
+        checked += 1;
         let cam = common::cam(&model);
         let through = through_corner(&model, &cam, &findings.at).unwrap().unwrap();
         let [slower, faster] = [&through.moments[through.at_corner - 1], &through.moments[through.at_corner + 1]];
@@ -277,6 +282,65 @@ fn orbits_on_either_side_are_those_of_the_classification() {
             }
         }
     }
+    assert!(checked >= 8, "{checked}");
+}
+
+/// A machine ten thousand times smaller has the same slider, in its own numbers.
+#[test]
+fn the_slider_shows_a_machine_of_any_size() {
+    const SMALLER: f64 = 1e-4;
+    let lengths = ["follower.rest_position", "cam.base_radius", "cam.flank_radius", "cam.nose_radius"];
+    let model = common::osorio();
+    let mut small = model.clone();
+    for name in lengths {
+        let length = model.numbers().find(|(path, _)| *path == name).unwrap().1;
+        small = small.with_number(name, SMALLER * length).unwrap();
+    }
+    let shown = |model: &Model| {
+        let (cam, at) = (common::cam(model), verify(model, External::LeftOut).unwrap().at);
+        let through = through_corner(model, &cam, &at).unwrap().unwrap();
+        ThroughEntry::new(&through, at.corner.angle, &corner_marks(&cam)).unwrap()
+    };
+    let (large, small) = (shown(&model), shown(&small));
+    assert_eq!((large.corner.as_str(), small.corner.as_str()), ("P", "P"));
+    assert_eq!(large.cam.len(), small.cam.len());
+    // Half a step of the fifth digit of the travel, and as much of the other's.
+    let near = |one: f64, other: f64, extent: f64| (SMALLER * one - other).abs() <= SMALLER * extent * 1.1e-4;
+    for (one, other) in large.cam.iter().zip(&small.cam) {
+        assert!(near(one[1], other[1], 0.154) && near(one[2], other[2], 2.2), "{one:?} {other:?}");
+    }
+    let speeds: Vec<f64> = large.frames.iter().map(|frame| frame.rpm).collect();
+    assert!(speeds.windows(2).all(|pair| pair[0] < pair[1]), "{speeds:?}");
+    for (one, other) in large.frames.iter().zip(&small.frames) {
+        assert_eq!(one.orbits.len(), other.orbits.len());
+        for (one, other) in one.orbits.iter().zip(&other.orbits) {
+            assert!(near(one.velocity_before_m_s, other.velocity_before_m_s, 200.0), "{one:?} {other:?}");
+            assert!(other.path.iter().all(|[_, position]| *position > 0.0));
+        }
+    }
+    for axes in [&large.axes, &small.axes] {
+        for axis in [&axes.position, &axes.acceleration, &axes.speed, &axes.near] {
+            assert!(axis.range[0] < axis.range[1] && !axis.ticks.is_empty(), "{axis:?}");
+        }
+    }
+}
+
+/// Two digits of a small number are two, with and without a power of ten.
+#[test]
+fn sizes_have_two_digits() {
+    let mut dossier = papers().0.clone();
+    let pairs = &mut dossier.verification.as_mut().unwrap().agreement;
+    let sizes =
+        [(0.0149, "0.015"), (0.0251, "0.025"), (0.5, "0.5"), (1.2345e-4, "1.2\u{202f}×\u{202f}10<sup>\u{2212}4</sup>")];
+    for (pair, (size, _)) in pairs.iter_mut().zip(sizes) {
+        pair.max_abs_diff = size;
+    }
+    pairs[4].max_abs_diff = f64::NAN;
+    let page = html::render(&dossier).unwrap();
+    for (size, text) in sizes {
+        assert!(page.contains(&format!("<data value=\"{size}\">{text}</data>")), "{size} as {text}");
+    }
+    assert!(page.contains("NaN") && !page.contains("NaN\u{202f}×"));
 }
 
 /// Drawn orbits and multipliers against the simulator, which knows neither.

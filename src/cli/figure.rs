@@ -77,8 +77,9 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
             // Opened before the work: a name that cannot be is told at once.
             let mut nobody = std::io::sink();
             let canvas = arguments.out.as_ref().map(|path| picture::Canvas::create(path, &mut nobody)).transpose()?;
-            let Some(plate) = plate(&subject, id) else { return Ok(Exit::BadInput) };
-            if let (Some(why), false) = (&plate.absent, arguments.json) {
+            let plate = plate(&subject, id).ok_or_else(|| CommandError::Input(format!("no figure called \"{id}\"")))?;
+            // A document says why there is none; a file cannot.
+            if let (Some(why), true) = (&plate.absent, arguments.out.is_some() || !arguments.json) {
                 return Err(CommandError::Input(format!("{}: no figure {id}: {why}", model.file())));
             }
             if let Some((canvas, figure)) = canvas.zip(plate.figure.as_ref()) {

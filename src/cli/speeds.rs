@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::start::range;
 use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
-use crate::regime::{Care, regimes};
+use crate::regime::{Care, regimes, usual_speeds};
 use crate::report::{RegimesDocument, json};
 
 /// Tells at which speeds the follower leaves the cam, chatters, bounces regularly, is chaotic, and where hysteresis is.
@@ -18,7 +18,7 @@ use crate::report::{RegimesDocument, json};
 pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
-    /// Lowest and highest speed [default: 50 rpm to the end of the model's [study], or 1000].
+    /// Lowest and highest speed [default: up to the end of the model's [study], or 1000 rpm, from a twentieth of that].
     #[arg(long, value_name = "LO:HI", value_parser = range, allow_hyphen_values = true)]
     rpm: Option<[f64; 2]>,
     /// Speeds that are run.
@@ -34,7 +34,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let model = arguments.model.read(session)?;
-    let rpm = arguments.rpm.unwrap_or_else(|| [50.0, model.study.map_or(1000.0, |study| study.rpm_max.max(100.0))]);
+    let rpm = arguments.rpm.unwrap_or_else(|| usual_speeds(&model));
     let care = Care { speeds: arguments.speeds as usize, settling: arguments.settling, ..Care::default() };
     let (progress, done) = (Progress::new(2 * u64::from(arguments.speeds)), AtomicU64::new(0));
     let passed = || progress.set(done.fetch_add(1, Ordering::Relaxed) + 1);

@@ -8,7 +8,7 @@ use crate::cam::Cam;
 use crate::corner::CornerImpact;
 use crate::model::{Model, ModelError};
 use crate::orbit::branch::Branch;
-use crate::regime::detachment;
+use crate::regime::{detachment, usual_speeds};
 use crate::verify::{External, Findings, verify};
 
 /// A model and what is shown of it.
@@ -112,7 +112,7 @@ impl Subject {
     pub fn with(model: &Model, findings: Result<Findings, String>) -> Result<Self, ModelError> {
         let cam = Cam::new(model)?;
         let paper = model.is_the_papers()?;
-        let fastest = model.study.map_or(1000.0, |study| study.rpm_max);
+        let [_, fastest] = usual_speeds(model);
         let slow = if paper {
             Ok(Shown::PAPERS.0)
         } else {

@@ -6,6 +6,7 @@ use std::ops::ControlFlow;
 
 use rayon::prelude::*;
 
+use super::Outline;
 use crate::cam::{Cam, Lift};
 use crate::corner::CornerImpact;
 use crate::model::Model;
@@ -31,6 +32,8 @@ const CAM_SAMPLES: usize = 1440;
 pub struct ThroughCorner {
     /// The cam, four times a degree and on both sides of every corner: angle, rad, and lift with its derivatives.
     pub cam: Vec<(f64, Lift)>,
+    /// Added to the lift where the cam is drawn as a shape, m: as in its [`Outline`].
+    pub drawn_on: f64,
     /// By rising speed; the one at the corner impact among them.
     pub moments: Vec<Moment>,
     /// Index of the moment at the corner impact.
@@ -124,7 +127,7 @@ pub fn through_corner(model: &Model, cam: &Cam, at: &CornerImpact) -> Result<Opt
     let found = speeds.iter().zip(orbits?).zip(slowing.zip(speeding));
     let moments =
         found.map(|((rpm, orbits), (slowing, speeding))| Moment { rpm: *rpm, orbits, slowing, speeding }).collect();
-    Ok(Some(ThroughCorner { cam: profile(cam), moments, at_corner }))
+    Ok(Some(ThroughCorner { cam: profile(cam), drawn_on: Outline::new(cam).added, moments, at_corner }))
 }
 
 /// The speeds, rpm, rising, densest at the corner impact, and the index of that.

@@ -159,6 +159,12 @@ pub enum RegimeError {
     Orbit(#[from] OrbitError),
 }
 
+/// The speeds to walk through where none are named, rpm: up to the fastest of `[study]`, or 1000, from a twentieth of that.
+pub fn usual_speeds(model: &Model) -> [f64; 2] {
+    let fastest = model.study.map_or(1000.0, |study| study.rpm_max);
+    [0.05 * fastest, fastest]
+}
+
 /// Walks through `rpm` upwards and downwards; `passed` is called after each speed of either walk.
 pub fn regimes(model: &Model, rpm: [f64; 2], care: Care, passed: &(dyn Fn() + Sync)) -> Result<Regimes, RegimeError> {
     let machine = walk::machine(model)?;

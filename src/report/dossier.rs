@@ -18,7 +18,7 @@ use crate::claims::{Context, LedgerError, hold_watched};
 use crate::gallery::{Subject, through_corner};
 use crate::model::{Model, ModelError};
 use crate::progress::Watch;
-use crate::regime::{Care, regimes};
+use crate::regime::{Care, regimes, usual_speeds};
 use crate::verify::{External, Findings, verify_watched};
 
 /// A report on one model; serializes to the document `corner-impact/report/1`.
@@ -178,7 +178,9 @@ impl Dossier {
         let marks = corner_marks(&cam);
         let through = match &findings {
             Ok(found) => match through_corner(model, &cam, &found.at) {
-                Ok(Some(through)) => Ok(ThroughEntry::new(&through, found.at.corner.angle, &marks)),
+                Ok(Some(through)) => {
+                    ThroughEntry::new(&through, found.at.corner.angle, &marks).map_err(|error| error.to_string())
+                }
                 Ok(None) => Err("the corner impact is not one of an orbit with one impact a revolution".to_owned()),
                 Err(error) => Err(format!("a run cannot go on: {error}")),
             },
@@ -240,16 +242,15 @@ impl Watch for Part<'_> {
     }
 }
 
-/// What the follower does from well below its corner impact on, or why that is not known.
+/// What the follower does at its usual speeds, or why that is not known.
 fn speeds(model: &Model, watch: &dyn Watch) -> Result<RegimesDocument, String> {
-    let fastest = model.study.map_or(1000.0, |study| study.rpm_max);
     let care = Care { speeds: SPEEDS, ..Care::default() };
     let done = AtomicUsize::new(0);
     let passed = || {
         let done = done.fetch_add(1, Ordering::Relaxed) + 1;
         watch.at("other speeds", done as u64, 2 * SPEEDS as u64);
     };
-    let found = regimes(model, [0.05 * fastest, fastest], care, &passed).map_err(|error| error.to_string())?;
+    let found = regimes(model, usual_speeds(model), care, &passed).map_err(|error| error.to_string())?;
     Ok(RegimesDocument::new(&model.name, &found))
 }
 

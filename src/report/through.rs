@@ -11,10 +11,21 @@ use super::figures::CornerMark;
 use super::verification::EigenvalueEntry;
 use crate::gallery::ThroughCorner;
 use crate::gallery::through_corner::{Moment, Place, Run, Shown};
+use crate::simulate::Event;
+
+/// Why there is nothing to show.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("at {rpm} rpm a number of the motion is not finite")]
+pub struct NotFinite {
+    /// The speed.
+    pub rpm: f64,
+}
 
 /// What the slider shows.
 #[derive(Clone, Debug, Serialize)]
 pub struct ThroughEntry {
+    /// How finely its numbers are told.
+    pub places: Places,
     /// Letter of the corner, or its angle.
     pub corner: String,
     /// Its cam angle.
@@ -112,18 +123,64 @@ pub struct RunFrame {
     pub paths: Vec<Vec<[f64; 2]>>,
 }
 
-/// Places after the point of an angle in degrees, a position, a velocity, a multiplier, a speed.
+/// Places after the point of an angle in degrees, and of one that is only drawn.
 const ANGLE: i32 = 4;
-const POSITION: i32 = 4;
-const VELOCITY: i32 = 3;
-const MULTIPLIER: i32 = 6;
-const SPEED: i32 = 4;
-/// Of angles that are only drawn.
 const DRAWN_ANGLE: i32 = 1;
+/// Digits of a quantity's extent: more than a picture can show, fewer than fill a page.
+const POSITION: i32 = 5;
+const VELOCITY: i32 = 6;
+const ACCELERATION: i32 = 5;
+/// Places of a multiplier.
+const MULTIPLIER: i32 = 6;
 /// The largest part of a multiplier that the plane has room for.
 const WIDEST: f64 = 2.5;
 /// Margins of an axis, of what it shows.
 const MARGIN: f64 = 0.06;
+
+/// Places after the point: a model's unit of length is its own.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Places {
+    /// Of a speed, rpm: neighbouring frames differ.
+    pub speed: i32,
+    /// Of a position, m: by the cam's travel.
+    pub position: i32,
+    /// Of a velocity, m/s.
+    pub velocity: i32,
+    /// Of the cam's acceleration, m/rad^2.
+    pub acceleration: i32,
+    /// Of an angle, deg.
+    pub angle: i32,
+    /// Of a multiplier.
+    pub multiplier: i32,
+}
+
+impl Places {
+    fn new(through: &ThroughCorner) -> Self {
+        let span = |values: [f64; 2]| values[1] - values[0];
+        let lifts = || through.cam.iter().map(|(_, lift)| lift);
+        let impacts = through.moments.iter().flat_map(|moment| &moment.orbits).map(|orbit| &orbit.impact);
+        let fastest = impacts
+            .fold(0.0_f64, |most, impact| most.max(impact.velocity_before.abs()).max(impact.velocity_after.abs()));
+        let steps = through.moments.windows(2).map(|pair| pair[1].rpm - pair[0].rpm);
+        Self {
+            speed: of_extent(steps.fold(f64::INFINITY, f64::min), 1).max(2),
+            position: of_extent(span(extent(lifts().map(|lift| lift.value))), POSITION),
+            velocity: of_extent(fastest, VELOCITY),
+            acceleration: of_extent(span(extent(lifts().map(|lift| lift.curvature))), ACCELERATION),
+            angle: ANGLE,
+            multiplier: MULTIPLIER,
+        }
+    }
+}
+
+/// The places after the point that give the extent of a quantity so many digits.
+fn of_extent(extent: f64, digits: i32) -> i32 {
+    const MOST: i32 = 15;
+    if !(extent > 0.0 && extent.is_finite()) {
+        return digits;
+    }
+    (digits - 1 - extent.log10().floor() as i32).clamp(0, MOST)
+}
 
 fn rounded(value: f64, places: i32) -> f64 {
     let scale = 10_f64.powi(places);
@@ -131,11 +188,9 @@ fn rounded(value: f64, places: i32) -> f64 {
     (value * scale).round() / scale + 0.0
 }
 
-fn drawn([angle, position]: [f64; 2]) -> [f64; 2] {
-    [rounded(angle.to_degrees(), DRAWN_ANGLE), rounded(position, POSITION)]
-}
-
-fn path(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+fn path(points: &[[f64; 2]], places: Places) -> Vec<[f64; 2]> {
+    let drawn =
+        |[angle, position]: [f64; 2]| [rounded(angle.to_degrees(), DRAWN_ANGLE), rounded(position, places.position)];
     let mut path: Vec<[f64; 2]> = points.iter().copied().map(drawn).collect();
     path.dedup();
     path
@@ -143,54 +198,55 @@ fn path(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
 
 impl ThroughEntry {
     /// What was computed, with the labels of the cam's corners.
-    pub fn new(through: &ThroughCorner, corner: f64, marks: &[CornerMark]) -> Self {
-        let corner_deg = corner.to_degrees();
+    ///
+    /// An error where a number is not finite: the page's data have no way to write one.
+    pub fn new(through: &ThroughCorner, corner: f64, marks: &[CornerMark]) -> Result<Self, NotFinite> {
+        if let Some(moment) = through.moments.iter().find(|moment| !is_finite(moment)) {
+            return Err(NotFinite { rpm: moment.rpm });
+        }
+        let (corner_deg, places) = (corner.to_degrees(), Places::new(through));
         let frames: Vec<FrameEntry> =
-            through.moments.iter().map(|moment| FrameEntry::new(moment, corner_deg)).collect();
+            through.moments.iter().map(|moment| FrameEntry::new(moment, corner_deg, places)).collect();
         let cam: Vec<[f64; 3]> = through
             .cam
             .iter()
             .map(|(angle, lift)| {
                 let angle = rounded(angle.to_degrees(), ANGLE);
-                [angle, rounded(lift.value, POSITION + 1), rounded(lift.curvature, POSITION)]
+                [angle, rounded(lift.value, places.position), rounded(lift.curvature, places.acceleration)]
             })
             .collect();
-        let label = |mark: &CornerMark| {
-            if mark.name.is_empty() { format!("{:.1}°", mark.angle_rad.to_degrees()) } else { mark.name.clone() }
-        };
-        let named = marks
-            .iter()
-            .min_by(|one, other| (one.angle_rad - corner).abs().total_cmp(&(other.angle_rad - corner).abs()));
-        let [low, high] = extent(cam.iter().map(|point| point[1]));
-        // A shape needs a middle: where the lift leaves none, a base circle as large as the cam's travel.
-        let drawn_on_m = if low > 0.5 * (high - low) { 0.0 } else { rounded((high - low) - low, POSITION) };
-        Self {
-            corner: named.map(label).unwrap_or_default(),
+        // Not every corner has a label of its own.
+        let unnamed = CornerMark { angle_rad: corner, name: String::new() };
+        let hit = marks.iter().find(|mark| mark.angle_rad == corner).unwrap_or(&unnamed);
+        let [_, high] = extent(cam.iter().map(|point| point[1]));
+        Ok(Self {
+            places,
+            corner: hit.label(),
             corner_deg: rounded(corner_deg, ANGLE),
             at_corner: through.at_corner,
             axes: Axes::new(&frames, &cam, corner_deg),
-            drawn_on_m,
-            drawn_radius_m: rounded(high + drawn_on_m, POSITION),
-            corners: marks.iter().map(|mark| (rounded(mark.angle_rad.to_degrees(), ANGLE), label(mark))).collect(),
+            drawn_on_m: through.drawn_on,
+            drawn_radius_m: high + through.drawn_on,
+            corners: marks.iter().map(|mark| (rounded(mark.angle_rad.to_degrees(), ANGLE), mark.label())).collect(),
             cam,
             frames,
-        }
+        })
     }
 }
 
 impl FrameEntry {
-    fn new(moment: &Moment, corner_deg: f64) -> Self {
+    fn new(moment: &Moment, corner_deg: f64, places: Places) -> Self {
         Self {
-            rpm: rounded(moment.rpm, SPEED),
-            orbits: moment.orbits.iter().map(|orbit| OrbitFrame::new(orbit, corner_deg)).collect(),
-            slowing: RunFrame::new(&moment.slowing, true),
-            speeding: RunFrame::new(&moment.speeding, false),
+            rpm: rounded(moment.rpm, places.speed),
+            orbits: moment.orbits.iter().map(|orbit| OrbitFrame::new(orbit, corner_deg, places)).collect(),
+            slowing: RunFrame::new(&moment.slowing, Some(places)),
+            speeding: RunFrame::new(&moment.speeding, None),
         }
     }
 }
 
 impl OrbitFrame {
-    fn new(shown: &Shown, corner_deg: f64) -> Self {
+    fn new(shown: &Shown, corner_deg: f64, places: Places) -> Self {
         let Shown { place, impact, multipliers, stable, path: points } = shown;
         let angle = impact.cam_angle.to_degrees();
         let modulus = multipliers.iter().fold(0.0_f64, |largest, multiplier| largest.max(multiplier.modulus()));
@@ -199,15 +255,15 @@ impl OrbitFrame {
             stable: *stable,
             angle_deg: rounded(angle, ANGLE),
             from_corner_deg: rounded((angle - corner_deg + 540.0).rem_euclid(360.0) - 180.0, ANGLE),
-            position_m: rounded(impact.position, POSITION),
-            velocity_before_m_s: rounded(impact.velocity_before, VELOCITY),
-            velocity_after_m_s: rounded(impact.velocity_after, VELOCITY),
+            position_m: rounded(impact.position, places.position),
+            velocity_before_m_s: rounded(impact.velocity_before, places.velocity),
+            velocity_after_m_s: rounded(impact.velocity_after, places.velocity),
             multipliers: multipliers.map(|multiplier| EigenvalueEntry {
                 re: rounded(multiplier.re, MULTIPLIER),
                 im: rounded(multiplier.im, MULTIPLIER),
             }),
             modulus: rounded(modulus, MULTIPLIER),
-            path: path(points),
+            path: path(points, places),
         }
     }
 }
@@ -216,9 +272,11 @@ impl RunFrame {
     /// Different places of impact that are still told one by one.
     const TOLD: usize = 4;
 
-    fn new(run: &Run, paths: bool) -> Self {
-        let tenths: BTreeSet<i64> =
-            run.impacts.iter().map(|angle| (angle.to_degrees() * 10.0).round() as i64).collect();
+    /// With its paths where their places are given.
+    fn new(run: &Run, places: Option<Places>) -> Self {
+        const ROUND: i64 = 3600;
+        let tenth = |angle: &f64| ((angle.to_degrees() * 10.0).round() as i64).rem_euclid(ROUND);
+        let tenths: BTreeSet<i64> = run.impacts.iter().map(tenth).collect();
         let impacts_deg: Vec<f64> = tenths.into_iter().map(|tenth| rounded(tenth as f64 / 10.0, DRAWN_ANGLE)).collect();
         let words = match impacts_deg.as_slice() {
             [] => "no impact: it stays on the cam, or clear of it".to_owned(),
@@ -227,11 +285,28 @@ impl RunFrame {
                 let angles: Vec<String> = angles.iter().map(|angle| format!("{angle}°")).collect();
                 format!("impacts at {}", angles.join(", "))
             }
-            angles => format!("impacts at {} different angles in {} revolutions", angles.len(), run.revolutions),
+            angles => format!(
+                "impacts at {} angles, to a tenth of a degree, in {} revolutions",
+                angles.len(),
+                run.revolutions
+            ),
         };
-        let paths = if paths { run.paths.iter().map(|points| path(points)).collect() } else { Vec::new() };
+        let drawn = |places| run.paths.iter().map(|points| path(points, places)).collect();
+        let paths = places.map(drawn).unwrap_or_default();
         Self { impacts_deg, words, paths }
     }
+}
+
+fn is_finite(moment: &Moment) -> bool {
+    let orbit = |orbit: &Shown| {
+        let [one, other] = orbit.multipliers;
+        let Event { cam_angle, position, velocity_before, velocity_after, .. } = orbit.impact;
+        let numbers = [cam_angle, position, velocity_before, velocity_after, one.re, one.im, other.re, other.im];
+        numbers.iter().chain(orbit.path.iter().flatten()).all(|number| number.is_finite())
+    };
+    let run =
+        |run: &Run| run.impacts.iter().chain(run.paths.iter().flatten().flatten()).all(|number| number.is_finite());
+    moment.rpm.is_finite() && moment.orbits.iter().all(orbit) && run(&moment.slowing) && run(&moment.speeding)
 }
 
 fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
@@ -249,8 +324,9 @@ impl AxisEntry {
     }
 
     fn around([low, high]: [f64; 2], name: &str, most: usize) -> Self {
-        let margin = MARGIN * (high - low).max(f64::MIN_POSITIVE);
-        Self::over([rounded(low - margin, POSITION), rounded(high + margin, POSITION)], name, Spacing::Decimal, most)
+        // What is the same all over still has room above and below.
+        let wide = if high > low { high - low } else { high.abs().max(1.0) };
+        Self::over([low - MARGIN * wide, high + MARGIN * wide], name, Spacing::Decimal, most)
     }
 }
 

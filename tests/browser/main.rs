@@ -71,7 +71,8 @@ fn fixed(value: f64, places: usize) -> String {
 fn assert_shows(page: &mut Page, index: usize) {
     let frame = &through().frames[index];
     assert_eq!(shown_frame(page), index);
-    let speed = format!("{:.2} rpm", frame.rpm);
+    let places = through().places;
+    let speed = format!("{:.*} rpm", places.speed as usize, frame.rpm);
     assert_eq!(page.value("document.getElementById('speed').value"), index.to_string());
     assert_eq!(page.value("document.getElementById('speed').getAttribute('aria-valuetext')"), speed);
     assert_eq!(page.value("document.getElementById('speed-shown').textContent"), speed);
@@ -85,8 +86,8 @@ fn assert_shows(page: &mut Page, index: usize) {
         assert!(row[1].as_str().unwrap().starts_with(orbit.place), "{row}");
         assert_eq!(row[2], fixed(orbit.angle_deg, 4));
         assert_eq!(row[3], fixed(orbit.from_corner_deg, 4));
-        assert_eq!(row[4], fixed(orbit.velocity_before_m_s, 3));
-        assert_eq!(row[5], fixed(orbit.velocity_after_m_s, 3));
+        assert_eq!(row[4], fixed(orbit.velocity_before_m_s, places.velocity as usize));
+        assert_eq!(row[5], fixed(orbit.velocity_after_m_s, places.velocity as usize));
         let multipliers = row[6].as_str().unwrap();
         for multiplier in &orbit.multipliers {
             assert!(multipliers.contains(&fixed(multiplier.re, 6)), "{multipliers}");

@@ -147,7 +147,7 @@ impl Page {
         }
         let size = match cells {
             ..40 => 5.0,
-            ..4000 => 1.7,
+            40..4000 => 1.7,
             _ => 1.25,
         };
         Grid::Dots { at, size }

@@ -40,7 +40,7 @@ pub fn corner_marks(cam: &Cam) -> Vec<CornerMark> {
     let corners = cam.corners();
     let letters: &[&str] = if of_circles(cam, &corners) { &["R", "P", "Q", "Q'", "P'", "R'"] } else { &[] };
     let mut order: Vec<usize> = (0..corners.len()).collect();
-    let rank = |index: &usize| (corners[*index].jump_order, -jump(&corners[*index]));
+    let rank = |index: &usize| (corners[*index].jump_order, -corners[*index].jump.abs());
     order.sort_by(|one, other| {
         let ((order, size), (other_order, other_size)) = (rank(one), rank(other));
         order.cmp(&other_order).then(size.total_cmp(&other_size))
@@ -61,10 +61,6 @@ fn derivative(lift: &Lift, order: usize) -> f64 {
         2 => lift.curvature,
         _ => lift.third,
     }
-}
-
-fn jump(corner: &Corner) -> f64 {
-    (derivative(&corner.plus, corner.jump_order) - derivative(&corner.minus, corner.jump_order)).abs()
 }
 
 /// Whether the cam is base circle, flank, nose, top and the same back.

@@ -51,8 +51,7 @@ fn classification(kind: &ClassificationEntry) -> Markup {
     let above = &kind.real_eigenvalues_above_one;
     let below = &kind.real_eigenvalues_below_minus_one;
     let stable = |stable: bool| html! { @if stable { "stable" } @else { "unstable" } };
-    let speeds =
-        |speeds: &str| html! { (speeds) @if speeds != "both" && speeds != "neither" { " than at the corner impact" } };
+    let speeds = |speeds: &str| html! { (speeds) " than at the corner impact" };
     html! {
         p.verdict { "A " (kind.scenario.replace('-', " ")) "." }
         p { (meaning) @if kind.period_two_orbit && kind.scenario != "nonsmooth-flip" { " An orbit of period two is born too." } }

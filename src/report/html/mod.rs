@@ -1,7 +1,8 @@
 //! The report as one HTML page that needs nothing beside it: no network, no font, no other file.
 //!
 //! Sections stand in a referee's order of reading. Whatever is shown comes from the [`Dossier`]; chosen here are words,
-//! order and digits. Every number that was computed stands in a `data` element whose value has all its digits.
+//! order and digits. A number that was computed stands in a `data` element whose value has all the digits that the document has;
+//! numbers in captions and sentences are the document's words.
 
 mod bifurcation;
 mod ledger;

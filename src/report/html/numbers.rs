@@ -2,7 +2,6 @@
 
 use maud::{Markup, PreEscaped, Render, html};
 
-use crate::report::page::significant;
 use crate::report::verification::EigenvalueEntry;
 use crate::tolerance;
 
@@ -28,7 +27,17 @@ pub(super) fn given(value: f64, digits: usize) -> Markup {
     if !(-4.0..9.0).contains(&exponent) {
         return power(value, digits);
     }
-    html! { data value=(value) { (signed(&significant(value, digits))) } }
+    html! { data value=(value) { (signed(&plain(value, digits))) } }
+}
+
+/// `digits` significant digits without a power of ten, without trailing zeros.
+fn plain(value: f64, digits: usize) -> String {
+    if value == 0.0 {
+        return "0".into();
+    }
+    let places = (digits as f64 - 1.0 - value.abs().log10().floor()).max(0.0) as usize;
+    let text = format!("{value:.places$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
 }
 
 /// So many places after the point.
@@ -44,9 +53,11 @@ pub(super) fn size(value: f64) -> Markup {
     if value == 0.0 {
         return html! { data value="0" { "0" } };
     }
-    let plain = (0.01..100.0).contains(&value.abs());
-    if plain {
-        html! { data value=(value) { (signed(&significant(value, 2))) } }
+    if !value.is_finite() {
+        return html! { (value) };
+    }
+    if (0.01..100.0).contains(&value.abs()) {
+        html! { data value=(value) { (signed(&plain(value, 2))) } }
     } else {
         power(value, 2)
     }
@@ -76,8 +87,9 @@ struct Unsigned(f64, usize);
 
 impl Render for Unsigned {
     fn render(&self) -> Markup {
-        let text = significant(self.0, self.1);
-        html! { data value=(self.0) { (text.trim_start_matches('-')) } }
+        let text =
+            if self.0.abs() < tolerance::DISPLAYED_ZERO.value { "0".into() } else { plain(self.0.abs(), self.1) };
+        html! { data value=(self.0) { (text) } }
     }
 }
 

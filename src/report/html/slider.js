@@ -5,13 +5,13 @@
   const source = document.getElementById("through-data");
   if (!source) return;
   const data = JSON.parse(source.textContent);
-  const { frames, axes } = data;
+  const { frames, axes, places } = data;
   const get = (id) => document.getElementById(id);
   const slider = get("speed");
   const SVG = "http://www.w3.org/2000/svg";
   const minus = (text) => text.replace("-", "\u2212");
   const fixed = (value, places) => minus(value.toFixed(places));
-  const rpm = (frame) => `${frame.rpm.toFixed(2)} rpm`;
+  const rpm = (frame) => `${frame.rpm.toFixed(places.speed)} rpm`;
   const kind = (orbit) => (orbit.stable ? "stable" : "unstable");
 
   const element = (parent, name, attributes, text) => {
@@ -151,16 +151,16 @@
     cell.textContent = text;
     if (number) cell.className = "n";
   });
-  const multiplier = ({ re, im }) => (im === 0 ? fixed(re, 6) : `${fixed(re, 6)} ${im < 0 ? "\u2212" : "+"} ${im.toFixed(6).replace("-", "")}\u202fi`);
+  const multiplier = ({ re, im }) => (im === 0 ? fixed(re, places.multiplier) : `${fixed(re, places.multiplier)} ${im < 0 ? "\u2212" : "+"} ${im.toFixed(places.multiplier).replace("-", "")}\u202fi`);
   const readout = (frame) => {
     const body = get("readout").tBodies[0];
     body.replaceChildren();
     frame.orbits.forEach((orbit) => {
       const side = orbit.place === "elsewhere" ? "elsewhere" : `${orbit.place} ${data.corner}`;
       cells(body.insertRow(), [
-        [kind(orbit), false], [side, false], [fixed(orbit.angle_deg, 4), true], [fixed(orbit.from_corner_deg, 4), true],
-        [fixed(orbit.velocity_before_m_s, 3), true], [fixed(orbit.velocity_after_m_s, 3), true],
-        [orbit.multipliers.map(multiplier).join(", "), true], [fixed(orbit.modulus, 6), true],
+        [kind(orbit), false], [side, false], [fixed(orbit.angle_deg, places.angle), true], [fixed(orbit.from_corner_deg, places.angle), true],
+        [fixed(orbit.velocity_before_m_s, places.velocity), true], [fixed(orbit.velocity_after_m_s, places.velocity), true],
+        [orbit.multipliers.map(multiplier).join(", "), true], [fixed(orbit.modulus, places.multiplier), true],
       ]);
     });
   };

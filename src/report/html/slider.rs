@@ -33,7 +33,7 @@ fn player(through: &ThroughEntry, data: &str) -> Markup {
             "Move the speed through that of the corner impact. Shown is every orbit with one impact a revolution, stable or not, and "
             "what a run does that came there from faster speeds."
         }
-        noscript { p { "Moving the speed needs JavaScript. The table below has the same numbers, and the figures the same pictures." } }
+        noscript { p { "Moving the speed needs JavaScript. The table below has the same orbits, and the figures the same pictures." } }
         div.player id="player" hidden {
             div.controls {
                 label for="speed" { "Speed " output id="speed-shown" for="speed" {} }

@@ -19,8 +19,8 @@ fn regimes(found: &RegimesDocument) -> Markup {
     let [low, high] = found.rpm;
     html! {
         p {
-            "The speed is raised from " (fixed(low, 2)) " to " (fixed(high, 2)) " rpm and lowered again; at each speed the follower "
-            "has time to settle. "
+            "The speed is raised from " (fixed(low, 2)) " to " (fixed(high, 2)) " rpm, and in a second run lowered from there; at "
+            "each speed the follower has time to settle. "
             @if let Some(rpm) = found.detachment_rpm { "It leaves the cam for the first time at " (fixed(rpm, 6)) " rpm. " }
             "Narrow ranges between two speeds that were run may be missing; " code { "corner-impact speeds" } " looks closer."
         }
