@@ -137,7 +137,12 @@ impl Flight {
     /// Displacement `q(t) - q0` and the state after flying for `t` from `start`.
     #[inline]
     pub fn fly(&self, start: State, t: f64) -> (f64, State) {
-        let Response { step, impulse, impulse_rate } = self.response(t);
+        self.fly_by(start, &self.response(t))
+    }
+
+    /// The same over a time whose responses are known.
+    pub fn fly_by(&self, start: State, response: &Response) -> (f64, State) {
+        let Response { step, impulse, impulse_rate } = *response;
         let force = self.force(start.position);
         let displacement = start.velocity * impulse + force * step;
         let velocity = start.velocity * impulse_rate + force * impulse;
@@ -148,7 +153,12 @@ impl Flight {
     ///
     /// From `q = q0 + v0 s + f0 p`, `v = v0 s' + f0 s` with `df0/dq0 = -w0^2`.
     pub fn propagator(&self, t: f64) -> Matrix2<f64> {
-        let Response { step, impulse, impulse_rate } = self.response(t);
+        self.propagator_by(&self.response(t))
+    }
+
+    /// The same over a time whose responses are known.
+    pub fn propagator_by(&self, response: &Response) -> Matrix2<f64> {
+        let Response { step, impulse, impulse_rate } = *response;
         let spring = self.omega0_squared;
         Matrix2::new(1.0 - spring * step, impulse, -spring * impulse, impulse_rate)
     }

@@ -206,3 +206,39 @@ fn what_cannot_be_varied_is_refused() {
     assert!(matches!(&error, SampleError::Varied { .. }) && error.to_string().contains("follower.damping"), "{error}");
     assert!(variational::route_by(&model, &cam, &at, &Varied::Number("follower.damping".into())).is_ok());
 }
+
+/// Up to twelve impacts, the last ones of which chatter or nearly graze: each amplifies the rounding of those before.
+#[test]
+fn differences_know_their_errors_where_impacts_amplify_rounding() {
+    for (name, least) in [("own.toml", 40), ("measured.toml", 130)] {
+        let model = common::tutorial(name);
+        let cam = common::cam(&model);
+        let range = Study { rpm_min: 1000.0, rpm_max: 2000.0 };
+        let found = range::find_corner_impacts(&model, &cam, range, 1).unwrap().found;
+        assert!(
+            found.len() >= least && found.iter().any(|at| at.cycle.contacts.len() >= 12),
+            "{name}: {}",
+            found.len()
+        );
+        let mut amplified: f64 = 0.0;
+        for at in found {
+            let exact = variational::route(&model, &cam, &at).map;
+            let estimate = finite_difference::route(&model, &cam, &at).unwrap();
+            let Some(Uncertainty::Extrapolation(error)) = estimate.uncertainty else { panic!("no error") };
+            for (exact, found, error) in
+                [(exact.minus, estimate.map.minus, error.minus), (exact.plus, estimate.map.plus, error.plus)]
+            {
+                let entries =
+                    |a: Matrix2<f64>, b: Vector2<f64>| a.iter().chain(b.iter()).copied().collect::<Vec<f64>>();
+                let off = entries(found.a - exact.a, found.b - exact.b);
+                let mut pairs = off.iter().zip(entries(error.a, error.b));
+                let rpm = at.speed_rpm();
+                assert!(pairs.all(|(off, said)| off.abs() <= 4.0 * said), "{name} {rpm}: {off:?} {error:?}");
+                let promise = (error.a.norm() / exact.a.norm()).max(error.b.norm() / exact.b.norm());
+                assert!(promise > 0.0 && promise < 2e-6, "{name} {rpm}: {promise:e}");
+                amplified = amplified.max(promise);
+            }
+        }
+        assert!(amplified > 1e-8, "{name}: {amplified:e}");
+    }
+}

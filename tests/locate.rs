@@ -272,3 +272,17 @@ fn it_takes_less_than_a_second() {
     // Tests may run side by side on one core, unoptimized: only the order of the figure is held to here.
     assert!(cfg!(debug_assertions) || seconds < 4.0, "{seconds} s");
 }
+
+#[test]
+fn routes_agree_where_a_follower_chatters_before_the_corner() {
+    for (name, low, high, impacts) in [("own.toml", 1290.0, 1380.0, 12), ("measured.toml", 1320.0, 1480.0, 10)] {
+        let survey = surveyed(&common::tutorial(name), low, high, 1);
+        let off = survey
+            .found
+            .iter()
+            .filter(|located| !located.agrees)
+            .map(|located| (located.at.speed_rpm(), &located.comparisons));
+        assert_eq!(off.collect::<Vec<_>>(), [], "{name}");
+        assert!(survey.found.iter().any(|located| located.at.cycle.contacts.len() >= impacts));
+    }
+}

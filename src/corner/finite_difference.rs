@@ -4,6 +4,9 @@
 //!
 //! Over a period of several impacts rounding is amplified as deviations are. Such an orbit is differenced from the middle of
 //! each flight to that of the next as well, and the parts multiplied.
+//!
+//! Near a graze an impact amplifies the rounding of the gap by the inverse of its relative velocity. The error that is told
+//! counts that at every impact, and the steps begin as wide as the impacts remain the orbit's.
 
 use nalgebra::{Matrix2, Vector2, Vector3};
 
@@ -39,12 +42,20 @@ pub fn side_map(
     at: &CornerImpact,
     side: Side,
     varied: &Varied,
-) -> Result<(SideMap, SideMap), SampleError> {
-    let whole = OneSidedMap::by(model, cam, at, side, varied).and_then(|map| differences(&map));
+) -> Result<Known, SampleError> {
+    let whole = OneSidedMap::by(model, cam, at, side, varied);
     if at.cycle.contacts.len() == 1 {
-        return whole;
+        return whole.and_then(|map| differences(&map, amplified_once(&map)?));
     }
-    Ok(match (whole, by_impacts(model, cam, at, side, varied)) {
+    let parts = by_impacts(model, cam, at, side, varied);
+    let whole = whole.and_then(|map| {
+        let amplified = match &parts {
+            Ok(parts) => parts.amplify(map.rounding()),
+            Err(_) => amplified_once(&map)?,
+        };
+        differences(&map, amplified)
+    });
+    Ok(match (whole, parts.map(|parts| parts.product())) {
         (Ok(whole), Ok(parts)) => {
             let (mut best, mut error) = whole;
             for entry in 0..4 {
@@ -64,50 +75,81 @@ pub fn side_map(
     })
 }
 
+/// Both of a map: the value and the error of each entry.
+type Known = (SideMap, SideMap);
+
 /// A period as the product of its parts, each with one impact.
-fn by_impacts(
-    model: &Model,
-    cam: &Cam,
-    at: &CornerImpact,
-    side: Side,
-    varied: &Varied,
-) -> Result<(SideMap, SideMap), SampleError> {
-    let none = SideMap { a: Matrix2::zeros(), b: Vector2::zeros() };
-    let (mut all, mut off) = (SideMap { a: Matrix2::identity(), ..none }, none);
-    for piece in OneSidedMap::pieces(model, cam, at, side, varied)? {
-        let (next, error) = differences(&piece)?;
-        // dx'' = A' (A dx + B dp) + B' dp, each factor off by its own error.
-        off = SideMap {
-            a: next.a.abs() * off.a + error.a * all.a.abs(),
-            b: next.a.abs() * off.b + error.a * all.b.abs() + error.b,
-        };
-        all = SideMap { a: next.a * all.a, b: next.a * all.b + next.b };
-    }
-    Ok((all, off))
+struct Parts {
+    parts: Vec<Known>,
+    /// The product of the A after each part, of the last the identity.
+    after: Vec<Matrix2<f64>>,
 }
 
-fn differences(map: &OneSidedMap<'_>) -> Result<(SideMap, SideMap), SampleError> {
-    let scales = map.scales();
-    let difference = |direction: usize, step: f64| {
-        let mut perturbation = Vector3::zeros();
-        perturbation[direction] = step;
-        let (ahead, behind) = (map.sample(perturbation)?, map.sample(-perturbation)?);
-        Ok((ahead.end - behind.end) / (ahead.perturbation - behind.perturbation)[direction])
-    };
-    let mut rounding = map.rounding();
-    if map.impacts() > 1 {
-        // Impacts one after another amplify rounding with every deviation.
-        for direction in 0..2 {
-            rounding += difference(direction, scales[direction])?.abs() * map.rounding()[direction];
-        }
+fn by_impacts(model: &Model, cam: &Cam, at: &CornerImpact, side: Side, varied: &Varied) -> Result<Parts, SampleError> {
+    let pieces = OneSidedMap::pieces(model, cam, at, side, varied)?;
+    let known = |piece: &OneSidedMap<'_>| differences(piece, amplified_once(piece)?);
+    let parts = pieces.iter().map(known).collect::<Result<Vec<_>, _>>()?;
+    let mut after = vec![Matrix2::identity(); parts.len()];
+    for index in (1..parts.len()).rev() {
+        after[index - 1] = after[index] * parts[index].0.a;
     }
+    Ok(Parts { parts, after })
+}
+
+impl Parts {
+    /// The map of the period, and what the errors of the parts make of it to first order.
+    fn product(&self) -> Known {
+        let none = SideMap { a: Matrix2::zeros(), b: Vector2::zeros() };
+        let (mut all, mut off) = (SideMap { a: Matrix2::identity(), ..none }, none);
+        for ((next, error), after) in self.parts.iter().zip(&self.after) {
+            // dx'' = A' (A dx + B dp) + B' dp
+            off.a += after.abs() * error.a * all.a.abs();
+            off.b += after.abs() * (error.a * all.b.abs() + error.b);
+            all = SideMap { a: next.a * all.a, b: next.a * all.b + next.b };
+        }
+        (all, off)
+    }
+
+    /// How far a rounding in every flight moves the end of the period.
+    fn amplify(&self, rounding: Vector2<f64>) -> Vector2<f64> {
+        let first = self.after.first().zip(self.parts.first()).map(|(after, (part, _))| after * part.a);
+        first.iter().chain(&self.after).map(|matrix| matrix.abs() * rounding).sum()
+    }
+}
+
+/// How far a rounding at the start and one at the end move the end.
+fn amplified_once(map: &OneSidedMap<'_>) -> Result<Vector2<f64>, SampleError> {
+    let (scales, rounding) = (map.scales(), map.rounding());
+    (0..2).try_fold(rounding, |sum, direction| {
+        Ok(sum + difference(map, direction, scales[direction])?.abs() * rounding[direction])
+    })
+}
+
+/// The map, with ends of stretches known to `rounding`.
+fn differences(map: &OneSidedMap<'_>, rounding: Vector2<f64>) -> Result<Known, SampleError> {
     let mut columns = [(Vector2::zeros(), Vector2::zeros()); 3];
     for (direction, column) in columns.iter_mut().enumerate() {
-        *column =
-            extrapolate(scales[direction], Powers::Even, |step| rounding / step, |step| difference(direction, step))?;
+        let step = widest(map, direction);
+        *column = extrapolate(step, Powers::Even, |step| rounding / step, |step| difference(map, direction, step))?;
     }
     let [first, second, period] = columns;
     let value = SideMap { a: Matrix2::from_columns(&[first.0, second.0]), b: period.0 };
     let error = SideMap { a: Matrix2::from_columns(&[first.1, second.1]), b: period.1 };
     Ok((value, error))
+}
+
+/// The impacts' own scale in one direction, doubled while they remain the orbit's.
+fn widest(map: &OneSidedMap<'_>, direction: usize) -> f64 {
+    /// Doublings that are tried: a unit is about a thousandth of the velocity that an impact cannot lose.
+    const DOUBLINGS: usize = 8;
+    let steps = std::iter::successors(Some(map.scales()[direction]), |step| Some(2.0 * step)).take(1 + DOUBLINGS);
+    let inside = steps.take_while(|step| difference(map, direction, *step).is_ok());
+    inside.last().unwrap_or(map.scales()[direction])
+}
+
+fn difference(map: &OneSidedMap<'_>, direction: usize, step: f64) -> Result<Vector2<f64>, SampleError> {
+    let mut perturbation = Vector3::zeros();
+    perturbation[direction] = step;
+    let (ahead, behind) = (map.sample(perturbation)?, map.sample(-perturbation)?);
+    Ok((ahead.end - behind.end) / (ahead.perturbation - behind.perturbation)[direction])
 }

@@ -276,11 +276,6 @@ impl<'a> OneSidedMap<'a> {
         Vector3::new(approach * period / TAU, approach, third) * (Self::PERTURBATION * self.reach * self.shrunk)
     }
 
-    /// Impacts of the stretch.
-    pub fn impacts(&self) -> usize {
-        self.stretch.flights.len()
-    }
-
     /// How far rounding may move the end of a stretch: a few ulps of the largest position and velocity on the way.
     pub fn rounding(&self) -> Vector2<f64> {
         let CornerImpact { state, velocity_before, velocity_after, .. } = *self.at;

@@ -15,6 +15,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
+use super::chain::{self, Link};
 use crate::cam::Lift;
 use crate::flight::State;
 use crate::impact::{ImpactRates, rebound};
@@ -105,42 +106,51 @@ impl Cycle {
 
     /// What the equations are off by: for each flight the position, m, and the velocity over omega, m/rad.
     pub fn residual(&self, machine: &Machine) -> DVector<f64> {
-        let (count, omega) = (self.contacts.len(), machine.angular_velocity());
-        let mut rows = DVector::zeros(2 * count);
-        for index in 0..count {
-            let next = (index + 1) % count;
-            let (from, to) = (self.impact(machine, index), self.impact(machine, next));
-            let (displacement, end) = machine.flight().fly(from.leaving, self.turn(index) / omega);
-            rows[2 * index] = displacement - (to.lift.value - from.lift.value);
-            rows[2 * index + 1] = (end.velocity - self.contacts[next].velocity_before) / omega;
-        }
-        rows
+        self.equations(machine).0
     }
 
     /// The derivative of [`Cycle::residual`] by angle, rad, and velocity over omega, m/rad, of each contact in turn.
     pub fn jacobian(&self, machine: &Machine) -> DMatrix<f64> {
-        let (count, omega, r) = (self.contacts.len(), machine.angular_velocity(), machine.restitution());
+        let count = self.contacts.len();
         let mut rows = DMatrix::zeros(2 * count, 2 * count);
-        for index in 0..count {
+        for (index, link) in self.equations(machine).1.into_iter().enumerate() {
             let next = (index + 1) % count;
-            let (from, to) = (self.impact(machine, index), self.impact(machine, next));
-            let time = self.turn(index) / omega;
-            let end = machine.flight().fly(from.leaving, time).1;
-            let propagator = machine.flight().propagator(time);
-            let moving = Vector2::new(end.velocity, machine.flight().acceleration(end)) / omega;
+            for (column, by) in [(index, link.leaving), (next, link.coming)] {
+                let mut block = rows.fixed_view_mut::<2, 2>(2 * index, 2 * column);
+                block += by;
+            }
+        }
+        rows
+    }
+
+    /// Both, flight by flight.
+    fn equations(&self, machine: &Machine) -> (DVector<f64>, Vec<Link>) {
+        let (count, omega, r) = (self.contacts.len(), machine.angular_velocity(), machine.restitution());
+        let flight = machine.flight();
+        let impacts: Vec<Impact> = (0..count).map(|index| self.impact(machine, index)).collect();
+        let mut off = DVector::zeros(2 * count);
+        let mut link = |index: usize| {
+            let next = (index + 1) % count;
+            let (from, to) = (&impacts[index], &impacts[next]);
+            let response = flight.response(self.turn(index) / omega);
+            let (displacement, end) = flight.fly_by(from.leaving, &response);
+            off[2 * index] = displacement - (to.lift.value - from.lift.value);
+            off[2 * index + 1] = (end.velocity - self.contacts[next].velocity_before) / omega;
+            let propagator = flight.propagator_by(&response);
+            let moving = Vector2::new(end.velocity, flight.acceleration(end)) / omega;
             // The start moves along the cam, and the flight is as much shorter.
             let by_angle = propagator * Vector2::new(from.lift.slope, (1.0 + r) * omega * from.lift.curvature) - moving;
             let by_velocity = propagator * Vector2::new(0.0, -r * omega);
-            let mut add = |column: usize, by: Vector2<f64>| {
-                rows[(2 * index, column)] += by[0];
-                rows[(2 * index + 1, column)] += by[1] / omega;
+            let block = |by_angle: Vector2<f64>, by_velocity: Vector2<f64>| {
+                Matrix2::new(by_angle[0], by_velocity[0], by_angle[1] / omega, by_velocity[1] / omega)
             };
-            add(2 * index, by_angle);
-            add(2 * index + 1, by_velocity);
-            add(2 * next, moving - Vector2::new(to.lift.slope, 0.0));
-            add(2 * next + 1, Vector2::new(0.0, -omega));
-        }
-        rows
+            Link {
+                leaving: block(by_angle, by_velocity),
+                coming: block(moving - Vector2::new(to.lift.slope, 0.0), Vector2::new(0.0, -omega)),
+            }
+        };
+        let links = (0..count).map(&mut link).collect();
+        (off, links)
     }
 
     /// The cycle moved by `step`: angle, rad, and velocity over omega, m/rad, of each contact in turn.
@@ -163,7 +173,8 @@ impl Cycle {
         let mut cycle = self.clone();
         let mut last = f64::INFINITY;
         for step in 0..STEPS {
-            let Some(mut correction) = cycle.jacobian(machine).lu().solve(&-cycle.residual(machine)) else {
+            let (off, links) = cycle.equations(machine);
+            let Some(mut correction) = chain::solve(&links, &-off) else {
                 return Err(NotClosed { steps: step, residual: last });
             };
             let length = relative_length(&correction, size);

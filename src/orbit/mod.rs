@@ -4,6 +4,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`cycle`] | an orbit as its impacts, the equations that close it, Newton's method |
+//! | `chain` | linear equations that link each impact with the next, in one pass |
 //! | [`mod@departure`] | whether a cycle is an orbit of the cam as it is, by simulation |
 //! | [`mod@search`] | orbits of one machine: exhaustively those of one impact, by many starts the others |
 //! | [`family`] | machines that differ in a speed or a number of the model |
@@ -11,6 +12,7 @@
 //! | [`branch`] | branches of orbits through corners, folds, flips and grazes, with those points located |
 
 pub mod branch;
+mod chain;
 pub mod curve;
 pub mod cycle;
 pub mod departure;

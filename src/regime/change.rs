@@ -1,5 +1,7 @@
 //! Where one kind of motion gives way to another, and why.
 
+use std::cell::RefCell;
+
 use super::walk::{LONGER, between, long_run, machine};
 use super::{Care, Regime, RegimeError, Settled};
 use crate::model::Model;
@@ -74,6 +76,7 @@ pub(super) fn narrowed(
     let range = [last.rpm.min(now.rpm), last.rpm.max(now.rpm)];
     let care = (care, last.orbit.is_some() || now.orbit.is_some());
     let halved = |from: (f64, Motion), to: f64, stays: &dyn Fn(&Settled) -> bool| halve(machine, from, to, care, stays);
+    let branches = Branches { model, range, known: RefCell::default() };
     let first = halved((last.rpm, *motion), now.rpm, &|settled| settled.is_like(last))?;
     let (mut beyond, mut later) = (now.clone(), Vec::new());
     if let Some((found, end)) = &first.beyond {
@@ -84,11 +87,11 @@ pub(super) fn narrowed(
             if before.orbit.is_none() || before.is_like(last) {
                 break;
             }
-            let Some(change) = explained_by_either(model, [&before, &beyond], second.bracket, range)? else { break };
+            let Some(change) = branches.explain([&before, &beyond], second.bracket)? else { break };
             later.push((change, std::mem::replace(&mut beyond, before)));
         }
     }
-    let change = match explained_by_either(model, [last, &beyond], first.bracket, range)? {
+    let change = match branches.explain([last, &beyond], first.bracket)? {
         Some(change) => change,
         None => {
             let rpm = 0.5 * (first.bracket[0] + first.bracket[1]);
@@ -108,7 +111,7 @@ pub(super) fn narrowed(
     let onward = (now.rpm - last.rpm).signum();
     if chain.windows(2).any(|two| (two[1].0.rpm - two[0].0.rpm) * onward <= 0.0) {
         let bracket = first.bracket;
-        let whole = explained_by_either(model, [last, now], bracket, range)?;
+        let whole = branches.explain([last, now], bracket)?;
         let runs = || Change { rpm: 0.5 * (bracket[0] + bracket[1]), bracket, cause: Cause::Unexplained };
         chain = vec![(whole.unwrap_or_else(runs), now.clone())];
     }
@@ -148,45 +151,59 @@ fn halve(
     Ok(Halved { bracket: [here.min(there), here.max(there)], before, beyond })
 }
 
-/// The special point that explains a change, of the branch before it or else of the one beyond.
-fn explained_by_either(
-    model: &Model,
-    sides: [&Settled; 2],
-    bracket: [f64; 2],
+/// A special point of a branch, where it is, rpm, and the angle of the corner that it is at, rad.
+type Place = (f64, Special, Option<f64>);
+
+/// The special points of the branches between two speeds, each branch followed once.
+struct Branches<'a> {
+    model: &'a Model,
+    /// Rising, rpm.
     range: [f64; 2],
-) -> Result<Option<Change>, RegimeError> {
-    for side in sides {
-        if let Some(found) = explained(model, side, bracket, range)? {
-            return Ok(Some(found));
-        }
-    }
-    Ok(None)
+    /// By the orbit that each was followed from.
+    known: RefCell<Vec<(Settled, Vec<Place>)>>,
 }
 
-/// The special point nearest to `bracket` on the branch of `side`'s orbit, if one lies within what runs may be off by.
-fn explained(
-    model: &Model,
-    side: &Settled,
-    bracket: [f64; 2],
-    [low, high]: [f64; 2],
-) -> Result<Option<Change>, RegimeError> {
-    let Some(orbit) = &side.orbit else { return Ok(None) };
-    let room = 0.5 * (high - low);
-    let range = [(low - room).max(0.5 * low), high + room];
-    let following = Following { parameter: Parameter::Speed, range, longest_step: 0.05, most_points: 400 };
-    let branch = Branch::through(model, side.rpm, orbit, &following)?;
-    let middle = 0.5 * (bracket[0] + bracket[1]);
-    let off = |rpm: f64| (rpm - middle).abs();
-    let specials = branch.points.iter().filter_map(|point| point.special.map(|special| (point, special)));
-    let nearest = specials.min_by(|one, two| off(one.0.rpm).total_cmp(&off(two.0.rpm)));
-    let Some((point, special)) = nearest.filter(|(point, _)| {
-        off(point.rpm) <= tolerance::EXPLAINED.value * (high - low).max(middle * tolerance::EXPLAINED.value)
-    }) else {
-        return Ok(None);
-    };
-    let angle = match special.kind {
-        Kind::Corner { segment, .. } => machine(model)?.cam().segments().get(segment).map(|segment| segment.start),
-        _ => None,
-    };
-    Ok(Some(Change { rpm: point.rpm, bracket, cause: Cause::Special(special, angle) }))
+impl Branches<'_> {
+    /// The special point that explains a change, of the branch before it or else of the one beyond: the nearest to `bracket`,
+    /// if it lies within what runs may be off by.
+    fn explain(&self, sides: [&Settled; 2], bracket: [f64; 2]) -> Result<Option<Change>, RegimeError> {
+        let [low, high] = self.range;
+        let middle = 0.5 * (bracket[0] + bracket[1]);
+        let off = |rpm: f64| (rpm - middle).abs();
+        let allowed = tolerance::EXPLAINED.value * (high - low).max(middle * tolerance::EXPLAINED.value);
+        for side in sides {
+            let places = self.through(side)?;
+            let nearest = places.into_iter().min_by(|one, two| off(one.0).total_cmp(&off(two.0)));
+            if let Some((rpm, special, angle)) = nearest.filter(|(rpm, ..)| off(*rpm) <= allowed) {
+                return Ok(Some(Change { rpm, bracket, cause: Cause::Special(special, angle) }));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The special points of the branch of `side`'s orbit; none where it is no orbit.
+    fn through(&self, side: &Settled) -> Result<Vec<Place>, RegimeError> {
+        let Some(orbit) = &side.orbit else { return Ok(Vec::new()) };
+        if let Some((_, places)) = self.known.borrow().iter().find(|(known, _)| known == side) {
+            return Ok(places.clone());
+        }
+        let [low, high] = self.range;
+        let room = 0.5 * (high - low);
+        let range = [(low - room).max(0.5 * low), high + room];
+        let following = Following { parameter: Parameter::Speed, range, longest_step: 0.05, most_points: 400 };
+        let branch = Branch::through(self.model, side.rpm, orbit, &following)?;
+        let mut places = Vec::new();
+        for (rpm, special) in branch.points.iter().filter_map(|point| point.special.map(|special| (point.rpm, special)))
+        {
+            let angle = match special.kind {
+                Kind::Corner { segment, .. } => {
+                    machine(self.model)?.cam().segments().get(segment).map(|segment| segment.start)
+                }
+                _ => None,
+            };
+            places.push((rpm, special, angle));
+        }
+        self.known.borrow_mut().push((side.clone(), places.clone()));
+        Ok(places)
+    }
 }

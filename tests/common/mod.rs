@@ -45,3 +45,18 @@ pub fn osorio_text(changes: &[(&str, &str)]) -> String {
 pub fn osorio_with(changes: &[(&str, &str)]) -> Model {
     Model::parse("changed.toml", &osorio_text(changes)).unwrap()
 }
+
+/// The two cams of the tutorial, from a drawing and measured, as it gives them.
+pub fn tutorial(name: &str) -> Model {
+    let page = include_str!("../../docs/tutorial.md");
+    let file = |name: &str| {
+        let kind = if name.ends_with("csv") { "csv" } else { "toml" };
+        let (_, after) = page.split_once(&format!("```{kind} {name}\n")).unwrap();
+        after.split_once("```").unwrap().0
+    };
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("lift.csv"), file("lift.csv")).unwrap();
+    let path = folder.path().join(name);
+    std::fs::write(&path, file(name)).unwrap();
+    read(&path)
+}
