@@ -7,6 +7,8 @@ use std::f64::consts::TAU;
 
 use super::Subject;
 use super::sweep::Crossings;
+use crate::border_collision::long_run::End;
+use crate::border_collision::outcome::LocalOutcome;
 use crate::border_collision::validity::Compared;
 use crate::orbit::branch::{Branch, Following};
 use crate::orbit::{Parameter, Search, search};
@@ -44,6 +46,8 @@ pub struct NextToCorner {
     pub position: f64,
     /// The local map's orbits.
     pub rays: Vec<Ray>,
+    /// Signs of the changes of period for which every motion of the local map leaves.
+    pub left: Vec<f64>,
     /// The machine's, as change of the period, s, and position less that of x*, m.
     pub machine: Vec<Crossings>,
 }
@@ -68,6 +72,10 @@ impl Subject {
             })
         });
         let rays: Vec<Ray> = rays.filter(|ray| ray.sign != 0.0).collect();
+        let leaves = |outcome: &&LocalOutcome| {
+            outcome.mu != 0.0 && outcome.fates.iter().all(|fate| matches!(fate.end, End::Escapes(_)))
+        };
+        let left = found.outcomes.iter().filter(leaves).map(|outcome| outcome.mu).collect();
         let fixed = found.ranges.iter().filter(|range| matches!(range.compared, Compared::FixedPoint(_)));
         let held = fixed.map(|range| range.period_change.abs()).filter(|change| *change > 0.0);
         let least = held.fold(f64::INFINITY, f64::min);
@@ -79,7 +87,7 @@ impl Subject {
         for point in machine.iter_mut().flat_map(|line| &mut line.points) {
             *point = [60.0 / point[0] - at.period, point[1] - at.state.position];
         }
-        Ok(NextToCorner { reach, period: at.period, position: at.state.position, rays, machine })
+        Ok(NextToCorner { reach, period: at.period, position: at.state.position, rays, left, machine })
     }
 
     /// The branches through the orbits of one impact a revolution, or two in two, at either end of a range, rpm.

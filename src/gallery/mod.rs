@@ -21,8 +21,8 @@ pub mod through_corner;
 
 pub use composition::{Composition, Neighbour};
 pub use local_map::NextToCorner;
-pub use motion::Run;
+pub use motion::{Run, TRANSIENT};
 pub use outline::Outline;
 pub use subject::{Fast, Shown, Slow, Subject};
-pub use sweep::Crossings;
+pub use sweep::{Crossings, Effort};
 pub use through_corner::{ThroughCorner, through_corner};

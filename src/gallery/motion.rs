@@ -6,7 +6,7 @@ use crate::section;
 use crate::simulate::{Event, Machine, Unobserved, angular_velocity};
 
 /// Revolutions before anything is shown.
-const TRANSIENT: u64 = 300;
+pub const TRANSIENT: u64 = 300;
 /// Samples of a revolution.
 const SAMPLES: u32 = 3600;
 

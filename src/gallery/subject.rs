@@ -2,6 +2,7 @@
 
 use std::sync::OnceLock;
 
+use super::Effort;
 use crate::border_collision::feigin::{Scenario, Speeds};
 use crate::cam::Cam;
 use crate::corner::CornerImpact;
@@ -23,6 +24,10 @@ pub struct Subject {
     pub findings: Result<Findings, String>,
     /// The speeds that are shown.
     pub shown: Shown,
+    /// How fine the sweep above detachment is: [`Effort::SLOW`].
+    pub slow_effort: Effort,
+    /// How fine the sweeps around the corner impact are: [`Effort::FAST`].
+    pub fast_effort: Effort,
     /// The branches over the fast ones, once they have been followed: more than one figure shows them.
     pub(super) followed: OnceLock<Result<Vec<Branch>, String>>,
 }
@@ -52,7 +57,7 @@ pub struct Slow {
 pub struct Fast {
     /// Of the impact and the stroboscopic diagram.
     pub range: [f64; 2],
-    /// Where the orbit with an impact at the corner is gone.
+    /// On the side of the corner impact where, at a fold, its orbit is gone.
     pub beyond: f64,
 }
 
@@ -146,6 +151,8 @@ impl Subject {
             is_paper: paper,
             findings,
             shown: Shown { slow, fast },
+            slow_effort: Effort::SLOW,
+            fast_effort: Effort::FAST,
             followed: OnceLock::new(),
         })
     }

@@ -6,17 +6,23 @@ use crate::orbit::branch::{Branch, BranchPoint, find_branches};
 use crate::orbit::{Course, Cycle, Search};
 use crate::simulate::{Machine, angular_velocity};
 
-/// Speeds, and revolutions before and while anything is recorded.
+/// How fine a sweep is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Effort {
-    speeds: usize,
-    transient: u64,
-    record: u64,
+pub struct Effort {
+    /// Speeds, evenly over the range.
+    pub speeds: usize,
+    /// Revolutions at each before anything is recorded.
+    pub transient: u64,
+    /// Revolutions that are recorded.
+    pub record: u64,
 }
 
-/// A follower that chatters has forgotten its start once it has come to rest.
-const SLOW: Effort = Effort { speeds: 800, transient: 40, record: 5 };
-const FAST: Effort = Effort { speeds: 480, transient: 300, record: 150 };
+impl Effort {
+    /// Of a report above detachment: a follower that chatters has forgotten its start once it has come to rest.
+    pub const SLOW: Self = Self { speeds: 800, transient: 40, record: 5 };
+    /// Of a report around the corner impact.
+    pub const FAST: Self = Self { speeds: 480, transient: 300, record: 150 };
+}
 
 /// A piece of a branch at the section: one crossing of the orbits along it.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,14 +62,14 @@ impl Subject {
 
     /// Impacts above detachment: speed, rpm, and cam angle, rad.
     pub fn slow_impacts(&self, range: [f64; 2]) -> Result<Vec<[f64; 2]>, String> {
-        self.sweep(range, Section::Impacts, Following::Nothing, SLOW)
+        self.sweep(range, Section::Impacts, Following::Nothing, self.slow_effort)
     }
 
     /// What runs with rising and with falling speed settle on around the corner impact: speed, rpm, and cam angle, rad, of
     /// impacts, or position at the section of its map, m.
     pub fn fast_runs(&self, range: [f64; 2], at_section: bool) -> Result<Vec<[f64; 2]>, String> {
         let section = if at_section { Section::Strobe(self.found()?.at.section_angle()) } else { Section::Impacts };
-        let run = |following| self.sweep(range, section, following, FAST);
+        let run = |following| self.sweep(range, section, following, self.fast_effort);
         let (rising, falling) = rayon::join(|| run(Following::Up), || run(Following::Down));
         let mut both = rising?;
         both.extend(falling?);

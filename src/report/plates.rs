@@ -59,7 +59,14 @@ const TABLE: [Entry; 14] = [
     Entry {
         id: "slow-trace",
         place: "Figure 4(a) and (b)",
-        title: |subject| slow(subject, |slow| format!("chattering at {} rpm", slow.chattering), "chattering"),
+        title: |subject| {
+            let with: fn(&Slow) -> String = if subject.is_paper {
+                |slow| format!("chattering at {} rpm", slow.chattering)
+            } else {
+                |slow| format!("the motion at {} rpm", slow.chattering)
+            };
+            slow(subject, with, "a slow motion")
+        },
         draw: drawn::slow_trace,
     },
     Entry {

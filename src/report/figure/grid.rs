@@ -19,6 +19,8 @@ pub(super) enum Grid {
         columns: usize,
         /// Left, top, width and height of all of it.
         place: [f64; 4],
+        /// Of the colour in a cell of full shade: 1 for all of it.
+        strength: f64,
     },
     /// A dot for each cell that has a point.
     Dots {
@@ -43,12 +45,13 @@ impl Grid {
     /// As elements of an SVG.
     pub(super) fn write(&self, out: &mut impl Write, colour: Colour) -> fmt::Result {
         match self {
-            Self::Cells { shades, columns, place } => {
+            Self::Cells { shades, columns, place, strength } => {
                 let image = image(shades, *columns, colour).map_err(|_| fmt::Error)?;
-                let [left, top, width, height] = place.map(number);
+                let [left, top, width, height, strength] =
+                    [place[0], place[1], place[2], place[3], *strength].map(number);
                 writeln!(
                     out,
-                    r#"<image class="dense" x="{left}" y="{top}" width="{width}" height="{height}" preserveAspectRatio="none" href="data:image/png;base64,{image}"/>"#
+                    r#"<image class="dense" x="{left}" y="{top}" width="{width}" height="{height}" opacity="{strength}" preserveAspectRatio="none" href="data:image/png;base64,{image}"/>"#
                 )
             }
             Self::Dots { at, size } => {
@@ -80,12 +83,13 @@ impl Grid {
         let Some((mut mask, shown)) = Mask::new(band.width(), band.height()).zip(shown) else { return };
         mask.fill_path(&shown, FillRule::Winding, true, scaled);
         let place = Transform::from_translate(left, above).post_concat(scaled);
+        let strength = if let Self::Cells { strength, .. } = self { *strength } else { 1.0 };
         let seen = [top, top + f64::from(band.height())].map(|pixels| pixels / scale - frame[1]);
         for shade in 1..=SHADES {
             if let Some(path) = self.path(shade, seen) {
                 let mut paint = Paint::default();
                 let [red, green, blue] = colour.rgb();
-                paint.set_color_rgba8(red, green, blue, alpha(shade));
+                paint.set_color_rgba8(red, green, blue, (f64::from(alpha(shade)) * strength) as u8);
                 band.fill_path(&path, &paint, FillRule::Winding, place, Some(&mask));
             }
         }
@@ -95,7 +99,7 @@ impl Grid {
     fn path(&self, shade: u8, [upper, lower]: [f64; 2]) -> Option<Path> {
         let mut path = PathBuilder::new();
         match self {
-            Self::Cells { shades, columns, place: [left, top, width, height] } => {
+            Self::Cells { shades, columns, place: [left, top, width, height], .. } => {
                 let rows = shades.len() / columns;
                 let [across, down] = [width / *columns as f64, height / rows as f64];
                 let [first, last] = [upper, lower].map(|y| ((y - top) / down).max(0.0));

@@ -157,12 +157,12 @@ fn extent(panel: &Panel, direction: usize) -> Option<[f64; 2]> {
         | Data::Points { points, .. } => {
             points.iter().filter(drawable).fold(found, |found, point| join(found, point[direction], point[direction]))
         }
-        Data::Density(density) | Data::Region(density) if density.occupied() > 0 => {
+        Data::Density(density) | Data::Region { cells: density, .. } if density.occupied() > 0 => {
             let [low, high] = density.ranges()[direction];
             join(found, low, high)
         }
         // Words stand at what is drawn.
-        Data::Density(_) | Data::Region(_) | Data::Words(_) => found,
+        Data::Density(_) | Data::Region { .. } | Data::Words(_) => found,
     })
 }
 

@@ -142,7 +142,12 @@ pub enum Data {
     /// More points than there is paper, counted on a grid.
     Density(Density),
     /// Parts of the plane, as the cells of a grid.
-    Region(Density),
+    Region {
+        /// The cells.
+        cells: Density,
+        /// How much of the colour they have, up to 1: in grey print regions are told apart by it.
+        strength: f64,
+    },
 }
 
 /// A word at a point.

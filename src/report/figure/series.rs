@@ -42,8 +42,12 @@ impl Page {
             Data::Points { points, marker } => self.points(out, points, *marker, colour),
             Data::Words(words) => words.iter().try_for_each(|word| words::write(out, word, self.at(word.at), colour)),
             Data::Density(density) => self.density(out, density, colour),
-            Data::Region(density) if density.occupied() == 0 => Ok(()),
-            Data::Region(density) => out.grid(self.cells(density), colour),
+            Data::Region { cells, .. } if cells.occupied() == 0 => Ok(()),
+            Data::Region { cells, strength } => {
+                let mut shades = cells.shades(true);
+                shades.iter_mut().filter(|shade| **shade > 0).for_each(|shade| *shade = SHADES);
+                out.grid(self.cells(cells, shades, *strength), colour)
+            }
         }
     }
 
@@ -125,7 +129,7 @@ impl Page {
         match density.occupied() {
             0 => Ok(()),
             cells if cells <= MOST_DOTS => out.grid(self.dots(density, cells), colour),
-            _ => out.grid(self.cells(density), colour),
+            _ => out.grid(self.cells(density, density.shades(true), 1.0), colour),
         }
     }
 
@@ -141,14 +145,19 @@ impl Page {
             let dot = self.at([middle(cell % columns, columns, x), middle(cell / columns, rows, y)]);
             at[usize::from(shade - 1)].push(dot.map(|part| (10.0 * part).round() as i64));
         }
-        Grid::Dots { at, size: if cells < 4000 { 1.7 } else { 1.25 } }
+        let size = match cells {
+            ..40 => 5.0,
+            40..4000 => 1.7,
+            _ => 1.25,
+        };
+        Grid::Dots { at, size }
     }
 
     /// Many cells: the grid itself, stretched over the frame.
-    fn cells(&self, density: &Density) -> Grid {
+    fn cells(&self, density: &Density, shades: Vec<u8>, strength: f64) -> Grid {
         let [x, y] = density.ranges();
         let ([left, top], [right, bottom]) = (self.at([x[0], y[1]]), self.at([x[1], y[0]]));
         let place = [left, top, right - left, bottom - top];
-        Grid::Cells { shades: density.shades(true), columns: density.cells()[0], place }
+        Grid::Cells { shades, columns: density.cells()[0], place, strength }
     }
 }

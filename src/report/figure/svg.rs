@@ -157,9 +157,9 @@ fn sample(out: &mut Sheet, series: &Series, [x, y]: [f64; 2]) -> fmt::Result {
     match &series.data {
         Data::Line { stroke, .. } | Data::Arrow { stroke, .. } => stroked(out, &across, *stroke, colour),
         Data::Words(_) => Ok(()),
-        Data::Region(_) => {
+        Data::Region { strength, .. } => {
             let block = format!("M{} {}h{SAMPLE}v10h-{SAMPLE}z", number(x), number(y - 5.0));
-            writeln!(out, r#"<path d="{block}" {}/>"#, fill(colour))
+            writeln!(out, r#"<path d="{block}" fill-opacity="{}" {}/>"#, number(*strength), fill(colour))
         }
         Data::Area { stroke, .. } => {
             let block = format!("M{} {}h{SAMPLE}v8h-{SAMPLE}z", number(x), number(y - 1.5));

@@ -6,8 +6,9 @@ use crate::flight::State;
 use crate::report::basins::described;
 use crate::report::figure::{Axis, Colour, Data, Density, Figure, Marker, Series, Stroke};
 
-/// Colours of the parts, in order; further ones share the last.
-const COLOURS: [Colour; 5] = [Colour::Blue, Colour::Vermilion, Colour::Green, Colour::Purple, Colour::Grey];
+/// Colours of the parts and how much of them, in order, so that each is a grey of its own; further ones share the last.
+const COLOURS: [(Colour, f64); 5] =
+    [(Colour::Blue, 1.0), (Colour::Vermilion, 0.6), (Colour::Green, 0.4), (Colour::Purple, 0.15), (Colour::Grey, 0.8)];
 
 /// A grid of starts and what belongs to it.
 #[derive(Clone, Copy, Debug)]
@@ -40,8 +41,8 @@ pub fn basins_figure(picture: &BasinsPicture<'_>) -> Figure {
         }
     }
     let mut series: Vec<Series> = Vec::new();
-    for ((area, part), colour) in areas.into_iter().zip(&picture.basins.parts).zip(COLOURS) {
-        series.push(Series { label: described(&part.ending), colour, data: Data::Region(area) });
+    for ((cells, part), (colour, strength)) in areas.into_iter().zip(&picture.basins.parts).zip(COLOURS) {
+        series.push(Series { label: described(&part.ending), colour, data: Data::Region { cells, strength } });
     }
     let at = |state: &State| [state.position, state.velocity];
     let mut line: Vec<[f64; 2]> = Vec::new();

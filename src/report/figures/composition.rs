@@ -60,11 +60,11 @@ pub fn composition_figure(title: &str, shown: &Composition) -> Figure {
             word([0.5, star.position], "x^*", Beside::Above),
             word([-0.5, first], "x_1", Beside::Left),
             word([0.5, last], "x_2", Beside::Right),
-            word([0.0, minus], "x_d^−", Beside::Right),
-            word([0.0, plus], "x_d^+", Beside::Right),
+            word([0.0, minus], "x_d^−", Beside::BelowRight),
+            word([0.0, plus], "x_d^+", Beside::AboveRight),
             word(quarter(&near.coming[0]), "P_1", Beside::Left),
             word(quarter(&near.going[0]), "P_2", Beside::Right),
-            word([0.0, 0.5 * (minus + plus)], "P_D", Beside::Right),
+            word([0.0, minus + 0.3 * (plus - minus)], "P_D", Beside::Right),
         ]),
     ));
     Figure {
@@ -149,7 +149,8 @@ fn mapping(shown: &Composition, near: &Neighbour) -> Panel {
                 word([0.0, minus + 0.25 * (plus - minus)], "P_D", if before { Beside::Right } else { Beside::Left }),
                 word([0.0, minus], "x_d^−", beside_minus),
                 word([0.0, plus], "x_d^+", beside_plus),
-                word(hit, "x^−, x^+", if before { Beside::BelowLeft } else { Beside::BelowRight }),
+                // Between the flights before and after the impact, where no law of the cam is.
+                word([hit[0], hit[1] + 0.06 * (high - low)], "x^−, x^+", Beside::Above),
                 law,
                 word([hit[0], foot + 0.5 * room], "−t_i", if before { Beside::Left } else { Beside::Right }),
             ]),

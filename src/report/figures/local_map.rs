@@ -79,7 +79,9 @@ fn drawn(shown: &NextToCorner, range: [f64; 2], name: &str, with_names: bool) ->
     let words: Vec<Word> = gone
         .map(|sign| {
             let at = [0.5 * sign * shown.reach * per_second, 0.5 * (range[0] + range[1])];
-            Word { at, text: "no orbit: motions leave".into(), beside: Beside::Above }
+            let text =
+                if shown.left.contains(&sign) { "no orbit: motions leave" } else { "no orbit of period one or two" };
+            Word { at, text: text.into(), beside: Beside::Above }
         })
         .collect();
     let fixed = shown.rays.iter().filter(|ray| ray.positions.len() == 1).filter_map(|ray| {
@@ -87,7 +89,7 @@ fn drawn(shown: &NextToCorner, range: [f64; 2], name: &str, with_names: bool) ->
             if ray.word == "L" { ("x^− before the corner", 0.5) } else { ("x^+ after the corner", 0.85) };
         let along = along * shown.reach;
         let at = [ray.sign * along * per_second, ray.positions.first()? * along];
-        let beside = if ray.sign < 0.0 { Beside::BelowRight } else { Beside::BelowLeft };
+        let beside = free_side(shown, at, range);
         (range[0] < at[1] && at[1] < range[1]).then(|| Word { at, text: name.into(), beside })
     });
     let words: Vec<Word> = words.into_iter().chain(fixed).collect();
@@ -95,4 +97,32 @@ fn drawn(shown: &NextToCorner, range: [f64; 2], name: &str, with_names: bool) ->
         series.push(Series { label: String::new(), colour: Colour::Ink, data: Data::Words(words) });
     }
     panel(Axis::new(name, "m").over(range), 0.3, series, vec![zero()])
+}
+
+/// The side of a ray, at a point of it, with more room up to the next line or the end of the panel.
+fn free_side(shown: &NextToCorner, at: [f64; 2], range: [f64; 2]) -> Beside {
+    let (_, per_second) = unit(shown.reach);
+    let change = at[0] / per_second;
+    let rays = shown.rays.iter().filter(|ray| ray.sign * change > 0.0);
+    let rays = rays.flat_map(|ray| ray.positions.iter().map(|position| position * change.abs()));
+    let machine = shown.machine.iter().filter_map(|line| {
+        let off = |point: &&[f64; 2]| (point[0] - change).abs();
+        line.points.iter().min_by(|one, other| off(one).total_cmp(&off(other)))
+    });
+    let machine = machine.filter(|point| point[0] * change > 0.0).map(|point| point[1]);
+    // A line that the ray lies on takes no side.
+    let apart = 0.01 * (range[1] - range[0]);
+    let others = rays.chain(machine).chain([0.0, range[0], range[1]]).map(|height| height - at[1]);
+    let (above, below): (Vec<f64>, Vec<f64>) = others.filter(|off| off.abs() > apart).partition(|off| *off > 0.0);
+    // A word far out goes inwards, or the frame would cut it.
+    let outer = change.abs() > 0.6 * shown.reach;
+    let room = |offs: Vec<f64>| offs.into_iter().map(f64::abs).fold(f64::INFINITY, f64::min);
+    let rises = at[0] * at[1] > 0.0;
+    let is_above = if outer { rises != (at[0] < 0.0) } else { room(above) > room(below) };
+    match (is_above, rises) {
+        (true, true) => Beside::AboveLeft,
+        (true, false) => Beside::AboveRight,
+        (false, true) => Beside::BelowRight,
+        (false, false) => Beside::BelowLeft,
+    }
 }

@@ -17,6 +17,8 @@ const CIRCLES: [(&str, Colour, Stroke); 4] = [
 /// Other cams: one way after another.
 const OTHERS: [(Colour, Stroke); 3] =
     [(Colour::Blue, Stroke::Solid), (Colour::Vermilion, Stroke::Dashed), (Colour::Green, Stroke::Thick)];
+/// Corners nearer to one another than this share of the farthest point get one label.
+const NEAR: f64 = 0.12;
 /// More segments than this are one line.
 const MOST: usize = 24;
 
@@ -52,6 +54,8 @@ pub fn outline_figure(title: &str, cam: &Cam, outline: &Outline) -> Figure {
         // A little up where it is beside the axis: the line of centres may run there.
         let low = at[1] < -0.1 * farthest;
         let beside = match (steep, at[0] > 0.0, low) {
+            // Beside the follower's own line.
+            (true, _, false) if at[0].abs() < NEAR * farthest => Beside::AboveLeft,
             (true, _, false) => Beside::Above,
             (true, _, true) => Beside::Below,
             (false, true, false) => Beside::AboveRight,
@@ -63,6 +67,15 @@ pub fn outline_figure(title: &str, cam: &Cam, outline: &Outline) -> Figure {
     });
     let letters: Vec<Word> = letters.collect();
     let corners = letters.iter().map(|word| word.at).collect();
+    // Of labels that would cover one another the first stays.
+    let mut apart: Vec<Word> = Vec::new();
+    for word in letters {
+        let near = |other: &Word| (other.at[0] - word.at[0]).hypot(other.at[1] - word.at[1]) < NEAR * farthest;
+        if !apart.iter().any(near) {
+            apart.push(word);
+        }
+    }
+    let letters = apart;
     series.push(unnamed(Colour::Ink, Data::Points { points: corners, marker: Marker::Dot }));
     series.push(unnamed(Colour::Ink, Data::Words(letters)));
     // The axis, the follower above it, and a stretch of a circle for the way that the cam turns.
