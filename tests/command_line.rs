@@ -330,7 +330,7 @@ fn from_any_folder() {
             "{words}"
         );
     }
-    assert!(page.contains("DISAGREES: symbolic and scipy did not run"), "{page}");
+    assert!(page.contains("INCOMPLETE: symbolic and scipy did not run"), "{page}");
 }
 
 /// In front of a person work of more than a second has a bar, or a spinner; `script` makes a terminal.

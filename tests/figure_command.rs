@@ -44,6 +44,9 @@ fn a_model_file_goes_before_the_name() {
     let (exit, page, err) = command(&[&model, "corner-orbit"]);
     assert_eq!(exit, Exit::Agrees, "{err}");
     assert!(page.contains("706.478"), "{page}");
+    assert!(page.contains("(as Figure 5(e) of the paper)"), "{page}");
+    let (_, list, _) = command(&[&model]);
+    assert!(list.lines().count() == 14 && list.contains("damped-heavy: the cam"), "{list}");
     assert!(page.contains(&format!("corner-impact figure {model} corner-orbit --out corner-orbit.svg")), "{page}");
     let (_, document, _) = command(&[&model, "corner-orbit", "--json"]);
     let document: serde_json::Value = serde_json::from_str(&document).unwrap();

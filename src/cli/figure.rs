@@ -85,7 +85,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
             if let Some((canvas, figure)) = canvas.zip(plate.figure.as_ref()) {
                 super::commit(vec![canvas.draw(figure)?])?;
             }
-            one(&model, plate, arguments)?
+            one(&subject, plate, arguments)?
         }
     };
     session.print(&page)?;
@@ -107,11 +107,16 @@ fn list(model: &Model, subject: &Subject, as_json: bool) -> Result<String, Comma
     Ok(page)
 }
 
-fn one(model: &Model, plate: Plate, arguments: &Arguments) -> Result<String, CommandError> {
+fn one(subject: &Subject, plate: Plate, arguments: &Arguments) -> Result<String, CommandError> {
     if arguments.json {
-        return json::render(&One { schema: SCHEMA, model: model.name.clone(), plate }).map_err(CommandError::report);
+        return json::render(&One { schema: SCHEMA, model: subject.model.name.clone(), plate })
+            .map_err(CommandError::report);
     }
-    let of = if plate.place.is_empty() { String::new() } else { format!(" ({} of the paper)", plate.place) };
+    let of = match (plate.place, subject.is_paper) {
+        ("", _) => String::new(),
+        (place, true) => format!(" ({place} of the paper)"),
+        (place, false) => format!(" (as {place} of the paper)"),
+    };
     let how = if arguments.out.is_some() { String::new() } else { format!("Draw it: {}\n", plate.command) };
     Ok(format!("{}{of}\n{}\n{how}", plate.title, plate.caption))
 }

@@ -172,31 +172,56 @@ pub fn regimes(model: &Model, rpm: [f64; 2], care: Care, passed: &(dyn Fn() + Sy
     let walk = |rising| walk::walk(model, &machine, rpm, care, rising, passed);
     let (rising, falling) = rayon::join(|| walk(true), || walk(false));
     let ((rising, up), (falling, down)) = (rising?, falling?);
-    Ok(Regimes { rpm, detachment, rising, falling, hysteresis: hysteresis(&up, &down) })
+    let hysteresis = hysteresis(&rising, &falling, &up, &down);
+    Ok(Regimes { rpm, detachment, rising, falling, hysteresis })
 }
 
-/// The stretches of speeds at which `up` and `down`, both by rising speed, are not the same motion.
-fn hysteresis(up: &[Settled], down: &[Settled]) -> Vec<Hysteresis> {
-    let mut found: Vec<Hysteresis> = Vec::new();
-    let mut open = false;
-    for (rising, falling) in up.iter().zip(down) {
-        let differ = match (&rising.orbit, &falling.orbit) {
-            // Chattering, one period and another are told apart by where rounding had a say.
-            _ if rising.regime == Regime::Chattering && falling.regime == Regime::Chattering => false,
-            (Some(one), Some(other)) => !one.is_same(other),
-            (None, None) => false,
-            _ => true,
+/// Where the two walks differ: between the ends of their stretches, and where runs of one kind are not one motion, between
+/// the speeds that were run. `up` and `down` are those runs, both by rising speed.
+fn hysteresis(rising: &Walk, falling: &Walk, up: &[Settled], down: &[Settled]) -> Vec<Hysteresis> {
+    let mut ends: Vec<f64> =
+        [rising, falling].iter().flat_map(|walk| &walk.stretches).flat_map(|stretch| stretch.rpm).collect();
+    ends.sort_by(f64::total_cmp);
+    ends.dedup();
+    let mut found = Vec::new();
+    for rpm in ends.windows(2).map(|pair| [pair[0], pair[1]]) {
+        let at = |walk: &Walk| -> Option<Settled> {
+            let holds = |stretch: &&Stretch| stretch.rpm[0] <= rpm[0] && rpm[1] <= stretch.rpm[1];
+            walk.stretches.iter().find(holds).map(|stretch| stretch.settled.clone())
         };
-        let like = |last: &Hysteresis| last.rising.regime == rising.regime && last.falling.regime == falling.regime;
-        match found.last_mut() {
-            Some(last) if differ && open && like(last) => last.rpm[1] = rising.rpm,
-            _ if differ => {
-                let rpm = [rising.rpm, rising.rpm];
-                found.push(Hysteresis { rpm, rising: rising.clone(), falling: falling.clone() });
-            }
-            _ => {}
+        let Some((rising, falling)) = at(rising).zip(at(falling)) else { continue };
+        if of_other_kind(&rising, &falling) {
+            found.push(Hysteresis { rpm, rising, falling });
+            continue;
         }
-        open = differ;
+        let inside = |(one, _): &(&Settled, &Settled)| rpm[0] <= one.rpm && one.rpm <= rpm[1];
+        let mut open = false;
+        for (one, other) in up.iter().zip(down).filter(inside) {
+            let differ = of_other_motion(one, other);
+            match found.last_mut() {
+                Some(last) if differ && open => last.rpm[1] = one.rpm,
+                _ if differ => {
+                    let rpm = [one.rpm; 2];
+                    found.push(Hysteresis { rpm, rising: one.clone(), falling: other.clone() });
+                }
+                _ => {}
+            }
+            open = differ;
+        }
     }
     found
+}
+
+/// What does not repeat may be called chaotic at one time and not settled at another.
+fn of_other_kind(one: &Settled, other: &Settled) -> bool {
+    !one.is_like(other) && (one.orbit.is_some() || other.orbit.is_some())
+}
+
+/// Chattering, one period and another are told apart by where rounding had a say.
+fn of_other_motion(one: &Settled, other: &Settled) -> bool {
+    match (&one.orbit, &other.orbit) {
+        _ if one.regime == Regime::Chattering && other.regime == Regime::Chattering => false,
+        (Some(orbit), Some(of_other)) => one.is_like(other) && !orbit.is_same(of_other),
+        _ => false,
+    }
 }

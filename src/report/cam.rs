@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::page::{Cell, Column, Page, Table, WIDTH, significant};
 use crate::cam::{Cam, Corner, Jet, Segment};
 use crate::model::Model;
+use crate::tolerance;
 
 /// What `cam` shows; serializes to the document `corner-impact/cam/1`.
 #[derive(Clone, Debug, Serialize)]
@@ -202,8 +203,8 @@ impl CamDocument {
 
 /// Nine digits, or six with an exponent where zeros would take their place.
 fn short(number: f64) -> String {
-    // Without the sign of a zero.
-    if number == 0.0 {
+    // Rounding's rest of a zero, or its sign, tells nothing.
+    if number.abs() < tolerance::DISPLAYED_ZERO.value {
         return "0".into();
     }
     let exponent = number.abs().log10();

@@ -30,6 +30,8 @@ pub struct Dossier {
     pub version: &'static str,
     /// Whether nothing that was checked disagrees.
     pub agrees: bool,
+    /// Whether follower and cam are the paper's.
+    pub is_paper: bool,
     /// The findings in brief.
     pub headline: Headline,
     /// What the model is.
@@ -48,7 +50,7 @@ pub struct Dossier {
     pub through: Option<ThroughEntry>,
     /// Why there is none.
     pub no_through: Option<String>,
-    /// The paper's statements.
+    /// The paper's statements, where the model is the paper's.
     pub claims: Option<ClaimsDocument>,
     /// What the follower does at other speeds.
     pub speeds: Option<RegimesDocument>,
@@ -165,13 +167,14 @@ impl Dossier {
     pub fn of(model: &Model, external: External, watch: &dyn Watch) -> Result<Self, DossierError> {
         let part = |from, to| Part { watch, from, to };
         let cam = Cam::new(model)?;
+        let is_paper = model.is_the_papers()?;
         let findings = verify_watched(model, external, &part(0.0, VERIFIED));
         let claims = match &findings {
-            Ok(found) => Some(ClaimsDocument::new(
+            Ok(found) if is_paper => Some(ClaimsDocument::new(
                 &model.name,
                 &hold_watched(&Context::new(model, &cam, found)?, &part(VERIFIED, HELD))?,
             )),
-            Err(_) => None,
+            _ => None,
         };
         let speeds = speeds(model, &part(HELD, SURVEYED));
         part(SURVEYED, THROUGH).at("the orbits on both sides of the corner impact", 0, 1);
@@ -200,6 +203,7 @@ impl Dossier {
             schema: "corner-impact/report/1",
             version: env!("CARGO_PKG_VERSION"),
             agrees,
+            is_paper,
             headline: Headline::new(verification.as_ref(), claims.as_ref()),
             model: ModelSheet {
                 name: model.name.clone(),
@@ -259,7 +263,7 @@ fn commands(model: &Model, verified: bool) -> Vec<(String, &'static str)> {
     let mut commands = vec![again("report", "writes this page")];
     if verified {
         commands.push(again("verify", "finds the corner impact, its map by every route, and compares"));
-        commands.push(again("claims", "holds the paper's statements against it"));
+        commands.push(again("claims", "holds the statements of the paper that this program checks against it"));
     }
     commands.push(again("cam", "lists segments and corners of the cam"));
     commands.push(again("speeds", "what the follower does at each speed, with more speeds than here"));

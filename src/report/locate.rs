@@ -262,7 +262,7 @@ impl LocateDocument {
     fn write_table(&self, out: &mut Page) -> fmt::Result {
         out.heading(&format!("Found ({})", self.corner_impacts.len()))?;
         if self.corner_impacts.is_empty() {
-            return writeln!(out, "  No orbit of this kind has an impact on a corner in this range.");
+            return writeln!(out, "  No orbit of this kind was found with an impact on a corner in this range.");
         }
         let columns = [
             Column::right("", 4),

@@ -130,6 +130,11 @@ impl RegimesDocument {
         Ok(self.page(WIDTH)?.plain().to_owned())
     }
 
+    /// Where rising and falling speed show something else, joined where they meet.
+    pub fn hysteresis_ranges(&self) -> Vec<[f64; 2]> {
+        joined(self.hysteresis.iter().map(|found| found.rpm).collect())
+    }
+
     /// For people, in `width` columns.
     pub fn page(&self, width: usize) -> Result<Page, fmt::Error> {
         let mut page = Page::new(width);
@@ -140,6 +145,9 @@ impl RegimesDocument {
             Some(rpm) => writeln!(page, "  leaves the cam first at   {rpm:.6} rpm")?,
             None if self.rising.first().is_some_and(|stretch| stretch.motion.regime == "on-cam") => {
                 writeln!(page, "  leaves the cam first at   no speed in between")?;
+            }
+            None if self.rising.first().is_some_and(|stretch| stretch.motion.regime == "free") => {
+                writeln!(page, "  leaves the cam first at   no speed: it is never on it")?;
             }
             None => writeln!(page, "  leaves the cam first at   {low} rpm already, or below")?,
         }
@@ -154,7 +162,7 @@ impl RegimesDocument {
             };
             writeln!(page, "  {what:<24}  {}", listed(ranges))?;
         }
-        let hysteresis: Vec<[f64; 2]> = self.hysteresis.iter().map(|found| found.rpm).collect();
+        let hysteresis = self.hysteresis_ranges();
         if hysteresis.is_empty() {
             writeln!(page, "  hysteresis                none")?;
         } else {
@@ -198,6 +206,7 @@ impl MotionEntry {
             }
             ("on-cam", ..) => "stays on the cam".into(),
             ("unsettled", ..) => "not settled: no period found".into(),
+            ("free", ..) => "never meets the cam".into(),
             (other, ..) => other.into(),
         }
     }
@@ -221,8 +230,11 @@ fn listed(ranges: &[[f64; 2]]) -> String {
 fn ranges(found: &Regimes, regime: &Regime) -> Vec<[f64; 2]> {
     let walks = [&found.rising, &found.falling];
     let stretches = walks.into_iter().flat_map(|walk| &walk.stretches);
-    let mut all: Vec<[f64; 2]> =
-        stretches.filter(|stretch| stretch.settled.regime == *regime).map(|stretch| stretch.rpm).collect();
+    joined(stretches.filter(|stretch| stretch.settled.regime == *regime).map(|stretch| stretch.rpm).collect())
+}
+
+/// Ranges, those that overlap or meet as one.
+fn joined(mut all: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     all.sort_by(|one, two| one[0].total_cmp(&two[0]));
     let mut joined: Vec<[f64; 2]> = Vec::new();
     for [low, high] in all {

@@ -368,18 +368,21 @@ fn verdict(out: &mut Page, document: &Verification) -> fmt::Result {
     }
     let missing: Vec<&str> =
         document.skipped.iter().filter(|skipped| skipped.failed).map(|skipped| skipped.route.as_str()).collect();
-    let reason = match missing.as_slice() {
-        [] => "a comparison above".to_owned(),
-        [one] => format!("{one} did not run"),
-        [most @ .., last] => format!("{} and {last} did not run", most.join(", ")),
+    let all_agree =
+        document.agreement.iter().all(|entry| entry.agrees) && document.published.iter().all(|number| number.as_found);
+    let (mark, word, reason) = match missing.as_slice() {
+        _ if document.agrees => (Mark::Good, "AGREES", String::new()),
+        [] => (Mark::Bad, "DISAGREES", ": a comparison above".to_owned()),
+        [most @ .., last] => {
+            let names = if most.is_empty() { (*last).to_owned() } else { format!("{} and {last}", most.join(", ")) };
+            // What ran may agree: then nothing disagrees, and not everything was checked.
+            let word = if all_agree { "INCOMPLETE" } else { "DISAGREES" };
+            (Mark::Bad, word, format!(": {names} did not run"))
+        }
     };
     write!(out, "  ")?;
-    if document.agrees {
-        out.marked(Mark::Good, "AGREES");
-        return writeln!(out);
-    }
-    out.marked(Mark::Bad, "DISAGREES");
-    writeln!(out, ": {reason}")
+    out.marked(mark, word);
+    writeln!(out, "{reason}")
 }
 
 /// Nine decimals, without trailing zeros.

@@ -114,8 +114,12 @@ fn free_side(shown: &NextToCorner, at: [f64; 2], range: [f64; 2]) -> Beside {
     let apart = 0.01 * (range[1] - range[0]);
     let others = rays.chain(machine).chain([0.0, range[0], range[1]]).map(|height| height - at[1]);
     let (above, below): (Vec<f64>, Vec<f64>) = others.filter(|off| off.abs() > apart).partition(|off| *off > 0.0);
+    // A word far out goes inwards, or the frame would cut it.
+    let outer = change.abs() > 0.6 * shown.reach;
     let room = |offs: Vec<f64>| offs.into_iter().map(f64::abs).fold(f64::INFINITY, f64::min);
-    match (room(above) > room(below), at[0] * at[1] > 0.0) {
+    let rises = at[0] * at[1] > 0.0;
+    let is_above = if outer { rises != (at[0] < 0.0) } else { room(above) > room(below) };
+    match (is_above, rises) {
         (true, true) => Beside::AboveLeft,
         (true, false) => Beside::AboveRight,
         (false, true) => Beside::BelowRight,

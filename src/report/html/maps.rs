@@ -13,8 +13,9 @@ pub(super) fn section(dossier: &Dossier) -> Option<Section> {
         p {
             "One revolution from near the orbit: d" i { "x" } "′ = " i { "A" } " d" i { "x" } " + " i { "B" } " d" i { "T" }
             ", with " i { "A" } sup { "−" } ", " i { "B" } sup { "−" } " where the impact comes before the corner and "
-            i { "A" } sup { "+" } ", " i { "B" } sup { "+" } " where it comes after it. Each column is computed on its own; "
-            "two columns share the model and nothing else. Digits in which a column leaves the closed form are underlined."
+            i { "A" } sup { "+" } ", " i { "B" } sup { "+" } " where it comes after it. Each column is computed on its own: "
+            "no two share a formula for A and B. Finite difference and least squares run the same simulator; symbolic and scipy run no "
+            "code of this program. Digits in which a column leaves the closed form are underlined."
         }
         @for table in &dossier.tables { (side(table)) }
         (jumps(found))

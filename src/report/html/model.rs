@@ -11,7 +11,12 @@ const LONG: usize = 24;
 
 pub(super) fn section(dossier: &Dossier) -> Result<Section, HtmlError> {
     let sheet = &dossier.model;
-    let cam = dossier.plates.iter().find(|plate| plate.id == plates::CAM).map(plates::plate).transpose()?;
+    let cam = dossier
+        .plates
+        .iter()
+        .find(|plate| plate.id == plates::CAM)
+        .map(|plate| plates::plate(plate, dossier))
+        .transpose()?;
     let body = html! {
         @if !sheet.source.is_empty() { p { (sheet.source) } }
         p {

@@ -16,22 +16,23 @@ pub(super) fn section(dossier: &Dossier) -> Result<Option<Section>, HtmlError> {
     }
     let mut drawn = Vec::new();
     for plate in &dossier.plates {
-        drawn.push(if plate.id == CAM { elsewhere(plate) } else { self::plate(plate)? });
+        drawn.push(if plate.id == CAM { elsewhere(plate, dossier) } else { self::plate(plate, dossier)? });
     }
     let body = html! { @for plate in &drawn { (plate) } };
     Ok(Some(Section { id: "figures", title: "Figures", body }))
 }
 
-fn elsewhere(plate: &Plate) -> Markup {
-    html! { p.note { (place(plate)) a href={ "#plate-" (plate.id) } { (plate.title) } " stands with the model." } }
+fn elsewhere(plate: &Plate, dossier: &Dossier) -> Markup {
+    html! { p.note { (place(plate, dossier)) a href={ "#plate-" (plate.id) } { (plate.title) } " stands with the model." } }
 }
 
-fn place(plate: &Plate) -> Markup {
-    html! { @if !plate.place.is_empty() { span.place { (plate.place) ". " } } }
+/// The paper's figure, for the paper's model: those of another one are none of the paper's.
+fn place(plate: &Plate, dossier: &Dossier) -> Markup {
+    html! { @if dossier.is_paper && !plate.place.is_empty() { span.place { (plate.place) ". " } } }
 }
 
 /// A figure with its caption, the paper's figure that it redraws, and the command that makes it.
-pub(super) fn plate(plate: &Plate) -> Result<Markup, HtmlError> {
+pub(super) fn plate(plate: &Plate, dossier: &Dossier) -> Result<Markup, HtmlError> {
     let drawing = plate.figure.as_ref().map(svg::render).transpose()?;
     Ok(html! {
         figure id={ "plate-" (plate.id) } {
@@ -39,7 +40,7 @@ pub(super) fn plate(plate: &Plate) -> Result<Markup, HtmlError> {
                 div.wide.drawing role="region" aria-label=(plate.title) tabindex="0" { (PreEscaped(drawing)) }
             }
             figcaption {
-                (place(plate))
+                (place(plate, dossier))
                 @if drawing.is_none() { strong { (plate.title) } ". " }
                 @if let Some(why) = &plate.absent { span.absent { "Not drawn: " (why) "." } } @else { (plate.caption) }
                 @if drawing.is_some() { code.command { (plate.command) } }

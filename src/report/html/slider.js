@@ -29,7 +29,7 @@
   const HEIGHT = 300;
   const panel = (id, x, y, names, square = false) => {
     const [width, height] = [WIDTH, HEIGHT];
-    const box = { left: 58, top: 8, right: width - 10, bottom: height - 36 };
+    const box = { left: 58, top: 8, right: width - 16, bottom: height - 36 };
     if (square) {
       const spare = (box.right - box.left - (box.bottom - box.top)) / 2;
       box.left += spare;

@@ -31,7 +31,7 @@ fn regimes(found: &RegimesDocument) -> Markup {
                         tr { th scope="row" { (words(entry.regime)) } td { (ranges(&entry.ranges)) } }
                     }
                     @if !found.hysteresis.is_empty() {
-                        @let both: Vec<[f64; 2]> = found.hysteresis.iter().map(|found| found.rpm).collect();
+                        @let both = found.hysteresis_ranges();
                         tr { th scope="row" { "depends on where the speed comes from" } td { (ranges(&both)) } }
                     }
                 }

@@ -39,7 +39,7 @@ pub(super) fn section(dossier: &Dossier) -> Section {
                 }
                 @if let Some(ledger) = &dossier.claims {
                     li {
-                        "Of its " (ledger.claims.len()) " statements " strong { (ledger.counts.holds) " hold" } ", "
+                        "Of the paper's " (ledger.claims.len()) " statements " strong { (ledger.counts.holds) " hold" } ", "
                         (ledger.counts.misprint) " are misprints, " (ledger.counts.refuted) " are refuted and "
                         (ledger.counts.open) " open; "
                         @if head.claims_otherwise == 0 { "every check comes to the ledger's verdict." }

@@ -91,7 +91,7 @@ pub(super) fn slow_trace(subject: &Subject, title: &str) -> Result {
          lower in less and less time until it stays on the cam: the chattering that the paper describes."
             .to_owned()
     } else {
-        format!("Follower and cam above, the gap between them below. {} {SAME_MULTIPLE} one trace.", counted(&run))
+        format!("Follower and cam above, the gap between them below. {} {SAME_MULTIPLE} first trace.", counted(&run))
     };
     drawn(trace(title, &run), caption)
 }
