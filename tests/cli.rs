@@ -141,7 +141,7 @@ fn a_route_that_cannot_run_is_no_agreement() {
         page.contains("NOT RUN") && page.contains("least_squares: ") && page.contains("sticks to the cam"),
         "{page}"
     );
-    assert!(page.contains("DISAGREES: finite_difference, least_squares and"), "{page}");
+    assert!(page.contains("INCOMPLETE: finite_difference, least_squares and"), "{page}");
 }
 
 #[test]
