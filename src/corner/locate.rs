@@ -68,13 +68,14 @@ impl fmt::Display for NotFound {
         let degrees: Vec<_> = self.corners.iter().map(|angle| format!("{:.4}", angle.to_degrees())).collect();
         write!(f, "looked at the corners at {} deg; ", degrees.join(", "))?;
         if self.rejected.is_empty() {
-            return write!(f, "no flight of one period starts and ends on any of them");
+            write!(f, "no flight of one period starts and ends on any of them")?;
+        } else {
+            write!(f, "found instead:")?;
         }
-        write!(f, "found instead:")?;
         for Rejected { cam_angle, speed_rpm, why } in &self.rejected {
             write!(f, "\n  {speed_rpm:.6} rpm at {:.4} deg: {why}", cam_angle.to_degrees())?;
         }
-        Ok(())
+        write!(f, "\n  `corner-impact locate` looks for corner impacts of orbits with several impacts, too")
     }
 }
 

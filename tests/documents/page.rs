@@ -74,11 +74,14 @@ impl Page {
             .collect()
     }
 
-    /// Numbers with a decimal point in the prose, inline code left out, each as written.
+    /// Numbers with a decimal point in the prose, inline code and where links lead left out, each as written.
     pub fn decimals(&self) -> Vec<(usize, String)> {
         let mut found = Vec::new();
         for (number, line) in &self.prose {
-            let prose: String = line.split('`').step_by(2).collect::<Vec<_>>().join(" ");
+            let mut prose: String = line.split('`').step_by(2).collect::<Vec<_>>().join(" ");
+            for (_, target) in self.links().filter(|(of, _)| of == number) {
+                prose = prose.replace(target, "");
+            }
             found.extend(decimals(&prose).into_iter().map(|decimal| (*number, decimal)));
         }
         found

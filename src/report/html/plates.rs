@@ -14,9 +14,15 @@ pub(super) fn section(dossier: &Dossier) -> Result<Option<Section>, HtmlError> {
     if dossier.plates.is_empty() {
         return Ok(None);
     }
-    let mut drawn = Vec::new();
+    let (mut drawn, mut before) = (Vec::new(), None);
     for plate in &dossier.plates {
-        drawn.push(if plate.id == CAM { elsewhere(plate, dossier) } else { self::plate(plate, dossier)? });
+        let again = plate.absent.is_some() && plate.absent == before;
+        drawn.push(match plate.id {
+            CAM => elsewhere(plate, dossier),
+            _ if again => absent(plate, dossier),
+            _ => self::plate(plate, dossier)?,
+        });
+        before.clone_from(&plate.absent);
     }
     let body = html! { @for plate in &drawn { (plate) } };
     Ok(Some(Section { id: "figures", title: "Figures", body }))
@@ -24,6 +30,15 @@ pub(super) fn section(dossier: &Dossier) -> Result<Option<Section>, HtmlError> {
 
 fn elsewhere(plate: &Plate, dossier: &Dossier) -> Markup {
     html! { p.note { (place(plate, dossier)) a href={ "#plate-" (plate.id) } { (plate.title) } " stands with the model." } }
+}
+
+/// A figure that is missing for the reason of the one before it.
+fn absent(plate: &Plate, dossier: &Dossier) -> Markup {
+    html! {
+        figure id={ "plate-" (plate.id) } {
+            figcaption { (place(plate, dossier)) strong { (plate.title) } ". " span.absent { "Not drawn, for the same reason." } }
+        }
+    }
 }
 
 /// The paper's figure, for the paper's model: those of another one are none of the paper's.
