@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::{CommandError, Exit, ModelArgument, Session, picture};
+use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
 use crate::gallery::Subject;
 use crate::model::Model;
 use crate::report::json;
@@ -66,7 +66,9 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     if id.is_none() && arguments.out.is_some() {
         return Err(CommandError::Input("--out is for one figure: name it, from the list without --out".into()));
     }
+    let progress = Progress::spinner("verifying the model");
     let subject = Subject::new(&model).map_err(CommandError::input)?;
+    drop(progress);
     let page = match id {
         None => list(&model, &subject, arguments.json)?,
         Some(id) => {
@@ -77,7 +79,9 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
             // Opened before the work: a name that cannot be is told at once.
             let mut nobody = std::io::sink();
             let canvas = arguments.out.as_ref().map(|path| picture::Canvas::create(path, &mut nobody)).transpose()?;
+            let progress = Progress::spinner("computing the figure");
             let plate = plate(&subject, id).ok_or_else(|| CommandError::Input(format!("no figure called \"{id}\"")))?;
+            drop(progress);
             // A document says why there is none; a file cannot.
             if let (Some(why), true) = (&plate.absent, arguments.out.is_some() || !arguments.json) {
                 return Err(CommandError::Input(format!("{}: no figure {id}: {why}", model.file())));
