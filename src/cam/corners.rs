@@ -36,8 +36,7 @@ pub struct Corner {
 impl Cam {
     /// The corners, in order of angle, whatever derivative jumps.
     pub fn corners(&self) -> Vec<Corner> {
-        let count = self.segments().len();
-        let meetings = (0..count).map(|after| ((after + count - 1) % count, after));
+        let meetings = (0..self.segments().len()).map(|after| (self.before(after), after));
         meetings.filter_map(|(before, after)| self.corner(before, after)).collect()
     }
 
@@ -79,8 +78,7 @@ impl Cam {
     /// revolution on. Refused (`None`) where the neighbour is shorter than twice `reach` or the law ends before.
     pub fn continued(&self, corner: &Corner, side: Side, reach: f64) -> Option<Self> {
         let mut segments = self.segments().to_vec();
-        let count = segments.len();
-        let (before, after) = ((corner.segment + count - 1) % count, corner.segment);
+        let (before, after) = (self.before(corner.segment), corner.segment);
         let shortened = match side {
             Side::Minus => &segments[after],
             Side::Plus => &segments[before],

@@ -64,6 +64,12 @@ enum Joint {
     Spline { degree: usize },
 }
 
+/// The angle between two angles, rad, the shorter way round.
+pub fn apart(one: f64, two: f64) -> f64 {
+    let turned = (one - two).rem_euclid(TAU);
+    turned.min(TAU - turned)
+}
+
 /// A periodic lift profile; clones share their segments.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cam {
@@ -113,14 +119,18 @@ impl Cam {
         self.joint
     }
 
+    /// The index of the segment that ends where another begins, once round.
+    pub fn before(&self, segment: usize) -> usize {
+        (segment + self.segments.len() - 1) % self.segments.len()
+    }
+
     /// The cam, or a complaint where its lift jumps; `place` names the model and the field that begins a segment.
     fn without_steps<'a>(self, place: impl Fn(usize) -> (&'a Model, String)) -> Result<Self, ModelError> {
         let largest =
             self.segments.iter().map(|segment| segment.bounds.lift[0].abs().max(segment.bounds.lift[1].abs()));
         let largest = largest.fold(0.0, f64::max);
-        let count = self.segments.len();
-        for after in 0..count {
-            let (before, after_it) = (&self.segments[(after + count - 1) % count], &self.segments[after]);
+        for after in 0..self.segments.len() {
+            let (before, after_it) = (&self.segments[self.before(after)], &self.segments[after]);
             let (minus, plus) = (before.law.lift(before.end).value, after_it.law.lift(after_it.start).value);
             if !((plus - minus).abs() <= tolerance::CAM_CLOSURE.value * largest) {
                 let (model, field) = place(after);

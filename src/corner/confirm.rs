@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::corner_impact::{CornerImpact, at_section, origin};
-use crate::cam::{Cam, Corner, Side};
+use crate::cam::{Cam, Corner, Side, apart};
 use crate::impact::rebound;
 use crate::model::Model;
 use crate::orbit::cycle::lift_size;
@@ -93,12 +93,6 @@ impl Candidate {
             side,
         })
     }
-}
-
-/// The angle between two angles, rad, the shorter way round.
-pub fn apart(one: f64, two: f64) -> f64 {
-    let turned = (one - two).rem_euclid(TAU);
-    turned.min(TAU - turned)
 }
 
 /// How the motion of the cam as it is leaves a cycle, in words.

@@ -9,10 +9,9 @@ use std::ops::ControlFlow;
 
 use nalgebra::{Vector2, Vector3};
 
-use super::confirm::apart;
 use super::corner_impact::CornerImpact;
 use super::varied::{NoChange, Varied, value_of};
-use crate::cam::{Cam, Corner, Side};
+use crate::cam::{Cam, Corner, Side, apart};
 use crate::flight::State;
 use crate::model::Model;
 use crate::orbit::{Family, Parameter};

@@ -18,7 +18,7 @@ use std::f64::consts::TAU;
 use nalgebra::Vector2;
 
 use super::Subject;
-use crate::cam::Side;
+use crate::cam::{Side, apart};
 use crate::corner::CornerImpact;
 use crate::flight::{Flight, State};
 use crate::impact::rebound;
@@ -108,8 +108,7 @@ impl Subject {
         let at = &self.found()?.at;
         let machine = self.machine(at.speed_rpm());
         let (corner, omega) = (&at.corner, at.angular_velocity());
-        let count = self.cam.segments().len();
-        let sides = [(corner.segment + count - 1) % count, corner.segment].map(|index| &self.cam.segments()[index]);
+        let sides = [self.cam.before(corner.segment), corner.segment].map(|index| &self.cam.segments()[index]);
         let shorter = sides.iter().map(|segment| segment.end - segment.start).fold(f64::INFINITY, f64::min);
         let mut reach = (FARTHEST / IMPACT).min(0.9 * shorter);
         let mut neighbours = None;
@@ -190,10 +189,7 @@ fn neighbour(at: &CornerImpact, machine: &Machine, side: Side, reach: f64) -> Op
     let map = StroboscopicMap { machine: machine.clone(), cam_angle: at.section_angle() };
     let run = map.apply(first).ok()?;
     let alone = run.events.len() == 1 && run.impacts().count() == 1;
-    let near = run.impacts().all(|impact| {
-        let off = impact.cam_angle - (corner.angle + turn);
-        (off - TAU * (off / TAU).round()).abs() < 0.5 * reach
-    });
+    let near = run.impacts().all(|impact| apart(impact.cam_angle, corner.angle + turn) < 0.5 * reach);
     (alone && near).then(|| {
         let unreal = side == Side::Minus;
         Neighbour {

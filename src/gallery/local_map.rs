@@ -10,6 +10,7 @@ use super::sweep::Crossings;
 use crate::border_collision::long_run::End;
 use crate::border_collision::outcome::LocalOutcome;
 use crate::border_collision::validity::Compared;
+use crate::cam::apart;
 use crate::orbit::branch::{Branch, Following};
 use crate::orbit::{Parameter, Search, search};
 
@@ -111,9 +112,6 @@ impl Subject {
     /// Whether every impact of an orbit is nearer to the corner than to its opposite.
     fn is_near(&self, orbit: &crate::orbit::PeriodicOrbit) -> bool {
         let Ok(found) = self.found() else { return false };
-        orbit.impacts().all(|impact| {
-            let off = (impact.cam_angle - found.at.corner.angle).rem_euclid(TAU);
-            off.min(TAU - off) < 0.25 * TAU
-        })
+        orbit.impacts().all(|impact| apart(impact.cam_angle, found.at.corner.angle) < 0.25 * TAU)
     }
 }

@@ -150,8 +150,7 @@ fn speeds(model: &Model, at: &CornerImpact) -> (Vec<f64>, usize) {
 
 /// The segments before and after the corner.
 fn sides(machine: &Machine, at: &CornerImpact) -> [usize; 2] {
-    let count = machine.cam().segments().len();
-    [(at.corner.segment + count - 1) % count, at.corner.segment]
+    [machine.cam().before(at.corner.segment), at.corner.segment]
 }
 
 fn orbits(machine: &Machine, at: &CornerImpact) -> Result<Vec<Shown>, SimulateError> {

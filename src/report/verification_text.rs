@@ -3,6 +3,7 @@
 use std::fmt::{self, Write};
 
 use super::border_collision_text;
+use super::dossier::spoken;
 use super::page::{Cell, Column, Mark, Page, Table, WIDTH, mark, significant};
 use super::verification::{AgreementEntry, EigenvalueEntry, PublishedEntry, SideEntry, Sides, Verification};
 use crate::agreement::{shared_decimals, worse};
@@ -390,9 +391,4 @@ fn entry(value: f64) -> String {
     let text = format!("{value:.9}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" { "0".into() } else { text.into() }
-}
-
-/// A route's name as words.
-fn spoken(name: &str) -> String {
-    name.replace('_', " ")
 }
