@@ -5,9 +5,9 @@
 use std::ops::ControlFlow;
 
 use corner_impact::cam::Cam;
+use corner_impact::draw::{Density, svg};
+use corner_impact::figures::plots::{Diagram, corner_marks, impact_diagram};
 use corner_impact::model::{Model, OSORIO_2008};
-use corner_impact::report::figure::{Density, svg};
-use corner_impact::report::figures::{Diagram, corner_marks, impact_diagram};
 use corner_impact::simulate::{Event, EventKind, Machine, Unobserved, angular_velocity};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use corner_impact::model::{Model, OSORIO_2008};
-use corner_impact::verify::{External, verify};
+use corner_impact::study::verify::{External, verify};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let model = match std::env::args().nth(1) {

@@ -2,8 +2,6 @@
 //!
 //! `cargo run --release --example global_picture -- exponents | endings | distance | passage`
 
-use corner_impact::basin::boundary::approach;
-use corner_impact::basin::{Curve, Ending, Extent, Patience, Reversed, Saddle, ending};
 use corner_impact::border_collision::passage;
 use corner_impact::cam::Cam;
 use corner_impact::diagram::{Speeds, exponent};
@@ -11,7 +9,9 @@ use corner_impact::model::{Model, OSORIO_2008};
 use corner_impact::orbit::{Course, Search, search};
 use corner_impact::section::StroboscopicMap;
 use corner_impact::simulate::{Machine, angular_velocity};
-use corner_impact::verify::{External, Findings, verify};
+use corner_impact::study::basins::boundary::approach;
+use corner_impact::study::basins::{Curve, Ending, Extent, Patience, Reversed, Saddle, ending};
+use corner_impact::study::verify::{External, Findings, verify};
 
 type Done = Result<(), Box<dyn std::error::Error>>;
 

@@ -3,7 +3,7 @@
 //! `cargo run --release --example restitution`
 
 use corner_impact::model::{Model, OSORIO_2008};
-use corner_impact::verify::{External, verify};
+use corner_impact::study::verify::{External, verify};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let paper = Model::parse("osorio-2008.toml", OSORIO_2008)?;

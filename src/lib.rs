@@ -13,10 +13,6 @@
 //!    ▼
 //!  orbit                 periodic orbits, their multipliers, branches of them and the points where these change
 //!    ▼
-//!  regime                what the follower does over a range of speeds, and where that changes (`speeds`)
-//!    ▼
-//!  basin                 what a start ends on; the curves that part the basins
-//!    ▼
 //!  python                runs one script of `derivations/`
 //!    ▼
 //!  corner                where the corner impact is (x*, T*), and its map {A∓, B∓, C, D} by several routes
@@ -27,21 +23,22 @@
 //!    ▼
 //!  published             the digits that the paper prints, each right or wrong as it was found to be
 //!    ▼
-//!  verify                one model: its slowest corner impact by every route, compared and classified (`verify`)
+//!  study                 one module per question that a user can ask, named as its command: verify, locate, speeds, ...
 //!    ▼
-//!  survey                every corner impact of a range of speeds, each with its map and class (`locate`)
+//!  paper                 the paper's statements, one by one: holds, misprint, refuted, open
 //!    ▼
-//!  claims                the paper's statements, one by one: holds, misprint, refuted, open
+//!  show                  how findings are shown: text for a terminal, JSON, CSV
 //!    ▼
-//!  gallery               what the report's figures show, as numbers
+//!  figures               what each figure shows, as numbers and as a plot
 //!    ▼
-//!  report                document values; text, JSON, Markdown; figures: SVG, PNG
+//!  pages                 the page of each command; the report
 //!    ▼
 //!  cli                   parse, one library call, exit code
 //! ```
 //!
 //! Data moves down; no stage uses one below it, and a test holds the code to that. `tolerance` stands above all: every
-//! threshold is a row of its one table; and so does `progress`, by which long work tells how far it has come.
+//! threshold is a row of its one table; so do `progress`, by which long work tells how far it has come, and `draw`, which
+//! turns a plot into SVG or PNG and knows no mechanics.
 //!
 //! ```
 //! use corner_impact::{model::{Model, OSORIO_2008}, verify::{External, verify}};
@@ -58,6 +55,8 @@ pub mod tolerance;
 
 pub mod progress;
 
+pub mod draw;
+
 pub mod model;
 
 pub mod cam;
@@ -72,10 +71,6 @@ pub mod diagram;
 
 pub mod orbit;
 
-pub mod regime;
-
-pub mod basin;
-
 pub mod python;
 
 pub mod corner;
@@ -86,15 +81,15 @@ pub mod border_collision;
 
 pub mod published;
 
-pub mod verify;
+pub mod study;
 
-pub mod survey;
+pub mod paper;
 
-pub mod claims;
+pub mod show;
 
-pub mod gallery;
+pub mod figures;
 
-pub mod report;
+pub mod pages;
 
 pub mod cli;
 

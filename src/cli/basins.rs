@@ -6,16 +6,17 @@ use std::time::Instant;
 
 use super::start::{finite, rpm, turn};
 use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
-use crate::basin::{Basins, Curve, Ending, Extent, Grid, Patience, Reversed, Saddle};
 use crate::cam::Cam;
+use crate::cli::file::Output;
+use crate::figures::plots::{BasinsPicture, basins_figure};
 use crate::flight::State;
 use crate::model::Model;
 use crate::orbit::{Course, PeriodicOrbit, Search, search};
-use crate::report::figures::{BasinsPicture, basins_figure};
-use crate::report::file::Output;
-use crate::report::{BasinsSummary, csv, json};
+use crate::pages::BasinsSummary;
 use crate::section::StroboscopicMap;
+use crate::show::{csv, json};
 use crate::simulate::{Machine, angular_velocity};
+use crate::study::basins::{Basins, Curve, Ending, Extent, Grid, Patience, Reversed, Saddle};
 
 /// Runs a grid of starts at one speed and says what each ends on, as a table or a picture.
 #[derive(clap::Args)]

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
 use crate::cam::{Cam, Jet};
-use crate::report::figures::cam_figure;
-use crate::report::{CamDocument, json};
+use crate::figures::plots::cam_figure;
+use crate::pages::CamDocument;
+use crate::show::json;
 
 /// Lists the segments of a model's cam and the corners where they meet.
 #[derive(clap::Args)]

@@ -2,9 +2,10 @@
 
 use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
 use crate::cam::Cam;
-use crate::claims::{Context, hold_watched};
-use crate::report::{ClaimsDocument, json};
-use crate::verify::{External, verify_watched};
+use crate::pages::ClaimsDocument;
+use crate::paper::{Context, hold_watched};
+use crate::show::json;
+use crate::study::verify::{External, verify_watched};
 
 /// Prints what the paper states, statement by statement, with a verdict and its evidence.
 #[derive(clap::Args)]

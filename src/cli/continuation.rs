@@ -6,15 +6,15 @@ use std::path::PathBuf;
 use super::start::{finite, positive, rpm};
 use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
 use crate::cam::Cam;
+use crate::cli::file::Output;
 use crate::diagram::settled_impacts;
+use crate::draw::Density;
+use crate::figures::plots::{Branches, branches_figure, corner_marks};
 use crate::model::Model;
 use crate::orbit::branch::{Branch, Following};
 use crate::orbit::{Family, Parameter, PeriodicOrbit, Search, search};
+use crate::pages::branch;
 use crate::progress::Watch;
-use crate::report::branch;
-use crate::report::figure::Density;
-use crate::report::figures::{Branches, branches_figure, corner_marks};
-use crate::report::file::Output;
 use crate::simulate::{Machine, angular_velocity};
 
 /// Follows the orbits of one speed through a parameter, round folds and through corners.

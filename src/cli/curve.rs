@@ -7,13 +7,13 @@ use super::continuation::parameter;
 use super::start::{positive, range};
 use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
 use crate::border_collision::{AtCorner, ImpactCurve};
+use crate::cli::file::Output;
+use crate::draw::layout::widened;
+use crate::figures::plots::curve_figure;
 use crate::orbit::branch::{Branch, Following, corner_impacts, find_branches};
 use crate::orbit::{Parameter, Search};
+use crate::pages::curve;
 use crate::progress::Watch;
-use crate::report::curve;
-use crate::report::figure::layout::widened;
-use crate::report::figures::curve_figure;
-use crate::report::file::Output;
 
 /// Follows corner impacts through a number of the model: their speed, and where their type changes.
 #[derive(clap::Args)]

@@ -9,12 +9,13 @@ use clap::ValueEnum;
 use super::start::{StartArguments, count, finite, speeds, turn};
 use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
 use crate::cam::Cam;
+use crate::cli::file::Output;
 use crate::diagram::{Counted, Following, Places, Section, Speeds, Sweep, SweepError, Tally};
-use crate::report::figure::layout::widened;
-use crate::report::figure::{Cloud, Density, Figure};
-use crate::report::figures::{Diagram, corner_marks, impact_diagram, shown_impacts, strobe_diagram};
-use crate::report::file::Output;
-use crate::report::{SweepSummary, csv, json};
+use crate::draw::layout::widened;
+use crate::draw::{Cloud, Density, Figure};
+use crate::figures::SweepSummary;
+use crate::figures::plots::{Diagram, corner_marks, impact_diagram, shown_impacts, strobe_diagram};
+use crate::show::{csv, json};
 use crate::simulate::{Machine, angular_velocity};
 
 /// Sweeps over speeds: what the motion settles on, as a table or a picture.

@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
-use crate::gallery::Subject;
+use crate::figures::Subject;
+use crate::figures::plates::{Listed, Plate, listed, plate};
 use crate::model::Model;
-use crate::report::json;
-use crate::report::plates::{Listed, Plate, listed, plate};
+use crate::show::json;
 
 /// Lists the figures of the report, or draws one of them.
 #[derive(clap::Args)]

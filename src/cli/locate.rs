@@ -3,8 +3,9 @@
 use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
 use crate::model::Study;
 use crate::orbit::Search;
-use crate::report::{LocateDocument, json};
-use crate::survey::{SurveyError, survey};
+use crate::pages::LocateDocument;
+use crate::show::json;
+use crate::study::locate::{SurveyError, survey};
 
 /// Lists the speeds at which a periodic orbit has an impact on a corner of the cam, and what happens there.
 #[derive(clap::Args)]

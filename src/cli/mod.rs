@@ -9,6 +9,7 @@ mod continuation;
 mod curve;
 mod diagram;
 mod figure;
+pub mod file;
 mod help;
 mod locate;
 mod man;
@@ -33,8 +34,8 @@ use model::ModelArgument;
 pub use session::Terminal;
 use session::{ColorChoice, Session};
 
+use crate::cli::file::{FileError, Output};
 use crate::model::ModelError;
-use crate::report::file::{FileError, Output};
 
 /// How a command ended; the process's exit code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -6,7 +6,8 @@ use crate::cam::Cam;
 use crate::flight::State;
 use crate::orbit::search::near;
 use crate::orbit::{Search, search};
-use crate::report::{OrbitDocument, json};
+use crate::pages::OrbitDocument;
+use crate::show::json;
 use crate::simulate::{Machine, angular_velocity};
 
 /// Finds periodic orbits at one speed, stable and unstable, with their multipliers.

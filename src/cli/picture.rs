@@ -4,8 +4,8 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use super::CommandError;
-use crate::report::figure::{Figure, png, svg};
-use crate::report::file::Output;
+use crate::cli::file::Output;
+use crate::draw::{Figure, png, svg};
 
 /// The kinds of picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

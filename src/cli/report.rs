@@ -5,10 +5,12 @@ use std::path::{Path, PathBuf};
 
 use super::progress::Progress;
 use super::{CommandError, Exit, ModelArgument, Session};
+use crate::cli::file::Output;
 use crate::model::Model;
-use crate::report::file::Output;
-use crate::report::{Dossier, html, json};
-use crate::verify::External;
+use crate::pages::Dossier;
+use crate::pages::report::html;
+use crate::show::json;
+use crate::study::verify::External;
 
 /// Writes everything about a model as one HTML page that opens from disk.
 #[derive(clap::Args)]

@@ -5,7 +5,7 @@ use std::io::{IsTerminal, Write};
 
 use super::{CommandError, Exit, complaint};
 use crate::model::ModelError;
-use crate::report::Page;
+use crate::show::Page;
 
 /// Whether to colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
@@ -75,7 +75,7 @@ impl Terminal {
     /// Columns of a page.
     pub(super) fn width(&self) -> usize {
         let [fewest, most] = Self::ALLOWED;
-        self.columns.unwrap_or(crate::report::page::WIDTH).clamp(fewest, most)
+        self.columns.unwrap_or(crate::show::page::WIDTH).clamp(fewest, most)
     }
 
     fn coloured(&self, choice: ColorChoice, is_terminal: bool) -> bool {

@@ -8,13 +8,14 @@ use std::time::{Duration, Instant};
 use super::start::{StartArguments, count, finite, rpm, turn};
 use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
 use crate::cam::Cam;
+use crate::cli::file::Output;
 use crate::diagram::growth_and_error;
+use crate::figures::plots::{Against, Trace, phase_plane, time_trace};
+use crate::figures::run::Exponent;
+use crate::figures::{RunSummary, run};
 use crate::model::Model;
-use crate::report::figures::{Against, Trace, phase_plane, time_trace};
-use crate::report::file::Output;
-use crate::report::run::Exponent;
-use crate::report::{RunSummary, csv, json, run};
 use crate::section;
+use crate::show::{csv, json};
 use crate::simulate::{Event, EventKind, Goal, Machine, Motion, angular_velocity};
 
 /// Runs one motion of a model and says what happened.

@@ -4,8 +4,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::start::range;
 use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
-use crate::regime::{Care, regimes, usual_speeds};
-use crate::report::{RegimesDocument, json};
+use crate::pages::RegimesDocument;
+use crate::show::json;
+use crate::study::speeds::{Care, regimes, usual_speeds};
 
 /// Tells at which speeds the follower leaves the cam, chatters, bounces regularly, is chaotic, and where hysteresis is.
 #[derive(clap::Args)]

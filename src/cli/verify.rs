@@ -1,8 +1,9 @@
 //! `corner-impact verify [MODEL]`.
 
 use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
-use crate::report::{Verification, json};
-use crate::verify::{External, verify_watched};
+use crate::show::json;
+use crate::study::verify::Verification;
+use crate::study::verify::{External, verify_watched};
 
 /// Finds the corner impact of a model, computes its map by every route, and says whether they agree.
 #[derive(clap::Args)]

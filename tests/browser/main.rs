@@ -7,11 +7,12 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use corner_impact::model::Model;
+use corner_impact::pages::Dossier;
+use corner_impact::pages::claims::ClaimsDocument;
+use corner_impact::pages::report::html;
+use corner_impact::pages::report::through::{FrameEntry, ThroughEntry};
 use corner_impact::progress::Unwatched;
-use corner_impact::report::claims::ClaimsDocument;
-use corner_impact::report::through::{FrameEntry, ThroughEntry};
-use corner_impact::report::{Dossier, html};
-use corner_impact::verify::External;
+use corner_impact::study::verify::External;
 use devtools::Page;
 use serde_json::Value;
 
@@ -251,7 +252,7 @@ fn the_ledger_is_filtered_by_verdict_and_words_and_linked_to() {
     page.click("#verdict-all");
     page.click("#ledger-search");
     page.call("Input.insertText", serde_json::json!({ "text": "detach" }));
-    let about = |claim: &corner_impact::report::claims::ClaimEntry| {
+    let about = |claim: &corner_impact::pages::claims::ClaimEntry| {
         let correct = claim.correct.clone().unwrap_or_default();
         let text =
             [&claim.id, &claim.place, &claim.statement, &correct, &claim.evidence].map(|part| part.to_lowercase());

@@ -23,10 +23,10 @@ pub const ELSEWHERE: &[(&str, &str, Held)] = &[
     ("make check", "compiles everything once more", Held::Landing),
     ("make test", "is what runs this test", Held::Landing),
     ("make derive-check", "takes a minute of computer algebra", Held::Landing),
-    ("make verify", "needs Python's packages; tests/routes.rs runs the same", Held::Landing),
+    ("make verify", "needs Python's packages; tests/it/routes.rs runs the same", Held::Landing),
     ("make report", "needs Python's packages; tests/browser opens the page", Held::Landing),
-    ("make claims", "writes docs/claims.md; tests/ledger.rs holds it fresh", Held::Target),
-    ("make pictures", "writes docs/*.svg; tests/documents.rs draws them again", Held::Target),
+    ("make claims", "writes docs/claims.md; tests/it/ledger.rs holds it fresh", Held::Target),
+    ("make pictures", "writes docs/*.svg; tests/documents/main.rs draws them again", Held::Target),
 ];
 
 /// A command and what it prints.

@@ -1,0 +1,257 @@
+//! A figure as one value, and two renderers of it: SVG, and PNG from the SVG.
+//!
+//! A [`Figure`] says what is drawn in the data's own units; [`layout`] decides where on the page, [`svg`] and [`png`] only
+//! write that down. Nothing here computes anything from the data but its extent; the figures themselves are built in
+//! [`crate::figures::plots`].
+
+pub mod density;
+mod grid;
+pub mod layout;
+pub mod png;
+mod series;
+mod sheet;
+pub mod svg;
+pub mod thin;
+pub mod ticks;
+mod words;
+
+use serde::Serialize;
+
+pub use density::{Cloud, Density};
+pub use ticks::Spacing;
+
+/// What is drawn: panels below each other that share the horizontal axis.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Figure {
+    /// Stands above; empty for none.
+    pub title: String,
+    /// The horizontal axis of every panel.
+    pub x: Axis,
+    /// Vertical lines through every panel, labelled above the first.
+    pub marks: Vec<Mark>,
+    /// From top to bottom.
+    pub panels: Vec<Panel>,
+    /// Stands below; empty for none.
+    pub note: String,
+}
+
+/// An axis: its name, unit and range.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Axis {
+    /// What is drawn against it.
+    pub label: String,
+    /// Its unit; empty for a pure number.
+    pub unit: String,
+    /// Its ends, the lower first; the extent of the data where there is none.
+    pub range: Option<[f64; 2]>,
+    /// Where its ticks may stand.
+    pub spacing: Spacing,
+    /// Of a vertical axis: whether a unit is as long as one of the horizontal axis, so that a circle is one.
+    pub to_scale: bool,
+}
+
+impl Axis {
+    /// An axis that takes the extent of the data.
+    pub fn new(label: &str, unit: &str) -> Self {
+        Self { label: label.into(), unit: unit.into(), range: None, spacing: Spacing::Decimal, to_scale: false }
+    }
+
+    /// An axis of degrees.
+    pub fn degrees(label: &str) -> Self {
+        Self { spacing: Spacing::Degrees, ..Self::new(label, "deg") }
+    }
+
+    /// The axis with its ends set.
+    pub fn over(self, range: [f64; 2]) -> Self {
+        Self { range: Some(range), ..self }
+    }
+
+    /// The vertical axis with units as long as those of the horizontal one; its frame is as high as that makes it.
+    pub fn to_scale(self) -> Self {
+        Self { to_scale: true, ..self }
+    }
+}
+
+/// One frame with its vertical axis.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Panel {
+    /// The vertical axis.
+    pub y: Axis,
+    /// Height of the frame, in units of the figure's width.
+    pub height: f64,
+    /// What it shows; the first is drawn first.
+    pub series: Vec<Series>,
+    /// Horizontal lines, labelled at the right.
+    pub marks: Vec<Mark>,
+}
+
+/// A reference line.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Mark {
+    /// Where it crosses its axis.
+    pub at: f64,
+    /// What it stands for; empty for a plain thin line, such as that of zero.
+    pub label: String,
+}
+
+/// Data drawn in one way.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Series {
+    /// Its name in the legend; empty for none.
+    pub label: String,
+    /// Its colour.
+    pub colour: Colour,
+    /// Its values.
+    pub data: Data,
+}
+
+/// The values of a series, and how they are joined.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Data {
+    /// Points joined in order; what is not a number breaks the line.
+    Line {
+        /// `[x, y]`.
+        points: Vec<[f64; 2]>,
+        /// How it is stroked.
+        stroke: Stroke,
+    },
+    /// Points joined in order, and what lies below them filled down to the frame.
+    Area {
+        /// `[x, y]`.
+        points: Vec<[f64; 2]>,
+        /// How its upper edge is stroked.
+        stroke: Stroke,
+    },
+    /// A line with the head of an arrow at the end of each of its runs.
+    Arrow {
+        /// `[x, y]`.
+        points: Vec<[f64; 2]>,
+        /// How it is stroked.
+        stroke: Stroke,
+    },
+    /// One marker each.
+    Points {
+        /// `[x, y]`.
+        points: Vec<[f64; 2]>,
+        /// What stands there.
+        marker: Marker,
+    },
+    /// Words at points, over whatever else is there.
+    Words(Vec<Word>),
+    /// More points than there is paper, counted on a grid.
+    Density(Density),
+    /// Parts of the plane, as the cells of a grid.
+    Region {
+        /// The cells.
+        cells: Density,
+        /// How much of the colour they have, up to 1: in grey print regions are told apart by it.
+        strength: f64,
+    },
+}
+
+/// A word at a point.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Word {
+    /// `[x, y]`.
+    pub at: [f64; 2],
+    /// What it says; `_` lowers and `^` raises the letter after it, or the letters in braces.
+    pub text: String,
+    /// On which side of the point it stands.
+    pub beside: Beside,
+}
+
+/// A side of a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Beside {
+    /// Right of it.
+    Right,
+    /// Left of it.
+    Left,
+    /// Above it.
+    Above,
+    /// Below it.
+    Below,
+    /// Above it and to the right.
+    AboveRight,
+    /// Above it and to the left.
+    AboveLeft,
+    /// Below it and to the right.
+    BelowRight,
+    /// Below it and to the left.
+    BelowLeft,
+}
+
+/// How a line is stroked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Stroke {
+    /// Thin and unbroken.
+    Thin,
+    /// Unbroken.
+    Solid,
+    /// Broken.
+    Dashed,
+    /// Of points.
+    Dotted,
+    /// Unbroken, three times as wide.
+    Thick,
+}
+
+/// What stands at a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Marker {
+    /// A small disc.
+    Dot,
+    /// A disc.
+    Disc,
+    /// An open circle.
+    Ring,
+    /// A small open circle.
+    SmallRing,
+    /// A triangle, its tip at the point, standing below it.
+    Below,
+}
+
+/// Colours that stay apart for the colour-blind (Okabe and Ito), and in grey by what they are drawn with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Colour {
+    /// That of the text.
+    Ink,
+    /// Between text and paper.
+    Grey,
+    /// First choice.
+    Blue,
+    /// Second.
+    Vermilion,
+    /// Third.
+    Green,
+    /// Fourth.
+    Purple,
+}
+
+impl Colour {
+    /// Every colour.
+    pub const ALL: [Self; 6] = [Self::Ink, Self::Grey, Self::Blue, Self::Vermilion, Self::Green, Self::Purple];
+
+    /// Its class in the SVG, its hex value on white paper, and on a dark screen.
+    pub(crate) const fn shades(self) -> (&'static str, &'static str, &'static str) {
+        match self {
+            Self::Ink => ("ink", "#1a1a1a", "#e8e8e8"),
+            Self::Grey => ("grey", "#8a8a8a", "#8f8f8f"),
+            Self::Blue => ("blue", "#0072b2", "#56b4e9"),
+            Self::Vermilion => ("vermilion", "#d55e00", "#f0903c"),
+            Self::Green => ("green", "#009e73", "#35cfa2"),
+            Self::Purple => ("purple", "#b0588a", "#dd9cc2"),
+        }
+    }
+
+    /// Red, green and blue on white paper.
+    pub(crate) fn rgb(self) -> [u8; 3] {
+        let hex = self.shades().1.trim_start_matches('#');
+        [0, 2, 4].map(|at| u8::from_str_radix(&hex[at..at + 2], 16).unwrap_or(0))
+    }
+}

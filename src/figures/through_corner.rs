@@ -1,0 +1,256 @@
+//! One machine at speeds on either side of its corner impact: every orbit of one impact a revolution, and what runs settle
+//! on with the speed falling and rising.
+
+use std::f64::consts::TAU;
+use std::ops::ControlFlow;
+
+use rayon::prelude::*;
+
+use crate::cam::{Cam, Lift};
+use crate::corner::CornerImpact;
+use crate::figures::Outline;
+use crate::model::Model;
+use crate::orbit::{Course, Cycle, Eigenvalue, PeriodicOrbit, Search, search};
+use crate::section::trace;
+use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError, angular_velocity};
+
+/// Speeds on each side of the corner impact.
+const SPEEDS: usize = 90;
+/// How far from the corner impact the slowest and the fastest speed are, of its own, where `[study]` allows.
+const REACH: f64 = 0.06;
+/// Revolutions of a run at each speed before it is looked at, and how many are then.
+const SETTLING: u64 = 400;
+const RECORDED: u64 = 24;
+/// Revolutions of a run that are drawn in full, and samples of each, and of an orbit.
+const DRAWN: u64 = 2;
+const SAMPLES: u32 = 72;
+/// Samples of the cam: four to a degree.
+const CAM_SAMPLES: usize = 1440;
+
+/// What there is at speeds on either side of a corner impact.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ThroughCorner {
+    /// The cam, four times a degree and on both sides of every corner: angle, rad, and lift with its derivatives.
+    pub cam: Vec<(f64, Lift)>,
+    /// Added to the lift where the cam is drawn as a shape, m: as in its [`Outline`].
+    pub drawn_on: f64,
+    /// By rising speed; the one at the corner impact among them.
+    pub moments: Vec<Moment>,
+    /// Index of the moment at the corner impact.
+    pub at_corner: usize,
+}
+
+/// One speed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Moment {
+    /// rpm.
+    pub rpm: f64,
+    /// Every orbit of one impact a revolution. At the corner impact the one orbit stands twice: as the law before the corner
+    /// has it and as the law after it.
+    pub orbits: Vec<Shown>,
+    /// What a run settles on that came from faster speeds.
+    pub slowing: Run,
+    /// What a run settles on that came from slower speeds.
+    pub speeding: Run,
+}
+
+/// On which side of the corner an orbit's impact is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// On the segment that ends at the corner.
+    Before,
+    /// On the segment that starts at the corner.
+    After,
+    /// On another segment of the cam.
+    Elsewhere,
+}
+
+impl Place {
+    /// Its name in documents.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Before => "before",
+            Self::After => "after",
+            Self::Elsewhere => "elsewhere",
+        }
+    }
+}
+
+/// An orbit and one revolution of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shown {
+    /// Where its impact is.
+    pub place: Place,
+    /// The impact.
+    pub impact: Event,
+    /// Of the orbit.
+    pub multipliers: [Eigenvalue; 2],
+    /// Whether both are inside the unit circle.
+    pub stable: bool,
+    /// Cam angle, rad, from 0 to 2 pi, and position of the follower, m, the impact among them.
+    pub path: Vec<[f64; 2]>,
+}
+
+/// What a run settles on.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Run {
+    /// Cam angles of its impacts, rad.
+    pub impacts: Vec<f64>,
+    /// Revolutions that these were counted over.
+    pub revolutions: u64,
+    /// A few of its revolutions: cam angle, rad, and position of the follower, m; impacts are among them.
+    pub paths: Vec<Vec<[f64; 2]>>,
+}
+
+/// Every orbit of one impact a revolution at speeds around `at`, and what runs settle on there; `None` where the corner
+/// impact is not one of those.
+///
+/// An error where a run cannot go on.
+pub fn through_corner(model: &Model, cam: &Cam, at: &CornerImpact) -> Result<Option<ThroughCorner>, SimulateError> {
+    if !at.is_simple() {
+        return Ok(None);
+    }
+    let machine = Machine::new(cam.clone(), &model.follower, at.angular_velocity());
+    let (speeds, at_corner) = speeds(model, at);
+    let orbits: Result<Vec<Vec<Shown>>, SimulateError> = speeds
+        .par_iter()
+        .enumerate()
+        .map(|(index, rpm)| {
+            let machine = machine.at_speed(angular_velocity(*rpm));
+            if index == at_corner { Ok(on_corner(&machine, at)) } else { orbits(&machine, at) }
+        })
+        .collect();
+    let falling = || runs(&machine, speeds.iter().rev());
+    let rising = || runs(&machine, speeds.iter());
+    let (slowing, speeding) = rayon::join(falling, rising);
+    let (slowing, speeding) = (slowing?.into_iter().rev(), speeding?.into_iter());
+    let found = speeds.iter().zip(orbits?).zip(slowing.zip(speeding));
+    let moments =
+        found.map(|((rpm, orbits), (slowing, speeding))| Moment { rpm: *rpm, orbits, slowing, speeding }).collect();
+    Ok(Some(ThroughCorner { cam: profile(cam), drawn_on: Outline::new(cam).added, moments, at_corner }))
+}
+
+/// The speeds, rpm, rising, densest at the corner impact, and the index of that.
+fn speeds(model: &Model, at: &CornerImpact) -> (Vec<f64>, usize) {
+    let corner = at.speed_rpm();
+    let [mut low, mut high] = [corner * (1.0 - REACH), corner * (1.0 + REACH)];
+    if let Some(study) = model.study {
+        (low, high) = (low.max(study.rpm_min), high.min(study.rpm_max));
+    }
+    // The square of the part of the way: a border collision moves its orbits in proportion to the change of the speed.
+    let part = |index: usize| (index as f64 / SPEEDS as f64).powi(2);
+    let slower = (1..=SPEEDS).rev().map(|index| corner + (low - corner) * part(index)).filter(|rpm| *rpm < corner);
+    let faster = (1..=SPEEDS).map(|index| corner + (high - corner) * part(index)).filter(|rpm| *rpm > corner);
+    let mut speeds: Vec<f64> = slower.collect();
+    let index = speeds.len();
+    speeds.push(corner);
+    speeds.extend(faster);
+    (speeds, index)
+}
+
+/// The segments before and after the corner.
+fn sides(machine: &Machine, at: &CornerImpact) -> [usize; 2] {
+    [machine.cam().before(at.corner.segment), at.corner.segment]
+}
+
+fn orbits(machine: &Machine, at: &CornerImpact) -> Result<Vec<Shown>, SimulateError> {
+    let [before, after] = sides(machine, at);
+    let found = search(machine, &Search { revolutions: 1, impacts: Some(1) })?;
+    let shown = |orbit: &PeriodicOrbit| {
+        let impact = *orbit.impacts().next()?;
+        let Course::Impacts(cycle) = &orbit.course else { return None };
+        let place = match impact.segment {
+            segment if segment == before => Place::Before,
+            segment if segment == after => Place::After,
+            _ => Place::Elsewhere,
+        };
+        let (multipliers, stable) = (orbit.multipliers(), orbit.is_stable());
+        Some(Shown { place, impact, multipliers, stable, path: path(machine, cycle) })
+    };
+    Ok(found.iter().filter_map(shown).collect())
+}
+
+/// The orbit on the corner, with the law on either side of it.
+fn on_corner(machine: &Machine, at: &CornerImpact) -> Vec<Shown> {
+    let lifts = [at.corner.minus, at.corner.plus];
+    let names = [Place::Before, Place::After];
+    let shown = |((segment, lift), place): ((usize, Lift), Place)| {
+        let mut cycle = at.cycle.clone();
+        let contact = &mut cycle.contacts[at.contact];
+        contact.segment = segment;
+        // A segment that ends at 2 pi has the corner at its own end.
+        if place == Place::Before && segment > at.corner.segment {
+            contact.cam_angle = machine.cam().segments()[segment].end;
+        }
+        let orbit = PeriodicOrbit::of_cycle(machine, cycle, at.residual);
+        let impact = Event { cam_angle: at.corner.angle, position: lift.value, ..orbit.events[0] };
+        let (multipliers, stable) = (orbit.multipliers(), orbit.is_stable());
+        Shown { place, impact, multipliers, stable, path: path(machine, &at.cycle) }
+    };
+    sides(machine, at).into_iter().zip(lifts).zip(names).map(shown).collect()
+}
+
+/// One revolution of a cycle of one impact: from angle 0 to the impact on the flight before it, then on the flight after it.
+fn path(machine: &Machine, cycle: &Cycle) -> Vec<[f64; 2]> {
+    let Some(contact) = cycle.contacts.first() else { return Vec::new() };
+    let (leaving, period) = cycle.flight(machine, 0);
+    let turned = contact.cam_angle.rem_euclid(TAU);
+    let position = |since: f64| leaving.position + machine.flight().fly(leaving, since / TAU * period).0;
+    let angles = (0..=SAMPLES).map(|sample| TAU * f64::from(sample) / f64::from(SAMPLES));
+    let (before, after): (Vec<f64>, Vec<f64>) = angles.partition(|angle| *angle < turned);
+    let before = before.into_iter().map(|angle| [angle, position(angle - turned + TAU)]);
+    let after = after.into_iter().filter(|angle| *angle > turned).map(|angle| [angle, position(angle - turned)]);
+    before.chain([[turned, leaving.position]]).chain(after).collect()
+}
+
+/// What a run settles on at each of `speeds` in turn, each begun where the one before it ended.
+fn runs<'a>(machine: &Machine, speeds: impl Iterator<Item = &'a f64>) -> Result<Vec<Run>, SimulateError> {
+    let mut motion: Option<Motion> = None;
+    let mut runs = Vec::new();
+    for rpm in speeds {
+        let machine = machine.at_speed(angular_velocity(*rpm));
+        let mut run = match &motion {
+            None => machine.start_on_cam(0.0, 0.0)?,
+            Some(motion) => machine.resume(motion)?,
+        };
+        let goal = run.after(SETTLING);
+        let _ = machine.advance(&mut run, goal, &mut |_: &Event| ControlFlow::Continue(()))?;
+        let (goal, drawn) = (run.after(RECORDED), run);
+        let mut impacts = Vec::new();
+        let _ = machine.advance(&mut run, goal, &mut |event: &Event| {
+            if event.kind == EventKind::Impact {
+                impacts.push(event.cam_angle);
+            }
+            ControlFlow::Continue(())
+        })?;
+        runs.push(Run { impacts, revolutions: RECORDED, paths: paths(&machine, drawn)? });
+        motion = Some(run);
+    }
+    Ok(runs)
+}
+
+/// Revolutions of a run that begins at angle 0.
+fn paths(machine: &Machine, motion: Motion) -> Result<Vec<Vec<[f64; 2]>>, SimulateError> {
+    let (samples, _) = trace(machine, motion, DRAWN, SAMPLES)?;
+    let begun = motion.revolution as f64 * TAU;
+    let mut paths = Vec::new();
+    for turn in 0..DRAWN {
+        let (from, to) = (begun + turn as f64 * TAU, begun + (turn + 1) as f64 * TAU);
+        let inside = samples.iter().filter(|sample| (from..=to).contains(&sample.turned));
+        paths.push(inside.map(|sample| [sample.turned - from, sample.state.position]).collect());
+    }
+    Ok(paths)
+}
+
+/// The cam four times a degree, and on both sides of every corner.
+fn profile(cam: &Cam) -> Vec<(f64, Lift)> {
+    let mut points = Vec::new();
+    for segment in cam.segments() {
+        points.push((segment.start, segment.law.lift(segment.start)));
+        let degrees = (0..=CAM_SAMPLES).map(|sample| TAU * sample as f64 / CAM_SAMPLES as f64);
+        let inside = degrees.filter(|angle| *angle > segment.start && *angle < segment.end);
+        points.extend(inside.map(|angle| (angle, segment.law.lift(angle))));
+        points.push((segment.end, segment.law.lift(segment.end)));
+    }
+    points
+}

@@ -1,0 +1,364 @@
+//! Everything that is found about one model in one value: what the HTML page is made of.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use serde::Serialize;
+
+use crate::agreement::shared_decimals;
+use crate::cam::{Cam, Jet};
+use crate::figures::plates::{Plate, plates};
+use crate::figures::plots::corner_marks;
+use crate::figures::{Subject, through_corner};
+use crate::model::{Model, ModelError};
+use crate::pages::report::quantities::{Quantity, quantities};
+use crate::pages::report::through::ThroughEntry;
+use crate::pages::speeds::RegimesDocument;
+use crate::pages::{CamDocument, ClaimsDocument};
+use crate::paper::{Context, LedgerError, hold_watched};
+use crate::progress::Watch;
+use crate::show::command::command;
+use crate::study::speeds::{Care, regimes, usual_speeds};
+use crate::study::verify::document::{AgreementEntry, SideEntry, Verification};
+use crate::study::verify::{External, Findings, verify_watched};
+
+/// A report on one model; serializes to the document `corner-impact/report/1`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Dossier {
+    /// `corner-impact/report/1`.
+    pub schema: &'static str,
+    /// Of this program.
+    pub version: &'static str,
+    /// Whether nothing that was checked disagrees.
+    pub agrees: bool,
+    /// Whether follower and cam are the paper's.
+    pub is_paper: bool,
+    /// The findings in brief.
+    pub headline: Headline,
+    /// What the model is.
+    pub model: ModelSheet,
+    /// The corner impact and its map by every route.
+    pub verification: Option<Verification>,
+    /// Why there is none.
+    pub nothing_to_verify: Option<String>,
+    /// The angle of the corner that is hit.
+    pub corner_deg: Option<f64>,
+    /// The matrices by every route side by side.
+    pub tables: Vec<MapTable>,
+    /// The comparisons, one quantity each.
+    pub quantities: Vec<QuantitySummary>,
+    /// The motion at speeds on either side of the corner impact.
+    pub through: Option<ThroughEntry>,
+    /// Why there is none.
+    pub no_through: Option<String>,
+    /// The paper's statements, where the model is the paper's.
+    pub claims: Option<ClaimsDocument>,
+    /// What the follower does at other speeds.
+    pub speeds: Option<RegimesDocument>,
+    /// Why that is not known.
+    pub no_speeds: Option<String>,
+    /// The figures, in the paper's order.
+    pub plates: Vec<Plate>,
+    /// Commands that do all this again, each with what it does.
+    pub commands: Vec<(String, &'static str)>,
+}
+
+/// The findings in brief.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Headline {
+    /// Comparisons of two routes.
+    pub comparisons: usize,
+    /// Those that agree.
+    pub agreeing: usize,
+    /// Decimals that every entry of A and B shares between any two routes; none where they are the same in all digits.
+    pub shared_decimals: Option<usize>,
+    /// Routes that ran.
+    pub routes: Vec<String>,
+    /// What should have run and did not.
+    pub failed: Vec<String>,
+    /// The paper's printed numbers that were looked at.
+    pub printed: usize,
+    /// Those that hold.
+    pub printed_right: usize,
+    /// Those that are wrong as the ledger says.
+    pub printed_wrong: usize,
+    /// Those that came out otherwise than the ledger says.
+    pub printed_otherwise: usize,
+    /// Statements that came out otherwise than the ledger says.
+    pub claims_otherwise: usize,
+}
+
+/// What the model is.
+#[derive(Clone, Debug, Serialize)]
+pub struct ModelSheet {
+    /// Its name.
+    pub name: String,
+    /// Where its numbers come from.
+    pub source: String,
+    /// Its file, as given.
+    pub file: String,
+    /// Every number of it.
+    pub quantities: Vec<Quantity>,
+    /// Segments and corners.
+    pub cam: CamDocument,
+}
+
+/// One side's matrices by every route.
+#[derive(Clone, Debug, Serialize)]
+pub struct MapTable {
+    /// `minus` or `plus`.
+    pub side: &'static str,
+    /// In the order of the values.
+    pub routes: Vec<String>,
+    /// A by rows, then B.
+    pub rows: Vec<MapRow>,
+}
+
+/// One entry of A or B.
+#[derive(Clone, Debug, Serialize)]
+pub struct MapRow {
+    /// `A11` to `B2`.
+    pub entry: &'static str,
+    /// By each route.
+    pub values: Vec<f64>,
+    /// The largest less the smallest of them.
+    pub spread: f64,
+    /// As the paper prints it.
+    pub printed: Option<String>,
+}
+
+/// Every comparison in one quantity.
+#[derive(Clone, Debug, Serialize)]
+pub struct QuantitySummary {
+    /// Which.
+    pub quantity: String,
+    /// Pairs of routes.
+    pub pairs: usize,
+    /// Pairs that agree.
+    pub agreeing: usize,
+    /// The pair that is nearest to its bound, or beyond.
+    pub closest: AgreementEntry,
+    /// Decimals that it shares; none for all digits.
+    pub shared_decimals: Option<usize>,
+}
+
+/// Why there is no report.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum DossierError {
+    /// The model is impossible.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// The ledger cannot be held against it.
+    #[error(transparent)]
+    Ledger(#[from] LedgerError),
+}
+
+/// Speeds that are run for the section on other speeds.
+const SPEEDS: usize = 100;
+/// Parts of the work that are done when each stage is, of one.
+const VERIFIED: f64 = 0.1;
+const HELD: f64 = 0.25;
+const SURVEYED: f64 = 0.55;
+const THROUGH: f64 = 0.6;
+
+impl Dossier {
+    /// Everything about a model.
+    ///
+    /// A model without a corner impact to verify has a report that says so.
+    pub fn of(model: &Model, external: External, watch: &dyn Watch) -> Result<Self, DossierError> {
+        let part = |from, to| Part { watch, from, to };
+        let cam = Cam::new(model)?;
+        let is_paper = model.is_the_papers()?;
+        let findings = verify_watched(model, external, &part(0.0, VERIFIED));
+        let claims = match &findings {
+            Ok(found) if is_paper => Some(ClaimsDocument::new(
+                &model.name,
+                &hold_watched(&Context::new(model, &cam, found)?, &part(VERIFIED, HELD))?,
+            )),
+            _ => None,
+        };
+        let speeds = speeds(model, &part(HELD, SURVEYED));
+        part(SURVEYED, THROUGH).at("the orbits on both sides of the corner impact", 0, 1);
+        let marks = corner_marks(&cam);
+        let through = match &findings {
+            Ok(found) => match through_corner(model, &cam, &found.at) {
+                Ok(Some(through)) => {
+                    ThroughEntry::new(&through, found.at.corner.angle, &marks).map_err(|error| error.to_string())
+                }
+                Ok(None) => Err("the corner impact is not one of an orbit with one impact a revolution".to_owned()),
+                Err(error) => Err(format!("a run cannot go on: {error}")),
+            },
+            Err(error) => Err(error.to_string()),
+        };
+        let verification = findings.as_ref().ok().map(|found| Verification::new(model, found));
+        let corner_deg = findings.as_ref().ok().map(|found: &Findings| found.at.corner.angle.to_degrees());
+        let (findings, nothing_to_verify) = match findings {
+            Ok(found) => (Ok(found), None),
+            Err(error) => (Err(error.to_string()), Some(error.to_string())),
+        };
+        let subject = Subject::with(model, findings)?;
+        let drawing = part(THROUGH, 1.0);
+        let plates = plates(&subject, &mut |done, total| drawing.at("the figures", done as u64, total as u64));
+        let agrees = verification.as_ref().is_none_or(|found| found.agrees) && claims.as_ref().is_none_or(|c| c.agrees);
+        Ok(Self {
+            schema: "corner-impact/report/1",
+            version: env!("CARGO_PKG_VERSION"),
+            agrees,
+            is_paper,
+            headline: Headline::new(verification.as_ref(), claims.as_ref()),
+            model: ModelSheet {
+                name: model.name.clone(),
+                source: model.source.clone(),
+                file: model.file().to_owned(),
+                quantities: quantities(model),
+                cam: CamDocument::new(model, &cam, Jet::HIGHEST_JUMP),
+            },
+            corner_deg,
+            tables: verification
+                .iter()
+                .flat_map(|found| ["minus", "plus"].map(|side| MapTable::new(found, side)))
+                .collect(),
+            quantities: verification.as_ref().map(QuantitySummary::all).unwrap_or_default(),
+            nothing_to_verify,
+            no_through: through.as_ref().err().cloned(),
+            through: through.ok(),
+            claims,
+            no_speeds: speeds.as_ref().err().cloned(),
+            speeds: speeds.ok(),
+            plates,
+            commands: commands(model, verification.is_some()),
+            verification,
+        })
+    }
+}
+
+/// A part of the work, told as its share of the whole.
+struct Part<'a> {
+    watch: &'a dyn Watch,
+    from: f64,
+    to: f64,
+}
+
+impl Watch for Part<'_> {
+    fn at(&self, what: &str, done: u64, total: u64) {
+        const STEPS: f64 = 1000.0;
+        let share = if total > 0 { done as f64 / total as f64 } else { 0.0 };
+        self.watch.at(what, (STEPS * (self.from + (self.to - self.from) * share)) as u64, STEPS as u64);
+    }
+}
+
+/// What the follower does at its usual speeds, or why that is not known.
+fn speeds(model: &Model, watch: &dyn Watch) -> Result<RegimesDocument, String> {
+    let care = Care { speeds: SPEEDS, ..Care::default() };
+    let done = AtomicUsize::new(0);
+    let passed = || {
+        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+        watch.at("other speeds", done as u64, 2 * SPEEDS as u64);
+    };
+    let found = regimes(model, usual_speeds(model), care, &passed).map_err(|error| error.to_string())?;
+    Ok(RegimesDocument::new(&model.name, &found))
+}
+
+fn commands(model: &Model, verified: bool) -> Vec<(String, &'static str)> {
+    let again = |name: &str, what| (command(name, model, ""), what);
+    let mut commands = vec![again("report", "writes this page")];
+    if verified {
+        commands.push(again("verify", "finds the corner impact, its map by every route, and compares"));
+        commands.push(again("claims", "holds the statements of the paper that this program checks against it"));
+    }
+    commands.push(again("cam", "lists segments and corners of the cam"));
+    commands.push(again("speeds", "what the follower does at each speed, with more speeds than here"));
+    commands
+}
+
+/// A route's name as words.
+pub fn spoken(name: &str) -> String {
+    name.replace('_', " ")
+}
+
+impl Headline {
+    fn new(verification: Option<&Verification>, claims: Option<&ClaimsDocument>) -> Self {
+        let Some(found) = verification else { return Self::default() };
+        let maps = found
+            .agreement
+            .iter()
+            .filter(|entry| ["A_minus", "A_plus", "B_minus", "B_plus"].contains(&entry.quantity.as_str()));
+        let right = found.published.iter().filter(|number| number.as_found && number.agrees).count();
+        let otherwise = found.published.iter().filter(|number| !number.as_found).count();
+        Self {
+            comparisons: found.agreement.len(),
+            agreeing: found.agreement.iter().filter(|entry| entry.agrees).count(),
+            shared_decimals: maps.filter_map(|entry| shared_decimals(entry.max_abs_diff)).map(|n| n as usize).min(),
+            routes: found.routes.keys().map(|name| spoken(name)).collect(),
+            failed: found
+                .skipped
+                .iter()
+                .filter(|skipped| skipped.failed)
+                .map(|skipped| spoken(&skipped.route))
+                .collect(),
+            printed: found.published.len(),
+            printed_right: right,
+            printed_wrong: found.published.len() - right - otherwise,
+            printed_otherwise: otherwise,
+            claims_otherwise: claims.map_or(0, |ledger| ledger.claims.iter().filter(|claim| !claim.as_found).count()),
+        }
+    }
+}
+
+impl MapTable {
+    fn new(found: &Verification, side: &'static str) -> Self {
+        let of = |entry: &crate::study::verify::document::RouteEntry| {
+            if side == "minus" { entry.map.minus } else { entry.map.plus }
+        };
+        let sides: Vec<[f64; 6]> = found
+            .routes
+            .values()
+            .map(|entry| {
+                let SideEntry { a: [[a11, a12], [a21, a22]], b: [b1, b2] } = of(entry);
+                [a11, a12, a21, a22, b1, b2]
+            })
+            .collect();
+        let printed = |quantity: &str, index: usize| {
+            let number = found.published.iter().find(|number| number.quantity == format!("{quantity}_{side}"))?;
+            number.printed.get(index).cloned()
+        };
+        let row = |(index, entry): (usize, &'static str)| {
+            let values: Vec<f64> = sides.iter().map(|side| side[index]).collect();
+            let (least, most) = values
+                .iter()
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| (least.min(*value), most.max(*value)));
+            let printed = if index < 4 { printed("A", index) } else { printed("B", index - 4) };
+            MapRow { entry, values, spread: most - least, printed }
+        };
+        let rows = ["A11", "A12", "A21", "A22", "B1", "B2"].into_iter().enumerate().map(row).collect();
+        Self { side, routes: found.routes.keys().map(|name| spoken(name)).collect(), rows }
+    }
+}
+
+impl QuantitySummary {
+    fn all(found: &Verification) -> Vec<Self> {
+        let mut names: Vec<&str> = Vec::new();
+        for entry in &found.agreement {
+            if !names.contains(&entry.quantity.as_str()) {
+                names.push(&entry.quantity);
+            }
+        }
+        names.into_iter().filter_map(|name| Self::of(found, name)).collect()
+    }
+
+    fn of(found: &Verification, quantity: &str) -> Option<Self> {
+        let pairs: Vec<&AgreementEntry> = found.agreement.iter().filter(|entry| entry.quantity == quantity).collect();
+        // What is not a number disagrees, and comes first.
+        let used = |entry: &AgreementEntry| {
+            let used = entry.max_abs_diff / entry.tolerance;
+            if used.is_nan() { f64::INFINITY } else { used }
+        };
+        let closest = (*pairs.iter().max_by(|one, other| used(one).total_cmp(&used(other)))?).clone();
+        Some(Self {
+            quantity: quantity.into(),
+            pairs: pairs.len(),
+            agreeing: pairs.iter().filter(|entry| entry.agrees).count(),
+            shared_decimals: shared_decimals(closest.max_abs_diff).map(|decimals| decimals as usize),
+            closest,
+        })
+    }
+}

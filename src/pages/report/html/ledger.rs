@@ -1,0 +1,75 @@
+//! The paper's statements with their verdicts, to be filtered and searched.
+
+use std::collections::BTreeMap;
+
+use maud::{Markup, html};
+
+use crate::pages::report::dossier::Dossier;
+use crate::pages::report::html::Section;
+
+/// Verdicts in the order of the filter: what to read first in front.
+const VERDICTS: [&str; 4] = ["refuted", "misprint", "open", "holds"];
+
+pub(crate) fn badge(verdict: &str) -> Markup {
+    html! { span class={ "badge " (verdict) } { (verdict) } }
+}
+
+/// The fragment that leads to a claim: letters and digits of its id.
+fn anchors<'a>(ids: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let mut seen: BTreeMap<String, usize> = BTreeMap::new();
+    let anchor = |id: &str| {
+        let words: Vec<&str> =
+            id.split(|letter: char| !letter.is_ascii_alphanumeric()).filter(|word| !word.is_empty()).collect();
+        let name = format!("claim-{}", words.join("-"));
+        let count = seen.entry(name.clone()).or_default();
+        *count += 1;
+        if *count == 1 { name } else { format!("{name}-{count}") }
+    };
+    ids.map(anchor).collect()
+}
+
+pub(crate) fn section(dossier: &Dossier) -> Option<Section> {
+    let ledger = dossier.claims.as_ref()?;
+    let counts = |verdict: &str| match verdict {
+        "refuted" => ledger.counts.refuted,
+        "misprint" => ledger.counts.misprint,
+        "open" => ledger.counts.open,
+        _ => ledger.counts.holds,
+    };
+    let anchors = anchors(ledger.claims.iter().map(|claim| claim.id.as_str()));
+    let body = html! {
+        p {
+            "Every displayed equation, number, statement and figure of the paper, in words of this project, with a verdict and the "
+            "evidence for it. A " em { "misprint" } " is a slip that nothing was built on; what is " em { "refuted" } " is wrong; "
+            em { "open" } " is not decided here."
+        }
+        div.ledger-page {
+        form.filter id="ledger-filter" {
+            fieldset {
+                legend { "Verdict" }
+                label { input type="radio" name="verdict" value="all" id="verdict-all" checked; " all (" (ledger.claims.len()) ")" }
+                @for verdict in VERDICTS {
+                    label {
+                        input type="radio" name="verdict" value=(verdict) id={ "verdict-" (verdict) };
+                        " " (verdict) " (" (counts(verdict)) ")"
+                    }
+                }
+            }
+            label.search hidden { "Words " input type="search" id="ledger-search" autocomplete="off"; }
+            p.count role="status" id="ledger-count" {}
+        }
+        ol.ledger id="ledger-entries" {
+            @for (claim, anchor) in ledger.claims.iter().zip(&anchors) {
+                li class={ "claim v-" (claim.verdict) } id=(anchor) data-verdict=(claim.verdict) {
+                    p.head { (badge(claim.verdict)) " " a href={ "#" (anchor) } { (claim.id) } " " span.place { (claim.place) } }
+                    p { (claim.statement) }
+                    @if let Some(correct) = &claim.correct { p.correct { "Right: " (correct) } }
+                    p.evidence { "Evidence: " (claim.evidence) }
+                    @if !claim.as_found { p.disagrees { "This is otherwise than the ledger says." } }
+                }
+            }
+        }
+        }
+    };
+    Some(Section { id: "claims", title: "The paper's claims", body })
+}

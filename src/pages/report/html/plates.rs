@@ -1,0 +1,65 @@
+//! The figures, in the paper's order.
+
+use maud::{Markup, PreEscaped, html};
+
+use crate::draw::svg;
+use crate::figures::plates::Plate;
+use crate::pages::report::dossier::Dossier;
+use crate::pages::report::html::{HtmlError, Section};
+
+/// The figure that stands with the model.
+pub(crate) const CAM: &str = "cam";
+
+pub(crate) fn section(dossier: &Dossier) -> Result<Option<Section>, HtmlError> {
+    if dossier.plates.is_empty() {
+        return Ok(None);
+    }
+    let (mut drawn, mut before) = (Vec::new(), None);
+    for plate in &dossier.plates {
+        let again = plate.absent.is_some() && plate.absent == before;
+        drawn.push(match plate.id {
+            CAM => elsewhere(plate, dossier),
+            _ if again => absent(plate, dossier),
+            _ => self::plate(plate, dossier)?,
+        });
+        before.clone_from(&plate.absent);
+    }
+    let body = html! { @for plate in &drawn { (plate) } };
+    Ok(Some(Section { id: "figures", title: "Figures", body }))
+}
+
+fn elsewhere(plate: &Plate, dossier: &Dossier) -> Markup {
+    html! { p.note { (place(plate, dossier)) a href={ "#plate-" (plate.id) } { (plate.title) } " stands with the model." } }
+}
+
+/// A figure that is missing for the reason of the one before it.
+fn absent(plate: &Plate, dossier: &Dossier) -> Markup {
+    html! {
+        figure id={ "plate-" (plate.id) } {
+            figcaption { (place(plate, dossier)) strong { (plate.title) } ". " span.absent { "Not drawn, for the same reason." } }
+        }
+    }
+}
+
+/// The paper's figure, for the paper's model: those of another one are none of the paper's.
+fn place(plate: &Plate, dossier: &Dossier) -> Markup {
+    html! { @if dossier.is_paper && !plate.place.is_empty() { span.place { (plate.place) ". " } } }
+}
+
+/// A figure with its caption, the paper's figure that it redraws, and the command that makes it.
+pub(crate) fn plate(plate: &Plate, dossier: &Dossier) -> Result<Markup, HtmlError> {
+    let drawing = plate.figure.as_ref().map(svg::render).transpose()?;
+    Ok(html! {
+        figure id={ "plate-" (plate.id) } {
+            @if let Some(drawing) = &drawing {
+                div.wide.drawing role="region" aria-label=(plate.title) tabindex="0" { (PreEscaped(drawing)) }
+            }
+            figcaption {
+                (place(plate, dossier))
+                @if drawing.is_none() { strong { (plate.title) } ". " }
+                @if let Some(why) = &plate.absent { span.absent { "Not drawn: " (why) "." } } @else { (plate.caption) }
+                @if drawing.is_some() { code.command { (plate.command) } }
+            }
+        }
+    })
+}

@@ -1,0 +1,81 @@
+//! What a check may look at, and what it gives back.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+
+use crate::cam::Cam;
+use crate::model::Model;
+use crate::published::Verdict;
+use crate::study::verify::Findings;
+
+/// What computer algebra found about the printed equations; `make derive` writes it, `make derive-check` redoes it.
+const EQUATIONS: &str = include_str!("../../golden/derived/printed_equations.json");
+
+/// What checks may look at.
+pub struct Context<'a> {
+    /// The model.
+    pub model: &'a Model,
+    /// Its cam.
+    pub cam: &'a Cam,
+    /// What `verify` found for it, without programs outside.
+    pub findings: &'a Findings,
+    /// Whether follower and cam are the paper's.
+    pub is_paper: bool,
+    /// What computer algebra found about each printed equation, by label.
+    pub(super) equations: BTreeMap<String, Equation>,
+}
+
+/// A printed equation, as the derivations judged it.
+#[derive(Debug, Deserialize)]
+pub(super) struct Equation {
+    label: String,
+    pub verdict: Verdict,
+    pub evidence: Residuals,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Residuals {
+    pub residual_as_printed: serde_json::Value,
+    pub residual_repaired: serde_json::Value,
+    pub subsets: Vec<serde_json::Value>,
+}
+
+#[derive(Deserialize)]
+struct Equations {
+    equations: Vec<Equation>,
+}
+
+impl<'a> Context<'a> {
+    /// The context of a verified model.
+    pub fn new(model: &'a Model, cam: &'a Cam, findings: &'a Findings) -> Result<Self, LedgerError> {
+        let derived = |error: String| LedgerError::Derived(format!("golden/derived/printed_equations.json: {error}"));
+        let read: Equations = serde_json::from_str(EQUATIONS).map_err(|error| derived(error.to_string()))?;
+        let is_paper = model.is_the_papers().map_err(|error| LedgerError::Derived(error.to_string()))?;
+        let equations = read.equations.into_iter().map(|equation| (equation.label.clone(), equation)).collect();
+        Ok(Self { model, cam, findings, is_paper, equations })
+    }
+}
+
+/// What a check found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Found {
+    /// Its verdict.
+    pub verdict: Verdict,
+    /// The numbers that it rests on.
+    pub evidence: String,
+}
+
+/// Why the ledger cannot be held against anything.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum LedgerError {
+    /// The file does not read.
+    #[error("claims.toml: {0}")]
+    Unreadable(String),
+    /// A statement without a check.
+    #[error("claims.toml: no check for \"{0}\"")]
+    Unchecked(String),
+    /// What the checks need is not there.
+    #[error("claims: {0}")]
+    Derived(String),
+}

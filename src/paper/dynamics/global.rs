@@ -1,0 +1,159 @@
+//! The chaotic motion that exists beside the one of one impact a revolution: what parts their basins, where it is lost, and
+//! how the motion goes over to it when its orbit is gone.
+
+use super::transition::{from_x_star, is_period_one, map};
+use super::{by_runs, machine, settles, turn};
+use crate::border_collision::passage;
+use crate::diagram::growth;
+use crate::flight::State;
+use crate::orbit::{Course, Search, search};
+use crate::paper::context::{Context, Found};
+use crate::paper::statements::decide;
+use crate::published::Verdict;
+use crate::section::StroboscopicMap;
+use crate::simulate::{SimulateError, angular_velocity};
+use crate::study::basins::boundary::{approach, border};
+use crate::study::basins::{Curve, Extent, Patience, Reversed, Saddle};
+use crate::tolerance;
+
+/// How far below the corner impact the revolutions are counted until the motion has left, rpm, and how far it is then, m.
+const BELOW: [f64; 4] = [1e-2, 1e-4, 1e-6, 1e-8];
+const LEFT: f64 = 1e-3;
+
+/// The settled motion, with the speed lowered through the corner impact in one small step; and how it leaves.
+pub(in crate::paper) fn transition(context: &Context<'_>) -> Found {
+    const BESIDE: f64 = 1e-4;
+    let at = &context.findings.at;
+    let speed = at.speed_rpm();
+    let decision = || {
+        let machine = machine(context, speed + BESIDE);
+        let mut motion = from_x_star(context, &machine)?;
+        let above = settles(&machine, &mut motion, 3000)?;
+        let slower = machine.at_speed(angular_velocity(speed - BESIDE));
+        let mut motion = slower.resume(&motion)?;
+        let below = settles(&slower, &mut motion, 10_000)?;
+        let local = &context.findings.closed_form().map;
+        let (mut counts, mut agree) = (Vec::new(), true);
+        for below in BELOW {
+            let map = map(context, speed - below);
+            let dt = 60.0 / (speed - below) - at.period;
+            let linear = passage::linear(local, dt, LEFT, PATIENCE);
+            let run = passage::simulated(&map, at.state, LEFT, PATIENCE)?;
+            agree &= passage::agree(linear, run);
+            counts.push(format!("{}/{}", shown(linear), shown(run)));
+        }
+        let decade = passage::revolutions_per_decade(local).unwrap_or(f64::NAN);
+        let evidence = format!(
+            "one impact a revolution after 3000 from x* at 1e-4 rpm above {speed:.6} rpm: {above}; with the speed then lowered to \
+             1e-4 rpm below it, after 10000 more: {below}; {} rpm below it the motion has left x* by {LEFT} m after {} revolutions \
+             (piecewise-linear map/runs), {decade:.1} more for each factor of ten",
+            BELOW.map(|below| format!("{below:e}")).join(", "),
+            counts.join(", "),
+        );
+        Ok(decide(above && !below && agree, Verdict::Refuted, evidence))
+    };
+    by_runs(decision())
+}
+
+/// Revolutions within which a motion must have left.
+const PATIENCE: u64 = 100_000;
+
+fn shown(count: Option<u64>) -> String {
+    count.map_or_else(|| "none".into(), |count| count.to_string())
+}
+
+/// Speeds above the corner impact at which a start on the cam is held against x*.
+const COEXISTING: [f64; 2] = [674.0, 682.0];
+
+pub(in crate::paper) fn coexisting(context: &Context<'_>) -> Found {
+    let decision = || {
+        let mut both = true;
+        for rpm in COEXISTING {
+            let machine = machine(context, rpm);
+            let mut motion = machine.start_on_cam(0.0, 0.0)?;
+            turn(&machine, &mut motion, 300)?;
+            both &= growth(&machine, motion, 1000)? > tolerance::CHAOTIC_GROWTH.value;
+            both &= !settles(&machine, &mut motion, 10_000)? && is_period_one(context, rpm, 3000)?;
+        }
+        // Above it the chaotic motion is left within some hundred revolutions.
+        let machine = machine(context, 683.0);
+        let alone = settles(&machine, &mut machine.start_on_cam(0.0, 0.0)?, 20_000)?;
+        let (lines, farthest) = borders(context, 678.0)?;
+        let parted = lines > 0 && farthest <= tolerance::BORDER_ON_MANIFOLD.value;
+        let lost = lost(context)?;
+        let evidence = format!(
+            "at {} rpm a start at rest on the cam does not settle in 10000 revolutions, with a Lyapunov exponent above {} a \
+             revolution, and x* goes to one impact a revolution: {both}; at 678 rpm the border of their basins, by halving on \
+             {lines} lines, is the stable manifold of the unstable orbit of one impact, by runs backwards, within {:e} m: \
+             {parted}; that orbit's unstable manifold, which the chaotic motion fills, meets it at {lost:.2} rpm; at 683 rpm both \
+             starts settle: {alone}",
+            COEXISTING.map(|rpm| rpm.to_string()).join(", "),
+            tolerance::CHAOTIC_GROWTH.value,
+            tolerance::BORDER_ON_MANIFOLD.value,
+        );
+        let between = lost > COEXISTING[1] && lost < 683.0;
+        Ok(decide(both && alone && parted && between, Verdict::Refuted, evidence))
+    };
+    by_runs(decision())
+}
+
+/// The saddle of one impact a revolution and the half of its stable manifold on the cam's side.
+fn parting(
+    context: &Context<'_>,
+    map: &StroboscopicMap,
+    stretches: u32,
+) -> Result<Option<(Saddle, Curve)>, SimulateError> {
+    let extent = Extent { stretches, first: 1e-6, finest: 0.01, farthest: 2.0 };
+    let wanted = Search { revolutions: 1, impacts: Some(1) };
+    let orbits = search(&map.machine, &wanted)?;
+    let saddle = orbits.iter().find_map(|orbit| match &orbit.course {
+        Course::Impacts(cycle) => Saddle::new(&map.machine, cycle, map.cam_angle),
+        _ => None,
+    });
+    let curve = |saddle: Saddle| {
+        let reversed = Reversed::new(&context.model.follower, map)?;
+        let sign = -saddle.stable.1[0].signum();
+        Some((saddle, Curve::stable(&reversed, &saddle, sign, &extent)))
+    };
+    Ok(saddle.and_then(curve))
+}
+
+/// On how many lines of one velocity each the border was found, and how far it is at most from the stable manifold, m.
+fn borders(context: &Context<'_>, rpm: f64) -> Result<(usize, f64), SimulateError> {
+    /// Velocities between the saddle's and the first cusp's, m/s.
+    const VELOCITIES: [f64; 6] = [-18.0, -14.0, -10.0, -6.0, -2.0, 2.0];
+    let map = map(context, rpm);
+    let Some((_, curve)) = parting(context, &map, 27)? else { return Ok((0, f64::NAN)) };
+    let (mut found, mut farthest) = (0, 0.0_f64);
+    for velocity in VELOCITIES {
+        let line = [0.6, 6.0].map(|position| State { position, velocity });
+        if let Some(state) = border(&map, line, Patience::default())? {
+            (found, farthest) = (found + 1, farthest.max(curve.distance(state)));
+        }
+    }
+    Ok((found, farthest))
+}
+
+/// The speed at which the saddle's unstable manifold meets its stable one, rpm, by secants through the distance between
+/// them; NaN where there is no saddle.
+fn lost(context: &Context<'_>) -> Result<f64, SimulateError> {
+    const SAMPLES: [u32; 2] = [1000, 40];
+    const AWAY: f64 = 0.3;
+    const SECANTS: usize = 3;
+    let distance = |rpm: f64| -> Result<f64, SimulateError> {
+        let map = map(context, rpm);
+        let Some((saddle, curve)) = parting(context, &map, 24)? else { return Ok(f64::NAN) };
+        let sign = -saddle.unstable.1[0].signum();
+        Ok(approach(&map, &saddle, sign, &curve, AWAY, SAMPLES)?.distance)
+    };
+    let (mut one, mut two) = (681.0, 682.0);
+    let (mut at_one, mut at_two) = (distance(one)?, distance(two)?);
+    for secant in 0..SECANTS {
+        let next = two - at_two * (two - one) / (at_two - at_one);
+        (one, at_one, two) = (two, at_two, next);
+        if secant + 1 < SECANTS {
+            at_two = distance(two)?;
+        }
+    }
+    Ok(two)
+}

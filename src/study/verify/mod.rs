@@ -1,0 +1,239 @@
+//! One model through the whole pipeline: locate, every route, every comparison, the classification, the paper's numbers.
+
+pub mod border_collision;
+pub mod document;
+
+pub use document::Verification;
+
+use std::thread::JoinHandle;
+
+use nalgebra::RowVector2;
+
+use crate::agreement::{self, Agreement, NamedOrbit, compare};
+use crate::border_collision::validity::{self, Range};
+use crate::border_collision::{
+    Classification, Condition, LocalMap, LocalOutcome, NormalForm, Refusal, classify, conditions, normal_form,
+};
+use crate::cam::{Cam, Side};
+use crate::corner::border::border;
+use crate::corner::external::{self, Outside, PROGRAMS, Program};
+use crate::corner::one_sided::SampleError;
+use crate::corner::{self, CornerImpact, CornerMap, LocateError, Route};
+use crate::corner::{closed_form, finite_difference, least_squares, simulated_orbit, variational};
+use crate::model::Model;
+use crate::progress::{Unwatched, Watch};
+use crate::published::{PrintedNumber, PublishedError, compare_published};
+use crate::python::PythonError;
+use crate::tolerance::Comparison;
+
+/// What a verification found.
+#[derive(Clone, Debug)]
+pub struct Findings {
+    /// The orbit that was verified: the slowest in `[study]`.
+    pub at: CornerImpact,
+    /// Further corner impacts in `[study]`.
+    pub others: Vec<CornerImpact>,
+    /// The map by each route that ran, the closed form first.
+    pub routes: Vec<Route>,
+    /// Every comparison of two routes.
+    pub comparisons: Vec<Agreement>,
+    /// `(e, f)`: the impact comes before the corner where `e dx + f dT < 0`.
+    pub border: (RowVector2<f64>, f64),
+    /// Absent where the map is degenerate.
+    pub normal_form: Option<NormalForm>,
+    /// Absent where the map is degenerate or the follower sticks.
+    pub classification: Option<Classification>,
+    /// Why there is no classification, where there is none.
+    pub refusal: Option<Refusal>,
+    /// What classification, stability and normal form rest on, each with how far it is from failing.
+    pub conditions: Vec<Condition>,
+    /// The local map's own motions at dT = -1, 1 and 0; empty without a classification.
+    pub outcomes: Vec<LocalOutcome>,
+    /// How far the local map holds; empty without a classification.
+    pub ranges: Vec<Range>,
+    /// The paper's numbers; empty for another model.
+    pub published: Vec<PrintedNumber>,
+    /// What did not run, and why.
+    pub skipped: Vec<Skipped>,
+    /// Whether every comparison agrees, every printed number is as found, and every route ran.
+    pub agrees: bool,
+}
+
+/// Something that did not run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Skipped {
+    /// The route, or the result that it would have given.
+    pub route: String,
+    /// Why.
+    pub why: String,
+    /// Whether it should have run; then the whole disagrees.
+    pub failed: bool,
+}
+
+impl Findings {
+    /// The closed form's route.
+    pub fn closed_form(&self) -> &Route {
+        &self.routes[0]
+    }
+}
+
+/// Whether to run the routes outside this program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum External {
+    /// Run them; one that cannot run disagrees.
+    Run,
+    /// Leave them out, and say so.
+    LeftOut,
+}
+
+/// Locates the corner impact of a model, computes its map by every route, and compares.
+///
+/// Fails only where there is nothing to compare; a route that fails is listed as skipped, and then the whole disagrees.
+pub fn verify(model: &Model, external: External) -> Result<Findings, LocateError> {
+    verify_watched(model, external, &Unwatched)
+}
+
+/// The same, told to `watch` step by step.
+pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> Result<Findings, LocateError> {
+    watch.at("looking for the corner impact", 0, 0);
+    let cam = Cam::new(model)?;
+    let (at, others) = corner::locate(model, &cam)?;
+    let mut log = Log::default();
+    // The programs outside take seconds and this one's routes a few hundredths: they run beside each other.
+    let outside = start_outside(model, external)?;
+
+    watch.at("the map by the routes of this program", 0, 0);
+    let closed = closed_form::route(model, &at);
+    let map = closed.map;
+    let mut routes = vec![closed];
+    let differenced = finite_difference::route(model, &cam, &at);
+    let sticking = differenced.as_ref().err().and_then(sticks);
+    routes.push(variational::route(model, &cam, &at));
+    routes.extend(log.keep("finite_difference", differenced));
+    routes.extend(log.keep("least_squares", least_squares::route(model, &cam, &at)));
+
+    let mut orbits: Vec<NamedOrbit> = vec![("located", at.x_star(), at.period)];
+    if model.follower.stiffness > 0.0 {
+        let transcribed = log.keep("x_star by closed_form", closed_form::orbit(model, &at));
+        orbits.extend(transcribed.map(|(x, period)| ("closed_form", x, period)));
+    } else {
+        let why = "without stiffness there is no equilibrium to measure the paper's x from";
+        log.leave_out("x_star by closed_form", why.into());
+    }
+    let simulated = log.keep("x_star by simulation", simulated_orbit::orbit(model, &cam, &at));
+    orbits.extend(simulated.map(|(x, period)| ("simulation", x, period)));
+
+    for (program, answer) in outside {
+        watch.at(&format!("the map by {}, in Python", program.name), 0, 0);
+        match answer.map(JoinHandle::join) {
+            None if external == External::Run => log.leave_out(program.name, "knows cams of arcs only".into()),
+            None => log.leave_out(program.name, "left out by --no-external".into()),
+            Some(Ok(result)) => {
+                if let Some(Outside { route, x_star, period }) = log.keep(program.name, result) {
+                    routes.push(route);
+                    orbits.push((program.name, x_star, period));
+                }
+            }
+            Some(Err(_)) => log.fail(program.name, "its thread ended without an answer".into()),
+        }
+    }
+    let mut comparisons = agreement::compare_routes(&routes);
+    comparisons.extend(agreement::compare_orbits(&orbits));
+
+    let border = border(model, &cam, &at);
+    comparisons.push(compare_borders(&map, border));
+    let normal_form = normal_form(&map).map_err(|error| log.leave_out("normal_form", error.to_string())).ok();
+    let verdict = match sticking {
+        Some(side) => Err(Refusal::Sticking { side }),
+        None => classify(&map, border).map_err(Refusal::from),
+    };
+    let (classification, refusal) = match verdict {
+        Ok(classification) => (Some(classification), None),
+        Err(refusal) => {
+            log.leave_out("classification", refusal.to_string());
+            (None, Some(refusal))
+        }
+    };
+    watch.at("what the map does by itself", 0, 0);
+    let local = LocalMap::new(&map, border);
+    let (mut outcomes, mut ranges) = (Vec::new(), Vec::new());
+    if classification.is_some() {
+        outcomes.extend([-1.0, 1.0, 0.0].map(|mu| local.outcome(mu)));
+        ranges = validity::ranges(model, &cam, &at, &local);
+    }
+    let published = match compare_published(model, &at, &map, normal_form.as_ref()) {
+        Err(error @ PublishedError::OtherModel) => {
+            log.leave_out("published", error.to_string());
+            Vec::new()
+        }
+        result => log.keep("published", result).unwrap_or_default(),
+    };
+
+    let ran = log.skipped.iter().all(|skipped| !skipped.failed);
+    let agrees = ran && comparisons.iter().all(|item| item.agrees) && published.iter().all(|number| number.as_found);
+    Ok(Findings {
+        at,
+        others,
+        routes,
+        comparisons,
+        border,
+        normal_form,
+        classification,
+        refusal,
+        conditions: conditions(&local),
+        outcomes,
+        ranges,
+        published,
+        skipped: log.skipped,
+        agrees,
+    })
+}
+
+/// The side on which a revolution next to the orbit has the follower stay on the cam.
+fn sticks(error: &SampleError) -> Option<&'static str> {
+    match error {
+        SampleError::OtherImpacts { side, sticks: true, .. } => {
+            Some(if *side == Side::Minus { "minus" } else { "plus" })
+        }
+        _ => None,
+    }
+}
+
+type Started = (Program, Option<JoinHandle<Result<Outside, PythonError>>>);
+
+/// Starts every program outside, or none.
+fn start_outside(model: &Model, external: External) -> Result<Vec<Started>, LocateError> {
+    let study = model.study()?;
+    let start = |program: Program| {
+        let model = model.clone();
+        std::thread::spawn(move || external::run(program, &model, study))
+    };
+    let runs = external == External::Run && external::know(model);
+    Ok(PROGRAMS.map(|program| (program, runs.then(|| start(program)))).into())
+}
+
+/// The border of the maps, `C x + D dT = 0`, against that of the free flight, `e x + f dT = 0`: one line, so `f C = D e`.
+fn compare_borders(map: &CornerMap, (e, f): (RowVector2<f64>, f64)) -> Agreement {
+    let (c, d) = (map.c(), map.d());
+    compare(["closed_form", "free_flight"], "border", [(c * f).as_slice(), (e * d).as_slice()], Comparison::Routes)
+}
+
+/// What did not run: on purpose, or because it failed.
+#[derive(Default)]
+struct Log {
+    skipped: Vec<Skipped>,
+}
+
+impl Log {
+    fn leave_out(&mut self, route: &str, why: String) {
+        self.skipped.push(Skipped { route: route.into(), why, failed: false });
+    }
+
+    fn fail(&mut self, route: &str, why: String) {
+        self.skipped.push(Skipped { route: route.into(), why, failed: true });
+    }
+
+    fn keep<T, E: std::fmt::Display>(&mut self, route: &str, result: Result<T, E>) -> Option<T> {
+        result.map_err(|error| self.fail(route, error.to_string())).ok()
+    }
+}

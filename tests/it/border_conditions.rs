@@ -1,0 +1,151 @@
+//! Which conditions does a verdict rest on, and do Feigin's counts say what the orbits do?
+
+use approx::assert_relative_eq;
+use corner_impact::border_collision::conditions::{Condition, Decides};
+use corner_impact::border_collision::long_run::End;
+use corner_impact::border_collision::word::Word;
+use corner_impact::border_collision::{Degenerate, LocalMap, classify, conditions};
+use corner_impact::corner::map::{CornerMap, SideMap};
+use nalgebra::{Matrix2, RowVector2, Vector2};
+
+/// `count` values from `low` to `high`.
+fn grid([low, high]: [f64; 2], count: u32) -> impl Iterator<Item = f64> + Clone {
+    (0..count).map(move |index| low + (high - low) * f64::from(index) / f64::from(count - 1))
+}
+
+/// A continuous map with these traces and determinants, in coordinates of no special kind and units of no special size.
+fn planted(traces: [f64; 2], determinants: [f64; 2], units: [f64; 2]) -> (CornerMap, (RowVector2<f64>, f64)) {
+    let m = Matrix2::new(0.7, -0.4, 0.9, 1.6) * Matrix2::from_diagonal(&Vector2::from(units)).try_inverse().unwrap();
+    let inverse = m.try_inverse().unwrap();
+    let shift = Vector2::new(1.3 * units[0], -2.1 * units[1]);
+    let side = |side: usize| {
+        let a = inverse * Matrix2::new(traces[side], 1.0, -determinants[side], 0.0) * m;
+        SideMap { a, b: inverse * Vector2::new(1.0, 0.4) + (Matrix2::identity() - a) * shift }
+    };
+    let e = m.row(0).into_owned();
+    (CornerMap { minus: side(0), plus: side(1) }, (e, -(e * shift)[0]))
+}
+
+/// Feigin's counts against the orbits themselves, found by solving for them on both sides.
+#[test]
+fn feigins_counts_say_what_the_orbits_do() {
+    let mut seen = std::collections::BTreeMap::new();
+    for (t_l, t_r) in grid([-2.53, 2.61], 18).flat_map(|l| grid([-2.57, 2.47], 18).map(move |r| (l, r))) {
+        for (d_l, d_r) in [(0.3, 0.6), (-0.4, 0.5), (1.3, 0.2)] {
+            let (map, border) = planted([t_l, t_r], [d_l, d_r], [1.0, 1.0]);
+            let verdict = classify(&map, border).unwrap();
+            let local = LocalMap::new(&map, border);
+            let there = |text: &str, mu: f64| local.orbit(&Word::read(text).unwrap(), mu).unwrap().admissible();
+            let [l, r, two] = ["L", "R", "LR"].map(|text| [there(text, 1.0), there(text, -1.0)]);
+            let case = format!("traces {t_l} {t_r}, determinants {d_l} {d_r}: {verdict:?}");
+            assert!(l[0] != l[1] && r[0] != r[1], "{case}");
+            assert_eq!(verdict.scenario.name() == "nonsmooth-fold", l == r, "{case}");
+            assert_eq!(verdict.period_two_orbit, two[0] != two[1], "{case}");
+            assert!(!(two[0] && two[1]), "{case}");
+            *seen.entry(verdict.scenario.name()).or_insert(0) += 1;
+        }
+    }
+    assert!(seen.len() == 3 && seen.values().all(|count| *count > 100), "{seen:?}");
+}
+
+fn named<'a>(all: &'a [Condition], name: &str) -> &'a Condition {
+    all.iter().find(|condition| condition.name == name).unwrap_or_else(|| panic!("{name}"))
+}
+
+/// A map in which one condition fails says so, and no other does.
+#[test]
+fn each_condition_fails_where_it_must_and_alone() {
+    let two = (1.0 + 0.3) * (1.0 + 0.2);
+    for (traces, determinants, failing) in [
+        ([1.3, 0.4], [0.3, 0.2], "det(I - A-)"),
+        ([0.4, 1.2], [0.3, 0.2], "det(I - A+)"),
+        ([-1.3, 0.4], [0.3, 0.2], "det(I + A-)"),
+        ([0.4, -1.2], [0.3, 0.2], "det(I + A+)"),
+        ([0.4, 0.7], [1.0, 0.2], "|eigenvalue| - 1 of A-"),
+        ([0.4, 0.7], [0.3, 1.0], "|eigenvalue| - 1 of A+"),
+        ([-2.0, -two / 2.0], [0.3, 0.2], "det(I - A+ A-)"),
+        ([0.4, 0.4], [0.3, 0.3], "A+ - A-"),
+    ] {
+        let (map, border) = planted(traces, determinants, [1.0, 1.0]);
+        let all = conditions(&LocalMap::new(&map, border));
+        assert_eq!(all.len(), 12);
+        for condition in &all {
+            // An eigenvalue 1 or -1 is on the unit circle too; without a jump there is no C.
+            let implied = match failing {
+                "det(I - A-)" | "det(I + A-)" => condition.name == "|eigenvalue| - 1 of A-",
+                "det(I - A+)" | "det(I + A+)" => condition.name == "|eigenvalue| - 1 of A+",
+                "A+ - A-" => condition.name == "first entry of C",
+                _ => false,
+            };
+            assert_eq!(!condition.holds(), condition.name == failing || implied, "{failing}: {condition:?}");
+        }
+        let verdict = classify(&map, border);
+        let decides = named(&all, failing).decides == Decides::Classification;
+        assert_eq!(verdict.is_err(), decides, "{failing}: {verdict:?}");
+    }
+    // The fixed points stay on the border.
+    let (mut map, border) = planted([0.4, -0.6], [0.3, 0.2], [1.0, 1.0]);
+    map.minus.b = Vector2::zeros();
+    map.plus.b = Vector2::zeros();
+    let all = conditions(&LocalMap::new(&map, (border.0, 0.0)));
+    assert!(!named(&all, "e adj(I - A-) B- + f det(I - A-)").holds());
+    // The sides do not meet: B+ moved off.
+    let (mut map, border) = planted([0.4, -0.6], [0.3, 0.2], [1.0, 1.0]);
+    map.plus.b[1] += 1e-4;
+    let all = conditions(&LocalMap::new(&map, border));
+    assert!(!named(&all, "(A+ - A-, B+ - B-) - E (e, f) = 0").holds());
+    match classify(&map, border) {
+        Err(Degenerate::Fails { value, distance, .. }) => assert!(value > 1e-6 && distance < 0.0),
+        other => panic!("{other:?}"),
+    }
+    // e is a left eigenvector of A-.
+    let minus = SideMap { a: Matrix2::new(0.5, 0.0, 1.0, 0.3), b: Vector2::new(1.0, 1.0) };
+    let plus = SideMap { a: Matrix2::new(0.9, 0.0, 2.0, 0.3), b: Vector2::new(1.0, 1.0) };
+    let all = conditions(&LocalMap { minus, plus, border: (RowVector2::new(1.0, 0.0), 0.0) });
+    assert!(!named(&all, "det [e; e A-]").holds());
+}
+
+/// The values are those of their formulas: over `det(I - A)` of a side, beta is where that side's fixed point lies.
+#[test]
+fn values_are_what_the_names_say() {
+    let (map, border) = planted([0.4, -1.6], [0.3, 0.2], [1.0, 1.0]);
+    let all = conditions(&LocalMap::new(&map, border));
+    let value = |name: &str| named(&all, name).value;
+    for (side, name) in [(&map.minus, "det(I - A-)"), (&map.plus, "det(I - A+)")] {
+        let whole = Matrix2::identity() - side.a;
+        let point = whole.lu().solve(&side.b).unwrap();
+        assert_relative_eq!(value(name), whole.determinant(), max_relative = 1e-12);
+        let height = (border.0 * point)[0] + border.1;
+        assert_relative_eq!(value("e adj(I - A-) B- + f det(I - A-)") / value(name), height, max_relative = 1e-12);
+    }
+    let (e, a) = (border.0, map.minus.a);
+    assert_relative_eq!(value("det [e; e A-]"), Matrix2::from_rows(&[e, e * a]).determinant(), max_relative = 1e-12);
+    let both = (Matrix2::identity() - map.plus.a * map.minus.a).determinant();
+    assert_relative_eq!(value("det(I - A+ A-)"), both, max_relative = 1e-12);
+    assert_relative_eq!(value("det(I + A+)"), (Matrix2::identity() + map.plus.a).determinant(), max_relative = 1e-12);
+    // Traces 0.4 and -1.6 with determinants 0.3 and 0.2: a pair of modulus sqrt 0.3; -1.463 and -0.137.
+    assert_relative_eq!(value("|eigenvalue| - 1 of A-"), 0.3_f64.sqrt() - 1.0, max_relative = 1e-12);
+    assert_relative_eq!(value("|eigenvalue| - 1 of A+"), 0.8 + 0.44_f64.sqrt() - 1.0, max_relative = 1e-12);
+}
+
+/// A distance is no matter of metres or millimetres.
+#[test]
+fn distances_from_failing_have_no_units() {
+    let of = |units| {
+        let (map, border) = planted([0.4, -1.6], [0.3, 0.2], units);
+        conditions(&LocalMap::new(&map, border))
+    };
+    for (one, other) in of([1.0, 1.0]).iter().zip(&of([1e3, 1e-4])) {
+        let epsilon = if one.name.starts_with("(A+") { 1e-4 } else { 1e-9 };
+        assert_relative_eq!(one.distance, other.distance, epsilon = epsilon);
+    }
+}
+
+#[test]
+fn numbers_that_are_none_end_without_a_panic() {
+    let mut map = LocalMap::normal_form([0.5, f64::NAN], [0.3, 0.2]);
+    assert!(!matches!(map.outcome(1.0).fates[0].end, End::Periodic(_) | End::Chaotic(_)));
+    map.plus.a = Matrix2::repeat(f64::INFINITY);
+    assert!(!matches!(map.outcome(-1.0).fates[0].end, End::Chaotic(_)));
+    assert!(conditions(&map).iter().any(|condition| !condition.holds()));
+}

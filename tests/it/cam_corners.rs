@@ -1,0 +1,249 @@
+//! Is every jump of the lift's derivatives found, at its order, and can a law be continued past it anywhere?
+
+use std::f64::consts::TAU;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use crate::common;
+use approx::{assert_abs_diff_eq, assert_relative_eq};
+use corner_impact::cam::{Cam, Corner, Side};
+use corner_impact::model::Model;
+use serde_json::Value;
+
+const FOLLOWER: &str =
+    "[follower]\nmass = 1\ndamping = 0\nstiffness = 1\ngravity = 0\nrest_position = 0\nrestitution = 1\n";
+
+fn cam_of(table: &str) -> Cam {
+    Cam::new(&Model::parse("test.toml", &format!("{FOLLOWER}[cam]\n{table}")).unwrap()).unwrap()
+}
+
+fn law_file(name: &str) -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("models/laws").join(name).to_string_lossy().into_owned()
+}
+
+fn law_cam(name: &str) -> Cam {
+    common::cam(&common::read(Path::new(&law_file(name))))
+}
+
+/// Dwell, rise, dwell, return: the motion's own corners besides those at its ends.
+fn between_dwells(motion: &str, rise: f64) -> Cam {
+    let segment = |motion: &str, span: f64, rise: f64| {
+        format!("[[cam.segment]]\nmotion = \"{motion}\"\nspan_deg = {span}\nrise = {rise}\n")
+    };
+    let segments = [
+        segment("dwell", 100.0, 0.0),
+        segment(motion, 80.0, rise),
+        segment("dwell", 100.0, 0.0),
+        segment(motion, 80.0, -rise),
+    ];
+    cam_of(&format!("law = \"program\"\nbase = 0.03\n{}", segments.concat()))
+}
+
+#[test]
+fn motions_between_dwells_jump_at_their_orders() {
+    let expected: [(&str, &[usize], f64); 7] = [
+        ("parabolic", &[2, 2, 2], 4.0),
+        ("harmonic", &[2, 2], std::f64::consts::PI.powi(2) / 2.0),
+        ("cycloidal", &[3, 3], TAU.powi(2)),
+        ("modified-trapezoid", &[3, 4, 4, 4, 4, 3], 61.4),
+        ("modified-sine", &[3, 4, 4, 3], 69.47),
+        ("poly345", &[3, 3], 60.0),
+        ("poly4567", &[4, 4], 840.0),
+    ];
+    // As large as a cam, as small as a scratch on it.
+    for rise in [0.02, -1e-6] {
+        for (motion, orders, first_jump) in expected {
+            let mut corners = between_dwells(motion, rise).corners();
+            // At 0 the return ends.
+            corners.rotate_left(1);
+            let found: Vec<usize> = corners.iter().map(|corner| corner.jump_order).collect();
+            assert_eq!(found, [orders, orders].concat(), "{motion} {rise}");
+            assert_abs_diff_eq!(corners[0].angle, 100.0_f64.to_radians(), epsilon = 1e-15);
+            let span = 80.0_f64.to_radians();
+            let jump = corners[0].jump * span.powi(orders[0] as i32) / rise;
+            assert_relative_eq!(jump, first_jump, max_relative = 1e-3);
+        }
+    }
+}
+
+/// A hump whose n-th derivative is the first to jump, at both its ends, however high n is.
+#[test]
+fn jumps_of_any_order_are_found() {
+    for order in 2..=11_usize {
+        // u^n (1 - u)^n over a radian: the n-th derivative jumps by n! at 0, by n! (-1)^(n+1) at 1.
+        let mut coefficients = vec![0.0; 2 * order + 1];
+        coefficients[0] = 0.1;
+        let mut binomial = 1.0;
+        for k in 0..=order {
+            coefficients[order + k] = 1e-2 * binomial;
+            binomial *= -((order - k) as f64) / (k as f64 + 1.0);
+        }
+        let corners = cam_of(&format!(
+            "law = \"polynomial\"\n[[cam.segment]]\nstart_deg = 0\ncoefficients = {coefficients:?}\n\
+             [[cam.segment]]\nstart_deg = 57.29577951308232\ncoefficients = [0.1]\n"
+        ))
+        .corners();
+        let orders: Vec<usize> = corners.iter().map(|corner| corner.jump_order).collect();
+        assert_eq!(orders, [order, order], "{corners:?}");
+        let jump = 1e-2 * (1..=order).map(|k| k as f64).product::<f64>();
+        assert_relative_eq!(corners[0].jump, jump, max_relative = 1e-9);
+        assert_relative_eq!(corners[1].jump, -jump * (-1.0_f64).powi(order as i32), max_relative = 1e-6);
+    }
+}
+
+#[test]
+fn smooth_cams_and_velocity_jumps() {
+    assert!(law_cam("harmonic.toml").corners().is_empty());
+    // One parabola cut in two is one parabola.
+    let cut = "law = \"polynomial\"\n[[cam.segment]]\nstart_deg = 0\ncoefficients = [0.1, 0.0, 0.0]\n\
+               [[cam.segment]]\nstart_deg = 180\ncoefficients = [0.1]\n";
+    assert!(cam_of(cut).corners().is_empty());
+    let sine = law_cam("rectified-sine.toml").corners();
+    assert_eq!(sine.iter().map(|corner| corner.jump_order).collect::<Vec<_>>(), [1, 1]);
+    assert_eq!((sine[0].angle, sine[0].jump), (0.0, 2.0));
+    assert_abs_diff_eq!(sine[1].angle, std::f64::consts::PI);
+    // The polynomial that goes on through 360 degrees has no corner there.
+    let angles: Vec<f64> =
+        law_cam("polynomial.toml").corners().iter().map(|corner| corner.angle.to_degrees()).collect();
+    assert_eq!(angles, [90.0, 270.0]);
+}
+
+#[test]
+fn every_row_of_a_table_is_a_corner_of_its_splines_order() {
+    for (file, order) in [("table-cubic.toml", 3), ("table-quintic.toml", 5)] {
+        let corners = law_cam(file).corners();
+        assert_eq!(corners.len(), 360);
+        assert!(corners.iter().all(|corner| corner.jump_order == order));
+    }
+    assert_eq!(common::cam(&common::osorio()).corners().iter().filter(|corner| corner.jump_order == 2).count(), 6);
+}
+
+/// The law of one side past the corner, the cam as it was before it.
+fn is_continued(cam: &Cam, corner: &Corner, reach: f64) {
+    let count = cam.segments().len();
+    let before = &cam.segments()[(corner.segment + count - 1) % count].law;
+    let after = &cam.segments()[corner.segment].law;
+    let minus = cam.continued(corner, Side::Minus, reach).unwrap();
+    let plus = cam.continued(corner, Side::Plus, reach).unwrap();
+    for continued in [&minus, &plus] {
+        let segments = continued.segments();
+        assert_eq!((segments[0].start, segments[segments.len() - 1].end), (0.0, TAU));
+        assert!(segments.windows(2).all(|pair| pair[0].end == pair[1].start));
+    }
+    for part in 0..10 {
+        let offset = reach * (f64::from(part) + 0.5) / 10.0;
+        let (ahead, behind) = (corner.angle + offset, corner.angle - offset);
+        let wrapped = |angle: f64| if angle < 0.0 { angle + TAU } else { angle };
+        // At 0 the segment before counts from 2 pi.
+        let turn = if corner.angle == 0.0 { TAU } else { 0.0 };
+        let expected = (before.lift(ahead + turn), after.lift(behind));
+        let found = (minus.lift(ahead), plus.lift(wrapped(behind)));
+        for (expected, found) in [(expected.0, found.0), (expected.1, found.1)] {
+            assert_abs_diff_eq!(found.value, expected.value, epsilon = 1e-14);
+            assert_abs_diff_eq!(found.slope, expected.slope, epsilon = 1e-14);
+            assert_abs_diff_eq!(found.curvature, expected.curvature, epsilon = 1e-12);
+        }
+        assert_eq!(minus.lift(wrapped(behind)), cam.lift(wrapped(behind)));
+        assert_eq!(plus.lift(ahead), cam.lift(ahead));
+        // The ranges are those of the new segments.
+        for continued in [&minus, &plus] {
+            for angle in [ahead, wrapped(behind)] {
+                let segment = &continued.segments()[continued.segment_at(angle)];
+                let value = continued.lift(angle).value;
+                assert!(segment.bounds.lift[0] <= value && value <= segment.bounds.lift[1]);
+            }
+        }
+    }
+    // Past the reach, the other law again.
+    assert_eq!(minus.lift(corner.angle + 1.5 * reach), cam.lift(corner.angle + 1.5 * reach));
+    let back = corner.angle - 1.5 * reach;
+    let back = if back < 0.0 { back + TAU } else { back };
+    assert_eq!(plus.lift(back), cam.lift(back));
+    assert_eq!(cam.segments().len() + usize::from(corner.angle == 0.0), minus.segments().len());
+}
+
+#[test]
+fn laws_are_continued_past_any_corner() {
+    for name in ["rectified-sine.toml", "polynomial.toml"] {
+        let cam = law_cam(name);
+        for corner in cam.corners() {
+            is_continued(&cam, &corner, 0.1);
+        }
+    }
+    let cam = law_cam("program.toml");
+    for corner in cam.corners().iter().filter(|corner| [0.0, 200.0, 260.0].contains(&corner.angle.to_degrees().round()))
+    {
+        is_continued(&cam, corner, 0.04);
+    }
+    // One segment that meets itself at 0.
+    let wrapped = cam_of(
+        "law = \"polynomial\"\n[[cam.segment]]\nstart_deg = 0\ncoefficients = [0.1, 0.06283185307179587, -0.01]\n",
+    );
+    let corners = wrapped.corners();
+    assert_eq!((corners.len(), corners[0].jump_order), (1, 1));
+    is_continued(&wrapped, &corners[0], 0.1);
+    // The corner itself has one lift from both sides, to the last bit: nothing for a follower to fall from.
+    let continued = wrapped.continued(&corners[0], Side::Minus, 0.1).unwrap();
+    let (first, last) = (&continued.segments()[0], &continued.segments()[continued.segments().len() - 1]);
+    assert_eq!(first.law.lift(0.0), last.law.lift(TAU));
+    assert!(wrapped.continued(&corners[0], Side::Minus, 4.0).is_none());
+    assert!(wrapped.continued(&corners[0], Side::Plus, f64::NAN).is_none());
+}
+
+fn corner_impact(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_corner-impact")).args(arguments).output().unwrap()
+}
+
+#[test]
+fn the_cam_document_lists_segments_and_corners() {
+    let output = corner_impact(&["cam", "--json", &law_file("program.toml")]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(document["schema"], "corner-impact/cam/1");
+    assert_eq!((&document["law"], &document["model"]), (&"program".into(), &"program".into()));
+    let cam = law_cam("program.toml");
+    let (segments, corners) = (document["segments"].as_array().unwrap(), document["corners"].as_array().unwrap());
+    assert_eq!((segments.len(), corners.len()), (18, 16));
+    for (entry, segment) in segments.iter().zip(cam.segments()) {
+        assert_eq!(entry["start_deg"], segment.start.to_degrees());
+        assert_eq!(entry["end_deg"], segment.end.to_degrees());
+        assert_eq!(entry["law"], segment.law.name());
+        assert_eq!(entry["lift_m"][1], segment.bounds.lift[1]);
+    }
+    for (entry, corner) in corners.iter().zip(cam.corners()) {
+        assert_eq!(entry["cam_angle_rad"], corner.angle);
+        assert_eq!(entry["angle_deg"], corner.angle.to_degrees());
+        assert_eq!(entry["jump_order"], corner.jump_order);
+        assert_eq!(entry["jump"], corner.jump);
+        assert_eq!(entry["lift_m"], corner.plus.value);
+        assert_eq!([&entry["slope_before"], &entry["slope_after"]], [corner.minus.slope, corner.plus.slope]);
+        assert_eq!(
+            [&entry["curvature_before"], &entry["curvature_after"]],
+            [corner.minus.curvature, corner.plus.curvature]
+        );
+    }
+    assert_eq!(document["lift_m"][1], cam.top());
+    let few = corner_impact(&["cam", "--json", "--order", "2", &law_file("program.toml")]);
+    let few: Value = serde_json::from_slice(&few.stdout).unwrap();
+    assert_eq!((few["corners"].as_array().unwrap().len(), &few["highest_order"]), (4, &2.into()));
+}
+
+#[test]
+fn the_page_fits_and_counts_what_it_does_not_list() {
+    let page = |name: &str| {
+        let output = corner_impact(&["cam", &law_file(name)]);
+        assert!(output.status.code() == Some(0) && output.stderr.is_empty());
+        String::from_utf8(output.stdout).unwrap()
+    };
+    for name in ["harmonic", "polynomial", "program", "rectified-sine", "table-cubic", "table-quintic"] {
+        let page = page(&format!("{name}.toml"));
+        assert!(page.lines().all(|line| line.chars().count() <= 100 && !line.ends_with(' ')), "{page}");
+        assert!(page.lines().count() < 60, "{page}");
+    }
+    assert!(page("table-quintic.toml").contains("360 of order 5, the largest jump"));
+    assert!(page("harmonic.toml").contains("No derivative of the lift up to order 11 jumps"));
+    assert!(
+        page("program.toml")
+            .contains("  245.000000      2     0.116722004           0.058    -0.015278875    -0.015278875\n")
+    );
+}

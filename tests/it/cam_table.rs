@@ -1,0 +1,269 @@
+//! Is a table of lifts read row by row, and is the spline through it the one that its name says?
+
+use std::f64::consts::TAU;
+use std::path::PathBuf;
+use std::process::Command;
+use std::time::Instant;
+
+use approx::{assert_abs_diff_eq, assert_relative_eq};
+use corner_impact::cam::Cam;
+use corner_impact::model::Model;
+
+fn folder() -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("cam_table");
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+fn model_text(table: &str, spline: &str) -> String {
+    format!(
+        "[follower]\nmass = 1\ndamping = 0\nstiffness = 1\ngravity = 0\nrest_position = 0\nrestitution = 1\n\
+         [cam]\nlaw = \"table\"\nfile = \"{table}\"\nspline = \"{spline}\"\n"
+    )
+}
+
+fn csv(rows: &[(f64, f64)]) -> String {
+    let rows: Vec<String> = rows.iter().map(|(angle, lift)| format!("{angle:?},{lift:?}\n")).collect();
+    format!("angle_deg,lift\n{}", rows.concat())
+}
+
+/// Writes model and table beside each other and reads the model; `name` keeps tests apart.
+fn cam_of(name: &str, text: &str, spline: &str) -> Result<Cam, String> {
+    std::fs::write(folder().join(format!("{name}.csv")), text).unwrap();
+    let file = folder().join(format!("{name}.toml"));
+    std::fs::write(&file, model_text(&format!("{name}.csv"), spline)).unwrap();
+    let model = Model::read(&file).map_err(|error| error.to_string())?;
+    Cam::new(&model).map_err(|error| error.to_string())
+}
+
+/// Angles that are not evenly spaced, the first one not at 0.
+fn uneven(count: u32) -> Vec<f64> {
+    let step = 360.0 / f64::from(count);
+    (0..count).map(|k| f64::from(k) * step + step * (0.5 + 0.1 * (f64::from(k * k % 7) - 3.0))).collect()
+}
+
+fn smooth(angle_deg: f64) -> f64 {
+    let theta = angle_deg.to_radians();
+    0.1 + 0.02 * (theta - 0.3).cos() + 0.003 * (3.0 * theta).sin()
+}
+
+const SPLINES: [(&str, usize); 2] = [("cubic", 3), ("quintic", 5)];
+
+/// Every row is met, and every derivative below the spline's degree is one from both sides, through 360 degrees too.
+#[test]
+fn splines_interpolate_and_are_as_smooth_as_their_degree_allows() {
+    for (spline, degree) in SPLINES {
+        for angles in [uneven(37), uneven(3), (0..72).map(|k| 5.0 * f64::from(k)).collect()] {
+            let rows: Vec<(f64, f64)> = angles.iter().map(|angle| (*angle, smooth(*angle))).collect();
+            let cam = cam_of(&format!("smooth-{spline}-{}", rows.len()), &csv(&rows), spline).unwrap();
+            for (angle, lift) in &rows {
+                assert_abs_diff_eq!(cam.lift(angle.to_radians()).value, *lift, epsilon = 1e-16);
+            }
+            let segments = cam.segments();
+            assert_eq!(segments.len(), rows.len() + usize::from(rows[0].0 > 0.0));
+            let mut largest_jump = 0.0_f64;
+            for (index, segment) in segments.iter().enumerate() {
+                let before = &segments[(index + segments.len() - 1) % segments.len()];
+                let (minus, plus) = (before.law.jet(before.end), segment.law.jet(segment.start));
+                for order in 0..degree {
+                    let scale = 0.1 * (f64::from(rows.len() as u32)).powi(order as i32);
+                    assert_abs_diff_eq!(minus.0[order], plus.0[order], epsilon = 1e-13 * scale);
+                }
+                largest_jump = largest_jump.max((plus.0[degree] - minus.0[degree]).abs());
+            }
+            assert!(largest_jump > 1e-3, "{spline}");
+            assert_eq!(cam.corners().len(), rows.len());
+        }
+    }
+}
+
+/// Halving the spacing divides the error by 2^(degree + 1), and that of the k-th derivative by 2^(degree + 1 - k).
+#[test]
+fn splines_converge_at_their_order() {
+    let exact = |theta: f64| {
+        let (first, third) = (theta - 0.3, 3.0 * theta);
+        let value = 0.1 + 0.02 * first.cos() + 0.003 * third.sin();
+        [value, -0.02 * first.sin() + 0.009 * third.cos(), -0.02 * first.cos() - 0.027 * third.sin()]
+    };
+    for (spline, degree) in SPLINES {
+        let errors = |count: u32| {
+            let rows: Vec<(f64, f64)> =
+                (0..count).map(|k| 360.0 * f64::from(k) / f64::from(count)).map(|a| (a, smooth(a))).collect();
+            let cam = cam_of(&format!("order-{spline}-{count}"), &csv(&rows), spline).unwrap();
+            let mut errors = [0.0_f64; 3];
+            for k in 0..3000 {
+                let theta = TAU * f64::from(k) / 3000.0;
+                let lift = cam.lift(theta);
+                for (error, (found, exact)) in
+                    errors.iter_mut().zip([lift.value, lift.slope, lift.curvature].into_iter().zip(exact(theta)))
+                {
+                    *error = error.max((found - exact).abs());
+                }
+            }
+            errors
+        };
+        let (coarse, fine) = (errors(36), errors(72));
+        for order in 0..3 {
+            let expected = 2.0_f64.powi((degree + 1 - order) as i32);
+            assert_relative_eq!(coarse[order] / fine[order], expected, max_relative = 0.15);
+        }
+    }
+}
+
+/// Where the rows lie on a polynomial that the spline can be, far from what is not, the spline is that polynomial.
+#[test]
+fn splines_reproduce_polynomials_of_their_degree() {
+    for (spline, degree) in [("cubic", 3), ("quintic", 5)] {
+        // On [60, 300] a power of the distance from 180; beyond it, a line back.
+        let lift = |angle: f64| {
+            let u = f64::clamp((angle - 180.0) / 120.0, -1.0, 1.0);
+            let power = 0.1 + 0.02 * u.powi(degree) - 0.01 * u * u;
+            if (60.0..=300.0).contains(&angle) { power } else { 0.1 }
+        };
+        let rows: Vec<(f64, f64)> = (0..360).map(|k| (f64::from(k), lift(f64::from(k)))).collect();
+        let cam = cam_of(&format!("power-{spline}"), &csv(&rows), spline).unwrap();
+        for k in 0..100 {
+            // What happens 60 rows away has died out by 0.43^60.
+            let angle = 130.0 + f64::from(k);
+            let u = (angle + 0.37 - 180.0) / 120.0;
+            let per_radian = 180.0 / std::f64::consts::PI / 120.0;
+            let found = cam.lift((angle + 0.37).to_radians());
+            let n = f64::from(degree);
+            assert_abs_diff_eq!(found.value, lift(angle + 0.37), epsilon = 1e-15);
+            let slope = (0.02 * n * u.powi(degree - 1) - 0.02 * u) * per_radian;
+            assert_abs_diff_eq!(found.slope, slope, epsilon = 1e-13);
+            let curvature = (0.02 * n * (n - 1.0) * u.powi(degree - 2) - 0.02) * per_radian * per_radian;
+            assert_abs_diff_eq!(found.curvature, curvature, epsilon = 1e-10);
+        }
+    }
+}
+
+#[test]
+fn rows_that_say_the_same_otherwise() {
+    let rows: Vec<(f64, f64)> = (0..36).map(|k| (10.0 * f64::from(k), smooth(10.0 * f64::from(k)))).collect();
+    let plain = csv(&rows);
+    let cam = cam_of("plain", &plain, "cubic").unwrap();
+    // A last row that repeats the first, line ends of another system, a spreadsheet's mark, blanks.
+    let closed = format!("{plain}360.0,{:?}\n", rows[0].1);
+    for (name, text) in [
+        ("closed", closed),
+        ("crlf", plain.replace('\n', "\r\n")),
+        ("marked", format!("\u{feff}{plain}")),
+        ("blank", format!("{}\n\n", plain.replace(',', " , "))),
+    ] {
+        assert_eq!(cam_of(name, &text, "cubic").unwrap(), cam, "{name}");
+    }
+    // A row at 360 without one at 0 is the row at 0.
+    let turned = csv(&rows[1..]) + &format!("360,{:?}\n", rows[0].1);
+    let turned = cam_of("turned", &turned, "cubic").unwrap();
+    for k in 0..100 {
+        let theta = TAU * f64::from(k) / 100.0;
+        assert_abs_diff_eq!(turned.lift(theta).value, cam.lift(theta).value, epsilon = 1e-15);
+    }
+    // Equal lifts are a round cam without a corner.
+    let flat = cam_of("flat", &csv(&[(0.0, 0.1), (100.0, 0.1), (220.0, 0.1)]), "quintic").unwrap();
+    assert!(flat.corners().is_empty() && flat.lift(1.0).value == 0.1);
+}
+
+/// Text that is no table, each with what the message must say; the model's own name where its field is at fault.
+#[test]
+fn tables_that_are_refused() {
+    let degrees = |skip: std::ops::Range<u32>| {
+        let kept = (0..360).filter(move |k| !skip.contains(k));
+        csv(&kept.map(|k| (f64::from(k), smooth(f64::from(k)))).collect::<Vec<_>>())
+    };
+    let cases: [(&str, String, &[&str]); 18] = [
+        ("empty", String::new(), &[".csv: is empty", "angle_deg,lift"]),
+        ("header", "angle,lift\n0,1\n".into(), &[".csv:1: header = angle,lift", "must be angle_deg,lift"]),
+        ("headless", "0,1\n120,1\n240,1\n".into(), &[".csv:1: header = 0,1"]),
+        ("text", "angle_deg,lift\n0,1\n120,high\n".into(), &[".csv:3: lift = high: must be a finite number"]),
+        ("nan", "angle_deg,lift\n0,1\n120,nan\n".into(), &[".csv:3: lift = nan"]),
+        ("inf", "angle_deg,lift\n0,1\n\n120,-inf\n".into(), &[".csv:4: lift = -inf"]),
+        ("huge", "angle_deg,lift\n0,1e999\n".into(), &[".csv:2: lift = 1e999"]),
+        (
+            "angle",
+            "angle_deg,lift\nnan,1\n".into(),
+            &[".csv:2: angle_deg = nan: must be a finite number from 0 to 360"],
+        ),
+        ("past", "angle_deg,lift\n0,1\n360.5,1\n".into(), &[".csv:3: angle_deg = 360.5", "from 0 to 360"]),
+        ("negative", "angle_deg,lift\n-1,1\n".into(), &[".csv:2: angle_deg = -1", "from 0 to 360"]),
+        ("one-column", "angle_deg,lift\n0\n".into(), &[".csv:2: row = 0: must be two numbers"]),
+        ("three-columns", "angle_deg,lift\n0,1,2\n".into(), &[".csv:2: lift = 1,2"]),
+        ("repeat", "angle_deg,lift\n0,1\n120,1\n120,2\n".into(), &[".csv:4: angle_deg = 120: repeats", "line 3"]),
+        (
+            "unsorted",
+            "angle_deg,lift\n0,1\n120,1\n60,2\n".into(),
+            &[".csv:4: angle_deg = 60: angles must rise", "above 120"],
+        ),
+        ("one-row", "angle_deg,lift\n0,1\n".into(), &[".csv: 1 different angles; 3 to 1000000 are needed"]),
+        ("two-rows", "angle_deg,lift\n0,1\n180,1\n360,1\n".into(), &[".csv: 2 different angles"]),
+        ("gap", degrees(100..120), &[".csv:101: angle_deg = 99: no row from 99 to 120: rows are missing", "10"]),
+        ("open", format!("{}360,0.2\n", degrees(0..0)), &[".csv:362: lift = 0.2: must be 0.119", "on line 2"]),
+    ];
+    for (name, text, says) in cases {
+        for (spline, _) in SPLINES {
+            let message = cam_of(name, &text, spline).unwrap_err();
+            assert!(message.contains(&format!("{name}.csv")), "{name}: {message}");
+            for part in says {
+                assert!(message.contains(part), "{name}: no \"{part}\" in: {message}");
+            }
+        }
+    }
+    // The end of the turn is a gap like any other; one just below the limit is none.
+    assert!(cam_of("end", &degrees(330..360), "cubic").unwrap_err().contains("no row from 329 to 360"));
+    assert!(cam_of("below", &degrees(100..109), "cubic").is_ok());
+    assert!(cam_of("at", &degrees(100..110), "cubic").is_err());
+    // Lifts at the end of a double.
+    let huge = cam_of("overflow", &csv(&[(0.0, 1e308), (120.0, -1e308), (240.0, 1e308)]), "quintic").unwrap_err();
+    assert!(huge.contains(".toml:10: cam.file") && huge.contains("too large"), "{huge}");
+    // The file itself.
+    let text = model_text("there-is-no-such.csv", "cubic");
+    let missing = Model::parse("folder/model.toml", &text).unwrap_err().to_string();
+    assert!(
+        missing.starts_with("folder/model.toml:10: cam.file = \"there-is-no-such.csv\": cannot be read"),
+        "{missing}"
+    );
+    assert!(missing.contains("folder/there-is-no-such.csv"), "{missing}");
+    std::fs::write(folder().join("binary.csv"), [0xff, 0xfe, 0x00]).unwrap();
+    let file = folder().join("binary.toml");
+    std::fs::write(&file, model_text("binary.csv", "cubic")).unwrap();
+    assert!(Model::read(&file).unwrap_err().to_string().contains("cannot be read"));
+    let linear = cam_of("linear", &degrees(0..0), "linear").unwrap_err();
+    assert!(linear.contains("cam.spline = \"linear\": must be one of: \"cubic\", \"quintic\""), "{linear}");
+}
+
+/// Exit code 2, nothing printed, one message that names the table's file and line.
+#[test]
+fn commands_refuse_a_bad_table() {
+    std::fs::write(folder().join("bad.csv"), "angle_deg,lift\n0,1\n120,x\n").unwrap();
+    let file = folder().join("bad.toml");
+    std::fs::write(&file, model_text("bad.csv", "cubic")).unwrap();
+    for command in ["cam", "verify"] {
+        let output = Command::new(env!("CARGO_BIN_EXE_corner-impact")).arg(command).arg(&file).output().unwrap();
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(output.stdout.is_empty() && message.starts_with("error: ") && message.contains("bad.csv:3: lift = x"));
+    }
+}
+
+/// As many rows as are allowed, in seconds; one more is one too many.
+#[test]
+fn a_million_rows() {
+    let count = 1_000_000_u32;
+    let rows: Vec<(f64, f64)> =
+        (0..count).map(|k| 360.0 * f64::from(k) / f64::from(count)).map(|a| (a, smooth(a))).collect();
+    let text = csv(&rows);
+    for (spline, _) in SPLINES {
+        let clock = Instant::now();
+        let cam = cam_of("million", &text, spline).unwrap();
+        assert!(clock.elapsed().as_secs_f64() < 20.0, "{spline}: {:?}", clock.elapsed());
+        assert_eq!(cam.segments().len(), rows.len());
+        for k in 0..1000 {
+            let angle = 0.36 * f64::from(k) + 1e-4;
+            assert_abs_diff_eq!(cam.lift(angle.to_radians()).value, smooth(angle), epsilon = 1e-15);
+        }
+        assert_relative_eq!(cam.top(), 0.12, max_relative = 0.05);
+    }
+    let more = format!("{text}359.9999,0.1\n");
+    assert!(cam_of("more", &more, "cubic").unwrap_err().contains("more.csv:1000002: more than 1000000 rows"));
+}

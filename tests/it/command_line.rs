@@ -1,0 +1,351 @@
+//! Does the command line do what its help says: examples that work, pages that fit, colour where it belongs, everything from
+//! any folder?
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use rayon::prelude::*;
+use tempfile::TempDir;
+
+const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+const COMMANDS: [&str; 16] = [
+    "verify",
+    "report",
+    "claims",
+    "locate",
+    "cam",
+    "simulate",
+    "speeds",
+    "diagram",
+    "figure",
+    "orbit",
+    "continue",
+    "curve",
+    "basins",
+    "new",
+    "completions",
+    "man",
+];
+
+/// The program in `folder`, in an environment that says nothing about terminals.
+fn program(folder: &Path, words: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_corner-impact"));
+    command.current_dir(folder).args(words);
+    for name in ["COLUMNS", "NO_COLOR", "CLICOLOR", "CLICOLOR_FORCE", "CORNER_IMPACT_HOME"] {
+        command.env_remove(name);
+    }
+    command
+}
+
+fn run(line: &str) -> Output {
+    program(Path::new(ROOT), &line.split_whitespace().collect::<Vec<_>>()).output().unwrap()
+}
+
+fn text(bytes: Vec<u8>) -> String {
+    String::from_utf8(bytes).unwrap()
+}
+
+/// The lines under "Examples:", without the explanations beside them.
+fn examples(help: &str) -> Vec<String> {
+    let (_, after) = help.split_once("\nExamples:\n").unwrap_or_else(|| panic!("no examples in {help}"));
+    let lines = after.lines().take_while(|line| line.starts_with("  "));
+    lines.map(|line| line.trim().split("  ").next().unwrap().to_owned()).collect()
+}
+
+/// Every subcommand is listed, under a heading, and has examples that work as they are written.
+#[test]
+fn examples_work_as_written() {
+    let folder = TempDir::new().unwrap();
+    std::fs::create_dir(folder.path().join("models")).unwrap();
+    for path in ["models", "models/laws"] {
+        std::fs::create_dir_all(folder.path().join(path)).unwrap();
+        for entry in std::fs::read_dir(Path::new(ROOT).join(path)).unwrap().map(Result::unwrap) {
+            if entry.path().is_file() {
+                std::fs::copy(entry.path(), folder.path().join(path).join(entry.file_name())).unwrap();
+            }
+        }
+    }
+    // Wide enough for an example to be one line.
+    let help = |words: &[&str]| text(program(folder.path(), words).env("COLUMNS", "120").output().unwrap().stdout);
+    let first = help(&["--help"]);
+    assert_eq!(examples(&first).len(), 2, "{first}");
+    let mut lines = examples(&first);
+    for command in COMMANDS {
+        assert!(first.lines().any(|line| line.starts_with(&format!("  {command} "))), "{command} in {first}");
+        let found = examples(&help(&[command, "--help"]));
+        assert!(
+            !found.is_empty() && found.iter().all(|line| line.starts_with("corner-impact ")),
+            "{command}: {found:?}"
+        );
+        lines.extend(found.into_iter().filter(|line| !lines.contains(line)).collect::<Vec<_>>());
+    }
+    let listed = first
+        .lines()
+        .filter(|line| line.starts_with("  ") && !line.starts_with("   ") && !line.contains("corner-impact "));
+    assert_eq!(
+        listed.filter(|line| !line.trim().starts_with('-')).count(),
+        COMMANDS.len(),
+        "a command without a test: {first}"
+    );
+    let wrong = |line: &String| {
+        let words: Vec<&str> = line.split_whitespace().skip(1).collect();
+        let output = program(folder.path(), &words).output().unwrap();
+        let (out, err) = (text(output.stdout), text(output.stderr));
+        // Python need not be here.
+        let without_python = output.status.code() == Some(1) && err.contains("did not run");
+        let runs = output.status.code() == Some(0) || without_python;
+        // Standard error is no terminal: no bar, no colour.
+        let plain = !out.contains('\x1b') && !err.contains(['\x1b', '\r', '%']);
+        (!runs || !plain).then(|| format!("{line}: {err}"))
+    };
+    let complaints: Vec<String> = lines.par_iter().filter_map(wrong).collect();
+    assert!(complaints.is_empty(), "{}", complaints.join("\n"));
+}
+
+#[test]
+fn pages_fit_the_width_that_is_asked_for() {
+    for line in [
+        "verify --no-external",
+        "cam",
+        "cam models/laws/program.toml",
+        "locate --rpm 600:760",
+        "locate models/laws/rectified-sine.toml --rpm 600:760",
+        "orbit --rpm 680",
+        "orbit --rpm 183",
+        "speeds --rpm 600:760 --speeds 40",
+        "basins --rpm 678 --grid 6x6",
+        "simulate --rpm 183 --revolutions 5",
+        "--help",
+        "diagram --help",
+    ] {
+        let page = |columns: &str| {
+            let words: Vec<&str> = line.split_whitespace().collect();
+            text(program(Path::new(ROOT), &words).env("COLUMNS", columns).output().unwrap().stdout)
+        };
+        for width in [60, 80, 120] {
+            let page = page(&width.to_string());
+            assert!(!page.is_empty());
+            for found in page.lines() {
+                // A number or a word longer than the line cannot be cut.
+                let is_one_word = found.split_whitespace().count() == 1;
+                // clap keeps a usage in one line.
+                let is_usage = found.starts_with("Usage:");
+                assert!(found.chars().count() <= width || is_one_word || is_usage, "{line} at {width}: {found}");
+            }
+        }
+        let unasked: Vec<&str> = line.split_whitespace().collect();
+        let unasked = text(program(Path::new(ROOT), &unasked).output().unwrap().stdout);
+        let same = |text: &str| {
+            text.lines()
+                .filter(|line| !line.contains(" s, ") && !line.ends_with(" s"))
+                .map(String::from)
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(same(&unasked), same(&page("100")), "{line}");
+    }
+    // Nothing is lost on the way: the same words in the same order, but for the heads of tables.
+    let words = |columns: &str| {
+        let page = program(Path::new(ROOT), &["claims"]).env("COLUMNS", columns).output().unwrap().stdout;
+        let page = text(page);
+        assert!(page.lines().all(|line| line.chars().count() <= columns.parse().unwrap()), "{page}");
+        page.split_whitespace().map(String::from).collect::<Vec<_>>()
+    };
+    assert_eq!(words("60"), words("120"));
+}
+
+/// Without its escape codes.
+fn stripped(text: &str) -> String {
+    let mut parts = text.split('\x1b');
+    let first = parts.next().unwrap().to_owned();
+    first + &parts.map(|part| part.split_once('m').unwrap().1).collect::<String>()
+}
+
+#[test]
+fn colour_is_where_it_belongs_and_says_nothing_by_itself() {
+    let coloured = |line: &str, set: &[(&str, &str)]| {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let output = program(Path::new(ROOT), &words).envs(set.iter().copied()).output().unwrap();
+        (text(output.stdout), text(output.stderr))
+    };
+    for line in ["verify --no-external", "cam", "orbit --rpm 680", "--help"] {
+        let (plain, _) = coloured(line, &[]);
+        assert!(!plain.contains('\x1b'), "{line}");
+        for (set, flag) in [(&[][..], "--color always"), (&[("CLICOLOR_FORCE", "1")], "--color auto")] {
+            let (page, _) = coloured(&format!("{flag} {line}"), set);
+            assert!(page.contains('\x1b'), "{line} {flag} {set:?}");
+            assert_eq!(stripped(&page), plain, "{line}");
+        }
+        let none = [
+            (&[("CLICOLOR_FORCE", "1")][..], "--color never"),
+            (&[("CLICOLOR_FORCE", "1"), ("NO_COLOR", "1")], "--color=auto"),
+            (&[("CLICOLOR_FORCE", "0")], ""),
+        ];
+        for (set, flag) in none {
+            assert_eq!(coloured(&format!("{flag} {line}"), set).0, plain, "{line} {flag} {set:?}");
+        }
+    }
+    let (verdicts, _) = coloured("verify --no-external --color always", &[]);
+    assert!(verdicts.contains("\x1b[32mAGREES\x1b[0m") && verdicts.contains("\x1b[33mmisprint\x1b[0m"));
+    let (claims, _) = coloured("claims --color always", &[]);
+    assert!(claims.contains("\x1b[1;31mREFUTED\x1b[0m") && claims.contains("\x1b[32mHOLDS\x1b[0m"));
+    // Data is never coloured.
+    for line in ["cam --json", "simulate --rpm 183 --revolutions 3 --events -", "completions bash", "man", "new"] {
+        assert!(!coloured(&format!("--color always {line}"), &[]).0.contains('\x1b'), "{line}");
+    }
+    for line in ["cam none.toml", "conquer", "cam --no-such"] {
+        let (_, plain) = coloured(line, &[]);
+        let (_, shown) = coloured(&format!("{line} --color always"), &[]);
+        assert!(plain.starts_with("error: ") && !plain.contains('\x1b'), "{line}: {plain}");
+        assert!(shown.contains("\x1b[") && stripped(&shown).starts_with("error: "), "{line}: {shown}");
+    }
+}
+
+#[test]
+fn a_model_need_not_be_named() {
+    let note = "note: no MODEL given: using the paper's, osorio-2008, which is built in\n";
+    for line in [
+        "verify --no-external --json",
+        "cam --json",
+        "locate --rpm 600:760 --json",
+        "orbit --rpm 680 --json",
+        "continue --from-rpm 700 --parameter rpm=690:710",
+        "curve --rpm 660:690 --parameter restitution=0.79:0.81",
+        "speeds --rpm 690:700 --speeds 3 --json",
+        "diagram --rpm 690:700:3 --out -",
+        "simulate --rpm 183 --revolutions 3 --events -",
+    ] {
+        let (unnamed, command) = (run(line), line.split(' ').next().unwrap());
+        let named = run(&line.replacen(command, &format!("{command} models/osorio-2008.toml"), 1));
+        assert_eq!(unnamed.status.code(), Some(0), "{line}");
+        assert_eq!(unnamed.stdout, named.stdout, "{line}");
+        assert_eq!(text(unnamed.stderr), note.to_owned() + &text(named.stderr), "{line}");
+    }
+}
+
+#[test]
+fn templates_load_as_they_stand() {
+    let folder = TempDir::new().unwrap();
+    let at = |words: &[&str]| program(folder.path(), words).output().unwrap();
+    for law in ["arcs", "harmonic", "rectified-sine", "program", "polynomial", "table"] {
+        let file = format!("{law}.toml");
+        let written = at(&["new", &file, "--law", law]);
+        assert_eq!(written.status.code(), Some(0), "{}", text(written.stderr));
+        let document: serde_json::Value = serde_json::from_slice(&at(&["cam", &file, "--json"]).stdout).unwrap();
+        assert_eq!((&document["law"], &document["model"]), (&law.into(), &law.into()));
+        let orders = document["corners"].as_array().unwrap().iter().map(|corner| corner["jump_order"].as_u64());
+        let has_corner = orders.collect::<Vec<_>>().contains(&Some(2));
+        assert_eq!(has_corner, ["arcs", "program", "polynomial"].contains(&law), "{law}");
+        if has_corner {
+            let verified = at(&["verify", "--no-external", &file]);
+            assert_eq!(verified.status.code(), Some(0), "{law}: {}", text(verified.stderr));
+        }
+        // Every line with a field says what it is.
+        let template = std::fs::read_to_string(folder.path().join(&file)).unwrap();
+        let fields = template.lines().filter(|line| line.contains(" = ") && !line.starts_with('#'));
+        let bare: Vec<&str> = fields.filter(|line| !line.contains('#')).collect();
+        let said = ["name", "source", "motion", "span_deg", "rise", "start_deg", "coefficients"];
+        assert!(bare.iter().all(|line| said.iter().any(|field| line.starts_with(field))), "{law}: {bare:?}");
+
+        // What is there stays, unless it is said otherwise.
+        std::fs::write(folder.path().join(&file), "mine").unwrap();
+        let refused = at(&["new", &file, "--law", law]);
+        assert_eq!(refused.status.code(), Some(2));
+        assert!(text(refused.stderr).contains("--force"));
+        assert_eq!(std::fs::read_to_string(folder.path().join(&file)).unwrap(), "mine");
+        assert_eq!(at(&["new", &file, "--law", law, "--force"]).status.code(), Some(0));
+        assert_eq!(std::fs::read_to_string(folder.path().join(&file)).unwrap(), template);
+    }
+    assert_eq!(at(&["new"]).stdout, at(&["new", "-"]).stdout);
+    assert_eq!(
+        text(at(&["new"]).stdout).replace("my-machine", "arcs"),
+        std::fs::read_to_string(folder.path().join("arcs.toml")).unwrap()
+    );
+    // The table of another model is not written over.
+    std::fs::remove_file(folder.path().join("table.toml")).unwrap();
+    assert_eq!(at(&["new", "table.toml", "--law", "table"]).status.code(), Some(2));
+    assert!(!folder.path().join("table.toml").exists());
+}
+
+#[test]
+fn manual_and_completions_know_every_command() {
+    let folder = TempDir::new().unwrap();
+    let written = program(folder.path(), &["man", "--out", "pages"]).output().unwrap();
+    assert_eq!(written.status.code(), Some(0), "{}", text(written.stderr));
+    let page = |name: &str| std::fs::read_to_string(folder.path().join("pages").join(name)).unwrap();
+    assert_eq!(std::fs::read_dir(folder.path().join("pages")).unwrap().count(), COMMANDS.len() + 1);
+    let first = page("corner-impact.1");
+    assert_eq!(first.as_bytes(), program(folder.path(), &["man"]).output().unwrap().stdout);
+    for command in COMMANDS {
+        let page = page(&format!("corner-impact-{command}.1"));
+        // A hyphen that is typed is written \- in a manual page.
+        let example = format!("corner\\-impact {command}");
+        assert!(
+            page.contains(".SH EXAMPLES") && page.split(".SH EXAMPLES").nth(1).unwrap().contains(&example),
+            "{page}"
+        );
+        assert!(first.contains(&format!("corner\\-impact\\-{command}(1)")), "{first}");
+        assert!(page.contains("Exit code"), "{page}");
+    }
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let script = text(run(&format!("completions {shell}")).stdout);
+        assert!(COMMANDS.iter().all(|command| script.contains(command)) && script.contains("no-external"), "{shell}");
+    }
+}
+
+/// A copy of the program in an empty folder, far from the project: all that needs no Python works, and what needs the
+/// project says so and how to give it.
+#[test]
+fn from_any_folder() {
+    let (home, empty) = (TempDir::new().unwrap(), TempDir::new().unwrap());
+    let copy = home.path().join("corner-impact");
+    std::fs::copy(env!("CARGO_BIN_EXE_corner-impact"), &copy).unwrap();
+    let run = |line: &str| {
+        let mut command = Command::new(&copy);
+        command.current_dir(empty.path()).args(line.split_whitespace()).env_remove("CORNER_IMPACT_HOME");
+        let output = command.output().unwrap();
+        (output.status.code(), text(output.stdout), text(output.stderr))
+    };
+    for line in [
+        "verify --no-external",
+        "claims",
+        "cam",
+        "locate --rpm 660:690",
+        "orbit --rpm 680",
+        "simulate --rpm 183",
+        "diagram --rpm 660:750:5 --out d.svg",
+        "new my.toml",
+        "verify --no-external my.toml",
+        "man",
+    ] {
+        let (code, out, err) = run(line);
+        assert!(code == Some(0) && (line.starts_with("new") || !out.is_empty()), "{line}: {err}");
+    }
+    let (code, page, said) = run("verify");
+    assert_eq!(code, Some(1));
+    let page = page.split_whitespace().collect::<Vec<_>>().join(" ");
+    for words in [&said, &page] {
+        assert!(
+            words.contains("symbolic") && words.contains("scipy") && words.contains("CORNER_IMPACT_HOME"),
+            "{words}"
+        );
+    }
+    assert!(page.contains("INCOMPLETE: symbolic and scipy did not run"), "{page}");
+}
+
+/// In front of a person work of more than a second has a bar, or a spinner; `script` makes a terminal.
+#[test]
+fn a_terminal_sees_how_far_it_is() {
+    let line = format!("{} claims", env!("CARGO_BIN_EXE_corner-impact"));
+    let typed = Command::new("script").args(["-qec", &line, "/dev/null"]).env("TERM", "xterm").output();
+    let Ok(typed) = typed.map(|output| text(output.stdout)) else {
+        return println!("skipped: there is no `script` here to make a terminal");
+    };
+    assert!(typed.contains("REFUTED"), "{typed}");
+    // Time enough for a bar to appear at all.
+    let clock = std::time::Instant::now();
+    let plain = run("claims");
+    let is_slow = clock.elapsed().as_secs_f64() > 2.0;
+    assert!(!is_slow || typed.contains(" %  "), "no bar in {typed:?}");
+    assert!(typed.contains("\x1b[1;31mREFUTED\x1b[0m"), "a terminal is coloured");
+    assert!(text(plain.stderr).lines().count() == 1);
+}

@@ -1,0 +1,62 @@
+//! What several questions need: the models under `models/`, and a model with some fields changed.
+#![allow(dead_code, clippy::unwrap_used, clippy::panic)]
+
+use std::path::{Path, PathBuf};
+
+use corner_impact::cam::Cam;
+use corner_impact::model::{Model, OSORIO_2008};
+
+/// Every model file that has a corner impact to verify, by name; `models/laws` has those that need none.
+pub fn model_files() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
+    let mut files: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.retain(|file| file.extension().is_some_and(|extension| extension == "toml"));
+    files.sort();
+    assert!(files.len() >= 4, "models/ holds the paper's model and at least three others: {files:?}");
+    files
+}
+
+pub fn stem(file: &Path) -> String {
+    file.file_stem().unwrap().to_string_lossy().into_owned()
+}
+
+pub fn read(file: &Path) -> Model {
+    Model::read(file).unwrap()
+}
+
+pub fn osorio() -> Model {
+    Model::parse("osorio-2008.toml", OSORIO_2008).unwrap()
+}
+
+pub fn cam(model: &Model) -> Cam {
+    Cam::new(model).unwrap()
+}
+
+/// The paper's model file with some lines replaced: `[("restitution", "0.5"), ...]`.
+pub fn osorio_text(changes: &[(&str, &str)]) -> String {
+    let mut lines: Vec<String> = OSORIO_2008.lines().map(String::from).collect();
+    for (field, value) in changes {
+        let line = lines.iter_mut().find(|line| line.starts_with(&format!("{field} ="))).unwrap();
+        *line = format!("{field} = {value}");
+    }
+    lines.join("\n")
+}
+
+pub fn osorio_with(changes: &[(&str, &str)]) -> Model {
+    Model::parse("changed.toml", &osorio_text(changes)).unwrap()
+}
+
+/// The two cams of the tutorial, from a drawing and measured, as it gives them.
+pub fn tutorial(name: &str) -> Model {
+    let page = include_str!("../../../docs/tutorial.md");
+    let file = |name: &str| {
+        let kind = if name.ends_with("csv") { "csv" } else { "toml" };
+        let (_, after) = page.split_once(&format!("```{kind} {name}\n")).unwrap();
+        after.split_once("```").unwrap().0
+    };
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("lift.csv"), file("lift.csv")).unwrap();
+    let path = folder.path().join(name);
+    std::fs::write(&path, file(name)).unwrap();
+    read(&path)
+}

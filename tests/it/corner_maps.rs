@@ -1,0 +1,242 @@
+//! Are the corner maps of any orbit, by any number of the model, those that simulations show?
+
+use std::path::Path;
+use std::sync::OnceLock;
+
+use crate::common;
+use corner_impact::agreement::compare_routes;
+use corner_impact::cam::{Cam, Side};
+use corner_impact::corner::border::border;
+use corner_impact::corner::map::Uncertainty;
+use corner_impact::corner::one_sided::{OneSidedMap, SampleError};
+use corner_impact::corner::varied::{NoChange, Varied};
+use corner_impact::corner::{CornerImpact, CornerMap, Route, finite_difference, least_squares, range, variational};
+use corner_impact::model::{Model, Study};
+use nalgebra::{DMatrix, Matrix2, Vector2, Vector3};
+
+/// A model, its cam, and its corner impact next to a speed.
+struct Case {
+    model: Model,
+    cam: Cam,
+    at: CornerImpact,
+}
+
+fn case(model: Model, rpm: f64, revolutions: u64) -> Case {
+    let cam = common::cam(&model);
+    let near = Study { rpm_min: rpm - 1.0, rpm_max: rpm + 1.0 };
+    let found = range::find_corner_impacts(&model, &cam, near, revolutions).unwrap().found;
+    let at = found.into_iter().find(|at| (at.speed_rpm() - rpm).abs() < 1e-3).unwrap();
+    Case { model, cam, at }
+}
+
+fn read(file: &str) -> Model {
+    common::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("models").join(file))
+}
+
+/// One impact, two in one revolution, two in two, and three in three; three cams, with and without damping.
+fn cases() -> &'static [Case] {
+    static CASES: OnceLock<Vec<Case>> = OnceLock::new();
+    CASES.get_or_init(found)
+}
+
+fn found() -> Vec<Case> {
+    let damped = common::osorio_with(&[("damping", "1.0")]);
+    vec![
+        case(common::osorio(), 673.234445, 1),
+        case(common::osorio(), 736.110814, 1),
+        case(common::osorio(), 739.377930, 2),
+        case(common::osorio(), 728.107240, 3),
+        case(read("laws/polynomial.toml"), 410.969784, 1),
+        case(damped, 730.768847, 1),
+    ]
+}
+
+fn assert_agree(maps: &[Route], what: &str) {
+    let comparisons = compare_routes(maps);
+    assert!(!comparisons.is_empty());
+    for item in comparisons {
+        // A side that a number does not shape has B = 0, and the differences are their own rounding.
+        let side = |map: &Route| if item.quantity == "B_minus" { map.map.minus.b } else { map.map.plus.b };
+        let is_nothing = |map: &Route| map.name == "variational" && side(map).norm() == 0.0;
+        let by_nothing = maps.iter().any(is_nothing) && ["B_minus", "B_plus"].contains(&item.quantity.as_str());
+        assert!(item.agrees || (by_nothing && item.max_abs_diff < 1e-9), "{what}: {item:?}");
+    }
+}
+
+#[test]
+fn the_product_around_any_orbit_is_the_map_that_simulations_show() {
+    let counts: Vec<_> = cases().iter().map(|case| (case.at.cycle.revolutions, case.at.cycle.contacts.len())).collect();
+    assert_eq!(counts, [(1, 1), (1, 2), (2, 2), (3, 3), (1, 2), (1, 2)]);
+    for Case { model, cam, at } in cases() {
+        let routes = [
+            variational::route(model, cam, at),
+            finite_difference::route(model, cam, at).unwrap(),
+            least_squares::route(model, cam, at).unwrap(),
+        ];
+        assert_agree(&routes, &format!("{} rpm", at.speed_rpm()));
+        // The sides are no copies of one another.
+        let [minus, plus] = [routes[0].map.minus, routes[0].map.plus];
+        assert!((minus.a - plus.a).norm() > 1e-3 * minus.a.norm() && (minus.b - plus.b).norm() > 1e-3 * minus.b.norm());
+    }
+}
+
+/// Numbers of the follower and of the cam; damping 0 has no neighbour below.
+fn numbers(model: &Model) -> Vec<String> {
+    let is_varied = |(name, value): &(&str, f64)| !(*name == "follower.damping" && *value == 0.0);
+    model.numbers().filter(is_varied).map(|(name, _)| name.to_owned()).collect()
+}
+
+#[test]
+fn b_by_every_number_is_what_machines_with_that_number_show() {
+    let (mut tried, mut untouched) = (0, 0);
+    for Case { model, cam, at } in cases() {
+        for name in numbers(model) {
+            let by = Varied::Number(name.clone());
+            // A polynomial moved alone parts from its neighbour, and is refused as a cam.
+            if name.starts_with("cam.segment") {
+                continue;
+            }
+            let product = variational::route_by(model, cam, at, &by).unwrap();
+            let differences = finite_difference::route_by(model, cam, at, &by).unwrap();
+            tried += 1;
+            untouched += usize::from(product.map.minus.b.norm() == 0.0);
+            assert_agree(&[product, differences], &format!("{name} at {} rpm", at.speed_rpm()));
+        }
+    }
+    // Ten of the arcs, five of the polynomial follower, with damping one more.
+    assert_eq!(tried, 4 * 10 + 5 + 11);
+    assert!((1..4).contains(&untouched), "{untouched}");
+}
+
+#[test]
+fn a_fit_by_a_number_finds_the_same() {
+    let Case { model, cam, at } = case(common::osorio(), 736.110814, 1);
+    for name in ["follower.restitution", "cam.flank_start_deg"] {
+        let by = Varied::Number(name.into());
+        let routes = [
+            variational::route_by(&model, &cam, &at, &by).unwrap(),
+            least_squares::route_by(&model, &cam, &at, &by).unwrap(),
+        ];
+        assert_agree(&routes, name);
+    }
+}
+
+/// The border is one line of the space of states and numbers together: A+ - A- and every B+ - B- side by side have rank one.
+/// That a corner moves with a number comes out of the laws on its two sides.
+#[test]
+fn the_jump_has_rank_one_in_states_and_numbers_together() {
+    for Case { model, cam, at } in cases() {
+        let jump = |map: &CornerMap| (map.plus.a - map.minus.a, map.plus.b - map.minus.b);
+        let (a, b) = jump(&variational::route(model, cam, at).map);
+        // In units of the orbit: each column over its own size, velocities over omega.
+        let omega = at.angular_velocity();
+        let mut columns = vec![a.column(0).into_owned(), a.column(1) * omega, b / at.period];
+        for name in numbers(model).iter().filter(|name| !name.starts_with("cam.segment")) {
+            let value = model.numbers().find(|(field, _)| field == name).unwrap().1;
+            let by = variational::route_by(model, cam, at, &Varied::Number(name.clone())).unwrap();
+            columns.push(jump(&by.map).1 * if value == 0.0 { 1.0 } else { value });
+        }
+        let rows =
+            DMatrix::from_fn(2, columns.len(), |row, column| columns[column][row] / if row == 0 { 1.0 } else { omega });
+        let values = rows.clone().singular_values();
+        assert!(values[1] <= 1e-9 * values[0], "{} rpm: {values}", at.speed_rpm());
+        assert!(columns.iter().all(|column| column.iter().all(|entry| entry.is_finite())) && columns.len() >= 8);
+    }
+}
+
+/// Perturb the orbit, look on which side of the corner the impact falls.
+#[test]
+fn the_border_says_on_which_side_the_impact_falls() {
+    for Case { model, cam, at } in cases() {
+        let (e, f) = border(model, cam, at);
+        for side in [Side::Minus, Side::Plus] {
+            let map = OneSidedMap::new(model, cam, at, side).unwrap();
+            for direction in [[1.0, 0.3, 0.2], [-1.0, 0.2, -0.4], [0.1, -1.0, 0.3], [0.2, 0.1, -1.0], [0.0, 0.0, 1.0]] {
+                // A quarter of a unit keeps the border straight.
+                let sample = map.sample(map.scales().component_mul(&Vector3::from(direction)) * 0.25).unwrap();
+                let by_border = (e * sample.perturbation.xy())[0] + f * sample.perturbation[2];
+                let speed = at.speed_rpm();
+                assert!(by_border * sample.past_corner > 0.0, "{speed} rpm {direction:?}: {by_border} {sample:?}");
+            }
+        }
+    }
+}
+
+/// The free flight's formula for one impact, and the product around: one line.
+#[test]
+fn the_border_of_the_product_is_that_of_the_free_flight() {
+    for file in common::model_files() {
+        let model = common::read(&file);
+        let cam = common::cam(&model);
+        let at = corner_impact::corner::locate(&model, &cam).unwrap().0;
+        let ((e, f), (gap_e, gap_f)) = (border(&model, &cam, &at), variational::gap_at_corner(&model, &cam, &at));
+        assert!(
+            (e - gap_e).norm() <= 1e-13 * e.norm() && (f - gap_f).abs() <= 1e-12 * f.abs(),
+            "{file:?}: {f} {gap_f}"
+        );
+    }
+}
+
+#[test]
+fn the_derivative_of_the_cams_lift_is_known_to_its_error() {
+    let Case { model, cam, at } = case(common::osorio(), 736.110814, 1);
+    let by = |name: &str| variational::route_by(&model, &cam, &at, &Varied::Number(name.into())).unwrap();
+    for name in ["cam.base_radius", "cam.flank_start_deg"] {
+        let Some(Uncertainty::Extrapolation(error)) = by(name).uncertainty else { panic!("{name}: no error") };
+        for (b, error) in [(by(name).map.minus.b, error.minus.b), (by(name).map.plus.b, error.plus.b)] {
+            assert!(error.norm() > 0.0 && error.norm() < 1e-8 * b.norm(), "{name}: {error} of {b}");
+        }
+    }
+    // The follower's laws are differentiated exactly.
+    let Some(Uncertainty::Extrapolation(error)) = by("follower.mass").uncertainty else { panic!("no error") };
+    assert_eq!((error.minus.b, error.plus.a), (Vector2::zeros(), Matrix2::zeros()));
+}
+
+#[test]
+fn what_cannot_be_varied_is_refused() {
+    let Case { model, cam, at } = case(common::osorio(), 673.234445, 1);
+    let unknown = Varied::Number("follower.colour".into());
+    assert!(matches!(variational::route_by(&model, &cam, &at, &unknown), Err(NoChange::Unknown { .. })));
+    let error = finite_difference::route_by(&model, &cam, &at, &unknown).unwrap_err();
+    assert!(error.to_string().contains("follower.colour"), "{error}");
+    // Below 0 there is no damping.
+    let error = finite_difference::route_by(&model, &cam, &at, &Varied::Number("follower.damping".into())).unwrap_err();
+    assert!(matches!(&error, SampleError::Varied { .. }) && error.to_string().contains("follower.damping"), "{error}");
+    assert!(variational::route_by(&model, &cam, &at, &Varied::Number("follower.damping".into())).is_ok());
+}
+
+/// Up to twelve impacts, the last ones of which chatter or nearly graze: each amplifies the rounding of those before.
+#[test]
+fn differences_know_their_errors_where_impacts_amplify_rounding() {
+    for (name, least) in [("own.toml", 40), ("measured.toml", 130)] {
+        let model = common::tutorial(name);
+        let cam = common::cam(&model);
+        let range = Study { rpm_min: 1000.0, rpm_max: 2000.0 };
+        let found = range::find_corner_impacts(&model, &cam, range, 1).unwrap().found;
+        assert!(
+            found.len() >= least && found.iter().any(|at| at.cycle.contacts.len() >= 12),
+            "{name}: {}",
+            found.len()
+        );
+        let mut amplified: f64 = 0.0;
+        for at in found {
+            let exact = variational::route(&model, &cam, &at).map;
+            let estimate = finite_difference::route(&model, &cam, &at).unwrap();
+            let Some(Uncertainty::Extrapolation(error)) = estimate.uncertainty else { panic!("no error") };
+            for (exact, found, error) in
+                [(exact.minus, estimate.map.minus, error.minus), (exact.plus, estimate.map.plus, error.plus)]
+            {
+                let entries =
+                    |a: Matrix2<f64>, b: Vector2<f64>| a.iter().chain(b.iter()).copied().collect::<Vec<f64>>();
+                let off = entries(found.a - exact.a, found.b - exact.b);
+                let mut pairs = off.iter().zip(entries(error.a, error.b));
+                let rpm = at.speed_rpm();
+                assert!(pairs.all(|(off, said)| off.abs() <= 4.0 * said), "{name} {rpm}: {off:?} {error:?}");
+                let promise = (error.a.norm() / exact.a.norm()).max(error.b.norm() / exact.b.norm());
+                assert!(promise > 0.0 && promise < 2e-6, "{name} {rpm}: {promise:e}");
+                amplified = amplified.max(promise);
+            }
+        }
+        assert!(amplified > 1e-8, "{name}: {amplified:e}");
+    }
+}

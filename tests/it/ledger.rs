@@ -1,0 +1,130 @@
+//! Are claims, checks and evidence one set, and does each check come to the ledger's verdict?
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use crate::common;
+use corner_impact::model::Model;
+use corner_impact::pages::ClaimsDocument;
+use corner_impact::paper::checks::{CHECKS, Check};
+use corner_impact::paper::ledger::claims;
+use corner_impact::paper::{Context, Held, hold};
+use corner_impact::published::Verdict;
+use corner_impact::study::verify::{External, verify};
+
+fn held(model: &Model) -> Vec<Held> {
+    let findings = verify(model, External::LeftOut).unwrap();
+    let cam = common::cam(model);
+    hold(&Context::new(model, &cam, &findings).unwrap()).unwrap()
+}
+
+#[test]
+fn claims_and_checks_are_the_same_set() {
+    let listed: Vec<String> = claims().unwrap().into_iter().map(|claim| claim.id).collect();
+    let checked: Vec<String> = CHECKS.iter().map(|(id, _)| (*id).to_owned()).collect();
+    let set = |ids: &[String]| ids.iter().cloned().collect::<BTreeSet<_>>();
+    assert_eq!(set(&listed), set(&checked));
+    assert_eq!(set(&listed).len(), listed.len(), "no id twice");
+    assert_eq!(set(&checked).len(), checked.len(), "no check twice");
+}
+
+/// Nothing that the derivations judged, or that the paper prints in digits, is left out of the ledger.
+#[test]
+fn every_equation_and_every_number_has_its_claim() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let read = |file: &str| -> serde_json::Value {
+        serde_json::from_str(&std::fs::read_to_string(root.join(file)).unwrap()).unwrap()
+    };
+    let equations = read("golden/derived/printed_equations.json");
+    let numbers = read("golden/published/osorio-2008.json");
+    let ids: BTreeSet<String> = claims().unwrap().into_iter().map(|claim| claim.id).collect();
+    for equation in equations["equations"].as_array().unwrap() {
+        let id = format!("equation: {}", equation["label"].as_str().unwrap());
+        assert!(ids.contains(&id), "{id}");
+    }
+    for number in numbers["numbers"].as_array().unwrap() {
+        let id = format!("number: {}", number["quantity"].as_str().unwrap());
+        assert!(ids.contains(&id), "{id}");
+    }
+}
+
+#[test]
+fn every_check_comes_to_the_ledgers_verdict() {
+    for held in held(&common::osorio()) {
+        assert!(held.as_found, "{held:#?}");
+        assert_eq!(held.found.verdict, held.claim.verdict, "{held:#?}");
+        assert!(!held.found.evidence.is_empty(), "{held:#?}");
+        let wrong = [Verdict::Misprint, Verdict::Refuted].contains(&held.claim.verdict);
+        assert_eq!(held.claim.correct.is_some(), wrong, "a wrong statement says what is right: {held:#?}");
+    }
+}
+
+/// A statement found open is one that no check decides, and the other way round.
+#[test]
+fn open_is_what_no_check_decides() {
+    for held in held(&common::osorio()) {
+        let check = CHECKS.iter().find(|(id, _)| *id == held.claim.id).unwrap().1;
+        assert_eq!(matches!(check, Check::Open(_)), held.claim.verdict == Verdict::Open, "{held:#?}");
+    }
+}
+
+/// Checks compute: with another restitution the paper's statements about its own map do not simply keep their verdicts.
+#[test]
+fn a_check_that_sees_another_map_finds_something_else() {
+    let mut model = common::osorio();
+    let findings =
+        verify(&common::osorio_with(&[("restitution", "0.3"), ("rpm_max", "900.0")]), External::LeftOut).unwrap();
+    let cam = common::cam(&model);
+    // The paper's model by its numbers, with another map under it.
+    let context = Context::new(&model, &cam, &findings).unwrap();
+    let changed: Vec<String> =
+        hold(&context).unwrap().into_iter().filter(|held| !held.as_found).map(|held| held.claim.id).collect();
+    for id in ["number: A_minus", "fixed points above, none below", "transition at the corner"] {
+        assert!(changed.iter().any(|found| found == id), "{id} among {changed:?}");
+    }
+    // And with another speed range it is the same model.
+    model.name = "other".into();
+    assert!(held(&model).iter().all(|held| held.as_found));
+}
+
+#[test]
+fn another_model_leaves_the_papers_numbers_open() {
+    let files = common::model_files();
+    let file = files.iter().find(|file| common::stem(file) == "damped-light").unwrap();
+    let all = held(&common::read(file));
+    assert!(all.iter().all(|held| held.as_found));
+    for held in &all {
+        if held.claim.id.starts_with("number: ") {
+            assert_eq!(held.found.verdict, Verdict::Open, "{held:#?}");
+        }
+        if held.claim.id.starts_with("equation: ") {
+            assert_eq!(held.found.verdict, held.claim.verdict, "{held:#?}");
+        }
+    }
+}
+
+#[test]
+fn the_page_in_docs_is_fresh() {
+    let model = common::osorio();
+    let page = ClaimsDocument::new(&model.name, &held(&model)).markdown().unwrap();
+    let stored = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/claims.md")).unwrap();
+    assert!(page == stored, "docs/claims.md is stale: `make claims` writes it");
+}
+
+#[test]
+fn the_json_document_has_the_fields_of_the_contract() {
+    let file = common::model_files().into_iter().find(|file| common::stem(file) == "osorio-2008").unwrap();
+    let binary = env!("CARGO_BIN_EXE_corner-impact");
+    let output = std::process::Command::new(binary).args(["claims", "--json"]).arg(&file).output().unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(document["schema"], "corner-impact/claims/1");
+    for claim in document["claims"].as_array().unwrap() {
+        for field in ["id", "where", "statement", "verdict", "evidence"] {
+            assert!(claim[field].is_string(), "{claim}");
+        }
+        let verdict = claim["verdict"].as_str().unwrap();
+        assert!(["holds", "misprint", "refuted", "open"].contains(&verdict));
+        assert_eq!(claim["correct"].is_string(), ["misprint", "refuted"].contains(&verdict), "{claim}");
+    }
+}

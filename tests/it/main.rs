@@ -1,0 +1,53 @@
+//! Every question that is asked of the library and of the program, one module each, in one binary: linking is what
+//! tests wait for.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod bad_commands;
+mod bad_input;
+mod border_collision;
+mod border_conditions;
+mod branches;
+mod cam_corners;
+mod cam_laws;
+mod cam_table;
+mod cli;
+mod command_line;
+mod commands;
+mod common;
+mod corner_maps;
+mod derived;
+mod digits;
+mod dynamics;
+mod figure_command;
+mod figures;
+mod gallery;
+mod global;
+mod jump_order;
+mod layering;
+mod ledger;
+mod local_map;
+mod locate;
+mod memory;
+mod model_file;
+mod orbit_closed_forms;
+mod orbit_commands;
+mod page;
+mod physics;
+mod planted;
+mod pointed;
+mod progress;
+mod properties;
+mod published;
+mod python;
+mod random;
+mod random_orbits;
+mod routes;
+mod settled;
+mod settled_lift;
+mod simulate;
+mod snapshots;
+mod sticking;
+mod stopped;
+mod targets;
+mod tolerance;
+mod whole_files;

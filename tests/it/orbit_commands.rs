@@ -1,0 +1,285 @@
+//! Do `orbit`, `continue`, `curve` and `speeds` keep their contract, say what they found, and refuse what they cannot do?
+
+use std::process::{Command, Output};
+
+use approx::{assert_abs_diff_eq, assert_relative_eq};
+use serde_json::{Value, json};
+use tempfile::TempDir;
+
+const MODEL: &str = "models/osorio-2008.toml";
+const BRANCH: &str = "rpm,parameter,value,revolutions,impacts,cam_angle_rad,position_m,velocity_m_s,multiplier_1_re,\
+    multiplier_1_im,multiplier_2_re,multiplier_2_im,stable,special";
+/// omega*, rpm, of the paper's model.
+const CORNER_IMPACT: f64 = 673.234_445_003_848_8;
+
+fn run(arguments: &[&str]) -> Output {
+    let root = env!("CARGO_MANIFEST_DIR");
+    Command::new(env!("CARGO_BIN_EXE_corner-impact")).args(arguments).current_dir(root).output().unwrap()
+}
+
+/// Standard output and standard error of a command that is done.
+#[track_caller]
+fn done(arguments: &[&str]) -> (String, String) {
+    let Output { status, stdout, stderr } = run(arguments);
+    let (out, err) = (String::from_utf8(stdout).unwrap(), String::from_utf8(stderr).unwrap());
+    assert_eq!(status.code(), Some(0), "{arguments:?}: {err}");
+    (out, err)
+}
+
+/// The complaint of a command that is refused; nothing is printed.
+#[track_caller]
+fn refused(arguments: &[&str]) -> String {
+    let Output { status, stdout, stderr } = run(arguments);
+    assert_eq!((status.code(), stdout.as_slice()), (Some(2), &[][..]), "{arguments:?}");
+    String::from_utf8(stderr).unwrap()
+}
+
+fn document(arguments: &[&str]) -> Value {
+    serde_json::from_str(&done(arguments).0).unwrap()
+}
+
+/// The rows of a table by column name.
+struct Table {
+    columns: Vec<String>,
+    rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    #[track_caller]
+    fn new(text: &str, starts_with: &str) -> Self {
+        let mut lines = text.lines();
+        let header = lines.next().unwrap();
+        assert!(header.starts_with(starts_with), "{header}");
+        let cells = |line: &str| line.split(',').map(String::from).collect::<Vec<_>>();
+        let (columns, rows) = (cells(header), lines.map(cells).collect::<Vec<_>>());
+        assert!(rows.iter().all(|row| row.len() == columns.len()));
+        Self { columns, rows }
+    }
+
+    fn cell<'a>(&self, row: &'a [String], column: &str) -> &'a str {
+        &row[self.columns.iter().position(|name| name == column).unwrap()]
+    }
+
+    fn number(&self, row: &[String], column: &str) -> f64 {
+        self.cell(row, column).parse().unwrap()
+    }
+
+    /// Values of the parameter at the special points of a kind.
+    fn special(&self, kind: &str) -> Vec<f64> {
+        let rows = self.rows.iter().filter(|row| self.cell(row, "special") == kind);
+        rows.map(|row| self.number(row, "value")).collect()
+    }
+}
+
+#[test]
+fn orbits_of_one_speed_have_the_contracts_fields() {
+    let found = document(&["orbit", MODEL, "--rpm", "680", "--json"]);
+    assert_eq!(found["schema"], "corner-impact/orbit/1");
+    let orbits = found["orbits"].as_array().unwrap();
+    let stable: Vec<bool> = orbits.iter().map(|orbit| orbit["stable"].as_bool().unwrap()).collect();
+    assert_eq!(stable, [false, true, false]);
+    for orbit in orbits {
+        assert_eq!(orbit["revolutions"], 1);
+        assert_eq!(orbit["state"].as_array().unwrap().len(), 2);
+        let product = |part: usize| {
+            let multiplier = |index: usize, name: &str| orbit["multipliers"][index][name].as_f64().unwrap();
+            let (a, b) = (multiplier(0, "re"), multiplier(0, "im"));
+            let (c, d) = (multiplier(1, "re"), multiplier(1, "im"));
+            [a * c - b * d, a * d + b * c][part]
+        };
+        // An impact multiplies areas by r^2, undamped flight by 1.
+        let impacts = orbit["impacts"].as_array().unwrap();
+        assert_relative_eq!(product(0), 0.8_f64.powi(2 * impacts.len() as i32), max_relative = 1e-10);
+        assert_eq!(product(1), 0.0);
+        for impact in impacts {
+            let at = |name: &str| impact[name].as_f64().unwrap();
+            assert!((0.0..std::f64::consts::TAU).contains(&at("cam_angle_rad")));
+            assert!(at("velocity_after_m_s") > at("velocity_before_m_s"));
+        }
+    }
+    let of_two = document(&["orbit", MODEL, "--rpm", "680", "--impacts", "2", "--json"]);
+    assert_eq!(of_two["orbits"].as_array().unwrap().len(), 1);
+    let (page, _) = done(&["orbit", MODEL, "--rpm", "183"]);
+    assert!(page.contains("sticks to the cam") && page.contains("stick   at 269.5137"), "{page}");
+}
+
+/// From the state of an orbit, rounded, Newton's method finds that orbit alone; from one that leads nowhere, none.
+#[test]
+fn a_guess_leads_to_one_orbit_or_none() {
+    let near = document(&["orbit", MODEL, "--rpm", "680", "--guess", "2.13,-35.4", "--json"]);
+    let orbits = near["orbits"].as_array().unwrap();
+    assert_eq!(orbits.len(), 1);
+    assert_relative_eq!(orbits[0]["state"][0].as_f64().unwrap(), 2.129_702_286_852, max_relative = 1e-9);
+    let (page, _) = done(&["orbit", MODEL, "--rpm", "680", "--guess", "40,0"]);
+    assert!(page.contains("no periodic orbit found"), "{page}");
+}
+
+#[test]
+fn a_branch_has_the_contracts_columns_and_names_its_points() {
+    let (table, account) = done(&["continue", MODEL, "--from-rpm", "700", "--parameter", "rpm=660:760"]);
+    let table = Table::new(&table, BRANCH);
+    assert_relative_eq!(table.special("corner")[0], CORNER_IMPACT, max_relative = 1e-12);
+    assert_eq!(table.special("flip").len(), 2, "{account}");
+    for row in &table.rows {
+        assert_eq!(table.cell(row, "parameter"), "rpm");
+        assert_eq!(table.cell(row, "rpm"), table.cell(row, "value"));
+        let largest = ["1", "2"].map(|index| {
+            let part = |name: &str| table.number(row, &format!("multiplier_{index}_{name}"));
+            part("re").hypot(part("im"))
+        });
+        let stable = table.cell(row, "stable") == "true";
+        assert_eq!(stable, largest[0] < 1.0 && largest[1] < 1.0);
+    }
+    // The one-impact branch goes round at the corner impact: no orbit of it is slower.
+    let first = |row: &&Vec<String>| table.cell(row, "branch") == "1";
+    let slowest = table.rows.iter().filter(first).map(|row| table.number(row, "rpm")).fold(f64::INFINITY, f64::min);
+    assert_relative_eq!(slowest, CORNER_IMPACT, max_relative = 1e-12);
+    assert!(account.contains("corner impact: impact 1 at 150.1794 deg, jump of order 2"), "{account}");
+    assert!(account.contains("the end of the range"), "{account}");
+}
+
+/// The follower of a cam of two like lobes hits both alike, until that is lost: another branch crosses, of two orbits each
+/// with two unlike impacts.
+#[test]
+fn a_crossing_of_branches_is_marked() {
+    let model = "models/laws/rectified-sine.toml";
+    let (table, account) = done(&["continue", model, "--from-rpm", "12", "--parameter", "rpm=10:20"]);
+    let table = Table::new(&table, BRANCH);
+    let [crossing] = table.special("branching")[..] else { panic!("{account}") };
+    let orbits = |rpm: f64| {
+        let found = document(&["orbit", model, "--rpm", &rpm.to_string(), "--impacts", "2", "--json"]);
+        found["orbits"].as_array().unwrap().iter().filter(|orbit| orbit["stable"] == true).count()
+    };
+    assert_eq!([orbits(crossing - 0.05), orbits(crossing + 0.05)], [1, 2], "{crossing}");
+}
+
+#[test]
+fn a_branch_in_another_number_ends_at_the_edge_with_a_plain_word() {
+    // The nose would reach the top of the cam: the model refuses it, whatever range is asked for.
+    let (table, account) =
+        done(&["continue", MODEL, "--from-rpm", "700", "--parameter", "nose_end_deg=120:400", "--impacts", "1"]);
+    let table = Table::new(&table, BRANCH);
+    assert!(table.rows.iter().all(|row| table.cell(row, "parameter") == "cam.nose_end_deg"));
+    assert!(table.rows.iter().all(|row| table.number(row, "rpm") == 700.0));
+    let most = table.rows.iter().map(|row| table.number(row, "value")).fold(0.0, f64::max);
+    assert!(179.0 < most && most < 180.0, "{most}");
+    let edge = "the edge of what the model allows: models/osorio-2008.toml:20: cam.nose_end_deg = 180";
+    assert!(account.contains(edge) && account.contains("the end of the range"), "{account}");
+}
+
+#[test]
+fn pictures_and_tables_are_whole_files() {
+    let folder = TempDir::new().unwrap();
+    let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+    let (svg, csv) = (path("b.svg"), path("b.csv"));
+    let arguments = ["continue", MODEL, "--from-rpm", "700", "--parameter", "rpm=670:700", "--runs", "20", "--out"];
+    done(&[&arguments[..], &[&svg]].concat());
+    done(&[&arguments[..], &[&csv]].concat());
+    let svg = std::fs::read_to_string(svg).unwrap();
+    assert!(svg.contains("unstable") && svg.contains("corner impact"), "no legend");
+    Table::new(&std::fs::read_to_string(csv).unwrap(), BRANCH);
+    let curve = path("c.svg");
+    done(&["curve", MODEL, "--rpm", "660:690", "--parameter", "restitution=0.7:0.9", "--out", &curve]);
+    assert!(std::fs::read_to_string(curve).unwrap().contains("nonsmooth-fold"));
+}
+
+/// The corner impact at R is of three types, one after the other, as the restitution grows; the paper's is of one.
+#[test]
+fn the_type_changes_along_a_curve_of_corner_impacts() {
+    let (table, account) = done(&["curve", MODEL, "--rpm", "600:760", "--parameter", "restitution=0.5:0.95"]);
+    let table = Table::new(&table, "rpm,parameter,value,revolutions,impacts,cam_angle_rad,jump_order,scenario");
+    let types = |curve: &str| {
+        let mut types: Vec<&str> = Vec::new();
+        for row in table.rows.iter().filter(|row| table.cell(row, "curve") == curve) {
+            let kind = table.cell(row, "scenario");
+            if types.last() != Some(&kind) && kind != "degenerate" {
+                types.push(kind);
+            }
+        }
+        types
+    };
+    assert_eq!(types("1"), ["nonsmooth-fold"], "{account}");
+    assert_eq!(types("2"), ["persistence", "nonsmooth-flip", "nonsmooth-fold"], "{account}");
+    // Where the model is as it is, the speed is that of verify.
+    let here = table.rows.iter().find(|row| table.cell(row, "special") == "corner").unwrap();
+    assert_relative_eq!(table.number(here, "rpm"), CORNER_IMPACT, max_relative = 1e-12);
+    // Where the type changes, a multiplier of one side is 1 or -1.
+    let changes: Vec<_> = table.rows.iter().filter(|row| table.cell(row, "special") == "type").collect();
+    assert_eq!(changes.len(), 2);
+    for row in changes {
+        let names = ["minus_1", "minus_2", "plus_1", "plus_2"];
+        let off = names.map(|name| (table.number(row, &format!("multiplier_{name}_re")).abs() - 1.0).abs());
+        assert!(off.iter().any(|off| *off < 1e-9), "{off:?}");
+    }
+    let (empty, words) = done(&["curve", MODEL, "--rpm", "300:310", "--parameter", "restitution=0.5:0.95"]);
+    assert_eq!(empty.lines().count(), 1);
+    assert!(words.contains("no corner impact of an orbit of 1 revolution"), "{words}");
+}
+
+#[test]
+fn speeds_gives_the_short_answer() {
+    let answer = document(&["speeds", MODEL, "--rpm", "100:200", "--speeds", "30", "--json"]);
+    assert_eq!(answer["schema"], "corner-impact/speeds/1");
+    assert_relative_eq!(answer["detachment_rpm"].as_f64().unwrap(), 114.979_326_743_998, max_relative = 1e-12);
+    let regimes: Vec<&str> =
+        answer["regimes"].as_array().unwrap().iter().map(|entry| entry["regime"].as_str().unwrap()).collect();
+    assert_eq!(regimes, ["on-cam", "chattering"]);
+    assert_eq!(answer["hysteresis"].as_array().unwrap().len(), 0);
+
+    let answer = document(&["speeds", MODEL, "--rpm", "665:745", "--speeds", "41", "--json"]);
+    let falling = answer["falling"].as_array().unwrap();
+    let regular = falling.iter().find(|stretch| stretch["regime"] == "regular").unwrap();
+    // Falling speed loses the motion at the corner impact, and a branch says so.
+    assert_relative_eq!(regular["rpm"][0].as_f64().unwrap(), CORNER_IMPACT, max_relative = 1e-10);
+    assert!(regular["begins"]["cause"].as_str().unwrap().starts_with("corner impact at 150.1794 deg"));
+    assert_eq!(regular["begins"]["located"], true);
+    assert_relative_eq!(regular["rpm"][1].as_f64().unwrap(), 739.319_780_216, max_relative = 1e-10);
+    // Rising speed finds it later: hysteresis in between.
+    let hysteresis = answer["hysteresis"].as_array().unwrap();
+    let both = |entry: &&Value| entry["rising"]["regime"] == "chaotic" && entry["falling"]["regime"] == "regular";
+    let range = &hysteresis.iter().find(both).unwrap()["rpm"];
+    assert!(range[0].as_f64().unwrap() > 673.0 && range[1].as_f64().unwrap() < 683.0, "{range}");
+    let (page, _) = done(&["speeds", MODEL, "--rpm", "100:130", "--speeds", "10"]);
+    assert!(page.contains("leaves the cam first at   114.979327 rpm"), "{page}");
+}
+
+/// A flip and the corner impact after it, 0.06 rpm apart, between two speeds that are run; and on another cam the corner
+/// impact that an orbit of one impact begins in, and not that in which what was there before ends.
+#[test]
+fn changes_between_two_speeds_are_told_apart() {
+    let answer = document(&["speeds", MODEL, "--rpm", "735:745", "--speeds", "31", "--json"]);
+    for walk in ["rising", "falling"] {
+        let stretches = answer[walk].as_array().unwrap();
+        let kinds: Vec<_> =
+            stretches.iter().map(|stretch| (&stretch["regime"], stretch["revolutions"].as_u64())).collect();
+        assert_eq!(kinds, [(&json!("regular"), Some(1)), (&json!("regular"), Some(2)), (&json!("chaotic"), None)]);
+        let begins = |index: usize| stretches[index]["begins"]["rpm"].as_f64().unwrap();
+        assert_relative_eq!(begins(1), 739.319_780_216, max_relative = 1e-10);
+        assert_relative_eq!(begins(2), 739.377_929_649, max_relative = 1e-10);
+        let cause = stretches[2]["begins"]["cause"].as_str().unwrap();
+        assert!(cause.starts_with("corner impact at 160.0000 deg"), "{cause}");
+    }
+    let law = concat!(env!("CARGO_MANIFEST_DIR"), "/models/laws/rectified-sine.toml");
+    let answer = document(&["speeds", law, "--rpm", "15:22", "--speeds", "15", "--json"]);
+    let rising = answer["rising"].as_array().unwrap();
+    let one = rising.iter().find(|stretch| stretch["revolutions"] == 1 && stretch["impacts"] == 1).unwrap();
+    // Others begin and end within a thousandth of an rpm of it.
+    assert_abs_diff_eq!(one["rpm"][0].as_f64().unwrap(), 18.479_838_427, epsilon = 1e-3);
+}
+
+#[test]
+fn what_cannot_be_followed_is_refused_with_a_reason() {
+    let followed = |parameter: &str| refused(&["continue", MODEL, "--from-rpm", "700", "--parameter", parameter]);
+    assert!(followed("spring=1:2").contains("no number called \"spring\" to vary; there are: rpm, cam.base_radius"));
+    assert!(followed("restitution=0.9:0.95").contains("outside of 0.9:0.95"));
+    assert!(followed("restitution=0.9").contains("must be NAME=LO:HI"));
+    assert!(followed("restitution=0.9:0.1").contains("is not below"));
+    let none = refused(&["continue", MODEL, "--from-rpm", "700", "--parameter", "rpm=600:800", "--impacts", "9"]);
+    assert!(none.contains("no periodic orbit of 1 revolution(s) found at 700 rpm"), "{none}");
+    assert!(refused(&["orbit", MODEL, "--rpm", "0"]).contains("above 0"));
+    assert!(refused(&["orbit", MODEL, "--rpm", "700", "--revolutions", "0"]).contains("0"));
+    assert!(refused(&["curve", MODEL, "--rpm", "600:760", "--parameter", "rpm=1:2"]).contains("a number of the model"));
+    assert!(refused(&["speeds", MODEL, "--rpm", "700:600"]).contains("not above"));
+    let nowhere = ["continue", MODEL, "--from-rpm", "700", "--parameter", "rpm=690:710", "--out", "/nowhere/b.csv"];
+    assert!(refused(&nowhere).contains("/nowhere"));
+}

@@ -1,0 +1,391 @@
+//! Is the report's page what its document says, whole in one file, and harmless whatever a model is called?
+
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::process::Command;
+use std::sync::OnceLock;
+
+use crate::common;
+use corner_impact::border_collision::feigin::Speeds;
+use corner_impact::figures::plots::corner_marks;
+use corner_impact::figures::through_corner::{Moment, Place, Shown, through_corner};
+use corner_impact::model::{Model, OSORIO_2008};
+use corner_impact::orbit::eigenvalues;
+use corner_impact::pages::Dossier;
+use corner_impact::pages::report::html;
+use corner_impact::pages::report::through::ThroughEntry;
+use corner_impact::progress::Unwatched;
+use corner_impact::section::StroboscopicMap;
+use corner_impact::simulate::{Machine, angular_velocity};
+use corner_impact::study::verify::{External, verify};
+use serde_json::Value;
+
+/// The paper's report and its page, made once.
+fn papers() -> &'static (Dossier, String) {
+    static MADE: OnceLock<(Dossier, String)> = OnceLock::new();
+    MADE.get_or_init(|| {
+        let dossier = Dossier::of(&Model::built_in().unwrap(), External::LeftOut, &Unwatched).unwrap();
+        let page = html::render(&dossier).unwrap();
+        (dossier, page)
+    })
+}
+
+/// The text between two others, once for each time that they stand in a page.
+fn between<'a>(page: &'a str, from: &str, to: &str) -> Vec<&'a str> {
+    page.split(from).skip(1).map(|rest| rest.split(to).next().unwrap()).collect()
+}
+
+fn numbers(value: &Value, found: &mut BTreeSet<u64>) {
+    match value {
+        // A zero has one sign on the page.
+        Value::Number(number) => {
+            found.insert((number.as_f64().unwrap() + 0.0).to_bits());
+        }
+        Value::Array(items) => items.iter().for_each(|item| numbers(item, found)),
+        Value::Object(fields) => fields.values().for_each(|field| numbers(field, found)),
+        _ => {}
+    }
+}
+
+/// What a reader takes a number on the page for, and half a unit in its last place.
+fn read(text: &str) -> (f64, f64) {
+    let text: String = text.replace('\u{2212}', "-").replace("<u>", "").replace("</u>", "");
+    let (mantissa, exponent) = match text.split_once("\u{202f}×\u{202f}10<sup>") {
+        Some((mantissa, exponent)) => (mantissa.to_owned(), exponent.trim_end_matches("</sup>").parse().unwrap()),
+        None => match text.split_once('e') {
+            Some((mantissa, exponent)) => (mantissa.to_owned(), exponent.parse().unwrap()),
+            None => (text.clone(), 0),
+        },
+    };
+    let places = mantissa.split_once('.').map_or(0, |(_, places)| places.len()) as i32;
+    let scale = 10_f64.powi(exponent);
+    (mantissa.parse::<f64>().unwrap_or_else(|_| panic!("{text}")) * scale, 0.5 * 10_f64.powi(-places) * scale)
+}
+
+#[test]
+fn every_number_on_the_page_is_one_of_the_document_and_shows_it() {
+    let (dossier, page) = papers();
+    let mut known = BTreeSet::new();
+    numbers(&serde_json::to_value(dossier).unwrap(), &mut known);
+    let shown = between(page, "<data value=\"", "</data>");
+    assert!(shown.len() > 1000, "{} numbers", shown.len());
+    for number in shown {
+        let (value, text) = number.split_once("\">").unwrap();
+        let value: f64 = value.parse().unwrap();
+        assert!(known.contains(&(value + 0.0).to_bits()), "{number}: not in the document");
+        let (read, half) = read(text);
+        // The sign of an imaginary part stands before it.
+        let apart = (read - value).abs().min((read - value.abs()).abs());
+        assert!(
+            apart <= half + 4.0 * f64::EPSILON * value.abs() || (read == 0.0 && value.abs() < 1e-12),
+            "{number}: {read} within {half}"
+        );
+    }
+    let at = &dossier.verification.as_ref().unwrap().corner_impact;
+    for value in [at.period_s, at.speed_rpm, at.state[0], at.velocity_before_m_s] {
+        assert!(page.contains(&format!("<data value=\"{value}\">")), "{value}");
+    }
+}
+
+#[test]
+fn the_sliders_data_are_the_documents() {
+    let (dossier, page) = papers();
+    let embedded = between(page, "id=\"through-data\">", "</script>");
+    let [embedded] = embedded.as_slice() else { panic!("{} blocks of data", embedded.len()) };
+    let embedded: Value = serde_json::from_str(embedded).unwrap();
+    assert_eq!(embedded, serde_json::to_value(&dossier.through).unwrap());
+}
+
+#[test]
+fn the_page_needs_nothing_beside_it_and_is_small() {
+    let (_, page) = papers();
+    assert!(page.len() < 5_000_000, "{} bytes", page.len());
+    for loading in [
+        "src=\"http",
+        "href=\"http",
+        "src=\"//",
+        "url(http",
+        "@import",
+        "<link",
+        "<iframe",
+        "fetch(",
+        "XMLHttpRequest",
+        "import(",
+    ] {
+        assert!(!page.contains(loading), "{loading}");
+    }
+    for image in between(page, "<image", ">") {
+        assert!(image.contains("href=\"data:image/png;base64,"), "{}", &image[..200.min(image.len())]);
+    }
+    // Addresses that are names, and nothing that is fetched.
+    let addresses: BTreeSet<&str> = between(page, "http://", "\"").into_iter().collect();
+    assert!(addresses.iter().all(|address| address.starts_with("www.w3.org/")), "{addresses:?}");
+    assert!(!page.contains("https://"));
+}
+
+#[test]
+fn every_link_leads_to_a_place_on_the_page_and_no_place_is_named_twice() {
+    let (_, page) = papers();
+    let markup = page.split("<script>").next().unwrap();
+    let ids = between(markup, " id=\"", "\"");
+    let known: BTreeSet<&str> = ids.iter().copied().collect();
+    assert_eq!(known.len(), ids.len());
+    let links = between(markup, "href=\"#", "\"");
+    assert!(links.len() > 100, "{}", links.len());
+    assert!(links.iter().all(|link| known.contains(link)), "{links:?}");
+}
+
+#[test]
+fn claims_routes_and_figures_are_all_there() {
+    let (dossier, page) = papers();
+    let ledger = dossier.claims.as_ref().unwrap();
+    assert_eq!(between(page, "<li class=\"claim ", ">").len(), ledger.claims.len());
+    for verdict in ["holds", "misprint", "refuted", "open"] {
+        let expected = ledger.claims.iter().filter(|claim| claim.verdict == verdict).count();
+        assert_eq!(between(page, &format!("data-verdict=\"{verdict}\""), ">").len(), expected, "{verdict}");
+    }
+    for route in dossier.verification.as_ref().unwrap().routes.keys() {
+        assert!(page.contains(&format!("<th class=\"n\" scope=\"col\">{}</th>", route.replace('_', " "))), "{route}");
+    }
+    for plate in &dossier.plates {
+        assert_eq!(page.matches(&format!("id=\"plate-{}\"", plate.id)).count(), 1, "{}", plate.id);
+        assert!(page.contains(&format!("<code class=\"command\">{}</code>", plate.command)), "{}", plate.command);
+    }
+    let places: Vec<usize> = dossier
+        .plates
+        .iter()
+        .filter(|plate| plate.id != "cam")
+        .map(|plate| page.find(&format!("id=\"plate-{}\"", plate.id)).unwrap())
+        .collect();
+    assert!(places.is_sorted());
+}
+
+/// A model file's texts are its author's: markup in them is text on the page.
+#[test]
+fn a_models_name_is_text_whatever_it_holds() {
+    let evil = "</script><script>alert(1)</script><img src=x onerror=alert(2)> \\\" & 'x'";
+    let text = OSORIO_2008.replacen("name = \"osorio-2008\"", &format!("name = \"{evil}\""), 1);
+    let text = text.replacen("source = \"\"\"", &format!("source = \"\"\"{} ", evil.replace("\\\"", "'")), 1);
+    let model = Model::parse("<b>evil</b>.toml", &text).unwrap();
+    assert!(model.name.contains("<script>"));
+    let dossier = Dossier::of(&model, External::LeftOut, &Unwatched).unwrap();
+    assert!(dossier.through.is_some() && dossier.claims.is_some());
+    let page = html::render(&dossier).unwrap();
+    for raw in ["<script>alert", "<img src=x", "<b>evil"] {
+        assert!(!page.contains(raw), "{raw}");
+    }
+    assert!(page.contains("&lt;script&gt;alert(1)"));
+    assert_eq!(page.matches("<script").count(), page.matches("</script>").count());
+}
+
+/// The same text in the slider's data would end its element.
+#[test]
+fn text_in_the_sliders_data_does_not_end_it() {
+    let mut dossier = papers().0.clone();
+    dossier.through.as_mut().unwrap().corner = "</script><script>alert(1)</script><!--".into();
+    let page = html::render(&dossier).unwrap();
+    assert!(!page.contains("<script>alert"));
+    let embedded = between(&page, "id=\"through-data\">", "</script>");
+    let embedded: Value = serde_json::from_str(embedded[0]).unwrap();
+    assert_eq!(embedded["corner"], "</script><script>alert(1)</script><!--");
+}
+
+#[test]
+fn what_disagrees_stands_in_the_headline() {
+    let (dossier, page) = papers();
+    assert!(page.contains("Everything that was checked agrees."));
+    assert!(!page.contains("What does not agree"));
+    let mut other = dossier.clone();
+    other.agrees = false;
+    let pair = &mut other.verification.as_mut().unwrap().agreement[0];
+    pair.agrees = false;
+    let page = html::render(&other).unwrap();
+    assert!(page.contains("Something that was checked does not agree."));
+    assert!(page.contains("What does not agree"));
+    assert!(!page.contains("Everything that was checked agrees."));
+}
+
+fn report(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
+    let run = Command::new(env!("CARGO_BIN_EXE_corner-impact"))
+        .arg("report")
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    (run.status.code().unwrap(), text(run.stdout), text(run.stderr))
+}
+
+#[test]
+fn a_model_without_a_corner_impact_has_a_page_that_says_why() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/laws/rectified-sine.toml");
+    let model = model.to_str().unwrap();
+    let (code, out, _) = report(folder.path(), &[model]);
+    assert_eq!((code, out.as_str()), (0, "rectified-sine-report.html\n"));
+    let page = std::fs::read_to_string(folder.path().join("rectified-sine-report.html")).unwrap();
+    assert!(page.contains("There is no corner impact to verify"));
+    assert!(page.contains("[study] says where to look for the corner impact"));
+    assert!(!page.contains("id=\"through-data\"") && !page.contains("id=\"ledger-filter\""));
+    assert!(page.contains("id=\"plate-cam\"") && page.contains("id=\"speeds\""));
+}
+
+#[test]
+fn the_command_says_what_it_cannot_do() {
+    let folder = tempfile::tempdir().unwrap();
+    for (arguments, words) in [
+        (&["--json", "--out", "-"][..], "both want standard output"),
+        (&["--out", "page.csv"][..], "must end in .html"),
+        (&["--out", "nowhere/page.html"][..], "nowhere/page.html"),
+        (&["nothing.toml"][..], "nothing.toml"),
+    ] {
+        let (code, out, err) = report(folder.path(), arguments);
+        assert_eq!((code, out.as_str()), (2, ""), "{err}");
+        assert!(err.contains(words), "{err}");
+    }
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+/// The orbits next to the corner impact are those that Feigin's classification counts, for every model that has one.
+#[test]
+fn orbits_on_either_side_are_those_of_the_classification() {
+    let mut checked = 0;
+    for file in common::model_files() {
+        let model = common::read(&file);
+        let findings = verify(&model, External::LeftOut).unwrap();
+        let Some(kind) = &findings.classification else { continue };
+        checked += 1;
+        let cam = common::cam(&model);
+        let through = through_corner(&model, &cam, &findings.at).unwrap().unwrap();
+        let [slower, faster] = [&through.moments[through.at_corner - 1], &through.moments[through.at_corner + 1]];
+        for (place, side) in [(Place::Before, &kind.minus), (Place::After, &kind.plus)] {
+            let of = |moment: &Moment| {
+                // Another orbit on the same segment, far from the corner, is none of the local map's.
+                let beside = |orbit: &&Shown| (orbit.impact.cam_angle - findings.at.corner.angle).abs() < 0.05;
+                let here = moment.orbits.iter().filter(|orbit| orbit.place == place).filter(beside);
+                here.map(|orbit| orbit.stable).collect::<Vec<_>>()
+            };
+            let expected = |there: bool| if there { vec![side.stable] } else { vec![] };
+            let (on_faster, on_slower) = match side.exists_for {
+                Speeds::Faster => (true, false),
+                Speeds::Slower => (false, true),
+            };
+            assert_eq!(of(faster), expected(on_faster), "{} {place:?} faster", file.display());
+            assert_eq!(of(slower), expected(on_slower), "{} {place:?} slower", file.display());
+            // At the corner impact the multipliers are the eigenvalues of that side's matrix.
+            let at = through.moments[through.at_corner].orbits.iter().find(|orbit| orbit.place == place).unwrap();
+            let map = &findings.closed_form().map;
+            let matrix = if place == Place::Before { map.minus.a } else { map.plus.a };
+            for (one, other) in at.multipliers.iter().zip(eigenvalues(&matrix)) {
+                assert!((one.re - other.re).hypot(one.im - other.im) < 1e-6, "{}: {one:?} {other:?}", file.display());
+            }
+        }
+    }
+    assert!(checked >= 8, "{checked}");
+}
+
+/// A machine ten thousand times smaller has the same slider, in its own numbers.
+#[test]
+fn the_slider_shows_a_machine_of_any_size() {
+    const SMALLER: f64 = 1e-4;
+    let lengths = ["follower.rest_position", "cam.base_radius", "cam.flank_radius", "cam.nose_radius"];
+    let model = common::osorio();
+    let mut small = model.clone();
+    for name in lengths {
+        let length = model.numbers().find(|(path, _)| *path == name).unwrap().1;
+        small = small.with_number(name, SMALLER * length).unwrap();
+    }
+    let shown = |model: &Model| {
+        let (cam, at) = (common::cam(model), verify(model, External::LeftOut).unwrap().at);
+        let through = through_corner(model, &cam, &at).unwrap().unwrap();
+        ThroughEntry::new(&through, at.corner.angle, &corner_marks(&cam)).unwrap()
+    };
+    let (large, small) = (shown(&model), shown(&small));
+    assert_eq!((large.corner.as_str(), small.corner.as_str()), ("P", "P"));
+    assert_eq!(large.cam.len(), small.cam.len());
+    // Half a step of the fifth digit of the travel, and as much of the other's.
+    let near = |one: f64, other: f64, extent: f64| (SMALLER * one - other).abs() <= SMALLER * extent * 1.1e-4;
+    for (one, other) in large.cam.iter().zip(&small.cam) {
+        assert!(near(one[1], other[1], 0.154) && near(one[2], other[2], 2.2), "{one:?} {other:?}");
+    }
+    let speeds: Vec<f64> = large.frames.iter().map(|frame| frame.rpm).collect();
+    assert!(speeds.windows(2).all(|pair| pair[0] < pair[1]), "{speeds:?}");
+    for (one, other) in large.frames.iter().zip(&small.frames) {
+        assert_eq!(one.orbits.len(), other.orbits.len());
+        for (one, other) in one.orbits.iter().zip(&other.orbits) {
+            assert!(near(one.velocity_before_m_s, other.velocity_before_m_s, 200.0), "{one:?} {other:?}");
+            assert!(other.path.iter().all(|[_, position]| *position > 0.0));
+        }
+    }
+    for axes in [&large.axes, &small.axes] {
+        for axis in [&axes.position, &axes.acceleration, &axes.speed, &axes.near] {
+            assert!(axis.range[0] < axis.range[1] && !axis.ticks.is_empty(), "{axis:?}");
+        }
+    }
+}
+
+/// Two digits of a small number are two, with and without a power of ten.
+#[test]
+fn sizes_have_two_digits() {
+    let mut dossier = papers().0.clone();
+    let pairs = &mut dossier.verification.as_mut().unwrap().agreement;
+    let sizes =
+        [(0.0149, "0.015"), (0.0251, "0.025"), (0.5, "0.5"), (1.2345e-4, "1.2\u{202f}×\u{202f}10<sup>\u{2212}4</sup>")];
+    for (pair, (size, _)) in pairs.iter_mut().zip(sizes) {
+        pair.max_abs_diff = size;
+    }
+    pairs[4].max_abs_diff = f64::NAN;
+    let page = html::render(&dossier).unwrap();
+    for (size, text) in sizes {
+        assert!(page.contains(&format!("<data value=\"{size}\">{text}</data>")), "{size} as {text}");
+    }
+    assert!(page.contains("NaN") && !page.contains("NaN\u{202f}×"));
+}
+
+/// Drawn orbits and multipliers against the simulator, which knows neither.
+#[test]
+fn drawn_orbits_are_those_of_the_simulator() {
+    let model = common::osorio();
+    let cam = common::cam(&model);
+    let findings = verify(&model, External::LeftOut).unwrap();
+    let through = through_corner(&model, &cam, &findings.at).unwrap().unwrap();
+    let machine = Machine::new(cam, &model.follower, 1.0);
+    let mut checked = 0;
+    for moment in through.moments.iter().skip(through.at_corner + 1).step_by(10) {
+        let machine = machine.at_speed(angular_velocity(moment.rpm));
+        assert_eq!(moment.orbits.len(), 2, "{}", moment.rpm);
+        for orbit in &moment.orbits {
+            let guess = machine
+                .start_on_cam(orbit.impact.cam_angle, orbit.impact.velocity_after - orbit.impact.cam_velocity)
+                .unwrap();
+            let map = StroboscopicMap { machine: machine.clone(), cam_angle: 0.0 };
+            let mut motion = guess;
+            let goal = motion.next(0.0);
+            let _ = machine.advance(&mut motion, goal, &mut corner_impact::simulate::Unobserved).unwrap();
+            let first = orbit.path[0];
+            assert!((first[1] - motion.state.position).abs() < 1e-8, "{first:?} {:?}", motion.state);
+            let (state, matrix) = map.carry(motion.state, 1).unwrap();
+            assert!((state.position - motion.state.position).abs() < 1e-8);
+            for (one, other) in orbit.multipliers.iter().zip(eigenvalues(&matrix)) {
+                assert!((one.re - other.re).hypot(one.im - other.im) < 1e-6, "{}: {one:?} {other:?}", moment.rpm);
+            }
+            checked += 1;
+            if orbit.stable {
+                let run = moment.slowing.impacts.last().unwrap();
+                assert!(
+                    (run - orbit.impact.cam_angle).abs() < 1e-3,
+                    "{}: {run} {}",
+                    moment.rpm,
+                    orbit.impact.cam_angle
+                );
+            }
+        }
+    }
+    assert!(checked >= 18, "{checked}");
+    // Slower there is no such orbit; a run has other impacts, once it is far enough not to dwell where the orbit was.
+    for moment in &through.moments[..through.at_corner] {
+        assert!(moment.orbits.is_empty(), "{}", moment.rpm);
+        let near = findings.at.speed_rpm() - moment.rpm < 1.0;
+        assert!(near || moment.slowing.impacts.len() > 24, "{}", moment.rpm);
+    }
+}

@@ -1,0 +1,151 @@
+//! A settled motion's next impact is looked for one turn on, and nowhere else if certificates hold (`simulate::again`). Are
+//! they needed?
+//!
+//! A flight that leaves the cam at the height where the spring is slack, and swings whole halves in a turn, is back at that
+//! height one turn later at any velocity. So a motion hits the cam again and again in one place, as a settled one does, while
+//! its velocity still changes, until the flight meets another part of the cam first.
+
+use std::f64::consts::{PI, TAU};
+use std::fmt::Write;
+use std::ops::ControlFlow;
+
+use crate::common;
+use approx::{assert_abs_diff_eq, assert_relative_eq};
+use corner_impact::flight::State;
+use corner_impact::model::Model;
+use corner_impact::simulate::{Event, EventKind, Machine, Motion};
+
+/// omega, rad/s: a turn takes 2 pi seconds.
+const OMEGA: f64 = 1.0;
+
+/// A follower of mass 1 with `omega_d` and `zeta`, 1/s, over the cam of some `[cam]` table.
+fn machine(omega_d: f64, zeta: f64, rest_position: f64, restitution: f64, cam: &str) -> Machine {
+    let (stiffness, damping) = (omega_d * omega_d + zeta * zeta, 2.0 * zeta);
+    let text = format!(
+        "[follower]\nmass = 1.0\ndamping = {damping:?}\nstiffness = {stiffness:?}\ngravity = 0.0\n\
+         rest_position = {rest_position:?}\nrestitution = {restitution:?}\n[cam]\n{cam}\n"
+    );
+    let model = Model::parse("settled.toml", &text).unwrap();
+    Machine::new(common::cam(&model), &model.follower, OMEGA)
+}
+
+/// The next `count` impacts.
+fn impacts(machine: &Machine, mut motion: Motion, count: usize) -> Vec<Event> {
+    let mut found = Vec::new();
+    let goal = motion.after(1000);
+    let flow = machine.advance(&mut motion, goal, &mut |event: &Event| {
+        found.extend((event.kind == EventKind::Impact).then_some(*event));
+        if found.len() == count { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    assert!(flow.unwrap().is_break(), "{found:?}");
+    found
+}
+
+/// `settled` impacts at `angle`, one each turn, and one that comes earlier, somewhere else; each of them is also the next for
+/// a run that starts from the one before and knows of no other.
+#[track_caller]
+fn leaves_its_place_after(settled: usize, machine: &Machine, angle: f64, relative_velocity: f64) -> Event {
+    let found = impacts(machine, machine.start_on_cam(angle, relative_velocity).unwrap(), settled + 1);
+    for (turn, impact) in found[..settled].iter().enumerate() {
+        assert_abs_diff_eq!(impact.cam_angle, angle, epsilon = 1e-6);
+        assert_eq!(impact.revolution, turn as u64 + 1);
+    }
+    for two in found.windows(2) {
+        let state = State { position: two[0].position, velocity: two[0].velocity_after };
+        let fresh = impacts(machine, machine.start(two[0].cam_angle, state).unwrap(), 1)[0];
+        assert_eq!(fresh.revolution, two[1].revolution - two[0].revolution, "{two:?}");
+        assert_abs_diff_eq!(fresh.cam_angle, two[1].cam_angle, epsilon = 1e-12);
+        assert_relative_eq!(fresh.velocity_before, two[1].velocity_before, max_relative = 1e-12);
+    }
+    let last = found[settled];
+    assert!(last.turned_since(angle) < settled as f64 * TAU + TAU - 0.05, "{last:?}");
+    last
+}
+
+/// Lobes a cos(n theta - pi) around the cam, and a flight of one half swing that is damped to 3/10: it comes down between
+/// two lobes, the slower the less, in the end onto the one before.
+const LOBES: usize = 24;
+const AMPLITUDE: f64 = 0.01;
+const LEFT: f64 = 0.3;
+/// How far before the top of its lobe the impacts are, rad of the lobe's own phase.
+const BEFORE_TOP: f64 = 2.7;
+
+#[track_caller]
+fn hits_the_lobe_before(cam: &str) {
+    let (n, steep) = (LOBES as f64, AMPLITUDE * LOBES as f64);
+    // A hair less than half a swing a turn: with one turning point, as rounding sees it too.
+    let machine = machine(0.5 - 1e-10, -LEFT.ln() / TAU, AMPLITUDE * (2.0 + BEFORE_TOP.cos()), 0.9, cam);
+    // Of the thirteenth lobe, half a turn on.
+    let angle = PI + (PI - BEFORE_TOP) / n;
+    let lift = machine.cam().lift(angle);
+    assert_relative_eq!(lift.slope, steep * BEFORE_TOP.sin(), max_relative = 1e-10);
+    // Down with 8 a n, then with 2.4, 0.9 and 0.5 a n; below some 0.53 the lobe before is in the way.
+    let last = leaves_its_place_after(3, &machine, angle, 8.0 * steep / LEFT - lift.slope);
+    let phase = (angle - last.cam_angle) * n;
+    assert!((TAU - BEFORE_TOP - 1.0..TAU - BEFORE_TOP + 0.5).contains(&phase), "{phase} before: {last:?}");
+}
+
+/// One segment: what forbids to look one turn on only is that the gap does not shrink all the way down.
+#[test]
+fn a_lobe_of_the_same_segment_is_not_passed_through() {
+    let mut amplitudes = vec!["0.0"; LOBES - 1];
+    let amplitude = format!("{AMPLITUDE:?}");
+    amplitudes.push(&amplitude);
+    let phases = vec!["180.0"; LOBES].join(", ");
+    let (offset, amplitudes) = (2.0 * AMPLITUDE, amplitudes.join(", "));
+    let cam = format!("law = \"harmonic\"\noffset = {offset:?}\namplitudes = [{amplitudes}]\nphases_deg = [{phases}]");
+    hits_the_lobe_before(&cam);
+}
+
+/// The same lobes, each of a rise and a return: on the rise the gap only shrinks, but the flight comes from before it.
+#[test]
+fn a_lobe_of_the_segment_before_is_not_passed_through() {
+    let mut cam = format!("law = \"program\"\nbase = {AMPLITUDE:?}\n");
+    for segment in 0..2 * LOBES {
+        let (span, rise) = (180.0 / LOBES as f64, if segment % 2 == 0 { 2.0 } else { -2.0 } * AMPLITUDE);
+        writeln!(cam, "[[cam.segment]]\nmotion = \"harmonic\"\nspan_deg = {span:?}\nrise = {rise:?}").unwrap();
+    }
+    hits_the_lobe_before(&cam);
+}
+
+/// Three half swings a turn, undamped: the second is below the height of the impacts, over the base, and grows.
+#[test]
+fn a_flight_of_two_peaks_is_not_taken_for_one() {
+    let cam = "law = \"program\"\nbase = 1.0\n\
+        [[cam.segment]]\nmotion = \"harmonic\"\nspan_deg = 90.0\nrise = 1.0\n\
+        [[cam.segment]]\nmotion = \"harmonic\"\nspan_deg = 60.0\nrise = -1.0\n\
+        [[cam.segment]]\nmotion = \"dwell\"\nspan_deg = 210.0\nrise = 0.0";
+    let machine = machine(1.5, 0.0, 1.9, 0.5, cam);
+    // c = 1 + (1 - cos 2 theta)/2 = 1.9, where c' = 0.6.
+    let angle = 0.5 * (-0.8_f64).acos();
+    assert_relative_eq!(machine.cam().lift(angle).slope, 0.6, max_relative = 1e-12);
+    // Amplitudes 0.5, 0.5 * 0.5 + 0.6 = 0.85, and 1.025: further down than the base, at 0.9.
+    let last = leaves_its_place_after(2, &machine, angle, 0.5 * 1.5 - 0.6);
+    // 1.025 sin(phase - pi) = 0.9 at 1.5 times the angle turned.
+    let phase = PI + (0.9_f64 / 1.025).asin();
+    assert_abs_diff_eq!(last.turned_since(angle) - 2.0 * TAU, phase / 1.5, epsilon = 1e-9);
+    assert_eq!(last.position, 1.0);
+}
+
+/// Each turn the impact is a little later, until it is past a corner: there the other law holds, which bends the other way.
+#[test]
+fn an_impact_past_a_corner_is_on_the_next_segment() {
+    let cam = "law = \"program\"\nbase = 1.0\n\
+        [[cam.segment]]\nmotion = \"parabolic\"\nspan_deg = 90.0\nrise = 0.1\n\
+        [[cam.segment]]\nmotion = \"parabolic\"\nspan_deg = 90.0\nrise = -0.1\n\
+        [[cam.segment]]\nmotion = \"dwell\"\nspan_deg = 180.0\nrise = 0.0";
+    // A half swing is shorter than a turn by 6e-8: some 4e-7 rad a turn, less what the cam's slope takes off.
+    let machine = machine(0.5 * (1.0 - 6e-8), 0.0, 1.05, 0.9, cam);
+    let corner =
+        machine.cam().corners().iter().map(|corner| corner.angle).find(|angle| (angle - PI / 4.0).abs() < 1e-9);
+    let corner = corner.unwrap();
+    let found = impacts(&machine, machine.start_on_cam(corner - 1e-6, 2.0).unwrap(), 8);
+    let crossing = found.windows(2).position(|two| two[0].cam_angle < corner && two[1].cam_angle > corner).unwrap();
+    assert!(crossing >= 1, "two impacts before, for the motion to be settled: {found:?}");
+    for (turn, impact) in found.iter().enumerate() {
+        assert_eq!(impact.revolution, turn as u64 + 1);
+        let lift = machine.cam().lift(impact.cam_angle);
+        assert_relative_eq!(impact.cam_velocity, OMEGA * lift.slope, max_relative = 1e-14);
+        assert_eq!(impact.segment, machine.cam().segment_at(impact.cam_angle));
+    }
+}

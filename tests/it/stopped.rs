@@ -1,0 +1,154 @@
+//! Does a command that is stopped half-way, or runs out of room, leave the files as they were?
+
+#![cfg(unix)]
+
+use std::fs;
+use std::os::unix::fs::symlink;
+use std::os::unix::process::ExitStatusExt;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+use tempfile::TempDir;
+
+const MODEL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/models/osorio-2008.toml");
+const SIGINT: i32 = 2;
+/// What a file held before.
+const OLD: &str = "old\n";
+/// What each file of a full disk may hold in the tests below, in blocks of 512 bytes: less than any picture.
+const BLOCKS: u32 = 4;
+
+/// A folder where `out.csv`, `out.svg` and `out.png` hold something already.
+fn folder() -> TempDir {
+    let folder = TempDir::new().unwrap();
+    for name in ["out.csv", "out.svg", "out.png"] {
+        fs::write(folder.path().join(name), OLD).unwrap();
+    }
+    folder
+}
+
+fn hidden(folder: &TempDir) -> Vec<PathBuf> {
+    let paths = fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().path());
+    paths.filter(|path| path.file_name().unwrap().to_str().unwrap().starts_with('.')).collect()
+}
+
+#[track_caller]
+fn is_as_it_was(folder: &TempDir, line: &str) {
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 3, "{line}");
+    for name in ["out.csv", "out.svg", "out.png"] {
+        assert_eq!(fs::read_to_string(folder.path().join(name)).unwrap(), OLD, "{line}: {name}");
+    }
+}
+
+fn words(line: &str) -> impl Iterator<Item = String> {
+    line.split_whitespace().map(|word| word.replace("MODEL", MODEL))
+}
+
+/// Waits until `ready`, for as long as a busy machine may take.
+fn wait_until(child: &mut Child, ready: impl Fn() -> bool, line: &str) {
+    let started = Instant::now();
+    while !ready() {
+        assert!(child.try_wait().unwrap().is_none(), "{line}: ended by itself");
+        assert!(started.elapsed() < Duration::from_secs(60), "{line}: never got there");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+/// Runs that would last for hours, stopped when something has been written for each of their files.
+#[test]
+fn ctrl_c_leaves_the_old_files_and_no_others() {
+    const LONG: &str = "--revolutions 1000000000000";
+    for (line, files, written) in [
+        (format!("simulate MODEL --rpm 183 {LONG} --events out.csv"), 1, true),
+        (format!("simulate MODEL --rpm 183 {LONG} --strobe 1 --strobe-out out.csv --trace out.svg"), 2, false),
+        (format!("simulate MODEL --rpm 183 {LONG} --trace out.svg --phase-plane out.png"), 2, false),
+        ("diagram MODEL --rpm 180:190:1000000 --out out.csv".into(), 1, true),
+        ("diagram MODEL --rpm 180:190:1000000 --start down --out out.csv".into(), 1, true),
+        ("diagram MODEL --rpm 180:190:1000000 --out out.svg".into(), 1, false),
+        ("diagram MODEL --rpm 180:190:1000000 --out out.png".into(), 1, false),
+    ] {
+        let folder = folder();
+        let mut child = Command::new(env!("CARGO_BIN_EXE_corner-impact"))
+            .args(words(&line))
+            .current_dir(&folder)
+            .stdout(Stdio::null())
+            .spawn()
+            .unwrap();
+        // Pictures are drawn in the end: until then there is an empty file.
+        let begun = || {
+            let files_there = hidden(&folder);
+            let sizes = files_there.iter().map(|path| fs::metadata(path).map_or(0, |file| file.len()));
+            files_there.len() == files && (!written || sizes.sum::<u64>() > 0)
+        };
+        wait_until(&mut child, begun, &line);
+        let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+        assert!(kill.success());
+        // The shell is to see the signal, not an exit code.
+        assert_eq!(child.wait().unwrap().signal(), Some(SIGINT), "{line}");
+        is_as_it_was(&folder, &line);
+    }
+}
+
+#[track_caller]
+fn complains(output: &Output, says: &[&str], line: &str) {
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{line}: {message}");
+    assert!(output.stdout.is_empty(), "{line}");
+    assert!(message.starts_with("error: ") && message.lines().count() == 1, "{line}: {message}");
+    for part in says {
+        assert!(message.contains(part), "{line}: no \"{part}\" in: {message}");
+    }
+}
+
+/// Every way to draw, with `FILE` for the picture.
+const PICTURES: [&str; 4] = [
+    "simulate MODEL --rpm 183 --trace FILE",
+    "simulate MODEL --rpm 183 --phase-plane FILE",
+    "diagram MODEL --rpm 180:190:20 --out FILE",
+    "cam MODEL --out FILE",
+];
+
+/// A device has no name to keep: what is written to it is lost at once, and said to be.
+#[test]
+fn a_picture_on_a_full_device_is_an_error() {
+    if !Path::new("/dev/full").exists() {
+        return;
+    }
+    for line in PICTURES {
+        for name in ["full.svg", "full.png"] {
+            let folder = TempDir::new().unwrap();
+            symlink("/dev/full", folder.path().join(name)).unwrap();
+            let line = line.replace("FILE", name);
+            let mut program = Command::new(env!("CARGO_BIN_EXE_corner-impact"));
+            let output = program.args(words(&line)).current_dir(&folder).output().unwrap();
+            complains(&output, &[name, "cannot be written", "No space left"], &line);
+            assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "{line}");
+            assert!(fs::symlink_metadata(folder.path().join(name)).unwrap().is_symlink(), "{line}");
+        }
+    }
+}
+
+/// A file that may not grow as far as it has to, as on a full disk: the one that was there stays.
+#[test]
+fn a_picture_without_room_leaves_the_old_one() {
+    let program = env!("CARGO_BIN_EXE_corner-impact");
+    for line in
+        PICTURES.map(|line| line.to_owned()).into_iter().chain(["simulate MODEL --rpm 183 --events FILE".into()])
+    {
+        for name in ["out.svg", "out.png", "out.csv"] {
+            let is_table = line.contains("--events");
+            if is_table != (name == "out.csv") {
+                continue;
+            }
+            let folder = folder();
+            let line = line.replace("FILE", name);
+            // Past the limit the shell's children would get a signal; without that, an error.
+            let limited = format!("trap '' XFSZ; ulimit -f {BLOCKS}; exec \"$@\"");
+            let mut shell = Command::new("sh");
+            let output =
+                shell.args(["-c", &limited, "sh", program]).args(words(&line)).current_dir(&folder).output().unwrap();
+            complains(&output, &[name, "cannot be written", "File too large"], &line);
+            is_as_it_was(&folder, &line);
+        }
+    }
+}

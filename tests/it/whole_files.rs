@@ -1,0 +1,163 @@
+//! Is a file written whole or not at all, whatever happens on the way?
+
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+
+use corner_impact::cli::file::Output;
+use tempfile::TempDir;
+
+fn names(folder: &TempDir) -> Vec<String> {
+    let mut names: Vec<String> =
+        fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+fn create(path: &Path) -> Output<'static> {
+    Output::create(path, Box::leak(Box::new(std::io::sink()))).unwrap()
+}
+
+#[test]
+fn a_file_appears_when_it_is_complete() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("out.csv");
+    let mut output = create(&path);
+    for row in 0..100_000 {
+        writeln!(output, "{row},1.0").unwrap();
+    }
+    assert!(!path.exists());
+    assert_eq!(names(&folder).len(), 1);
+    output.commit().unwrap();
+    assert_eq!(names(&folder), ["out.csv"]);
+    assert_eq!(fs::read_to_string(&path).unwrap().lines().count(), 100_000);
+}
+
+#[test]
+fn what_is_not_committed_leaves_nothing() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("out.csv");
+    fs::write(&path, "before").unwrap();
+    let mut output = create(&path);
+    output.write_all(&[b'x'; 100_000]).unwrap();
+    drop(output);
+    assert_eq!(names(&folder), ["out.csv"]);
+    assert_eq!(fs::read_to_string(&path).unwrap(), "before");
+}
+
+#[test]
+fn a_dash_is_standard_output() {
+    let mut standard = Vec::new();
+    let mut output = Output::create(Path::new("-"), &mut standard).unwrap();
+    write!(output, "a,b").unwrap();
+    output.commit().unwrap();
+    assert_eq!(standard, b"a,b");
+    assert!(!Path::new("-").exists());
+}
+
+/// Refuses every byte, as a closed pipe or a full disk does.
+struct Full;
+
+impl Write for Full {
+    fn write(&mut self, _: &[u8]) -> std::io::Result<usize> {
+        Err(std::io::ErrorKind::StorageFull.into())
+    }
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+#[test]
+fn errors_name_the_path_and_say_why() {
+    let folder = TempDir::new().unwrap();
+    let refused = |path: &Path| Output::create(path, &mut std::io::sink()).unwrap_err().to_string();
+    let missing = refused(&folder.path().join("none/out.csv"));
+    assert!(missing.contains("none/out.csv") && missing.contains("there is no folder"), "{missing}");
+    let is_folder = refused(folder.path());
+    assert!(is_folder.contains(&folder.path().display().to_string()) && is_folder.contains("directory"), "{is_folder}");
+    fs::write(folder.path().join("file"), "").unwrap();
+    assert!(refused(&folder.path().join("file/out.csv")).contains("file/out.csv"));
+    assert!(refused(Path::new("")).contains("cannot be written"));
+
+    let mut full = Full;
+    let mut output = Output::create(Path::new("-"), &mut full).unwrap();
+    output.write_all(b"short enough to wait in the buffer").unwrap();
+    let error = output.commit().unwrap_err();
+    assert_eq!(error.kind(), std::io::ErrorKind::StorageFull);
+    assert!(error.to_string().starts_with("standard output: cannot be written"), "{error}");
+    let mut output = Output::create(Path::new("-"), &mut full).unwrap();
+    let error = output.write_all(&[0; 100_000]).unwrap_err();
+    assert!(error.to_string().starts_with("standard output: cannot be written"), "{error}");
+}
+
+#[cfg(unix)]
+mod unix {
+    use std::io::{BufRead, BufReader};
+    use std::os::unix::fs::{PermissionsExt, symlink};
+    use std::os::unix::process::ExitStatusExt;
+    use std::process::{Command, Stdio};
+
+    use super::*;
+
+    #[test]
+    fn devices_are_written_to_and_links_followed() {
+        let mut output = create(Path::new("/dev/null"));
+        output.write_all(b"x").unwrap();
+        output.commit().unwrap();
+        assert!(!fs::metadata("/dev/null").unwrap().is_file());
+        if Path::new("/dev/full").exists() {
+            let mut output = create(Path::new("/dev/full"));
+            output.write_all(b"x").unwrap();
+            let error = output.commit().unwrap_err().to_string();
+            assert!(error.starts_with("/dev/full: cannot be written: No space left"), "{error}");
+        }
+        let folder = TempDir::new().unwrap();
+        let (target, link) = (folder.path().join("target"), folder.path().join("link"));
+        fs::write(&target, "before").unwrap();
+        fs::set_permissions(&target, fs::Permissions::from_mode(0o640)).unwrap();
+        symlink(&target, &link).unwrap();
+        let mut output = create(&link);
+        output.write_all(b"after").unwrap();
+        output.commit().unwrap();
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(fs::read_to_string(&target).unwrap(), "after");
+        assert_eq!(fs::metadata(&target).unwrap().permissions().mode() & 0o777, 0o640);
+        // A new file is as open as any other of this user.
+        let (new, ordinary) = (folder.path().join("new"), folder.path().join("ordinary"));
+        create(&new).commit().unwrap();
+        fs::write(&ordinary, "").unwrap();
+        let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode();
+        assert_eq!(mode(&new), mode(&ordinary));
+    }
+
+    /// Not a test: the process that the next test stops.
+    #[test]
+    fn child_that_waits() {
+        let Ok(path) = std::env::var("CORNER_IMPACT_TEST_FILE") else { return };
+        let mut output = create(Path::new(&path));
+        output.write_all(&[b'x'; 100_000]).unwrap();
+        println!("\nready");
+        std::thread::sleep(std::time::Duration::from_secs(60));
+    }
+
+    #[test]
+    fn ctrl_c_leaves_nothing() {
+        for signal in [2, 15] {
+            let folder = TempDir::new().unwrap();
+            let mut child = Command::new(std::env::current_exe().unwrap())
+                .args(["--exact", "unix::child_that_waits", "--nocapture"])
+                .env("CORNER_IMPACT_TEST_FILE", folder.path().join("out.csv"))
+                .stdout(Stdio::piped())
+                .spawn()
+                .unwrap();
+            let lines = BufReader::new(child.stdout.take().unwrap()).lines();
+            assert!(lines.map(Result::unwrap).any(|line| line == "ready"));
+            assert_eq!(names(&folder).len(), 1);
+            let kill = Command::new("kill").args([format!("-{signal}"), child.id().to_string()]).status().unwrap();
+            assert!(kill.success());
+            // The shell is to see the signal, not an exit code.
+            assert_eq!(child.wait().unwrap().signal(), Some(signal));
+            assert!(names(&folder).is_empty(), "{:?}", names(&folder));
+        }
+    }
+}
