@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::jet::Jet;
-use super::law::Lift;
+use super::lift::Lift;
 use super::{Cam, Joint, Segment};
 use crate::tolerance;
 

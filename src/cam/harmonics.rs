@@ -1,8 +1,7 @@
 //! A sum of cosines: the `harmonic` law, one smooth segment all round.
 
 use super::jet::Jet;
-use super::law::{Law, Lift};
-use super::{Cam, Joint};
+use super::lift::Lift;
 use crate::model::HarmonicProfile;
 
 /// `c = offset + sum A_k cos(k theta) + B_k sin(k theta)`, k from 1.
@@ -99,9 +98,4 @@ impl Harmonics {
         }
         jet
     }
-}
-
-/// The cam of a `harmonic` profile.
-pub(super) fn build(profile: &HarmonicProfile) -> Cam {
-    Cam::from_laws(vec![(0.0, Law::Harmonics(Harmonics::new(profile)))], Joint::Free)
 }

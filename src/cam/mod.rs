@@ -4,6 +4,7 @@
 //! derivatives with respect to the angle, and goes on smoothly past its ends, so that a corner has values on both
 //! sides and a map can be continued past it. Nothing here knows time or the follower.
 
+mod arc;
 mod arcs;
 mod bounds;
 mod corners;
@@ -11,21 +12,24 @@ mod cyclic;
 mod harmonics;
 mod jet;
 mod law;
+mod lift;
 mod polynomial;
+mod profile;
 mod program;
 mod sinusoid;
 mod table;
 
 use std::f64::consts::TAU;
 
-use crate::model::{CamProfile, Model, ModelError};
+use crate::model::{Model, ModelError};
 use crate::tolerance;
-pub use arcs::Arc;
+pub use arc::Arc;
 pub use bounds::Bounds;
 pub use corners::{Corner, Side};
 pub use harmonics::Harmonics;
 pub use jet::Jet;
-pub use law::{Law, Lift};
+pub use law::Law;
+pub use lift::Lift;
 pub use polynomial::Polynomial;
 pub use sinusoid::Sinusoid;
 
@@ -78,24 +82,6 @@ pub struct Cam {
 }
 
 impl Cam {
-    /// The cam of a model, or the complaint about the field that makes it impossible.
-    pub fn new(model: &Model) -> Result<Self, ModelError> {
-        let cam = match &model.cam {
-            CamProfile::Arcs(profile) => arcs::build(model, profile),
-            CamProfile::Harmonic(profile) => Ok(harmonics::build(profile)),
-            CamProfile::RectifiedSine(profile) => Ok(sinusoid::rectified(profile)),
-            CamProfile::Program(profile) => program::build(model, profile),
-            CamProfile::Polynomial(segments) => polynomial::build(model, segments),
-            CamProfile::Table(profile) => table::build(model, profile),
-        }?;
-        let is_finite = |segment: &Segment| segment.bounds.third.is_finite() && segment.bounds.lift[1].is_finite();
-        if cam.segments.iter().all(is_finite) {
-            Ok(cam)
-        } else {
-            Err(model.reject("cam.law", "gives lifts or derivatives too large for a double: use other units"))
-        }
-    }
-
     /// From laws with the angles where they start, in order; each ends where the next starts, the last goes on to the
     /// first one's start.
     fn from_laws(mut laws: Vec<(f64, Law)>, joint: Joint) -> Self {

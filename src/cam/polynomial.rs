@@ -1,9 +1,8 @@
 //! Polynomial lift: the `polynomial` law, the polynomial motions, and the pieces of a spline.
 
 use super::jet::Jet;
-use super::law::{Law, Lift};
-use super::{Cam, Joint};
-use crate::model::{MOST_COEFFICIENTS, Model, ModelError, PolynomialSegment};
+use super::lift::Lift;
+use crate::model::MOST_COEFFICIENTS;
 
 /// `c = sum a_k u^k`, `u = theta - start`.
 #[derive(Clone, Debug, PartialEq)]
@@ -120,17 +119,4 @@ fn shift(coefficients: &mut [f64], u: f64) {
             coefficients[k] += u * coefficients[k + 1];
         }
     }
-}
-
-/// The cam of a `polynomial` profile.
-pub(super) fn build(model: &Model, segments: &[PolynomialSegment]) -> Result<Cam, ModelError> {
-    let law = |segment: &PolynomialSegment| {
-        let start = segment.start_deg.to_radians();
-        (start, Law::Polynomial(Polynomial::new(start, &segment.coefficients)))
-    };
-    // Where the first one starts past 0, the last one comes first as well.
-    let moved = segments.first().is_some_and(|segment| segment.start_deg > 0.0);
-    Cam::from_laws(segments.iter().map(law).collect(), Joint::Free).without_steps(|segment| {
-        (model, format!("cam.segment[{}].coefficients[0]", segment.saturating_sub(usize::from(moved))))
-    })
 }

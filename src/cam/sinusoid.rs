@@ -1,11 +1,7 @@
 //! A sine on a straight line: harmonic, cycloidal and modified motions, and the rectified sine.
 
-use std::f64::consts::PI;
-
 use super::jet::Jet;
-use super::law::{Law, Lift};
-use super::{Cam, Joint};
-use crate::model::RectifiedSineProfile;
+use super::lift::Lift;
 
 /// `c = value + tilt u + sine (phi - sin phi) + cosine (1 - cos phi)`, `phi = frequency u`, `u = theta - start`.
 ///
@@ -108,13 +104,4 @@ fn sine_deficit(delta: f64, sin: f64) -> f64 {
     const SERIES: [f64; 7] = [1.0 / 272.0, 1.0 / 210.0, 1.0 / 156.0, 1.0 / 110.0, 1.0 / 72.0, 1.0 / 42.0, 1.0 / 20.0];
     let sum = SERIES.iter().fold(1.0, |sum, factor| 1.0 - square * factor * sum);
     square * delta * (1.0 / 6.0) * sum
-}
-
-/// The cam of a `rectified-sine` profile: a hump on `[0, pi]`, and the same again.
-pub(super) fn rectified(profile: &RectifiedSineProfile) -> Cam {
-    let RectifiedSineProfile { offset, amplitude } = *profile;
-    // offset + a sin u = offset + a u - a (u - sin u)
-    let hump =
-        |start: f64| Sinusoid { start, value: offset, tilt: amplitude, sine: -amplitude, cosine: 0.0, frequency: 1.0 };
-    Cam::from_laws(vec![(0.0, Law::Sinusoid(hump(0.0))), (PI, Law::Sinusoid(hump(PI)))], Joint::Free)
 }

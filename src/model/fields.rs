@@ -334,11 +334,16 @@ impl Fields {
         }
     }
 
-    /// The complaint about a text that is none of `names`.
-    pub(super) fn reject_choice(&self, path: &str, text: &str, names: &[&str]) -> ModelError {
-        let known: Vec<_> = names.iter().map(|name| format!("\"{name}\"")).collect();
-        let meant = nearest(text, names.iter().copied()).map(|name| format!("did you mean \"{name}\"?"));
-        self.reject(path, format!("must be one of: {}", known.join(", "))).meaning(meant)
+    /// The entry of `choices` that a text field names.
+    pub(super) fn choice<T: Copy>(&mut self, path: &str, choices: &[(&str, T)]) -> Result<T, ModelError> {
+        let text = self.text(path)?;
+        if let Some((_, entry)) = choices.iter().find(|(name, _)| *name == text) {
+            return Ok(*entry);
+        }
+        let known: Vec<_> = choices.iter().map(|(name, _)| format!("\"{name}\"")).collect();
+        let meant = nearest(&text, choices.iter().map(|(name, _)| *name));
+        let meant = meant.map(|name| format!("did you mean \"{name}\"?"));
+        Err(self.reject(path, format!("must be one of: {}", known.join(", "))).meaning(meant))
     }
 
     /// Complains about the first field in the file that nobody asked for.

@@ -155,20 +155,8 @@ static CAM_LAWS: [(&str, ReadProfile); 6] = [
 ];
 
 pub(super) fn read(fields: &mut Fields) -> Result<CamProfile, ModelError> {
-    let read = choice(fields, "cam.law", &CAM_LAWS)?;
+    let read = fields.choice("cam.law", &CAM_LAWS)?;
     read(fields)
-}
-
-/// The entry of `choices` that a text field names.
-pub(super) fn choice<T: Copy>(fields: &mut Fields, path: &str, choices: &[(&str, T)]) -> Result<T, ModelError> {
-    let text = fields.text(path)?;
-    match choices.iter().find(|(name, _)| *name == text) {
-        Some((_, entry)) => Ok(*entry),
-        None => {
-            let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
-            Err(fields.reject_choice(path, &text, &names))
-        }
-    }
 }
 
 fn arcs(fields: &mut Fields) -> Result<CamProfile, ModelError> {
@@ -212,7 +200,7 @@ fn program(fields: &mut Fields) -> Result<CamProfile, ModelError> {
 
 fn motion_segment(fields: &mut Fields, index: usize) -> Result<MotionSegment, ModelError> {
     let path = |name: &str| format!("cam.segment[{index}].{name}");
-    let motion = choice(fields, &path("motion"), &Motion::NAMES)?;
+    let motion = fields.choice(&path("motion"), &Motion::NAMES)?;
     let span_deg = fields.number(&path("span_deg"), Allowed::above(0.0, 360.0))?;
     let rise = if motion == Motion::Dwell {
         fields.number_or(&path("rise"), Allowed::FINITE, 0.0)?

@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use super::ModelError;
 use super::fields::Fields;
-use super::profile::choice;
 use crate::tolerance;
 
 /// A spline through the rows of a file.
@@ -49,7 +48,7 @@ const MOST_ROWS: usize = 1_000_000;
 /// The fields of `law = "table"`, and the file that they name.
 pub(super) fn read(fields: &mut Fields) -> Result<TableProfile, ModelError> {
     let file = fields.text("cam.file")?;
-    let spline = choice(fields, "cam.spline", &[("cubic", Spline::Cubic), ("quintic", Spline::Quintic)])?;
+    let spline = fields.choice("cam.spline", &[("cubic", Spline::Cubic), ("quintic", Spline::Quintic)])?;
     let path = Path::new(fields.file()).parent().unwrap_or(Path::new("")).join(&file);
     let shown = path.display().to_string();
     let text = std::fs::read_to_string(&path)

@@ -2,12 +2,11 @@
 
 use nalgebra::DVector;
 
-use super::follow::Walk;
-use super::problem::Problem;
+use super::problem::{Pinned, Problem, Units};
 use super::switch::{self, Exit};
-use super::{Kind, Special, gap, halved};
+use super::{Following, Kind, Special, gap, halved};
 use crate::orbit::curve::{self, CurvePoint, NoPoint};
-use crate::orbit::{Cycle, FamilyError};
+use crate::orbit::{Cycle, Family, FamilyError};
 use crate::simulate::Machine;
 use crate::tolerance;
 
@@ -40,7 +39,30 @@ pub(super) struct Located {
     pub(super) bracket: [f64; 2],
     pub(super) residual: f64,
 }
-impl Walk<'_> {
+
+/// One step of a branch: where it starts, of which cycle, and how far it goes.
+pub(super) struct Stride<'a> {
+    pub(super) family: &'a Family,
+    pub(super) following: &'a Following,
+    pub(super) units: Units,
+    pub(super) spans: Vec<f64>,
+    pub(super) pinned: Option<Pinned>,
+    pub(super) pattern: Cycle,
+    pub(super) from: CurvePoint,
+    pub(super) step: f64,
+}
+
+impl Stride<'_> {
+    /// The equations of the cycle.
+    pub(super) fn problem(&self) -> Problem<'_> {
+        Problem::new(self.family, &self.pattern, self.units, &self.spans, self.pinned)
+    }
+
+    /// The parameter, of the unknowns.
+    pub(super) fn value(&self, unknowns: &DVector<f64>) -> f64 {
+        unknowns[unknowns.len() - 1] * self.spans[self.spans.len() - 1]
+    }
+
     /// The flip that a step to `next` passes, if the orbit is one of twice the period.
     pub(super) fn halved(
         &self,

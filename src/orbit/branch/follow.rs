@@ -1,8 +1,6 @@
 //! One direction of a branch: steps along the curve, cut where something changes.
 
-use nalgebra::DVector;
-
-use super::cut::{Cut, Located};
+use super::cut::{Cut, Located, Stride};
 use super::problem::{Pinned, Problem, Units};
 use super::switch::{self, Exit};
 use super::{BranchPoint, End, Following, Special, gap};
@@ -44,7 +42,7 @@ pub(super) fn half(
     let unknowns = problem.unknowns(cycle, &machine, values);
     let Ok(tangent) = curve::first_tangent(&problem, &unknowns) else { return Ok((Vec::new(), End::Lost)) };
     let ahead = tangent[unknowns.len() - 1] * direction >= 0.0;
-    let walk = Walk {
+    let stride = Stride {
         family,
         following,
         units,
@@ -53,32 +51,23 @@ pub(super) fn half(
         pattern: cycle.clone(),
         from: CurvePoint { unknowns, tangent: if ahead { tangent } else { -tangent }, steps: 0 },
         step: FIRST * following.longest_step,
-        fresh: None,
-        points: Vec::new(),
     };
-    walk.run()
+    Walk { stride, fresh: None, points: Vec::new() }.run()
 }
 
 /// A walk along a branch, in one direction.
-pub(super) struct Walk<'a> {
-    pub(super) family: &'a Family,
-    pub(super) following: &'a Following,
-    pub(super) units: Units,
-    pub(super) spans: Vec<f64>,
-    pub(super) pinned: Option<Pinned>,
-    pub(super) pattern: Cycle,
-    pub(super) from: CurvePoint,
-    pub(super) step: f64,
+struct Walk<'a> {
+    stride: Stride<'a>,
     /// What the cycle was changed for, until a step has been made with the new one.
-    pub(super) fresh: Option<Exit>,
-    pub(super) points: Vec<BranchPoint>,
+    fresh: Option<Exit>,
+    points: Vec<BranchPoint>,
 }
 
 impl Walk<'_> {
     fn run(mut self) -> Result<(Vec<BranchPoint>, End), OrbitError> {
-        let mut begin = (self.pattern.clone(), self.from.clone());
+        let mut begin = (self.stride.pattern.clone(), self.stride.from.clone());
         loop {
-            if self.points.len() >= self.following.most_points {
+            if self.points.len() >= self.stride.following.most_points {
                 return Ok((self.points, End::MostPoints));
             }
             match self.advance() {
@@ -91,8 +80,8 @@ impl Walk<'_> {
                         self.points.push(last);
                         return Ok((self.points, End::Range));
                     }
-                    self.step *= 0.5;
-                    if self.step < SHORTEST * self.following.longest_step {
+                    self.stride.step *= 0.5;
+                    if self.stride.step < SHORTEST * self.stride.following.longest_step {
                         let end = match (error, self.fresh) {
                             (NoPoint::Outside(error), _) => End::Edge(error.to_string()),
                             (_, Some(Exit::Touch { .. } | Exit::Tangent { .. })) => End::Graze,
@@ -104,11 +93,16 @@ impl Walk<'_> {
                 }
             }
             let home = &begin.1.unknowns;
-            let alike = begin.0.contacts.len() == self.pattern.contacts.len()
-                && begin.0.contacts.iter().zip(&self.pattern.contacts).all(|(one, other)| one.segment == other.segment);
+            let alike = begin.0.contacts.len() == self.stride.pattern.contacts.len()
+                && begin
+                    .0
+                    .contacts
+                    .iter()
+                    .zip(&self.stride.pattern.contacts)
+                    .all(|(one, other)| one.segment == other.segment);
             if alike && self.points.len() > 20 {
-                let away = &self.from.unknowns - home;
-                if away.norm() < self.step && away.dot(&begin.1.tangent) <= 0.0 {
+                let away = &self.stride.from.unknowns - home;
+                if away.norm() < self.stride.step && away.dot(&begin.1.tangent) <= 0.0 {
                     return Ok((self.points, End::Closed));
                 }
             }
@@ -119,7 +113,7 @@ impl Walk<'_> {
     fn chatters(&self) -> bool {
         let closest =
             |cycle: Cycle| (0..cycle.contacts.len()).map(|index| cycle.turn(index)).fold(f64::INFINITY, f64::min);
-        let here = self.problem().unpack(&self.from.unknowns);
+        let here = self.stride.problem().unpack(&self.stride.from.unknowns);
         here.is_ok_and(|(cycle, ..)| closest(cycle) < tolerance::CHATTERING_TURN.value)
     }
 
@@ -127,33 +121,33 @@ impl Walk<'_> {
     fn rescale(&mut self, home: &mut (Cycle, CurvePoint)) {
         /// From which factor on.
         const FACTOR: f64 = 1.5;
-        let Ok((cycle, machine, _)) = self.problem().unpack(&self.from.unknowns) else { return };
+        let Ok((cycle, machine, _)) = self.stride.problem().unpack(&self.stride.from.unknowns) else { return };
         let units = Units::of(&cycle, &machine);
-        let factor = units.velocity / self.units.velocity;
+        let factor = units.velocity / self.stride.units.velocity;
         if !(1.0 / FACTOR..FACTOR).contains(&factor) {
-            self.units.convert(&mut self.from, cycle.contacts.len(), units);
-            self.units.convert(&mut home.1, home.0.contacts.len(), units);
-            self.units = units;
+            self.stride.units.convert(&mut self.stride.from, cycle.contacts.len(), units);
+            self.stride.units.convert(&mut home.1, home.0.contacts.len(), units);
+            self.stride.units = units;
         }
     }
 
     /// The orbit at the bound of the range that the branch runs into, where the model allows nothing beyond.
     fn at_bound(&self) -> Option<BranchPoint> {
-        let from = &self.from.unknowns;
-        let (value, slope) = (self.value(from), self.value(&self.from.tangent));
-        let bound = self.following.range[usize::from(slope > 0.0)];
+        let from = &self.stride.from.unknowns;
+        let (value, slope) = (self.stride.value(from), self.stride.value(&self.stride.from.tangent));
+        let bound = self.stride.following.range[usize::from(slope > 0.0)];
         let step = (bound - value) / slope;
-        if !(step.is_finite() && (0.0..=self.step).contains(&step)) {
+        if !(step.is_finite() && (0.0..=self.stride.step).contains(&step)) {
             return None;
         }
         // A pinned cycle closes at one speed only, and not at this one.
-        if self.pinned.is_some() {
+        if self.stride.pinned.is_some() {
             return None;
         }
-        let (machine, rpm) = self.family.machine(&[bound]).ok()?;
-        let problem = self.problem();
-        let mut unknowns = from + &self.from.tangent * step;
-        unknowns[problem.column(0)] = bound / self.spans[0];
+        let (machine, rpm) = self.stride.family.machine(&[bound]).ok()?;
+        let problem = self.stride.problem();
+        let mut unknowns = from + &self.stride.from.tangent * step;
+        unknowns[problem.column(0)] = bound / self.stride.spans[0];
         let (guess, _, _) = problem.unpack(&unknowns).ok()?;
         let (cycle, residual) = guess.closed(&machine).ok()?;
         let is_orbit = matches!(cycle.departure(&machine), Ok(None));
@@ -161,19 +155,11 @@ impl Walk<'_> {
         is_orbit.then_some(BranchPoint { sides: None, rpm, value: bound, orbit, special: None })
     }
 
-    fn problem(&self) -> Problem<'_> {
-        Problem::new(self.family, &self.pattern, self.units, &self.spans, self.pinned)
-    }
-
-    pub(super) fn value(&self, unknowns: &DVector<f64>) -> f64 {
-        unknowns[unknowns.len() - 1] * self.spans[self.spans.len() - 1]
-    }
-
     /// One step, or the part of it up to where the cycle changes.
     fn advance(&mut self) -> Result<Option<End>, NoPoint<FamilyError>> {
-        let problem = self.problem();
-        let next = curve::step(&problem, &self.from.unknowns, &self.from.tangent, self.step)?;
-        if next.tangent.dot(&self.from.tangent) < STRAIGHT {
+        let problem = self.stride.problem();
+        let next = curve::step(&problem, &self.stride.from.unknowns, &self.stride.from.tangent, self.stride.step)?;
+        if next.tangent.dot(&self.stride.from.tangent) < STRAIGHT {
             return Err(NoPoint::NotClosed);
         }
         // The first that cuts the step short, of those that the equations tell.
@@ -183,19 +169,19 @@ impl Walk<'_> {
                 first = Some(located);
             }
         };
-        for cut in self.cuts(&problem, &next.unknowns)? {
-            keep(self.locate(&problem, cut, self.step)?);
+        for cut in self.stride.cuts(&problem, &next.unknowns)? {
+            keep(self.stride.locate(&problem, cut, self.stride.step)?);
         }
-        if let Some(located) = self.halved(&problem, &next)? {
+        if let Some(located) = self.stride.halved(&problem, &next)? {
             keep(located);
         }
         // And those that only the simulator sees, on the way there.
         let (mut clear, mut reach) = match &first {
             Some(located) => {
                 let reach = located.step * (1.0 - 1e-3);
-                (curve::step(&problem, &self.from.unknowns, &self.from.tangent, reach)?, reach)
+                (curve::step(&problem, &self.stride.from.unknowns, &self.stride.from.tangent, reach)?, reach)
             }
-            None => (next.clone(), self.step),
+            None => (next.clone(), self.stride.step),
         };
         let (cycle, at, _) = problem.unpack(&clear.unknowns)?;
         match cycle.departure(&at) {
@@ -204,7 +190,7 @@ impl Walk<'_> {
                 let turned = (event.revolution as f64) * std::f64::consts::TAU + event.cam_angle
                     - cycle.contacts[contact].cam_angle.rem_euclid(std::f64::consts::TAU);
                 let touch = Exit::Touch { contact, turned };
-                let located = self.locate(&problem, Cut::Exit(touch), reach)?;
+                let located = self.stride.locate(&problem, Cut::Exit(touch), reach)?;
                 reach = located.step;
                 clear = located.point.clone();
                 first = Some(located);
@@ -216,15 +202,15 @@ impl Walk<'_> {
         let end_point = first.as_ref().map_or(next, |located| located.point.clone());
         let mut points = Vec::new();
         let mut folds = false;
-        for cut in self.passed() {
+        for cut in self.stride.passed() {
             // At a fold a multiplier is 1 as well.
             if cut == Cut::Branching && folds {
                 continue;
             }
-            let at = |point: &CurvePoint| self.measure(&problem, cut, point);
+            let at = |point: &CurvePoint| self.stride.measure(&problem, cut, point);
             // Just short of a graze, where the matrix has a pole.
-            if (at(&self.from)? > 0.0) != (at(&clear)? > 0.0) && self.fresh.is_none() {
-                let located = match self.locate(&problem, cut, reach) {
+            if (at(&self.stride.from)? > 0.0) != (at(&clear)? > 0.0) && self.fresh.is_none() {
+                let located = match self.stride.locate(&problem, cut, reach) {
                     // Where branches cross, the equations are singular, and may not close that near.
                     Err(_) if cut == Cut::Branching => continue,
                     located => located?,
@@ -237,13 +223,13 @@ impl Walk<'_> {
                 }
                 points.push((
                     located.step,
-                    self.branch_point(&problem, &located.point, self.special(&problem, &located)?)?,
+                    self.branch_point(&problem, &located.point, self.stride.special(&problem, &located)?)?,
                 ));
             }
         }
         points.sort_by(|one, two| one.0.total_cmp(&two.0));
         let special = match &first {
-            Some(located) => self.special(&problem, located)?,
+            Some(located) => self.stride.special(&problem, located)?,
             None => None,
         };
         let mut last = self.branch_point(&problem, &end_point, special)?;
@@ -267,14 +253,14 @@ impl Walk<'_> {
         if !silent {
             self.points.push(last);
         }
-        self.from = end_point;
+        self.stride.from = end_point;
         match first {
             Some(Located { cut: Cut::Range(_), .. }) => Ok(Some(End::Range)),
             Some(Located { cut: Cut::Halved, .. }) => Ok(Some(End::Shorter)),
             Some(Located { cut: Cut::Exit(exit), .. }) => self.go_over(exit),
             _ => {
                 self.fresh = None;
-                self.step = (self.step * grown).min(self.following.longest_step);
+                self.stride.step = (self.stride.step * grown).min(self.stride.following.longest_step);
                 Ok(None)
             }
         }
@@ -288,19 +274,19 @@ impl Walk<'_> {
     ) -> Result<BranchPoint, NoPoint<FamilyError>> {
         let (cycle, machine, rpm) = problem.unpack(&point.unknowns)?;
         let residual = cycle.residual(&machine).amax() / lift_size(&machine);
-        let sides = self.pinned.map(|pinned| pinned.sides(&cycle, &machine));
+        let sides = self.stride.pinned.map(|pinned| pinned.sides(&cycle, &machine));
         let orbit = PeriodicOrbit::of_cycle(&machine, cycle, residual);
-        Ok(BranchPoint { sides, rpm, value: self.value(&point.unknowns), orbit, special })
+        Ok(BranchPoint { sides, rpm, value: self.stride.value(&point.unknowns), orbit, special })
     }
 
     /// Goes over to the cycle beyond an exit.
     fn go_over(&mut self, exit: Exit) -> Result<Option<End>, NoPoint<FamilyError>> {
-        if self.pinned.is_some() {
+        if self.stride.pinned.is_some() {
             return Ok(Some(if matches!(exit, Exit::Corner { .. }) { End::Corner } else { End::Graze }));
         }
-        let values = [self.value(&self.from.unknowns)];
-        let machine = self.family.machine(&values)?.0;
-        let (cycle, _, _) = self.problem().unpack(&self.from.unknowns)?;
+        let values = [self.stride.value(&self.stride.from.unknowns)];
+        let machine = self.stride.family.machine(&values)?.0;
+        let (cycle, _, _) = self.stride.problem().unpack(&self.stride.from.unknowns)?;
         let exit = match exit {
             Exit::Touch { contact, turned } => match gap::least(&cycle, &machine, contact, turned) {
                 Some((_, turned)) => Exit::Touch { contact, turned },
@@ -320,16 +306,16 @@ impl Walk<'_> {
         if beyond.contacts.len() > MOST_IMPACTS * beyond.revolutions as usize {
             return Ok(Some(End::Chatter));
         }
-        self.pattern = beyond.clone();
-        let problem = self.problem();
+        self.stride.pattern = beyond.clone();
+        let problem = self.stride.problem();
         let unknowns = problem.unknowns(&beyond, &machine, &values);
         if problem.residual(&unknowns)?.amax() > tolerance::SAME_ORBIT.value {
             return Ok(Some(End::Gap));
         }
         let Ok(tangent) = switch::direction(exit, &cycle, &problem, &unknowns) else { return Ok(Some(exhausted)) };
         drop(problem);
-        self.from = CurvePoint { unknowns, tangent, steps: 0 };
-        self.step = FIRST * self.following.longest_step;
+        self.stride.from = CurvePoint { unknowns, tangent, steps: 0 };
+        self.stride.step = FIRST * self.stride.following.longest_step;
         self.fresh = Some(exit);
         Ok(None)
     }

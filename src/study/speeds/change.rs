@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use super::walk::{LONGER, between, long_run, machine};
+use super::run::{LONGER, between, long_run, machine};
 use super::{Care, Regime, RegimeError, Settled};
 use crate::model::Model;
 use crate::orbit::Parameter;

@@ -5,13 +5,14 @@
 //! begins or ends there, if there is one. Two changes between two speeds that are run are told apart where each is explained.
 
 mod change;
+mod run;
 mod walk;
 
 use crate::model::{Model, ModelError};
 use crate::orbit::{Course, OrbitError, PeriodicOrbit};
 use crate::simulate::SimulateError;
 pub use change::{Cause, Change};
-pub use walk::detachment;
+pub use run::detachment;
 
 /// What a follower does in the long run at one speed.
 #[derive(Clone, Debug, PartialEq)]
@@ -167,7 +168,7 @@ pub fn usual_speeds(model: &Model) -> [f64; 2] {
 
 /// Walks through `rpm` upwards and downwards; `passed` is called after each speed of either walk.
 pub fn regimes(model: &Model, rpm: [f64; 2], care: Care, passed: &(dyn Fn() + Sync)) -> Result<Regimes, RegimeError> {
-    let machine = walk::machine(model)?;
+    let machine = run::machine(model)?;
     let detachment = detachment(model, rpm)?;
     let walk = |rising| walk::walk(model, &machine, rpm, care, rising, passed);
     let (rising, falling) = rayon::join(|| walk(true), || walk(false));
