@@ -1,5 +1,6 @@
 //! Does data move one way? No stage may use a stage that `lib.rs` lists below it.
 
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::path::{Path, PathBuf};
 
 fn rust_files(folder: &Path) -> Vec<PathBuf> {
@@ -49,6 +50,155 @@ fn no_stage_uses_one_below_it() {
         }
     }
     assert!(checked > 40, "{checked} uses seen");
+}
+
+/// The modules of `src` by their paths from the crate's root, each with its file and its code without comments and tests.
+struct House {
+    modules: BTreeMap<Vec<String>, (PathBuf, String)>,
+}
+
+/// A path as it is written, cut at `::`, and the name by which a file knows what it leads to.
+type Named = (Vec<String>, String);
+
+impl House {
+    fn read(root: &Path) -> Self {
+        let module = |file: PathBuf| {
+            let inside = file.strip_prefix(root).unwrap().with_extension("");
+            let mut path: Vec<String> = inside.iter().map(|part| part.to_string_lossy().into_owned()).collect();
+            if path.last().is_some_and(|last| last == "mod" || last == "lib") {
+                path.pop();
+            }
+            let text = std::fs::read_to_string(&file).unwrap();
+            let code = text.split("#[cfg(test)]").next().unwrap();
+            let code: Vec<&str> = code.lines().map(|line| line.split("//").next().unwrap()).collect();
+            (path, (file, code.join("\n")))
+        };
+        let is_library = |file: &PathBuf| !file.ends_with("main.rs");
+        Self { modules: rust_files(root).into_iter().filter(is_library).map(module).collect() }
+    }
+
+    /// The paths that a module's code names: those of its `use` declarations, braces multiplied out, and those in between.
+    fn paths(code: &str) -> Vec<Named> {
+        let is_name = |c: char| c.is_alphanumeric() || c == '_';
+        let mut found = Vec::new();
+        let mut lines = code.lines();
+        while let Some(line) = lines.next() {
+            let begins = ["use ", "pub use ", "pub(crate) use ", "pub(super) use "];
+            match begins.iter().find_map(|begin| line.trim_start().strip_prefix(begin)) {
+                Some(declaration) => {
+                    let mut declaration = declaration.to_owned();
+                    while !declaration.contains(';') {
+                        declaration += lines.next().unwrap().trim();
+                    }
+                    found.extend(multiplied_out(declaration.trim_end_matches(';')));
+                }
+                None => found.extend(line.split(|c: char| !is_name(c) && c != ':').map(str::to_owned)),
+            }
+        }
+        let named = |path: String| {
+            let (path, alias) =
+                path.split_once(" as ").map_or((path.as_str(), None), |(path, name)| (path, Some(name)));
+            let mut parts: Vec<String> = path.split("::").map(str::to_owned).filter(|part| !part.is_empty()).collect();
+            if parts.len() > 1 && parts.last().is_some_and(|last| last == "self") {
+                parts.pop();
+            }
+            let name = alias.map(str::to_owned).or_else(|| parts.last().cloned()).unwrap_or_default();
+            (parts, name)
+        };
+        found.into_iter().map(named).filter(|(parts, _)| parts.len() > 1).collect()
+    }
+
+    /// The module that defines what a path leads to, seen from the module `here`; what is handed on is looked for where it
+    /// comes from. `None` for what is not of this crate.
+    fn definer(&self, here: &[String], path: &[String]) -> Option<Vec<String>> {
+        let mut at = here.to_vec();
+        let mut parts = path.iter().peekable();
+        match path.first().map(String::as_str) {
+            Some("crate") => at.clear(),
+            Some("self" | "super") => {}
+            Some(child) if self.modules.contains_key(&[here, &[child.to_owned()]].concat()) => {}
+            _ => return None,
+        }
+        while let Some(part) = parts.peek() {
+            match part.as_str() {
+                "crate" | "self" => {}
+                "super" => {
+                    at.pop();
+                }
+                part => {
+                    let child = [&at[..], &[part.to_owned()]].concat();
+                    if !self.modules.contains_key(&child) {
+                        break;
+                    }
+                    at = child;
+                }
+            }
+            parts.next();
+        }
+        let Some(item) = parts.next() else { return Some(at) };
+        let handed_on = Self::paths(&self.modules.get(&at)?.1).into_iter().find(|(path, name)| {
+            name == item && path.len() > 1 && self.definer(&at, &path[..path.len() - 1]).is_some_and(|from| from != at)
+        });
+        handed_on.and_then(|(path, _)| self.definer(&at, &path)).or(Some(at))
+    }
+
+    /// Which files use which others, but for what a file takes from the `mod.rs` of a folder that it is in.
+    fn uses(&self) -> BTreeMap<&Vec<String>, BTreeSet<Vec<String>>> {
+        let of_module = |(here, (_, code)): (&Vec<String>, &(PathBuf, String))| {
+            let used = Self::paths(code).into_iter().filter_map(|(path, _)| self.definer(here, &path));
+            used.filter(|there| !here.starts_with(there)).collect()
+        };
+        self.modules.iter().map(|(here, module)| (here, of_module((here, module)))).collect()
+    }
+}
+
+/// `a::{b, c::{d, e}}` as `a::b`, `a::c::d`, `a::c::e`.
+fn multiplied_out(tree: &str) -> Vec<String> {
+    let Some((head, rest)) = tree.split_once('{') else { return vec![tree.trim().to_owned()] };
+    let inside = rest.rsplit_once('}').unwrap().0;
+    let (mut depth, mut branches) = (0, vec![String::new()]);
+    for c in inside.chars() {
+        depth += i32::from(c == '{') - i32::from(c == '}');
+        match c {
+            ',' if depth == 0 => branches.push(String::new()),
+            c => branches.last_mut().unwrap().push(c),
+        }
+    }
+    let branches = branches.iter().map(|branch| branch.trim()).filter(|branch| !branch.is_empty());
+    branches.flat_map(multiplied_out).map(|branch| format!("{}{branch}", head.trim())).collect()
+}
+
+/// Folders whose circles are still to be cut.
+const STILL_CIRCULAR: [&str; 3] = ["draw/", "figures/", "study/verify/"];
+
+/// Files of one stage, too, use one another one way only. A `mod.rs` is a file as any other, with one exception: what it
+/// defines itself belongs to every file of its folder, since a folder is one thing and its `mod.rs` says what. What a
+/// `mod.rs` only hands on belongs to the file that it comes from.
+#[test]
+fn no_two_files_use_each_other() {
+    let house = House::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"));
+    let uses = house.uses();
+    assert!(uses.values().map(BTreeSet::len).sum::<usize>() > 500, "too few uses seen");
+    // The shortest way from each file back to itself, once for the files on it.
+    let mut circles = BTreeMap::new();
+    for start in uses.keys() {
+        let (mut ways, mut seen) = (VecDeque::from([vec![*start]]), BTreeSet::new());
+        while let Some(way) = ways.pop_front() {
+            for next in uses.get(way[way.len() - 1]).into_iter().flatten() {
+                if next == *start {
+                    let words = way.iter().map(|file| file.join("/")).collect::<Vec<_>>().join(" uses ");
+                    circles.entry(way.iter().copied().collect::<BTreeSet<_>>()).or_insert(words + " uses the first");
+                    ways.clear();
+                    break;
+                }
+                if seen.insert(next) {
+                    ways.push_back([&way[..], &[next]].concat());
+                }
+            }
+        }
+    }
+    circles.retain(|_, words| !STILL_CIRCULAR.iter().any(|folder| words.starts_with(folder)));
+    assert!(circles.is_empty(), "circles:\n{}", circles.into_values().collect::<Vec<_>>().join("\n"));
 }
 
 /// Routes to the map share the model, the cam and the place, and nothing else with one another.
