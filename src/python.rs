@@ -1,13 +1,28 @@
-//! Runs one script of `derivations/`: JSON in, JSON out, errors that carry the command and what it said.
+//! Runs one script of `derivations/`: JSON in, JSON out, errors that carry the command and what the script said.
 //!
-//! The scripts get a model's numbers and nothing that this program computed. The folder is looked for at
-//! `$CORNER_IMPACT_HOME`, above the executable and above the current folder; the interpreter is `$CORNER_IMPACT_PYTHON`, or
-//! that of `.venv` beside `derivations/`, or `python3`.
+//! The scripts get a model's numbers and nothing that this program computed. They are part of the program: for each run they
+//! are written to a private temporary folder, run there, and removed. The current folder holds what somebody else wrote, and
+//! nothing of it is run or imported: the private folder is the script's own current folder, so that a relative entry of PATH
+//! or PYTHONPATH leads there, too. The interpreter is `$CORNER_IMPACT_PYTHON`; else that of the `.venv` of the folder in which
+//! this program was built, if it is still there; else `python3` of the PATH.
 
 use std::io::{Read, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
+
+use tempfile::TempDir;
+
+/// The scripts, with the modules that they import and the file that they read, by their places in the project.
+const FILES: [(&str, &str); 4] = [
+    ("derivations/arithmetic.py", include_str!("../derivations/arithmetic.py")),
+    ("derivations/evaluate.py", include_str!("../derivations/evaluate.py")),
+    ("derivations/simulate_scipy.py", include_str!("../derivations/simulate_scipy.py")),
+    ("golden/derived/corner_map.json", include_str!("../golden/derived/corner_map.json")),
+];
+
+/// The interpreter that `make` sets up, with all the packages that the scripts need.
+const OF_THE_BUILD: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/.venv/bin/python");
 
 /// A script still running after this long is stopped: the slowest takes seconds.
 const TIME_LIMIT: Duration = Duration::from_secs(120);
@@ -15,54 +30,53 @@ const TIME_LIMIT: Duration = Duration::from_secs(120);
 /// Why a script has no result.
 #[derive(Debug, thiserror::Error)]
 pub enum PythonError {
-    /// No `derivations/` with the script in it.
-    #[error(
-        "derivations/{script} was not found above the executable or the current folder; set CORNER_IMPACT_HOME to the \
-         project's folder"
-    )]
-    NoScript {
-        /// The script.
-        script: String,
-    },
+    /// The scripts could not be written to a temporary folder.
+    #[error("the scripts could not be written to a temporary folder: {0}")]
+    NotWritten(std::io::Error),
     /// The interpreter did not start.
     #[error("`{command}` did not start: {error}; `make verify` sets up Python, --no-external does without it")]
     NotStarted {
-        /// What was run.
+        /// The command line.
         command: String,
-        /// Why it did not.
+        /// What the system said.
         error: std::io::Error,
     },
-    /// It ended with an error.
+    /// The script ended with an error.
     #[error(
         "`{command}` failed ({status}); if a package is missing, `make verify` sets it up, and --no-external does without; it \
          said:\n{stderr}"
     )]
     Failed {
-        /// What was run.
+        /// The command line.
         command: String,
-        /// Exit status.
+        /// The exit status in words.
         status: String,
-        /// Its standard error, trimmed.
+        /// What the script wrote to standard error, trimmed.
         stderr: String,
     },
-    /// What it printed is not what it should.
+    /// What the script printed is not its result.
     #[error("`{command}` printed something else than its result: {error}")]
     Output {
-        /// What was run.
+        /// The command line.
         command: String,
-        /// Where the output went wrong.
+        /// Where the output stops being a result.
         error: String,
     },
 }
 
 /// Runs `derivations/<script>` with `input` on standard input and reads its standard output as a `T`.
 pub fn run<T: serde::de::DeserializeOwned>(script: &str, input: &serde_json::Value) -> Result<T, PythonError> {
-    let path = find(script).ok_or_else(|| PythonError::NoScript { script: script.into() })?;
-    let interpreter = interpreter(&path);
-    let command = format!("{} {}", interpreter.display(), path.display());
+    let folder = written().map_err(PythonError::NotWritten)?;
+    let interpreter = interpreter();
+    let script = format!("derivations/{script}");
+    let command = format!("{} {script}", interpreter.display());
     let not_started = |error| PythonError::NotStarted { command: command.clone(), error };
     let child = Command::new(&interpreter)
-        .arg(&path)
+        // -B: no compiled copies in a folder that is removed.
+        .args(["-B", &script])
+        .current_dir(folder.path())
+        // Would keep the scripts from importing each other.
+        .env_remove("PYTHONSAFEPATH")
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
@@ -112,20 +126,24 @@ fn collect(mut pipe: impl Read) -> String {
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-fn find(script: &str) -> Option<PathBuf> {
-    let home = std::env::var_os("CORNER_IMPACT_HOME").map(PathBuf::from);
-    let current = std::env::current_dir().ok();
-    let executable = std::env::current_exe().ok();
-    let above = [executable, current];
-    let folders = above.iter().flatten().flat_map(|path| path.ancestors()).map(Path::to_path_buf);
-    home.into_iter().chain(folders).map(|folder| folder.join("derivations").join(script)).find(|path| path.is_file())
+/// A private folder with the scripts in it, laid out as the project is; it is removed when it is dropped.
+fn written() -> std::io::Result<TempDir> {
+    let folder = tempfile::Builder::new().prefix("corner-impact.").tempdir()?;
+    for (name, text) in FILES {
+        let path = folder.path().join(name);
+        path.parent().map_or(Ok(()), std::fs::create_dir_all)?;
+        std::fs::write(path, text)?;
+    }
+    Ok(folder)
 }
 
-fn interpreter(script: &Path) -> PathBuf {
-    if let Some(chosen) = std::env::var_os("CORNER_IMPACT_PYTHON") {
-        return chosen.into();
-    }
-    let home = script.ancestors().nth(2);
-    let of_project = home.map(|home| home.join(".venv/bin/python")).filter(|path| path.is_file());
-    of_project.unwrap_or_else(|| "python3".into())
+fn interpreter() -> PathBuf {
+    let chosen = std::env::var_os("CORNER_IMPACT_PYTHON").map(PathBuf::from);
+    // A bare name is looked for in the PATH; a path is meant from the current folder, which is not the script's.
+    let chosen = chosen.map(|path| match path.components().count() {
+        0 | 1 => path,
+        _ => std::path::absolute(&path).unwrap_or(path),
+    });
+    let of_the_build = || Some(OF_THE_BUILD).map(PathBuf::from).filter(|path| path.is_file());
+    chosen.or_else(of_the_build).unwrap_or_else(|| "python3".into())
 }

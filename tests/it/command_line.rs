@@ -31,7 +31,7 @@ const COMMANDS: [&str; 16] = [
 fn program(folder: &Path, words: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_corner-impact"));
     command.current_dir(folder).args(words);
-    for name in ["COLUMNS", "NO_COLOR", "CLICOLOR", "CLICOLOR_FORCE", "CORNER_IMPACT_HOME"] {
+    for name in ["COLUMNS", "NO_COLOR", "CLICOLOR", "CLICOLOR_FORCE"] {
         command.env_remove(name);
     }
     command
@@ -292,8 +292,8 @@ fn manual_and_completions_know_every_command() {
     }
 }
 
-/// A copy of the program in an empty folder, far from the project: all that needs no Python works, and what needs the
-/// project says so and how to give it.
+/// A copy of the program in an empty folder, far from the project: all that needs no Python works, and what needs
+/// Python says so where there is none, and how to set it up or do without.
 #[test]
 fn from_any_folder() {
     let (home, empty) = (TempDir::new().unwrap(), TempDir::new().unwrap());
@@ -301,7 +301,10 @@ fn from_any_folder() {
     std::fs::copy(env!("CARGO_BIN_EXE_corner-impact"), &copy).unwrap();
     let run = |line: &str| {
         let mut command = Command::new(&copy);
-        command.current_dir(empty.path()).args(line.split_whitespace()).env_remove("CORNER_IMPACT_HOME");
+        command
+            .current_dir(empty.path())
+            .args(line.split_whitespace())
+            .env("CORNER_IMPACT_PYTHON", "/nonexistent/python");
         let output = command.output().unwrap();
         (output.status.code(), text(output.stdout), text(output.stderr))
     };
@@ -324,10 +327,9 @@ fn from_any_folder() {
     assert_eq!(code, Some(1));
     let page = page.split_whitespace().collect::<Vec<_>>().join(" ");
     for words in [&said, &page] {
-        assert!(
-            words.contains("symbolic") && words.contains("scipy") && words.contains("CORNER_IMPACT_HOME"),
-            "{words}"
-        );
+        for part in ["symbolic", "scipy", "/nonexistent/python", "make verify", "--no-external"] {
+            assert!(words.contains(part), "{part} in {words}");
+        }
     }
     assert!(page.contains("INCOMPLETE: symbolic and scipy did not run"), "{page}");
 }

@@ -73,26 +73,81 @@ fn without_python_it_says_so_and_does_not_agree() {
     assert!(message.contains("scipy") && message.contains("did not start"), "{message}");
 }
 
+/// An interpreter that runs no Python: it says what a failing script says, or prints what is no result.
+#[cfg(unix)]
 #[test]
 fn a_script_that_fails_is_quoted() {
-    let home = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("failing");
-    std::fs::create_dir_all(home.join("derivations")).unwrap();
-    let scripts = [
-        ("evaluate.py", "import sys\nsys.exit('no module named sympathy')\n"),
-        ("simulate_scipy.py", "print('not json')\n"),
-    ];
-    for (name, text) in scripts {
-        std::fs::write(home.join("derivations").join(name), text).unwrap();
-    }
-    let python = interpreter();
-    let environment =
-        [("CORNER_IMPACT_HOME", home.to_str().unwrap()), ("CORNER_IMPACT_PYTHON", python.to_str().unwrap())];
-    let output = verify(&["models/osorio-2008.toml"], &environment);
+    let folder = tempfile::tempdir().unwrap();
+    let says = r#"case "$*" in *evaluate.py) echo 'no module named sympathy' >&2; exit 1;; *) echo 'not json';; esac"#;
+    let python = executable(folder.path(), "python", says);
+    let output = verify(&["models/osorio-2008.toml"], &[("CORNER_IMPACT_PYTHON", python.to_str().unwrap())]);
     let page = unwrapped(output.stdout);
     assert_eq!(output.status.code(), Some(1), "{page}");
     for part in ["evaluate.py", "no module named sympathy", "simulate_scipy.py", "printed something else"] {
         assert!(page.contains(part), "{part} in {page}");
     }
+}
+
+/// A shell script that can be run.
+#[cfg(unix)]
+fn executable(folder: &Path, name: &str, text: &str) -> PathBuf {
+    use std::os::unix::fs::PermissionsExt;
+    std::fs::create_dir_all(folder).unwrap();
+    let path = folder.join(name);
+    std::fs::write(&path, format!("#!/bin/sh\n{text}\n")).unwrap();
+    std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
+    path
+}
+
+/// An installed program in a folder that somebody else filled: with scripts and an interpreter where the project has its
+/// own, with modules of the names that the scripts import, and a module that Python imports by itself where it finds one.
+#[cfg(unix)]
+#[test]
+fn nothing_of_the_current_folder_is_run() {
+    let (home, stranger, private) =
+        (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let program = home.path().join("corner-impact");
+    std::fs::copy(env!("CARGO_BIN_EXE_corner-impact"), &program).unwrap();
+    let marks = stranger.path().join("marks");
+    std::fs::create_dir_all(&marks).unwrap();
+    let python = |name: &str| {
+        let path = stranger.path().join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        let mark = marks.join(name.replace('/', "-"));
+        std::fs::write(path, format!("open({:?}, 'w').close()\n", mark.to_str().unwrap())).unwrap();
+    };
+    let modules = ["arithmetic.py", "json.py", "mpmath.py", "numpy.py", "scipy.py", "sitecustomize.py", "sympy.py"];
+    for name in modules.into_iter().chain(["derivations/evaluate.py", "derivations/simulate_scipy.py"]) {
+        python(name);
+    }
+    let touch = format!("touch '{}/interpreter'", marks.display());
+    executable(&stranger.path().join(".venv/bin"), "python", &touch);
+    executable(stranger.path(), "python3", &touch);
+    let real = interpreter();
+    // The interpreter of the build, one that is named, and one of a PATH that has the current folder in it.
+    let path = format!(".:{}", std::env::var("PATH").unwrap());
+    for chosen in [None, Some(real.to_str().unwrap()), Some("python3")] {
+        let mut command = Command::new(&program);
+        command.current_dir(stranger.path()).args(["verify", "--json"]).env_remove("CORNER_IMPACT_PYTHON");
+        // An empty entry of PYTHONPATH is the current folder.
+        command.env("PYTHONPATH", ":").env("PATH", &path).env("TMPDIR", private.path());
+        command.envs(chosen.map(|chosen| ("CORNER_IMPACT_PYTHON", chosen)));
+        let output = command.output().unwrap();
+        let left: Vec<_> = std::fs::read_dir(&marks).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+        assert!(left.is_empty(), "{chosen:?}: {left:?}");
+        assert_eq!(std::fs::read_dir(private.path()).unwrap().count(), 0, "{chosen:?}: the scripts are removed");
+        if chosen != Some("python3") {
+            assert_eq!(output.status.code(), Some(0), "{chosen:?}: {}", String::from_utf8_lossy(&output.stderr));
+        }
+    }
+}
+
+/// A relative path to an interpreter is one from the current folder, wherever the scripts are run.
+#[test]
+fn an_interpreter_is_named_from_the_current_folder() {
+    interpreter();
+    let output = verify(&["models/osorio-2008.toml"], &[("CORNER_IMPACT_PYTHON", ".venv/bin/python")]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
 #[test]
