@@ -51,6 +51,9 @@
 //! ```
 #![doc = include_str!("symbols.md")]
 
+#[macro_use]
+mod named;
+
 pub mod tolerance;
 
 pub mod progress;

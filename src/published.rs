@@ -3,7 +3,7 @@
 //! The digits stand in `golden/published`, as printed; the findings stand here. A number found wrong must stay wrong: if it
 //! ever agrees, that is as much of a surprise as a right one that does not, and both fail the verification.
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::agreement::{Agreement, compare, quantities};
 use crate::border_collision::NormalForm;
@@ -15,7 +15,7 @@ use crate::tolerance::Comparison;
 const PRINTED: &str = include_str!("../golden/published/osorio-2008.json");
 
 /// What was found about a printed number or a statement.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
     /// It is right.
@@ -28,17 +28,7 @@ pub enum Verdict {
     Open,
 }
 
-impl Verdict {
-    /// Its name in documents.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Holds => "holds",
-            Self::Misprint => "misprint",
-            Self::Refuted => "refuted",
-            Self::Open => "open",
-        }
-    }
-}
+named!(Verdict);
 
 /// A printed number beside the computed one.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,6 +5,7 @@
 //! and not missed: its distance is the part of what rounding is allowed that is left, 1 or less.
 
 use nalgebra::{Matrix2, RowVector2};
+use serde::Serialize;
 
 use super::local_map::{LocalMap, characteristic};
 use super::word::Word;
@@ -12,7 +13,8 @@ use crate::corner::SideMap;
 use crate::tolerance::{self, Tolerance};
 
 /// What rests on a condition.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Decides {
     /// The classification: without it there is none.
     Classification,
@@ -20,17 +22,6 @@ pub enum Decides {
     Stability,
     /// The normal form alone.
     NormalForm,
-}
-
-impl Decides {
-    /// Its name in documents.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Classification => "classification",
-            Self::Stability => "stability",
-            Self::NormalForm => "normal-form",
-        }
-    }
 }
 
 /// One condition.

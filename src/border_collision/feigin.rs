@@ -5,6 +5,7 @@
 //! total below -1 is odd (nonsmooth flip). Where each side's fixed point exists is computed on its own, from the border.
 
 use nalgebra::{Matrix2, RowVector2, Vector2};
+use serde::Serialize;
 
 use super::Degenerate;
 use super::conditions::{Condition, Decides, conditions};
@@ -14,7 +15,8 @@ use crate::orbit::eigenvalues;
 use crate::tolerance;
 
 /// What happens to the fixed point at the border.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Scenario {
     /// It crosses to the other side.
     Persistence,
@@ -33,34 +35,18 @@ impl Scenario {
             _ => Self::Persistence,
         }
     }
-
-    /// Its name in documents.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Persistence => "persistence",
-            Self::NonsmoothFold => "nonsmooth-fold",
-            Self::NonsmoothFlip => "nonsmooth-flip",
-        }
-    }
 }
 
+named!(Scenario, Speeds);
+
 /// On which side of the corner-impact speed a fixed point exists.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Speeds {
     /// Above omega*: dT < 0.
     Faster,
     /// Below omega*: dT > 0.
     Slower,
-}
-
-impl Speeds {
-    /// Its name in documents.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Faster => "faster",
-            Self::Slower => "slower",
-        }
-    }
 }
 
 /// What one side contributes.

@@ -1,5 +1,7 @@
 //! A curve of corner impacts in the plane of the speed and a number of the model, and what happens at each of them.
 
+use serde::Serialize;
+
 use super::feigin::{Scenario, scenario};
 use crate::orbit::branch::{Branch, BranchPoint, End, Kind, Special};
 use crate::orbit::{Eigenvalue, eigenvalues};
@@ -24,26 +26,19 @@ impl AtCorner {
 }
 
 /// What happens at a corner impact, by the eigenvalues of its map alone.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Happening {
-    /// Two matrices meet: Feigin's scenario.
-    BorderCollision(Scenario),
     /// A derivative jumps that gives no such map.
     NotPiecewiseLinear,
     /// An eigenvalue on a boundary of the counts.
     Degenerate,
+    /// Two matrices meet: Feigin's scenario.
+    #[serde(untagged)]
+    BorderCollision(Scenario),
 }
 
-impl Happening {
-    /// Its name in documents.
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::BorderCollision(scenario) => scenario.name(),
-            Self::NotPiecewiseLinear => "not-piecewise-linear",
-            Self::Degenerate => "degenerate",
-        }
-    }
-}
+named!(Happening);
 
 /// One corner impact of a curve.
 #[derive(Clone, Debug, PartialEq)]

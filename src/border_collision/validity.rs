@@ -7,10 +7,11 @@
 use std::f64::consts::TAU;
 
 use nalgebra::Vector2;
+use serde::Serialize;
 
 use super::local_map::LocalMap;
 use super::word::Word;
-use crate::cam::{Cam, Side};
+use crate::cam::Cam;
 use crate::corner::CornerImpact;
 use crate::flight::State;
 use crate::model::Model;
@@ -19,27 +20,20 @@ use crate::simulate::{Event, EventKind, Machine};
 use crate::tolerance;
 
 /// What is compared.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Compared {
     /// The image of x* after one revolution, `B dT`.
-    Revolution,
-    /// The fixed point of a side, `(I - A)^{-1} B dT`.
-    FixedPoint(Side),
-}
-
-impl Compared {
-    /// Its name in documents.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Revolution => "one-revolution",
-            Self::FixedPoint(Side::Minus) => "fixed-point-minus",
-            Self::FixedPoint(Side::Plus) => "fixed-point-plus",
-        }
-    }
+    OneRevolution,
+    /// The fixed point before the corner, `(I - A-)^{-1} B- dT`.
+    FixedPointMinus,
+    /// The fixed point after the corner, `(I - A+)^{-1} B+ dT`.
+    FixedPointPlus,
 }
 
 /// What ends the range.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Ends {
     /// The two differ by a tenth.
     Tenth,
@@ -47,17 +41,6 @@ pub enum Ends {
     OtherMotion,
     /// Nothing, up to half and twice the speed.
     Nothing,
-}
-
-impl Ends {
-    /// Its name in documents.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Tenth => "tenth",
-            Self::OtherMotion => "other-motion",
-            Self::Nothing => "nothing",
-        }
-    }
 }
 
 /// How far one prediction holds.
@@ -93,11 +76,11 @@ pub fn ranges(model: &Model, cam: &Cam, at: &CornerImpact, map: &LocalMap) -> Ve
     for sign in [-1.0, 1.0] {
         let side = map.side(Vector2::zeros(), sign);
         let image = map.of(side).b * sign;
-        found.push(machine.range(Compared::Revolution, sign, |dt, _| machine.revolution(dt, image * dt.abs())));
-        for (name, side) in [("L", Side::Minus), ("R", Side::Plus)] {
+        found.push(machine.range(Compared::OneRevolution, sign, |dt, _| machine.revolution(dt, image * dt.abs())));
+        for (name, compared) in [("L", Compared::FixedPointMinus), ("R", Compared::FixedPointPlus)] {
             let orbit = Word::read(name).and_then(|word| map.orbit(&word, sign)).filter(|orbit| orbit.admissible());
             let Some(point) = orbit.and_then(|orbit| orbit.points.first().copied()) else { continue };
-            found.push(machine.range(Compared::FixedPoint(side), sign, |dt, before| {
+            found.push(machine.range(compared, sign, |dt, before| {
                 // The real one where it was, moved on as the prediction is.
                 let guess = before.map_or(point * dt.abs(), |(real, at): (Vector2<f64>, f64)| real * (dt / at));
                 machine.fixed_point(dt, point * dt.abs(), guess)

@@ -2,19 +2,24 @@
 
 use std::f64::consts::TAU;
 
+use serde::Serialize;
+
 use super::jet::Jet;
 use super::lift::Lift;
 use super::{Cam, Joint, Segment};
 use crate::tolerance;
 
 /// The side of a corner: the segment before it or the one after.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Side {
     /// Before the corner: `c''-`, the limit from `t < 0`.
     Minus,
     /// After the corner: `c''+`, the limit from `t > 0`.
     Plus,
 }
+
+named!(Side);
 
 /// A point of the cam where a derivative of the lift jumps.
 #[derive(Clone, Copy, Debug, PartialEq)]

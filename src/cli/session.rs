@@ -153,7 +153,7 @@ impl Session<'_> {
 
     /// A page as it is printed.
     pub(super) fn shown(&self, page: &Page) -> String {
-        if self.colours_out() { page.coloured() } else { page.plain().to_owned() }
+        if self.colours_out() { page.coloured().to_owned() } else { page.plain() }
     }
 
     /// Prints a result whole.

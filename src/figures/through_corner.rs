@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
 use rayon::prelude::*;
+use serde::Serialize;
 
 use crate::cam::{Cam, Lift};
 use crate::corner::CornerImpact;
@@ -55,7 +56,8 @@ pub struct Moment {
 }
 
 /// On which side of the corner an orbit's impact is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Place {
     /// On the segment that ends at the corner.
     Before,
@@ -65,16 +67,7 @@ pub enum Place {
     Elsewhere,
 }
 
-impl Place {
-    /// Its name in documents.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Before => "before",
-            Self::After => "after",
-            Self::Elsewhere => "elsewhere",
-        }
-    }
-}
+named!(Place);
 
 /// An orbit and one revolution of it.
 #[derive(Clone, Debug, PartialEq)]

@@ -6,8 +6,9 @@ use serde::Serialize;
 
 use crate::cam::{Cam, Corner, Jet, Segment};
 use crate::model::Model;
-use crate::show::page::{Cell, Column, Page, Table, WIDTH, significant};
-use crate::tolerance;
+use crate::show::block::{Column, Table, Words};
+use crate::show::digits::Digits;
+use crate::show::page::{Page, WIDTH};
 
 /// What `cam` shows; serializes to the document `corner-impact/cam/1`.
 #[derive(Clone, Debug, Serialize)]
@@ -126,7 +127,7 @@ impl CamDocument {
         let mut page = Page::new(width);
         page.title(&format!("Cam of {}", self.model))?;
         page.paragraph_at(2, &self.source)?;
-        let [low, high] = self.lift_m.map(|lift| significant(lift, 9));
+        let [low, high] = self.lift_m.map(|lift| Digits::Significant(9).text(lift));
         writeln!(page, "\n  law \"{}\", lift from {low} to {high} m", self.law)?;
         self.write_segments(&mut page)?;
         self.write_corners(&mut page)?;
@@ -139,7 +140,7 @@ impl CamDocument {
             let spans = self.segments.iter().map(|segment| segment.end_deg - segment.start_deg);
             let (least, most) =
                 spans.fold((f64::INFINITY, 0.0), |(least, most): (f64, f64), span| (least.min(span), most.max(span)));
-            let (least, most) = (significant(least, 6), significant(most, 6));
+            let (least, most) = (Digits::Significant(6).text(least), Digits::Significant(6).text(most));
             return writeln!(page, "  spans from {least} to {most} degrees; --json lists them");
         }
         let columns = [
@@ -149,14 +150,14 @@ impl CamDocument {
             Column::right("lowest m", 16),
             Column::right("highest m", 16),
         ];
-        let mut table = Table { columns, rows: Vec::new() };
+        let mut table = Table::new("Segments", columns);
         for segment in &self.segments {
-            let [low, high] = segment.lift_m.map(|lift| significant(lift, 9));
+            let [low, high] = segment.lift_m.map(|lift| Digits::Significant(9).text(lift));
             let SegmentEntry { start_deg, end_deg, law, .. } = segment;
             let [start, end] = [start_deg, end_deg].map(|angle| format!("{angle:.6}"));
-            table.rows.push([start, end, law.to_string(), low, high].map(Cell::from));
+            table.row([start, end, law.to_string(), low, high].map(Words::from));
         }
-        table.write(page)
+        page.table(&table)
     }
 
     fn write_corners(&self, page: &mut Page) -> fmt::Result {
@@ -181,32 +182,22 @@ impl CamDocument {
             Column::right("slope before", 16),
             Column::right("slope after", 16),
         ];
-        let mut table = Table { columns, rows: Vec::new() };
+        let mut table = Table::new("Corners", columns);
         for corner in lines {
             let CornerEntry { angle_deg, jump_order, .. } = corner;
-            let [jump, lift, before, after] =
-                [corner.jump, corner.lift_m, corner.slope_before, corner.slope_after].map(short);
+            let [jump, lift, before, after] = [corner.jump, corner.lift_m, corner.slope_before, corner.slope_after]
+                .map(|number| Digits::Short.text(number));
             let row = [format!("{angle_deg:.6}"), jump_order.to_string(), jump, lift, before, after];
-            table.rows.push(row.map(Cell::from));
+            table.row(row.map(Words::from));
         }
         if !table.rows.is_empty() {
-            table.write(page)?;
+            page.table(&table)?;
         }
         for order in long {
             let Some(largest) = of_order(order).max_by(|a, b| a.jump.abs().total_cmp(&b.jump.abs())) else { continue };
-            let (count, jump) = (of_order(order).count(), short(largest.jump));
+            let (count, jump) = (of_order(order).count(), Digits::Short.text(largest.jump));
             writeln!(page, "  {count} of order {order}, the largest jump {jump} at {:.6} deg", largest.angle_deg)?;
         }
         Ok(())
     }
-}
-
-/// Nine digits, or six with an exponent where zeros would take their place.
-fn short(number: f64) -> String {
-    // Rounding's rest of a zero, or its sign, tells nothing.
-    if number.abs() < tolerance::DISPLAYED_ZERO.value {
-        return "0".into();
-    }
-    let exponent = number.abs().log10();
-    if (-4.0..9.0).contains(&exponent) { significant(number, 9) } else { format!("{number:.5e}") }
 }

@@ -5,7 +5,10 @@ use std::fmt::{self, Write};
 use serde::Serialize;
 
 use crate::paper::Held;
-use crate::show::page::{Mark, Page, WIDTH, mark};
+use crate::published::Verdict;
+use crate::show::block::Mark;
+use crate::show::page::{Page, WIDTH};
+use crate::show::words::mark;
 
 /// What `claims` found; serializes to the document `corner-impact/claims/1`.
 #[derive(Clone, Debug, Serialize)]
@@ -46,7 +49,7 @@ pub struct ClaimEntry {
     /// What it says.
     pub statement: String,
     /// What the check found.
-    pub verdict: &'static str,
+    pub verdict: Verdict,
     /// The numbers that it rests on.
     pub evidence: String,
     /// What is right instead.
@@ -61,16 +64,16 @@ impl ClaimsDocument {
     pub fn new(model: &str, held: &[Held]) -> Self {
         let mut counts = Counts::default();
         let entry = |held: &Held| {
-            let verdict = held.found.verdict.name();
+            let verdict = held.found.verdict;
             let count = match verdict {
-                "holds" => &mut counts.holds,
-                "misprint" => &mut counts.misprint,
-                "refuted" => &mut counts.refuted,
-                _ => &mut counts.open,
+                Verdict::Holds => &mut counts.holds,
+                Verdict::Misprint => &mut counts.misprint,
+                Verdict::Refuted => &mut counts.refuted,
+                Verdict::Open => &mut counts.open,
             };
             *count += 1;
             let claim = held.claim.clone();
-            let wrong = ["misprint", "refuted"].contains(&verdict);
+            let wrong = [Verdict::Misprint, Verdict::Refuted].contains(&verdict);
             ClaimEntry {
                 id: claim.id,
                 place: claim.place,
@@ -87,9 +90,9 @@ impl ClaimsDocument {
     }
 
     /// The verdicts with how many have each, the ones to read first in front.
-    fn groups(&self) -> [(&'static str, usize); 4] {
+    pub(crate) fn groups(&self) -> [(Verdict, usize); 4] {
         let Counts { holds, misprint, refuted, open } = self.counts;
-        [("refuted", refuted), ("misprint", misprint), ("open", open), ("holds", holds)]
+        [(Verdict::Refuted, refuted), (Verdict::Misprint, misprint), (Verdict::Open, open), (Verdict::Holds, holds)]
     }
 
     /// The page, as wide as where nothing says how wide, without marks.
@@ -104,7 +107,7 @@ impl ClaimsDocument {
         writeln!(page)?;
         for (verdict, count) in self.groups() {
             writeln!(page)?;
-            page.marked(mark(verdict), &verdict.to_uppercase());
+            page.marked(mark(verdict), &verdict.to_string().to_uppercase());
             writeln!(page, " ({count})")?;
             for claim in self.claims.iter().filter(|claim| claim.verdict == verdict) {
                 write!(page, "\n  {} [{}]", claim.id, claim.place)?;
@@ -143,7 +146,7 @@ impl ClaimsDocument {
         let counts: Vec<_> = self.groups().iter().map(|(verdict, count)| format!("{count} {verdict}")).collect();
         writeln!(page, "{} statements: {}.", self.claims.len(), counts.join(", "))?;
         for (verdict, count) in self.groups() {
-            writeln!(page, "\n## {} ({count})\n", capitalized(verdict))?;
+            writeln!(page, "\n## {} ({count})\n", capitalized(&verdict.to_string()))?;
             writeln!(page, "| id | where | statement | right instead | evidence |\n|---|---|---|---|---|")?;
             for claim in self.claims.iter().filter(|claim| claim.verdict == verdict) {
                 let cells = [

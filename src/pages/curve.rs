@@ -18,8 +18,7 @@ pub fn lines(lines: &mut String, parameter: &str, index: usize, curve: &ImpactCu
         let CurveImpact { rpm, value, cam_angle, revolutions, impacts, happening, multipliers, special } = impact;
         let name = special.map_or("", |special| special.kind.name());
         // Writing to a string does not fail.
-        let _ =
-            write!(lines, "{rpm},{parameter},{value},{revolutions},{impacts},{cam_angle},{order},{}", happening.name());
+        let _ = write!(lines, "{rpm},{parameter},{value},{revolutions},{impacts},{cam_angle},{order},{happening}");
         for value in multipliers {
             let _ = write!(lines, ",{},{}", value.re, value.im);
         }
@@ -43,7 +42,7 @@ pub fn account(curve: &ImpactCurve, parameter: &str, index: usize) -> Result<Str
     let (mut before, mut place) = (None, first);
     for pair in curve.impacts.windows(2) {
         let [point, next] = pair else { continue };
-        let now = point.happening.name();
+        let now = point.happening;
         if point.special.is_none() && before != Some(now) {
             // From the special point on, if one came right before.
             writeln!(page, "  {parameter} = {:.9}, {:.6} rpm: {now} from here", place.value, place.rpm)?;

@@ -1,19 +1,20 @@
 //! The part of the page on the local map: how generic it is, what it predicts by itself, how far it holds.
 
-use std::fmt::{self, Write};
+use std::fmt;
 
+use crate::border_collision::validity::Compared;
+use crate::show::block::Block;
 use crate::show::page::Page;
+use crate::show::words;
 use crate::study::verify::border_collision::{EndEntry, OutcomeEntry, RangeEntry};
 use crate::study::verify::document::Verification;
 
 /// Where the second column begins.
-const COLUMN: usize = 22;
+const COLUMN: usize = 20;
 
 /// A line with a name in the first column and words, broken into lines, in the second.
 fn entry(out: &mut Page, name: &str, words: &str) -> fmt::Result {
-    let mut lines = Page::new(out.width());
-    lines.paragraph_at(COLUMN, words)?;
-    writeln!(out, "  {name:<20}{}", lines.plain().trim())
+    out.blocks(&[Block::Entries(COLUMN, vec![(name.into(), words.into())])])
 }
 
 /// The condition nearest to failing, and those that fail.
@@ -26,7 +27,7 @@ pub(crate) fn conditions(out: &mut Page, document: &Verification) -> fmt::Result
         entry(out, "conditions", &words)?;
     }
     for failing in document.conditions.iter().filter(|condition| !condition.holds) {
-        let rests = failing.decides.replace('-', " ");
+        let rests = words::decides(failing.decides);
         let words = format!("{} = {:.1e}: {}; the {rests} rests on it", failing.name, failing.value, failing.meaning);
         entry(out, "fails", &words)?;
     }
@@ -46,15 +47,10 @@ pub(crate) fn local_map(out: &mut Page, document: &Verification) -> fmt::Result 
         return Ok(());
     }
     out.heading("How far it holds: within 10 % of the simulated machine")?;
-    for compared in ["one-revolution", "fixed-point-minus", "fixed-point-plus"] {
+    for compared in [Compared::OneRevolution, Compared::FixedPointMinus, Compared::FixedPointPlus] {
         let ranges = document.linear_range.iter().filter(|range| range.compared == compared);
         for (index, range) in ranges.enumerate() {
-            let name = match compared {
-                _ if index > 0 => "",
-                "one-revolution" => "a turn from x*",
-                "fixed-point-minus" => "fixed point minus",
-                _ => "fixed point plus",
-            };
+            let name = if index > 0 { "" } else { words::compared(compared) };
             entry(out, name, &range_words(range))?;
         }
     }
@@ -102,11 +98,9 @@ fn end_words(end: &EndEntry) -> String {
 }
 
 fn range_words(range: &RangeEntry) -> String {
-    let to = match (range.ends, range.difference) {
-        (_, None) => return format!("{}: nowhere", range.speeds),
-        ("tenth", _) => "",
-        ("other-motion", _) => ", where the real motion ends",
-        _ => ", as far as was tried",
-    };
+    if range.difference.is_none() {
+        return format!("{}: nowhere", range.speeds);
+    }
+    let to = words::ends(range.ends);
     format!("{}: to {:.6} rpm, dT = {:.3e} s{to}", range.speeds, range.speed_rpm, range.period_change_s)
 }

@@ -8,7 +8,9 @@ use crate::cam::Side;
 use crate::corner::candidates::MOST_IMPACTS;
 use crate::corner::locate::Rejected;
 use crate::model::Model;
-use crate::show::page::{Cell, Column, Mark, Page, Table, WIDTH, significant};
+use crate::show::block::{Column, Mark, Table, Words};
+use crate::show::digits::Digits;
+use crate::show::page::{Page, WIDTH};
 use crate::study::locate::{LocalMap, Located, Surveyed};
 use crate::study::verify::border_collision::ClassificationEntry;
 use crate::study::verify::document::{AgreementEntry, SideEntry, SkippedEntry};
@@ -130,10 +132,10 @@ impl LocalMapEntry {
         }
     }
 
-    fn scenario(&self) -> &'static str {
+    fn scenario(&self) -> String {
         match self {
-            Self::BorderCollision(entry) => entry.scenario,
-            Self::Other { scenario, .. } => scenario,
+            Self::BorderCollision(entry) => entry.scenario.to_string(),
+            Self::Other { scenario, .. } => (*scenario).into(),
         }
     }
 }
@@ -275,22 +277,21 @@ impl LocateDocument {
             Column::left("what happens", 2, 17),
             Column::left("routes", 0, 0),
         ];
-        let mut table = Table { columns, rows: Vec::new() };
+        let mut table = Table::new("Corner impacts", columns);
         for (index, impact) in self.corner_impacts.iter().enumerate() {
             let CornerImpactEntry { speed_rpm, jump_order, impacts, classification, .. } = impact;
-            let [before, after] =
-                [impact.velocity_before_m_s, impact.velocity_after_m_s].map(|velocity| significant(velocity, 8));
+            let [before, after] = [impact.velocity_before_m_s, impact.velocity_after_m_s]
+                .map(|velocity| Digits::Significant(8).text(velocity));
             let side = impact.side.map_or(String::new(), |side| format!(", {side}"));
             let scenario = format!("{}{side}", classification.scenario());
-            let routes = Cell(impact.verdict().into(), Some(if impact.agrees { Mark::Good } else { Mark::Bad }));
-            let number = |number: usize| Cell::from(number.to_string());
+            let routes = Words::from((if impact.agrees { Mark::Good } else { Mark::Bad }, impact.verdict()));
             let [speed, angle] =
-                [format!("{speed_rpm:.9}"), format!("{:.6}", impact.cam_angle_rad.to_degrees())].map(Cell::from);
-            let [before, after, scenario] = [before, after, scenario].map(Cell::from);
-            let [index, order, impacts] = [index + 1, *jump_order, *impacts].map(number);
-            table.rows.push([index, speed, angle, order, impacts, before, after, scenario, routes]);
+                [format!("{speed_rpm:.9}"), format!("{:.6}", impact.cam_angle_rad.to_degrees())].map(Words::from);
+            let [before, after, scenario] = [before, after, scenario].map(Words::from);
+            let [index, order, impacts] = [index + 1, *jump_order, *impacts].map(Words::from);
+            table.row([index, speed, angle, order, impacts, before, after, scenario, routes]);
         }
-        table.write(out)
+        out.table(&table)
     }
 
     fn write_meanings(&self, out: &mut Page) -> fmt::Result {

@@ -5,7 +5,8 @@ use std::fmt::{self, Write};
 use serde::Serialize;
 
 use crate::orbit::{Course, Eigenvalue, PeriodicOrbit};
-use crate::show::page::{Mark, Page, WIDTH};
+use crate::show::block::Mark;
+use crate::show::page::{Page, WIDTH};
 use crate::simulate::Event;
 use crate::study::verify::document::EigenvalueEntry;
 

@@ -5,7 +5,9 @@ use std::fmt::{self, Write};
 use serde::Serialize;
 
 use crate::figures::run::Exponent;
-use crate::show::page::{Cell, Column, Mark, Page, Table, WIDTH};
+use crate::show::block::{Column, Mark, Table, Words};
+use crate::show::page::{Page, WIDTH};
+use crate::show::words;
 use crate::study::speeds::{Cause, Regime, Regimes, Settled, Walk};
 
 /// The answer.
@@ -33,7 +35,7 @@ pub struct RegimesDocument {
 #[derive(Clone, Debug, Serialize)]
 pub struct RegimeEntry {
     /// `on-cam`, `chattering`, `regular`, `chaotic`, `free` or `unsettled`.
-    pub regime: &'static str,
+    pub regime: Regime,
     /// Lowest and highest speed of each range, rpm.
     pub ranges: Vec<[f64; 2]>,
 }
@@ -67,7 +69,7 @@ pub struct ChangeEntry {
 #[derive(Clone, Debug, Serialize)]
 pub struct MotionEntry {
     /// As in [`RegimeEntry`].
-    pub regime: &'static str,
+    pub regime: Regime,
     /// Turns of the cam in one period, if it repeats.
     pub revolutions: Option<u64>,
     /// Impacts in one period; of a chattering follower those that are flown one by one.
@@ -91,7 +93,7 @@ impl From<&Settled> for MotionEntry {
     fn from(settled: &Settled) -> Self {
         let period = settled.period();
         Self {
-            regime: settled.regime.name(),
+            regime: settled.regime,
             revolutions: period.map(|(revolutions, _)| revolutions),
             impacts: period.map(|(_, impacts)| impacts),
             lyapunov_per_revolution: settled.growth.map(Exponent),
@@ -106,7 +108,7 @@ impl RegimesDocument {
             [Regime::OnCam, Regime::Chattering, Regime::Regular, Regime::Chaotic, Regime::Free, Regime::Unsettled];
         let regimes = order.iter().filter_map(|regime| {
             let ranges = ranges(found, regime);
-            (!ranges.is_empty()).then(|| RegimeEntry { regime: regime.name(), ranges })
+            (!ranges.is_empty()).then(|| RegimeEntry { regime: *regime, ranges })
         });
         let hysteresis = found.hysteresis.iter().map(|found| HysteresisEntry {
             rpm: found.rpm,
@@ -143,23 +145,16 @@ impl RegimesDocument {
         writeln!(page, "\n")?;
         match self.detachment_rpm {
             Some(rpm) => writeln!(page, "  leaves the cam first at   {rpm:.6} rpm")?,
-            None if self.rising.first().is_some_and(|stretch| stretch.motion.regime == "on-cam") => {
+            None if self.rising.first().is_some_and(|stretch| stretch.motion.regime == Regime::OnCam) => {
                 writeln!(page, "  leaves the cam first at   no speed in between")?;
             }
-            None if self.rising.first().is_some_and(|stretch| stretch.motion.regime == "free") => {
+            None if self.rising.first().is_some_and(|stretch| stretch.motion.regime == Regime::Free) => {
                 writeln!(page, "  leaves the cam first at   no speed: it is never on it")?;
             }
             None => writeln!(page, "  leaves the cam first at   {low} rpm already, or below")?,
         }
         for RegimeEntry { regime, ranges } in &self.regimes {
-            let what = match *regime {
-                "on-cam" => "stays on the cam",
-                "chattering" => "chatters and sticks",
-                "regular" => "bounces regularly",
-                "chaotic" => "chaotic",
-                "free" => "never meets the cam",
-                _ => "not settled",
-            };
+            let what = words::regime(*regime);
             writeln!(page, "  {what:<24}  {}", listed(ranges))?;
         }
         let hysteresis = self.hysteresis_ranges();
@@ -178,13 +173,13 @@ impl RegimesDocument {
                 Column::left("motion", 2, 36),
                 Column::left("at the lower end", 1, 0),
             ];
-            let mut table = Table { columns, rows: Vec::new() };
+            let mut table = Table::new(title, columns);
             for StretchEntry { rpm: [from, to], motion, begins } in entries {
                 let why = begins.as_ref().map_or("", |change| change.cause.as_str());
                 let row = [format!("{from:.4}"), format!("{to:.4}"), motion.words(), why.to_owned()];
-                table.rows.push(row.map(Cell::from));
+                table.row(row.map(Words::from));
             }
-            table.write(&mut page)?;
+            page.table(&table)?;
         }
         Ok(page)
     }
@@ -195,19 +190,14 @@ impl MotionEntry {
     pub(crate) fn words(&self) -> String {
         let turns = |n: u64| if n == 1 { "a revolution".to_owned() } else { format!("{n} revolutions") };
         match (self.regime, self.revolutions, self.impacts) {
-            ("regular", Some(n), Some(1)) => format!("1 impact in {}", turns(n)),
-            ("regular", Some(n), Some(m)) => format!("{m} impacts in {}", turns(n)),
-            ("chattering", ..) => "chatters and sticks".into(),
-            ("chaotic", ..) => {
-                format!(
-                    "chaotic, growth {:.2}",
-                    self.lyapunov_per_revolution.map_or(f64::NAN, |Exponent(growth)| growth)
-                )
+            (Regime::Regular, Some(n), Some(1)) => format!("1 impact in {}", turns(n)),
+            (Regime::Regular, Some(n), Some(m)) => format!("{m} impacts in {}", turns(n)),
+            (Regime::Chaotic, ..) => {
+                let growth = self.lyapunov_per_revolution.map_or(f64::NAN, |Exponent(growth)| growth);
+                format!("{}, growth {growth:.2}", words::regime(self.regime))
             }
-            ("on-cam", ..) => "stays on the cam".into(),
-            ("unsettled", ..) => "not settled: no period found".into(),
-            ("free", ..) => "never meets the cam".into(),
-            (other, ..) => other.into(),
+            (Regime::Unsettled, ..) => format!("{}: no period found", words::regime(self.regime)),
+            (regime, ..) => words::regime(regime).into(),
         }
     }
 }

@@ -3,9 +3,13 @@
 use std::fmt::{self, Write};
 
 use crate::agreement::{shared_decimals, worse};
+use crate::border_collision::feigin::Scenario;
 use crate::pages::local_map;
 use crate::pages::report::dossier::spoken;
-use crate::show::page::{Cell, Column, Mark, Page, Table, WIDTH, mark, significant};
+use crate::show::block::{Column, Mark, Table, Words};
+use crate::show::digits::Digits;
+use crate::show::page::{Page, WIDTH};
+use crate::show::words::{self, mark};
 use crate::study::verify::document::{AgreementEntry, EigenvalueEntry, PublishedEntry, SideEntry, Sides, Verification};
 
 impl Verification {
@@ -35,9 +39,14 @@ fn orbit(out: &mut Page, document: &Verification) -> fmt::Result {
     out.title(&title)?;
     out.paragraph_at(2, &document.model.source)?;
     out.heading("The orbit, solved for from the model")?;
-    writeln!(out, "  period   T* = {} s   ({:.9} rpm)", significant(at.period_s, 14), at.speed_rpm)?;
-    writeln!(out, "  state    x* = ({}, {})", significant(at.state[0], 13), significant(at.state[1], 13))?;
-    let origin = significant(at.state_origin_m, 9);
+    writeln!(out, "  period   T* = {} s   ({:.9} rpm)", Digits::Significant(14).text(at.period_s), at.speed_rpm)?;
+    writeln!(
+        out,
+        "  state    x* = ({}, {})",
+        Digits::Significant(13).text(at.state[0]),
+        Digits::Significant(13).text(at.state[1])
+    )?;
+    let origin = Digits::Significant(9).text(at.state_origin_m);
     writeln!(out, "           half a revolution from the impact; position is measured from q = {origin} m")?;
     let degrees = at.cam_angle_rad.to_degrees();
     writeln!(
@@ -75,9 +84,9 @@ fn map(out: &mut Page, document: &Verification) -> fmt::Result {
         writeln!(
             out,
             "  C = ({}, {}),  D = {}\n",
-            significant(c1, 10),
-            significant(c2, 10),
-            significant(closed.map.d, 10)
+            Digits::Significant(10).text(c1),
+            Digits::Significant(10).text(c2),
+            Digits::Significant(10).text(closed.map.d)
         )?;
     }
     for (name, route) in &document.routes {
@@ -197,7 +206,7 @@ fn agreement(out: &mut Page, document: &Verification) -> fmt::Result {
         Column::left("share", 2, 14),
         Column::left("between", 0, 0),
     ];
-    let mut table = Table { columns, rows: Vec::new() };
+    let mut table = Table::new("Comparisons", columns);
     let mut quantities: Vec<&str> = Vec::new();
     for entry in &document.agreement {
         if !quantities.contains(&entry.quantity.as_str()) {
@@ -214,16 +223,16 @@ fn agreement(out: &mut Page, document: &Verification) -> fmt::Result {
             let pair = format!("{} - {}", spoken(left), spoken(right));
             let shared = share(*max_abs_diff);
             let pair = match agrees {
-                true => Cell::from(pair),
-                false => Cell(format!("{pair}  DISAGREE"), Some(Mark::Bad)),
+                true => Words::from(pair),
+                false => (Mark::Bad, format!("{pair}  DISAGREE").as_str()).into(),
             };
             let (name, count) = if index == 0 { (quantity, pairs.len().to_string()) } else { ("", String::new()) };
             let [name, difference, allowed] =
-                [name.to_owned(), format!("{max_abs_diff:.1e}"), format!("{tolerance:.1e}")].map(Cell::from);
-            table.rows.push([name, count.into(), difference, allowed, shared.into(), pair]);
+                [name.to_owned(), format!("{max_abs_diff:.1e}"), format!("{tolerance:.1e}")].map(Words::from);
+            table.row([name, Words::from(count), difference, allowed, Words::from(shared), pair]);
         }
     }
-    table.write(out)
+    out.table(&table)
 }
 
 fn share(diff: f64) -> String {
@@ -268,23 +277,15 @@ fn bifurcation(out: &mut Page, document: &Verification) -> fmt::Result {
             "  Feigin's counts     {} + {} real eigenvalues above 1, {} + {} below -1",
             above.minus, above.plus, below.minus, below.plus
         )?;
-        let born = if verdict.period_two_orbit && verdict.scenario != "nonsmooth-flip" {
+        let born = if verdict.period_two_orbit && verdict.scenario != Scenario::NonsmoothFlip {
             ", and an orbit of period two"
         } else {
             ""
         };
         writeln!(out, "  verdict             {}{born}", verdict.scenario)?;
-        let meaning = match verdict.scenario {
-            "nonsmooth-fold" => {
-                "the two fixed points meet at omega* = 60/T* rpm and vanish: a motion that follows one of them has nowhere to go"
-            }
-            "nonsmooth-flip" => {
-                "the fixed point crosses from one side to the other, and an orbit of period two is born"
-            }
-            _ => "the fixed point crosses from one side to the other and lives on",
-        };
+        let meaning = words::meaning(verdict.scenario);
         out.paragraph_at(22, meaning)?;
-        let fate = |stable: bool, speeds: &str| {
+        let fate = |stable: bool, speeds: crate::border_collision::feigin::Speeds| {
             format!("{} one at speeds {speeds} than omega*", if stable { "a stable" } else { "an unstable" })
         };
         writeln!(
@@ -314,7 +315,7 @@ fn published(out: &mut Page, document: &Verification) -> fmt::Result {
         let PublishedEntry { quantity, place, max_abs_diff, verdict, as_found, .. } = entry;
         let shared = share(*max_abs_diff);
         write!(out, "  {quantity:<20}{place:<20}differs by {max_abs_diff:>7.1e}, shares {shared:<13}")?;
-        out.marked(mark(verdict), verdict);
+        out.marked(mark(*verdict), &verdict.to_string());
         if !*as_found {
             write!(out, "   ")?;
             out.marked(Mark::Bad, "UNEXPECTED");
@@ -322,7 +323,7 @@ fn published(out: &mut Page, document: &Verification) -> fmt::Result {
         writeln!(out)?;
     }
     for entry in document.published.iter().filter(|entry| !entry.note.is_empty()) {
-        let computed: Vec<_> = entry.computed.iter().map(|value| significant(*value, 10)).collect();
+        let computed: Vec<_> = entry.computed.iter().map(|value| Digits::Significant(10).text(*value)).collect();
         let words = format!(
             "{}, printed ({}), computed ({}): {}",
             entry.quantity,

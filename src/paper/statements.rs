@@ -6,6 +6,7 @@ use nalgebra::Vector2;
 
 use super::context::{Context, Found};
 use crate::agreement::worse;
+use crate::border_collision::feigin::{Scenario, Speeds};
 use crate::corner;
 use crate::flight::{Flight, State};
 use crate::impact::rebound;
@@ -224,33 +225,28 @@ pub(super) fn nonsmooth_fold(context: &Context<'_>) -> Found {
         let same = verdict.minus.exists_for == verdict.plus.exists_for;
         let evidence = format!(
             "{}; fixed points exist at speeds {} (minus) and {} (plus) than omega*",
-            verdict.scenario.name(),
-            verdict.minus.exists_for.name(),
-            verdict.plus.exists_for.name()
+            verdict.scenario, verdict.minus.exists_for, verdict.plus.exists_for
         );
-        decide(verdict.scenario.name() == "nonsmooth-fold" && same, Verdict::Refuted, evidence)
+        decide(verdict.scenario == Scenario::NonsmoothFold && same, Verdict::Refuted, evidence)
     })
 }
 
 pub(super) fn figure_of_the_local_map(context: &Context<'_>) -> Found {
     by_classification(context, |verdict| {
-        let (minus, plus) = (verdict.minus.exists_for.name(), verdict.plus.exists_for.name());
+        let (minus, plus) = (verdict.minus.exists_for, verdict.plus.exists_for);
         let evidence =
             format!("minus side's fixed point at speeds {minus} than omega*, plus side's {plus}: faster is dT < 0");
-        decide(minus == "slower" && plus == "slower", Verdict::Refuted, evidence)
+        decide(minus == Speeds::Slower && plus == Speeds::Slower, Verdict::Refuted, evidence)
     })
 }
 
 pub(super) fn fixed_points_above(context: &Context<'_>) -> Found {
     by_classification(context, |verdict| {
         let (minus, plus) = (&verdict.minus, &verdict.plus);
-        let above = minus.exists_for.name() == "faster" && plus.exists_for.name() == "faster";
+        let above = minus.exists_for == Speeds::Faster && plus.exists_for == Speeds::Faster;
         let evidence = format!(
             "plus: stable {}, exists at speeds {} than omega*; minus: stable {}, {}",
-            plus.stable,
-            plus.exists_for.name(),
-            minus.stable,
-            minus.exists_for.name()
+            plus.stable, plus.exists_for, minus.stable, minus.exists_for
         );
         decide(above && plus.stable && !minus.stable, Verdict::Refuted, evidence)
     })

@@ -1,39 +1,40 @@
-//! A page for a terminal: text in lines that fit, and marks on words that stand out.
+//! Blocks on a terminal: text in lines that fit, and marks on words that stand out.
 //!
-//! Whoever lays out a page says what a word is ([`Mark`]), never how that looks; [`Page::coloured`] alone knows, and
-//! [`Page::plain`] leaves it out. A mark adds nothing that the words do not say.
+//! How a mark looks only [`Page::coloured`] tells; [`Page::plain`] leaves it out, and a mark adds nothing that the words do
+//! not say. Where lines break is textwrap's business. Tables are laid out here: comfy-table, which would do it too, folds
+//! cells where there is no room, but breaks numbers with them, and has no way to go on row by row.
 
 use std::fmt::{self, Write};
-use std::ops::Range;
+
+use textwrap::core::display_width;
+use textwrap::{Options, WordSeparator, WordSplitter, WrapAlgorithm};
+
+use crate::show::block::{Block, Mark, Section, Span, Table, Words};
 
 /// Columns of a page where nothing says how many there are.
 pub const WIDTH: usize = 100;
 
-/// What a stretch of text is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mark {
-    /// A heading.
-    Heading,
-    /// As it should be: agrees, holds.
-    Good,
-    /// Not as it should be: disagrees, refuted, did not run.
-    Bad,
-    /// A slip that nothing rests on.
-    Doubtful,
-    /// Not decided.
-    Open,
-}
+/// What ends a mark.
+const RESET: &str = "\x1b[0m";
 
 impl Mark {
+    const ALL: [Self; 6] = [Self::Heading, Self::Strong, Self::Good, Self::Bad, Self::Doubtful, Self::Open];
+
     /// The escape codes that begin it: bold, and colours of the terminal's own sixteen, so that any background will do.
     fn codes(self) -> &'static str {
         match self {
             Self::Heading => "\x1b[1m",
+            Self::Strong => "",
             Self::Good => "\x1b[32m",
             Self::Bad => "\x1b[1;31m",
             Self::Doubtful => "\x1b[33m",
             Self::Open => "\x1b[36m",
         }
+    }
+
+    fn around(self, text: &str) -> String {
+        let codes = self.codes();
+        if codes.is_empty() || text.is_empty() { text.into() } else { format!("{codes}{text}{RESET}") }
     }
 }
 
@@ -42,7 +43,6 @@ impl Mark {
 pub struct Page {
     width: usize,
     text: String,
-    marks: Vec<(Range<usize>, Mark)>,
     /// Where the line that is being written begins.
     line: usize,
 }
@@ -52,7 +52,8 @@ impl Write for Page {
         for piece in text.split_inclusive('\n') {
             self.text.push_str(piece.trim_end_matches('\n'));
             if piece.ends_with('\n') {
-                self.fold();
+                let line = self.text.split_off(self.line);
+                self.text.push_str(&folded(&line, self.width));
                 self.text.push('\n');
                 self.line = self.text.len();
             }
@@ -64,7 +65,7 @@ impl Write for Page {
 impl Page {
     /// An empty page of `width` columns.
     pub fn new(width: usize) -> Self {
-        Self { width, text: String::new(), marks: Vec::new(), line: 0 }
+        Self { width, text: String::new(), line: 0 }
     }
 
     /// Its columns.
@@ -72,11 +73,16 @@ impl Page {
         self.width
     }
 
+    /// A page of `blocks`.
+    pub fn of(width: usize, blocks: &[Block]) -> Result<Self, fmt::Error> {
+        let mut page = Self::new(width);
+        page.blocks(blocks)?;
+        Ok(page)
+    }
+
     /// Writes words that stand out; within a line.
     pub fn marked(&mut self, mark: Mark, words: &str) {
-        let start = self.text.len();
-        self.text.push_str(words);
-        self.marks.push((start..self.text.len(), mark));
+        self.text.push_str(&mark.around(words));
     }
 
     /// A title and a line under it.
@@ -92,263 +98,234 @@ impl Page {
 
     fn underlined(&mut self, text: &str, rule: char) -> fmt::Result {
         self.marked(Mark::Heading, text);
-        writeln!(self)?;
-        let length = text.chars().count().min(self.width);
-        writeln!(self, "{}", String::from(rule).repeat(length))
+        let length = display_width(text).min(self.width);
+        writeln!(self, "\n{}", String::from(rule).repeat(length))
     }
 
     /// Text in lines that fit, indented.
     pub fn paragraph_at(&mut self, indent: usize, text: &str) -> fmt::Result {
-        for line in lines(text, self.width.saturating_sub(indent)) {
-            writeln!(self, "{:indent$}{line}", "")?;
+        let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        lines(&text, self.width.saturating_sub(indent))
+            .iter()
+            .try_for_each(|line| writeln!(self, "{:indent$}{line}", ""))
+    }
+
+    /// Sections one after the other.
+    pub fn sections<'a>(&mut self, sections: impl IntoIterator<Item = &'a Section>) -> fmt::Result {
+        sections.into_iter().try_for_each(|section| {
+            self.heading(&text(&section.title))?;
+            self.blocks(&section.blocks)
+        })
+    }
+
+    /// Blocks one after the other.
+    pub fn blocks(&mut self, blocks: &[Block]) -> fmt::Result {
+        blocks.iter().try_for_each(|block| match block {
+            Block::Title(words) => self.title(&text(words)),
+            Block::Heading(words) => self.heading(&text(words)),
+            Block::Paragraph(indent, words) => self.paragraph_at(*indent, &text(words)),
+            Block::Note(words) => self.paragraph_at(2, &text(words)),
+            Block::Entries(width, entries) => {
+                entries.iter().try_for_each(|(name, words)| self.entry(*width, &text(name), &text(words)))
+            }
+            Block::Table(table) => self.table(table),
+            Block::List(items) => items.iter().try_for_each(|words| self.paragraph_at(2, &text(words))),
+            Block::Brief(blocks) => self.blocks(blocks),
+            Block::Gap => writeln!(self),
+            Block::Full(_) | Block::Details(..) | Block::Markup(_) => Ok(()),
+        })
+    }
+
+    /// A name, and words that begin `width` columns behind it and go on under one another.
+    fn entry(&mut self, width: usize, name: &str, words: &str) -> fmt::Result {
+        let column = 2 + width;
+        let hang = if column <= self.width * 2 / 5 { column } else { 4 };
+        let pad = " ".repeat(width.saturating_sub(display_width(name)));
+        for (index, line) in words.split('\n').enumerate() {
+            let first = if index == 0 { format!("  {name}{pad}") } else { " ".repeat(column) };
+            let options = options(self.width).initial_indent(&first);
+            let hang = " ".repeat(hang);
+            let lines = textwrap::wrap(line, options.subsequent_indent(&hang));
+            lines.iter().try_for_each(|line| writeln!(self, "{line}"))?;
         }
         Ok(())
     }
 
     /// The text alone.
-    pub fn plain(&self) -> &str {
-        &self.text
+    pub fn plain(&self) -> String {
+        let codes = Mark::ALL.map(Mark::codes).into_iter().filter(|codes| !codes.is_empty());
+        codes.chain([RESET]).fold(self.text.clone(), |text, code| text.replace(code, ""))
     }
 
     /// The text with escape codes around what is marked.
-    pub fn coloured(&self) -> String {
-        let (mut coloured, mut at) = (String::with_capacity(self.text.len()), 0);
-        for (range, mark) in &self.marks {
-            coloured.push_str(&self.text[at..range.start]);
-            let _ = write!(coloured, "{}{}\x1b[0m", mark.codes(), &self.text[range.clone()]);
-            at = range.end;
-        }
-        coloured.push_str(&self.text[at..]);
-        coloured
+    pub fn coloured(&self) -> &str {
+        &self.text
     }
+}
 
-    /// Breaks the line that has just been written where it is too long, at spaces: what follows goes on under the second
-    /// column of the line where it has one.
-    fn fold(&mut self) {
-        loop {
-            let line = &self.text[self.line..];
-            if line.chars().count() <= self.width {
-                return;
-            }
-            let indent = line.len() - line.trim_start().len();
-            let hang = second_column(line).filter(|column| *column <= self.width * 2 / 5).unwrap_or(indent + 2);
-            let hang = hang.min(self.width / 2);
-            let Some(gap) = gap(line, indent, self.width) else {
-                return;
+/// Words as a terminal has them.
+pub fn text(words: &Words) -> String {
+    let of = |span: &Span| match span {
+        Span::Text(text) | Span::Code(text) => text.clone(),
+        Span::Number(value, digits) | Span::Against(value, _, digits) => digits.text(*value),
+        Span::Complex([re, im], digits) if *im == 0.0 => digits.text(*re),
+        Span::Complex([re, im], digits) => {
+            format!("{} {} {}i", digits.text(*re), if *im < 0.0 { '-' } else { '+' }, digits.text(im.abs()))
+        }
+        Span::Symbol(symbol) => symbol.plain.clone(),
+        Span::Matrix(rows, digits) => {
+            let row = |row: &Vec<f64>| match row.as_slice() {
+                [entry] => digits.text(*entry),
+                row => format!("[{}]", row.iter().map(|entry| digits.text(*entry)).collect::<Vec<_>>().join(", ")),
             };
-            let gap = self.line + gap.start..self.line + gap.end;
-            let break_ = format!("\n{:hang$}", "");
-            let moved = |at: usize| if at >= gap.end { at + break_.len() - gap.len() } else { at };
-            for (range, _) in &mut self.marks {
-                *range = moved(range.start)..moved(range.end);
-            }
-            self.line = gap.start + 1;
-            self.text.replace_range(gap, &break_);
-            // A word longer than the room that there is stays whole.
-            if self.text[self.line..].trim_start().find(' ').is_none() {
-                return;
-            }
+            let entries = rows.iter().map(row).collect::<Vec<_>>().join(", ");
+            if rows.iter().all(|row| row.len() == 1) { format!("({entries})") } else { format!("[{entries}]") }
         }
-    }
+        Span::Marked(mark, text) => mark.around(text),
+        Span::Break => "\n".into(),
+    };
+    words.0.iter().map(of).collect()
 }
 
-/// The column where the second word after two or more spaces begins.
-fn second_column(line: &str) -> Option<usize> {
-    let start = line.len() - line.trim_start().len();
-    let gap = start + line[start..].find("  ")?;
-    Some(line[..gap].chars().count() + line[gap..].len() - line[gap..].trim_start().len())
+/// Lines that break at spaces only, as late as they can; a word that is longer than the room stays whole.
+fn options<'a>(width: usize) -> Options<'a> {
+    Options::new(width)
+        .break_words(false)
+        .word_separator(WordSeparator::AsciiSpace)
+        .wrap_algorithm(WrapAlgorithm::FirstFit)
+        .word_splitter(WordSplitter::NoHyphenation)
 }
 
-/// The spaces of a line at which it is broken to fit: the last that do, or the first that there are.
-fn gap(line: &str, indent: usize, width: usize) -> Option<Range<usize>> {
-    let (mut last, mut column, mut at) = (None, indent, indent);
-    while let Some(space) = line[at..].find(' ') {
-        let start = at + space;
-        column += line[at..start].chars().count();
-        let length = line[start..].len() - line[start..].trim_start().len();
-        if column > width && last.is_some() {
-            break;
-        }
-        last = Some(start..start + length);
-        (at, column) = (start + length, column + length);
-    }
-    last
-}
-
-/// The words of a text in lines of at most `width` columns, as far as words are no longer.
 fn lines(text: &str, width: usize) -> Vec<String> {
-    let (mut lines, mut column): (Vec<String>, usize) = (Vec::new(), 0);
-    for word in text.split_whitespace() {
-        let length = word.chars().count();
-        match lines.last_mut().filter(|_| column + 1 + length <= width) {
-            Some(line) => {
-                line.push(' ');
-                line.push_str(word);
-                column += 1 + length;
-            }
-            None => {
-                lines.push(word.to_owned());
-                column = length;
-            }
-        }
-    }
-    if lines.is_empty() {
-        lines.push(String::new());
-    }
-    lines
+    textwrap::wrap(text, options(width)).into_iter().map(Into::into).collect()
 }
 
-/// A column of a table.
-#[derive(Clone, Copy, Debug)]
-pub struct Column {
-    /// Its head.
-    pub head: &'static str,
-    /// Spaces before it, where there is room.
-    pub gap: usize,
-    /// The fewest columns that it takes, where there is room.
-    pub least: usize,
-    /// Whether its cells begin, and not end, under each other.
-    pub left: bool,
-}
-
-impl Column {
-    /// Cells that begin under each other.
-    pub const fn left(head: &'static str, gap: usize, least: usize) -> Self {
-        Self { head, gap, least, left: true }
+/// A line in lines that fit: what does not goes on under the second column of the line, where it has one.
+fn folded(line: &str, width: usize) -> String {
+    if display_width(line) <= width {
+        return line.into();
     }
-
-    /// Cells that end under each other.
-    pub const fn right(head: &'static str, least: usize) -> Self {
-        Self { head, gap: 0, least, left: false }
-    }
+    let words = line.trim_start();
+    let indent = line.len() - words.len();
+    let second = words.find("  ").map(|gap| {
+        let space = words[gap..].len() - words[gap..].trim_start().len();
+        indent + display_width(&words[..gap]) + space
+    });
+    let hang = second.filter(|column| *column <= width * 2 / 5).unwrap_or(indent + 2).min(width / 2);
+    let (first, hang) = (" ".repeat(indent), " ".repeat(hang));
+    textwrap::wrap(words, options(width).initial_indent(&first).subsequent_indent(&hang)).join("\n")
 }
 
-/// A cell, with what it is.
-#[derive(Clone, Debug)]
-pub struct Cell(pub String, pub Option<Mark>);
+/// Spaces before a column's cells and the room that they take.
+type Layout = Vec<(usize, usize)>;
 
-impl From<String> for Cell {
-    fn from(text: String) -> Self {
-        Self(text, None)
-    }
-}
+/// The least room in which the last column's words are folded.
+const NARROWEST: usize = 18;
 
-/// A table that is laid out for the room that there is.
-#[derive(Clone, Debug)]
-pub struct Table<const N: usize> {
-    /// Its columns.
-    pub columns: [Column; N],
-    /// Its rows.
-    pub rows: Vec<[Cell; N]>,
-}
-
-impl<const N: usize> Table<N> {
-    /// The least room in which the last column's words are folded.
-    const NARROWEST: usize = 18;
-
-    /// Writes it: with its gaps, or close together, or, where even that does not fit, row by row with a line for each cell.
-    pub fn write(&self, page: &mut Page) -> fmt::Result {
-        let natural: [usize; N] = std::array::from_fn(|index| {
-            let cells = self.rows.iter().map(|row| row[index].0.chars().count());
-            cells.chain([self.columns[index].head.chars().count()]).max().unwrap_or(0)
-        });
-        let wide: [(usize, usize); N] =
-            std::array::from_fn(|index| (self.columns[index].gap, natural[index].max(self.columns[index].least)));
-        let close: [(usize, usize); N] = std::array::from_fn(|index| (2, natural[index]));
-        let fits = |layout: &[(usize, usize); N], last: usize| {
-            let before: usize = layout[..N - 1].iter().map(|(gap, width)| gap + width).sum();
-            before + layout[N - 1].0 + last <= page.width
+impl Page {
+    /// A table: with its gaps, or close together, or, where even that does not fit, in several tables or row by row.
+    pub fn table(&mut self, table: &Table) -> fmt::Result {
+        let Some(last) = table.columns.len().checked_sub(1) else { return Ok(()) };
+        let heads: Vec<String> = table.columns.iter().map(|column| text(&column.head)).collect();
+        let rows: Vec<Vec<String>> = table.rows.iter().map(|row| row.cells.iter().map(text).collect()).collect();
+        let widest = |column: usize| {
+            let cells = rows.iter().filter_map(|row| row.get(column)).chain([&heads[column]]);
+            cells.flat_map(|cell| cell.split('\n')).map(display_width).max().unwrap_or(0)
         };
-        let last = natural[N - 1];
+        let natural: Vec<usize> = (0..=last).map(widest).collect();
+        let wide: Layout = table
+            .columns
+            .iter()
+            .zip(&natural)
+            .map(|(column, widest)| (column.gap, (*widest).max(column.least)))
+            .collect();
+        let close: Layout = natural.iter().map(|widest| (2, *widest)).collect();
+        let takes = |layout: &[(usize, usize)]| layout.iter().map(|(gap, width)| gap + width).sum::<usize>();
         // Words may be folded, numbers not.
-        let folded = if self.columns[N - 1].left { last.min(Self::NARROWEST) } else { last };
-        let layouts = [(wide, last), (close, last), (wide, folded), (close, folded)];
-        match layouts.iter().find(|(layout, last)| fits(layout, *last)) {
-            Some((layout, _)) => self.side_by_side(page, layout),
-            None => self.stacked(page),
+        let folded = if table.columns[last].left { natural[last].min(NARROWEST) } else { natural[last] };
+        let choices = [(&wide, natural[last]), (&close, natural[last]), (&wide, folded), (&close, folded)];
+        let fits = |(layout, room): &(&Layout, usize)| takes(&layout[..last]) + layout[last].0 + room <= self.width;
+        let Some(kept) = table.repeated else {
+            return match choices.iter().find(|choice| fits(choice)) {
+                Some((layout, _)) => self.side_by_side(table, layout, &heads, &rows),
+                None => self.stacked(&heads, &rows),
+            };
+        };
+        let between = 1..(last + 1).saturating_sub(kept).max(1);
+        let each = wide[between.clone()].iter().map(|(gap, width)| gap + width).max().unwrap_or(1);
+        let room = self.width.saturating_sub(takes(&wide[..1]) + takes(&wide[between.end..]));
+        // As few tables as hold all columns, and as even.
+        let tables = between.len().div_ceil((room / each).max(1)).max(1);
+        let columns: Vec<usize> = between.clone().collect();
+        for (index, some) in columns.chunks(columns.len().div_ceil(tables).max(1)).enumerate() {
+            if index > 0 {
+                writeln!(self)?;
+            }
+            let shown: Vec<usize> = [0].into_iter().chain(some.iter().copied()).chain(between.end..=last).collect();
+            fn only<T: Clone>(all: &[T], shown: &[usize]) -> Vec<T> {
+                shown.iter().filter_map(|column| all.get(*column).cloned()).collect()
+            }
+            let rows: Vec<Vec<String>> = rows.iter().map(|row| only(row, &shown)).collect();
+            let part = Table { columns: only(&table.columns, &shown), ..Table::new(&table.label, []) };
+            self.side_by_side(&part, &only(&wide, &shown), &only(&heads, &shown), &rows)?;
         }
+        Ok(())
     }
 
-    fn side_by_side(&self, page: &mut Page, layout: &[(usize, usize); N]) -> fmt::Result {
-        let heads = self.columns.map(|column| Cell(column.head.to_owned(), None));
-        for (number, row) in std::iter::once(&heads).chain(&self.rows).enumerate() {
-            if number == 0 && row.iter().all(|cell| cell.0.is_empty()) {
-                continue;
-            }
-            let mut column = 0;
-            for (index, Cell(text, mark)) in row.iter().enumerate() {
+    fn side_by_side(
+        &mut self,
+        table: &Table,
+        layout: &[(usize, usize)],
+        heads: &[String],
+        rows: &[Vec<String>],
+    ) -> fmt::Result {
+        let last = layout.len() - 1;
+        // Heads of several lines end on one.
+        let depth = heads.iter().map(|head| head.split('\n').count()).max().unwrap_or(1);
+        let head_line = |line: usize| {
+            let part = |head: &String| {
+                let above = depth - head.split('\n').count();
+                line.checked_sub(above).and_then(|line| head.split('\n').nth(line)).unwrap_or("").to_owned()
+            };
+            heads.iter().map(part).collect::<Vec<String>>()
+        };
+        let heads = (0..depth).map(head_line).filter(|head| head.iter().any(|cell| !cell.is_empty()));
+        for row in heads.chain(rows.iter().cloned()) {
+            let mut line = String::new();
+            for (index, cell) in row.iter().enumerate() {
                 let (gap, width) = layout[index];
-                let space = width.saturating_sub(text.chars().count());
-                let is_last = index == N - 1;
-                let before = gap + if self.columns[index].left { 0 } else { space };
-                write!(page, "{:before$}", "")?;
-                column += before;
-                let hang = column;
-                let room = page.width.saturating_sub(hang).max(1);
-                let pieces = if is_last && self.columns[index].left { lines(text, room) } else { vec![text.clone()] };
-                for (part, words) in pieces.iter().enumerate() {
-                    if part > 0 {
-                        write!(page, "\n{:hang$}", "")?;
-                    }
-                    match mark {
-                        Some(mark) if !words.is_empty() => page.marked(*mark, words),
-                        _ => page.write_str(words)?,
-                    }
-                }
-                column += text.chars().count();
-                if self.columns[index].left && !is_last {
-                    write!(page, "{:space$}", "")?;
-                    column += space;
+                let space = width.saturating_sub(display_width(cell));
+                let (before, behind) = if table.columns[index].left { (gap, space) } else { (gap + space, 0) };
+                line.push_str(&" ".repeat(before));
+                if index == last && table.columns[index].left {
+                    let hang = display_width(&line);
+                    let hanging = format!("\n{}", " ".repeat(hang));
+                    line.push_str(&lines(cell, self.width.saturating_sub(hang).max(1)).join(&hanging));
+                } else {
+                    line.push_str(cell);
+                    line.push_str(&" ".repeat(behind));
                 }
             }
             // Spaces at the end of a line are none.
-            let kept = page.text.trim_end_matches(' ').len();
-            page.text.truncate(kept);
-            writeln!(page)?;
+            writeln!(self, "{}", line.trim_end_matches(' '))?;
         }
         Ok(())
     }
 
-    fn stacked(&self, page: &mut Page) -> fmt::Result {
-        let longest = self.columns.iter().map(|column| column.head.chars().count()).max().unwrap_or(0);
-        for (number, row) in self.rows.iter().enumerate() {
+    fn stacked(&mut self, heads: &[String], rows: &[Vec<String>]) -> fmt::Result {
+        let longest = heads.iter().map(|head| display_width(head)).max().unwrap_or(0);
+        for (number, row) in rows.iter().enumerate() {
             if number > 0 {
-                writeln!(page)?;
+                writeln!(self)?;
             }
-            for (column, Cell(text, mark)) in self.columns.iter().zip(row).filter(|(_, cell)| !cell.0.is_empty()) {
-                match column.head {
+            for (head, cell) in heads.iter().zip(row).filter(|(_, cell)| !cell.is_empty()) {
+                match head.as_str() {
                     // The number of a row heads it.
-                    "" => write!(page, "  ")?,
-                    head => write!(page, "  {head:<longest$}  ")?,
+                    "" => writeln!(self, "  {cell}")?,
+                    head => writeln!(self, "  {head:<longest$}  {cell}")?,
                 }
-                match mark {
-                    Some(mark) => page.marked(*mark, text),
-                    None => page.write_str(text)?,
-                }
-                writeln!(page)?;
             }
         }
         Ok(())
     }
-}
-
-/// What a verdict's name is.
-pub(crate) fn mark(verdict: &str) -> Mark {
-    match verdict {
-        "holds" => Mark::Good,
-        "misprint" => Mark::Doubtful,
-        "refuted" => Mark::Bad,
-        _ => Mark::Open,
-    }
-}
-
-/// A number with so many significant digits, without trailing zeros.
-pub(crate) fn significant(value: f64, digits: usize) -> String {
-    if !value.is_finite() || value == 0.0 {
-        return format!("{value:.0}");
-    }
-    let places = (digits as f64 - 1.0 - value.abs().log10().floor()).clamp(0.0, digits as f64) as usize;
-    let text = format!("{value:.places$}");
-    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-    if text.trim_matches(['-', '0', '.']).is_empty() { "0".into() } else { text.into() }
 }

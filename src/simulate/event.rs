@@ -3,10 +3,13 @@
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
+use serde::Serialize;
+
 use crate::flight::{Flight, State};
 
 /// What kind of event.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum EventKind {
     /// The follower hits the cam.
     Impact,

@@ -141,7 +141,7 @@ fn claims_routes_and_figures_are_all_there() {
     let ledger = dossier.claims.as_ref().unwrap();
     assert_eq!(between(page, "<li class=\"claim ", ">").len(), ledger.claims.len());
     for verdict in ["holds", "misprint", "refuted", "open"] {
-        let expected = ledger.claims.iter().filter(|claim| claim.verdict == verdict).count();
+        let expected = ledger.claims.iter().filter(|claim| claim.verdict.to_string() == verdict).count();
         assert_eq!(between(page, &format!("data-verdict=\"{verdict}\""), ">").len(), expected, "{verdict}");
     }
     for route in dossier.verification.as_ref().unwrap().routes.keys() {

@@ -25,7 +25,7 @@ pub fn curve_figure(
     for (label, colour, stroke) in KINDS {
         let mut points = Vec::new();
         for ([from, to], happening) in curves.iter().flat_map(ImpactCurve::pieces) {
-            if happening.name() == label {
+            if happening.to_string() == label {
                 points.extend([[from.value, from.rpm], [to.value, to.rpm], [f64::NAN; 2]]);
             }
         }

@@ -91,7 +91,7 @@ pub struct FrameEntry {
 #[derive(Clone, Debug, Serialize)]
 pub struct OrbitFrame {
     /// `before`, `after` or `elsewhere`: where the impact is, seen from the corner.
-    pub place: &'static str,
+    pub place: Place,
     /// Whether it is stable.
     pub stable: bool,
     /// Cam angle of the impact.
@@ -251,7 +251,7 @@ impl OrbitFrame {
         let angle = impact.cam_angle.to_degrees();
         let modulus = multipliers.iter().fold(0.0_f64, |largest, multiplier| largest.max(multiplier.modulus()));
         Self {
-            place: place.name(),
+            place: *place,
             stable: *stable,
             angle_deg: rounded(angle, ANGLE),
             from_corner_deg: rounded((angle - corner_deg + 540.0).rem_euclid(360.0) - 180.0, ANGLE),
@@ -337,7 +337,7 @@ impl Axes {
         let of_runs = frames.iter().flat_map(|frame| frame.slowing.paths.iter().flatten());
         let lifts = cam.iter().map(|point| point[1]);
         let positions = extent(of_orbits.chain(of_runs).map(|point| point[1]).chain(lifts));
-        let beside = orbits().filter(|orbit| orbit.place != Place::Elsewhere.name());
+        let beside = orbits().filter(|orbit| orbit.place != Place::Elsewhere);
         let [first, last] = extent(beside.map(|orbit| corner_deg + orbit.from_corner_deg).chain([corner_deg]));
         // At least a few degrees, so that a corner shows that nothing moves over.
         let reach = 0.12 * (last - first).max(20.0);

@@ -8,6 +8,8 @@ mod change;
 mod run;
 mod walk;
 
+use serde::Serialize;
+
 use crate::model::{Model, ModelError};
 use crate::orbit::{Course, OrbitError, PeriodicOrbit};
 use crate::simulate::SimulateError;
@@ -15,7 +17,8 @@ pub use change::{Cause, Change};
 pub use run::detachment;
 
 /// What a follower does in the long run at one speed.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Regime {
     /// It stays on the cam.
     OnCam,
@@ -29,20 +32,6 @@ pub enum Regime {
     Chaotic,
     /// It does not repeat within the revolutions that were run, and small deviations do not grow.
     Unsettled,
-}
-
-impl Regime {
-    /// Its name in documents.
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::OnCam => "on-cam",
-            Self::Chattering => "chattering",
-            Self::Regular => "regular",
-            Self::Free => "free",
-            Self::Chaotic => "chaotic",
-            Self::Unsettled => "unsettled",
-        }
-    }
 }
 
 /// The long run at one speed.

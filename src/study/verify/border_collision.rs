@@ -3,11 +3,12 @@
 use nalgebra::RowVector2;
 use serde::Serialize;
 
-use crate::border_collision::conditions::Condition;
+use crate::border_collision::conditions::{Condition, Decides};
+use crate::border_collision::feigin::{Scenario, Speeds};
 use crate::border_collision::local_map::PeriodicOrbit;
 use crate::border_collision::long_run::End;
 use crate::border_collision::outcome::{Fate, LocalOutcome};
-use crate::border_collision::validity::Range;
+use crate::border_collision::validity::{Compared, Ends, Range};
 use crate::border_collision::{Classification, NormalForm};
 use crate::corner::map::Eigenvalue;
 use crate::study::verify::document::{EigenvalueEntry, Sides, rows};
@@ -39,13 +40,13 @@ pub struct NormalFormEntry {
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct ClassificationEntry {
     /// The scenario's name.
-    pub scenario: &'static str,
+    pub scenario: Scenario,
     /// Counts.
     pub real_eigenvalues_above_one: Sides<usize>,
     /// Counts.
     pub real_eigenvalues_below_minus_one: Sides<usize>,
     /// Speeds at which each side's fixed point exists.
-    pub fixed_points_exist_for: Sides<&'static str>,
+    pub fixed_points_exist_for: Sides<Speeds>,
     /// Whether an orbit of period two is born: the total below -1 is odd.
     pub period_two_orbit: bool,
     /// Whether each side's fixed point is stable.
@@ -74,7 +75,7 @@ pub struct ConditionEntry {
     /// Why.
     pub reason: &'static str,
     /// `classification`, `stability` or `normal-form`: what rests on it.
-    pub decides: &'static str,
+    pub decides: Decides,
     /// Whether it holds.
     pub holds: bool,
 }
@@ -137,7 +138,7 @@ pub struct EndEntry {
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct RangeEntry {
     /// `one-revolution`, `fixed-point-minus` or `fixed-point-plus`.
-    pub compared: &'static str,
+    pub compared: Compared,
     /// `faster` or `slower`.
     pub speeds: &'static str,
     /// The last change of the period for which it holds, s; 0 where it never does.
@@ -147,7 +148,7 @@ pub struct RangeEntry {
     /// The relative difference there.
     pub difference: Option<f64>,
     /// `tenth`, `other-motion` or `nothing`: what ends the range.
-    pub ends: &'static str,
+    pub ends: Ends,
 }
 
 /// On which side of the corner-impact speed a change of the period lies.
@@ -178,10 +179,10 @@ impl ClassificationEntry {
     pub(crate) fn new(verdict: &Classification, (e, f): (RowVector2<f64>, f64)) -> Self {
         let Classification { scenario, period_two_orbit, minus, plus } = verdict;
         Self {
-            scenario: scenario.name(),
+            scenario: *scenario,
             real_eigenvalues_above_one: Sides { minus: minus.above_one, plus: plus.above_one },
             real_eigenvalues_below_minus_one: Sides { minus: minus.below_minus_one, plus: plus.below_minus_one },
-            fixed_points_exist_for: Sides { minus: minus.exists_for.name(), plus: plus.exists_for.name() },
+            fixed_points_exist_for: Sides { minus: minus.exists_for, plus: plus.exists_for },
             period_two_orbit: *period_two_orbit,
             stable: Sides { minus: minus.stable, plus: plus.stable },
             fixed_point_per_unit_period: Sides { minus: minus.fixed_point.into(), plus: plus.fixed_point.into() },
@@ -195,7 +196,7 @@ impl ConditionEntry {
     pub(crate) fn new(condition: &Condition) -> Self {
         let Condition { name, meaning, value, distance, least, decides } = *condition;
         let (bound, reason) = (least.value, least.reason);
-        let (decides, holds) = (decides.name(), condition.holds());
+        let (decides, holds) = (decides, condition.holds());
         Self { name, meaning, value, distance, least: bound, reason, decides, holds }
     }
 }
@@ -250,13 +251,6 @@ impl EndEntry {
 impl RangeEntry {
     pub(crate) fn new(range: &Range) -> Self {
         let Range { compared, sign, period_change, speed_rpm, difference, ends } = *range;
-        Self {
-            compared: compared.name(),
-            speeds: speeds(sign),
-            period_change_s: period_change,
-            speed_rpm,
-            difference,
-            ends: ends.name(),
-        }
+        Self { compared, speeds: speeds(sign), period_change_s: period_change, speed_rpm, difference, ends }
     }
 }

@@ -12,7 +12,7 @@ use crate::border_collision::Refusal;
 use crate::corner::CornerImpact;
 use crate::corner::map::{CornerMap, Eigenvalue, Route, SideMap, Uncertainty};
 use crate::model::Model;
-use crate::published::PrintedNumber;
+use crate::published::{PrintedNumber, Verdict};
 use crate::study::verify::border_collision::{
     ClassificationEntry, ConditionEntry, NormalFormEntry, OutcomeEntry, RangeEntry,
 };
@@ -208,7 +208,7 @@ pub struct PublishedEntry {
     /// Whether it is below.
     pub agrees: bool,
     /// `holds`, `misprint` or `refuted`.
-    pub verdict: &'static str,
+    pub verdict: Verdict,
     /// What is wrong.
     pub note: &'static str,
     /// Whether the comparison came out as the verdict says.
@@ -358,7 +358,7 @@ impl PublishedEntry {
             tolerance: agreement.bound.value,
             reason: agreement.bound.reason,
             agrees: agreement.agrees,
-            verdict: verdict.name(),
+            verdict,
             note,
             as_found,
         }

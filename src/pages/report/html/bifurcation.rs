@@ -2,6 +2,9 @@
 
 use maud::{Markup, html};
 
+use crate::border_collision::feigin::{Scenario, Speeds};
+use crate::show::words;
+
 use crate::pages::report::dossier::Dossier;
 use crate::pages::report::html::numbers::{complex, fixed, matrix, number, size, symbol};
 use crate::pages::report::html::{Section, wide};
@@ -39,24 +42,17 @@ fn eigenvalues(found: &Verification) -> Markup {
 }
 
 fn classification(kind: &ClassificationEntry) -> Markup {
-    let meaning = match kind.scenario {
-        "nonsmooth-fold" => {
-            "The two fixed points of the local map meet at the corner impact and vanish: a motion that follows one of them \
-             has nowhere to go."
-        }
-        "nonsmooth-flip" => "The fixed point crosses from one side to the other, and an orbit of period two is born.",
-        _ => "The fixed point crosses from one side to the other and lives on.",
-    };
+    let meaning = words::meaning(kind.scenario);
     let row = |name: &'static str, minus: Markup, plus: Markup| {
         html! { tr { th scope="row" { (name) } td { (minus) } td { (plus) } } }
     };
     let above = &kind.real_eigenvalues_above_one;
     let below = &kind.real_eigenvalues_below_minus_one;
     let stable = |stable: bool| html! { @if stable { "stable" } @else { "unstable" } };
-    let speeds = |speeds: &str| html! { (speeds) " than at the corner impact" };
+    let speeds = |speeds: Speeds| html! { (speeds) " than at the corner impact" };
     html! {
-        p.verdict { "A " (kind.scenario.replace('-', " ")) "." }
-        p { (meaning) @if kind.period_two_orbit && kind.scenario != "nonsmooth-flip" { " An orbit of period two is born too." } }
+        p.verdict { "A " (words::spoken(&kind.scenario.to_string())) "." }
+        p { (meaning) @if kind.period_two_orbit && kind.scenario != Scenario::NonsmoothFlip { " An orbit of period two is born too." } }
         (wide("Feigin's classification", &html! {
             table {
                 caption { "Feigin's counts, and the fixed point of each side" }
@@ -93,7 +89,7 @@ fn conditions(found: &Verification) -> Markup {
                         tr.disagrees[!condition.holds] {
                             th scope="row" { (condition.name) } td.n { (number(condition.value, 6)) } td.n { (size(condition.distance)) }
                             td { @if condition.holds { "yes" } @else { "no" } } td.words { (condition.meaning) }
-                            td { (condition.decides.replace('-', " ")) }
+                            td { (words::decides(condition.decides)) }
                         }
                     }
                 }
@@ -177,17 +173,8 @@ fn end_words(end: &EndEntry) -> Markup {
 }
 
 fn range_row(range: &RangeEntry) -> Markup {
-    let what = match range.compared {
-        "one-revolution" => "one revolution from the orbit",
-        "fixed-point-minus" => "the fixed point before the corner",
-        _ => "the fixed point after the corner",
-    };
-    let ends = match (range.ends, range.difference) {
-        (_, None) => "holds nowhere",
-        ("tenth", _) => "a tenth",
-        ("other-motion", _) => "the end of the real motion",
-        _ => "nothing that was tried",
-    };
+    let what = words::compared(range.compared);
+    let ends = if range.difference.is_none() { "holds nowhere" } else { words::ends(range.ends) };
     html! {
         tr {
             th scope="row" { (what) } td { (range.speeds) } td.n { (fixed(range.speed_rpm, 6)) } td.n { (size(range.period_change_s)) }

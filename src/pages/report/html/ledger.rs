@@ -6,11 +6,9 @@ use maud::{Markup, html};
 
 use crate::pages::report::dossier::Dossier;
 use crate::pages::report::html::Section;
+use crate::published::Verdict;
 
-/// Verdicts in the order of the filter: what to read first in front.
-const VERDICTS: [&str; 4] = ["refuted", "misprint", "open", "holds"];
-
-pub(crate) fn badge(verdict: &str) -> Markup {
+pub(crate) fn badge(verdict: Verdict) -> Markup {
     html! { span class={ "badge " (verdict) } { (verdict) } }
 }
 
@@ -30,12 +28,6 @@ fn anchors<'a>(ids: impl Iterator<Item = &'a str>) -> Vec<String> {
 
 pub(crate) fn section(dossier: &Dossier) -> Option<Section> {
     let ledger = dossier.claims.as_ref()?;
-    let counts = |verdict: &str| match verdict {
-        "refuted" => ledger.counts.refuted,
-        "misprint" => ledger.counts.misprint,
-        "open" => ledger.counts.open,
-        _ => ledger.counts.holds,
-    };
     let anchors = anchors(ledger.claims.iter().map(|claim| claim.id.as_str()));
     let body = html! {
         p {
@@ -48,10 +40,10 @@ pub(crate) fn section(dossier: &Dossier) -> Option<Section> {
             fieldset {
                 legend { "Verdict" }
                 label { input type="radio" name="verdict" value="all" id="verdict-all" checked; " all (" (ledger.claims.len()) ")" }
-                @for verdict in VERDICTS {
+                @for (verdict, count) in ledger.groups() {
                     label {
                         input type="radio" name="verdict" value=(verdict) id={ "verdict-" (verdict) };
-                        " " (verdict) " (" (counts(verdict)) ")"
+                        " " (verdict) " (" (count) ")"
                     }
                 }
             }

@@ -6,6 +6,7 @@ use crate::pages::report::dossier::Dossier;
 use crate::pages::report::html::numbers::fixed;
 use crate::pages::report::html::{Section, wide};
 use crate::pages::speeds::{RegimesDocument, StretchEntry};
+use crate::show::words;
 
 pub(crate) fn section(dossier: &Dossier) -> Section {
     let body = match (&dossier.speeds, &dossier.no_speeds) {
@@ -28,7 +29,7 @@ fn regimes(found: &RegimesDocument) -> Markup {
             table {
                 tbody {
                     @for entry in &found.regimes {
-                        tr { th scope="row" { (words(entry.regime)) } td { (ranges(&entry.ranges)) } }
+                        tr { th scope="row" { (words::regime(entry.regime)) } td { (ranges(&entry.ranges)) } }
                     }
                     @if !found.hysteresis.is_empty() {
                         @let both = found.hysteresis_ranges();
@@ -51,17 +52,6 @@ fn ranges(ranges: &[[f64; 2]]) -> Markup {
             span.number { (fixed(*low, 2)) "–" (fixed(*high, 2)) }
         }
         " rpm"
-    }
-}
-
-fn words(regime: &str) -> &'static str {
-    match regime {
-        "on-cam" => "stays on the cam",
-        "chattering" => "chatters and sticks",
-        "regular" => "bounces regularly",
-        "chaotic" => "is chaotic",
-        "free" => "never meets the cam",
-        _ => "has no period that was found",
     }
 }
 

@@ -26,7 +26,7 @@ pub(crate) fn section(dossier: &Dossier) -> Section {
                     "The corner impact is at " strong { (fixed(found.corner_impact.speed_rpm, 6)) " rpm" }
                     @if let Some(angle) = dossier.corner_deg { ", where the cam has turned by " (fixed(angle, 4)) "°" }
                     @match &found.classification {
-                        Some(kind) => { ". It is a " strong { (kind.scenario.replace('-', " ")) } "." }
+                        Some(kind) => { ". It is a " strong { (spoken(&kind.scenario.to_string())) } "." }
                         None => { ". It has no classification." }
                     }
                 }

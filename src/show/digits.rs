@@ -1,0 +1,97 @@
+//! Numbers as digits: how many are shown is said once, and every page writes them alike.
+
+use maud::{Markup, html};
+
+use crate::tolerance;
+
+/// How many digits of a number are shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Digits {
+    /// So many significant digits, without trailing zeros.
+    Significant(usize),
+    /// So many significant digits, trailing zeros among them, so that numbers can be read against one another.
+    Aligned(usize),
+    /// So many places after the point.
+    Fixed(usize),
+    /// So many places after the point, without trailing zeros.
+    UpTo(usize),
+    /// So many significant digits and a power of ten.
+    Power(usize),
+    /// Two digits: of a difference or a bound the size is all that matters.
+    Size,
+    /// Nine digits, or six and a power of ten where zeros would take the place of digits.
+    Short,
+    /// As many as it takes to read back the same number.
+    All,
+}
+
+impl Digits {
+    /// As a terminal and a file of text have it: `-1.5e-9`.
+    pub fn text(self, value: f64) -> String {
+        match self {
+            _ if !value.is_finite() => format!("{value}"),
+            // Rounding's rest of a zero, or its sign, tells nothing.
+            Self::Short if value.abs() < tolerance::DISPLAYED_ZERO.value => "0".into(),
+            Self::Short if is_plain(value) => Self::Significant(9).text(value),
+            Self::Short => Self::Power(6).text(value),
+            // A column of a terminal is narrow: no more places than digits.
+            Self::Significant(digits) => trimmed(&format!("{value:.*}", places(value, digits).min(digits))),
+            Self::Aligned(digits) if value == 0.0 || is_plain(value) => {
+                without_sign_of_zero(format!("{value:.*}", places(value, digits)))
+            }
+            Self::Aligned(digits) | Self::Power(digits) => format!("{value:.*e}", digits.saturating_sub(1)),
+            Self::Fixed(places) => without_sign_of_zero(format!("{value:.places$}")),
+            Self::UpTo(places) => trimmed(&format!("{value:.places$}")),
+            Self::Size => Self::Power(2).text(value),
+            Self::All => format!("{value}"),
+        }
+    }
+
+    /// As a page for a browser has it, with all digits in the value of a `data` element.
+    pub fn markup(self, value: f64) -> Markup {
+        html! { @if value.is_finite() { data value=(value) { (typeset(&self.typed(value))) } } @else { (value) } }
+    }
+
+    /// The digits of [`Digits::markup`], before they are set: there is room for all places of a small number.
+    pub(crate) fn typed(self, value: f64) -> String {
+        match self {
+            Self::Significant(_) if value.abs() < tolerance::DISPLAYED_ZERO.value => "0".into(),
+            Self::Size if value == 0.0 => "0".into(),
+            Self::Size if (0.01..100.0).contains(&value.abs()) => trimmed(&format!("{value:.*}", places(value, 2))),
+            Self::Significant(digits) if is_plain(value) => trimmed(&format!("{value:.*}", places(value, digits))),
+            Self::Significant(digits) => Self::Power(digits).text(value),
+            Self::All if value != 0.0 && !is_plain(value) => format!("{value:e}"),
+            _ => self.text(value),
+        }
+    }
+}
+
+/// Digits as print has them: a minus as wide as a plus, a power of ten above the line.
+pub(crate) fn typeset(text: &str) -> Markup {
+    let signed = |text: &str| text.replace('-', "\u{2212}");
+    html! {
+        @match text.split_once('e') {
+            Some((mantissa, exponent)) => { (signed(mantissa)) "\u{202f}×\u{202f}10" sup { (signed(exponent)) } }
+            None => (signed(text))
+        }
+    }
+}
+
+/// Whether a number is written without a power of ten: few zeros stand before or behind its digits.
+fn is_plain(value: f64) -> bool {
+    (-4.0..9.0).contains(&value.abs().log10())
+}
+
+/// The places after the point at which a number has so many significant digits.
+fn places(value: f64, digits: usize) -> usize {
+    if value == 0.0 { 0 } else { (digits as f64 - 1.0 - value.abs().log10().floor()).max(0.0) as usize }
+}
+
+fn trimmed(text: &str) -> String {
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text };
+    without_sign_of_zero(text.into())
+}
+
+fn without_sign_of_zero(text: String) -> String {
+    if text.bytes().any(|letter| (b'1'..=b'9').contains(&letter)) { text } else { text.trim_start_matches('-').into() }
+}

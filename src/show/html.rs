@@ -1,0 +1,106 @@
+//! Blocks in a browser: tables whose heads are told as such, in boxes that scroll by themselves.
+
+use maud::{Markup, html};
+
+use crate::show::block::{Block, Column, Mark, Span, Symbol, Table, Words};
+use crate::show::digits::{Digits, typeset};
+
+/// Blocks one after the other.
+pub fn blocks(blocks: &[Block]) -> Markup {
+    html! { @for block in blocks { (self::block(block)) } }
+}
+
+fn block(block: &Block) -> Markup {
+    html! {
+        @match block {
+            Block::Title(text) => h1 { (words(text)) }
+            Block::Heading(text) => h3 { (words(text)) }
+            Block::Paragraph(_, text) => p { (words(text)) }
+            Block::Note(text) => p.note { (words(text)) }
+            Block::Entries(_, entries) => table.entries {
+                tbody { @for (name, text) in entries { tr { th scope="row" { (words(name)) } td { (words(text)) } } } }
+            }
+            Block::Table(table) => (self::table(table)),
+            Block::List(items) => ul { @for item in items { li { (words(item)) } } }
+            Block::Details(summary, inside) => details { summary { (words(summary)) } (blocks(inside)) }
+            Block::Full(inside) => (blocks(inside)),
+            Block::Markup(markup) => (markup),
+            Block::Brief(_) | Block::Gap => {}
+        }
+    }
+}
+
+/// A block that may be wider than the page, in a box that scrolls by itself.
+pub fn wide(label: &str, body: &Markup) -> Markup {
+    html! { div.wide role="region" aria-label=(label) tabindex="0" { (body) } }
+}
+
+fn table(table: &Table) -> Markup {
+    let number = |index: usize| table.columns.get(index).filter(|column| !column.left).map(|_| "n");
+    let headed = table.columns.iter().any(|column| !column.head.is_empty());
+    let head =
+        |column: &Column| html! { th class=[(!column.left).then_some("n")] scope="col" { (words(&column.head)) } };
+    wide(
+        &table.label,
+        &html! {
+            table {
+                caption { (table.label) }
+                @if headed { thead { tr { @for column in &table.columns { (head(column)) } } } }
+                tbody {
+                    @for row in &table.rows {
+                        tr.disagrees[row.is_bad] {
+                            @for (index, cell) in row.cells.iter().enumerate() {
+                                @if index == 0 { th class=[number(0)] scope="row" { (words(cell)) } }
+                                @else { td class=[number(index)] { (words(cell)) } }
+                            }
+                        }
+                    }
+                }
+            }
+        },
+    )
+}
+
+/// Words as a browser has them.
+pub fn words(words: &Words) -> Markup {
+    html! { @for span in &words.0 { (self::span(span)) } }
+}
+
+fn span(span: &Span) -> Markup {
+    html! {
+        @match span {
+            Span::Text(text) => (text),
+            Span::Number(value, digits) => (digits.markup(*value)),
+            Span::Complex([re, im], digits) => span.number {
+                (digits.markup(*re))
+                @if *im != 0.0 {
+                    @let sign = if *im < 0.0 { " \u{2212} " } else { " + " };
+                    (sign) data value=(im) { (typeset(&digits.typed(im.abs()))) } "\u{202f}i"
+                }
+            },
+            Span::Against(value, other, digits) => (against(*value, *other, *digits)),
+            Span::Symbol(Symbol { letter, below, above, .. }) => span.symbol {
+                i { (letter) } @if !below.is_empty() { sub { (below) } } @if !above.is_empty() { sup { (above) } }
+            },
+            Span::Matrix(rows, digits) => table.matrix {
+                tbody { @for row in rows { tr { @for entry in row { td { (digits.markup(*entry)) } } } } }
+            },
+            Span::Code(text) => code { (text) },
+            Span::Marked(Mark::Strong | Mark::Heading, text) => strong { (text) },
+            Span::Marked(Mark::Good, text) => span.good { (text) },
+            Span::Marked(Mark::Bad, text) => span.bad { (text) },
+            Span::Marked(Mark::Doubtful, text) => span.doubtful { (text) },
+            Span::Marked(Mark::Open, text) => span.open { (text) },
+            Span::Break => br;
+        }
+    }
+}
+
+/// A number with those digits underlined in which it is not the other one.
+fn against(value: f64, other: f64, digits: Digits) -> Markup {
+    let (text, other) = (digits.typed(value), digits.typed(other));
+    let same: usize =
+        text.chars().zip(other.chars()).take_while(|(one, two)| one == two).map(|(one, _)| one.len_utf8()).sum();
+    let (head, tail) = text.split_at(same);
+    html! { data value=(value) { (typeset(head)) @if !tail.is_empty() { u { (typeset(tail)) } } } }
+}

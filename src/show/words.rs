@@ -1,0 +1,128 @@
+//! Enums as words: what each value is called on a page, once.
+//!
+//! The names of values in JSON and in tables are what the values serialize as, and a value is written by that name.
+
+use crate::border_collision::conditions::Decides;
+use crate::border_collision::feigin::{Scenario, Speeds};
+use crate::border_collision::long_run::End;
+use crate::border_collision::validity::{Compared, Ends};
+use crate::cam::Side;
+use crate::published::Verdict;
+use crate::show::block::{Mark, Symbol, Words, words};
+use crate::show::digits::Digits;
+use crate::study::speeds::Regime;
+
+/// A name with spaces for its hyphens and underscores.
+pub fn spoken(name: &str) -> String {
+    name.replace(['_', '-'], " ")
+}
+
+/// A verdict of the ledger, standing out as what it is.
+pub fn verdict(verdict: Verdict) -> Words {
+    (mark(verdict), verdict.to_string().as_str()).into()
+}
+
+/// What a verdict of the ledger is.
+pub fn mark(verdict: Verdict) -> Mark {
+    match verdict {
+        Verdict::Holds => Mark::Good,
+        Verdict::Misprint => Mark::Doubtful,
+        Verdict::Refuted => Mark::Bad,
+        Verdict::Open => Mark::Open,
+    }
+}
+
+/// What a border collision does.
+pub fn meaning(scenario: Scenario) -> &'static str {
+    match scenario {
+        Scenario::Persistence => "the fixed point crosses from one side to the other and lives on",
+        Scenario::NonsmoothFold => {
+            "the two fixed points meet at omega* = 60/T* rpm and vanish: a motion that follows one of them has nowhere to go"
+        }
+        Scenario::NonsmoothFlip => {
+            "the fixed point crosses from one side to the other, and an orbit of period two is born"
+        }
+    }
+}
+
+/// Stable or not.
+pub fn stability(stable: bool) -> &'static str {
+    if stable { "stable" } else { "unstable" }
+}
+
+/// Speeds on one side of that of the corner impact, or that speed.
+pub fn speeds(speeds: Option<Speeds>) -> &'static str {
+    match speeds {
+        Some(Speeds::Faster) => "faster than omega*",
+        Some(Speeds::Slower) => "slower than omega*",
+        None => "at omega*",
+    }
+}
+
+/// Where the impact is, on a side of the corner.
+pub fn side(side: Side) -> &'static str {
+    match side {
+        Side::Minus => "impact before the corner",
+        Side::Plus => "impact after the corner",
+    }
+}
+
+/// What rests on a condition.
+pub fn decides(decides: Decides) -> &'static str {
+    match decides {
+        Decides::Classification => "classification",
+        Decides::Stability => "stability",
+        Decides::NormalForm => "normal form",
+    }
+}
+
+/// What a prediction of the local map is of.
+pub fn compared(compared: Compared) -> &'static str {
+    match compared {
+        Compared::OneRevolution => "a turn from x*",
+        Compared::FixedPointMinus => "fixed point minus",
+        Compared::FixedPointPlus => "fixed point plus",
+    }
+}
+
+/// What ends the range of a prediction, behind where it ends.
+pub fn ends(ends: Ends) -> &'static str {
+    match ends {
+        Ends::Tenth => "",
+        Ends::OtherMotion => ", where the real motion ends",
+        Ends::Nothing => ", as far as was tried",
+    }
+}
+
+/// Where motions of the local map end.
+pub fn end(end: &End) -> Words {
+    let growth = |what: &str, value, error| {
+        let four = Digits::Fixed(4);
+        words![what, ", Lyapunov exponent ", (value, four), " +- ", (error, four), " a turn"]
+    };
+    match end {
+        End::Periodic(orbit) if end.fixed_on().is_some() => format!("on the fixed point {}", orbit.word).into(),
+        End::Periodic(orbit) => format!("on the orbit {}", orbit.word).into(),
+        End::Chaotic(exponent) => growth("chaotic", exponent.value, exponent.error),
+        End::Undecided(exponent) => growth("bounded and undecided", exponent.value, exponent.error),
+        End::Corner => "to the corner impact".into(),
+        End::Escapes(_) => format!("without bound ({})", end.basis()).into(),
+    }
+}
+
+/// What the follower does at a speed.
+pub fn regime(regime: Regime) -> &'static str {
+    match regime {
+        Regime::OnCam => "stays on the cam",
+        Regime::Chattering => "chatters and sticks",
+        Regime::Regular => "bounces regularly",
+        Regime::Chaotic => "chaotic",
+        Regime::Free => "never meets the cam",
+        Regime::Unsettled => "not settled",
+    }
+}
+
+/// A letter with what is below and above it, for a browser, and as a terminal writes it.
+pub fn symbol(plain: &str, letter: &'static str, below: &str, above: &'static str) -> Symbol {
+    Symbol { plain: plain.into(), letter, below: below.into(), above }
+}
