@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         println!("  impact {side} the corner: {}, {}", written(first), written(second));
     }
     match (&found.classification, &found.refusal) {
-        (Some(verdict), _) => println!("  {}", verdict.scenario.name()),
+        (Some(verdict), _) => println!("  {}", verdict.scenario),
         (None, Some(refusal)) => println!("  not classified: {refusal}"),
         (None, None) => println!("  not classified"),
     }

@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let [first, second] = side.eigenvalues().map(|value| value.modulus());
             format!("{first:.4}, {second:.4}")
         };
-        let verdict = found.classification.as_ref().map_or("-", |verdict| verdict.scenario.name());
+        let verdict = found.classification.as_ref().map_or("-".into(), |verdict| verdict.scenario.to_string());
         println!(
             "{restitution:11.2}  {:10.4}  {:>20}  {:>14}  {verdict:>16}",
             found.at.speed_rpm(),

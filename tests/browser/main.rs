@@ -84,7 +84,7 @@ fn assert_shows(page: &mut Page, index: usize) {
     assert_eq!(rows.len(), frame.orbits.len(), "frame {index}");
     for (row, orbit) in rows.iter().zip(&frame.orbits) {
         assert_eq!(row[0], if orbit.stable { "stable" } else { "unstable" });
-        assert!(row[1].as_str().unwrap().starts_with(orbit.place), "{row}");
+        assert!(row[1].as_str().unwrap().starts_with(&orbit.place.to_string()), "{row}");
         assert_eq!(row[2], fixed(orbit.angle_deg, 4));
         assert_eq!(row[3], fixed(orbit.from_corner_deg, 4));
         assert_eq!(row[4], fixed(orbit.velocity_before_m_s, places.velocity as usize));
@@ -238,7 +238,7 @@ fn the_ledger_is_filtered_by_verdict_and_words_and_linked_to() {
     assert_eq!(visible(&mut page), ledger.claims.len());
     for verdict in ["holds", "misprint", "refuted", "open"] {
         page.click(&format!("#verdict-{verdict}"));
-        let expected = ledger.claims.iter().filter(|claim| claim.verdict == verdict).count();
+        let expected = ledger.claims.iter().filter(|claim| claim.verdict.to_string() == verdict).count();
         assert_eq!(visible(&mut page), expected, "{verdict}");
         let others = format!(
             "[...document.querySelectorAll('.claim')].filter((claim) => claim.getClientRects().length && claim.dataset.verdict !== '{verdict}').length"

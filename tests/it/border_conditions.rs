@@ -39,10 +39,10 @@ fn feigins_counts_say_what_the_orbits_do() {
             let [l, r, two] = ["L", "R", "LR"].map(|text| [there(text, 1.0), there(text, -1.0)]);
             let case = format!("traces {t_l} {t_r}, determinants {d_l} {d_r}: {verdict:?}");
             assert!(l[0] != l[1] && r[0] != r[1], "{case}");
-            assert_eq!(verdict.scenario.name() == "nonsmooth-fold", l == r, "{case}");
+            assert_eq!(verdict.scenario.to_string() == "nonsmooth-fold", l == r, "{case}");
             assert_eq!(verdict.period_two_orbit, two[0] != two[1], "{case}");
             assert!(!(two[0] && two[1]), "{case}");
-            *seen.entry(verdict.scenario.name()).or_insert(0) += 1;
+            *seen.entry(verdict.scenario.to_string()).or_insert(0) += 1;
         }
     }
     assert!(seen.len() == 3 && seen.values().all(|count| *count > 100), "{seen:?}");

@@ -163,7 +163,10 @@ fn orbits_exist_where_the_classification_says() {
     };
     let (slower, faster) = (count(located.at.speed_rpm() - 0.01), count(located.at.speed_rpm() + 0.01));
     let expected = |name: &str| {
-        [verdict.minus.exists_for.name(), verdict.plus.exists_for.name()].iter().filter(|side| **side == name).count()
+        [verdict.minus.exists_for.to_string(), verdict.plus.exists_for.to_string()]
+            .iter()
+            .filter(|side| **side == name)
+            .count()
     };
     assert_eq!((slower, faster), (expected("slower"), expected("faster")));
     assert_eq!(slower + faster, 2);

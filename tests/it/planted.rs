@@ -97,7 +97,7 @@ fn known_maps_are_classified_by_trace_and_determinant() {
             let border = (map.c() * sign, map.d() * sign);
             let verdict = classify(&map, border).unwrap();
             let case = format!("{traces:?} {determinants:?} {sign}");
-            assert_eq!(verdict.scenario.name(), scenario, "{case}");
+            assert_eq!(verdict.scenario.to_string(), scenario, "{case}");
             let found = [
                 verdict.minus.above_one,
                 verdict.plus.above_one,
@@ -106,8 +106,8 @@ fn known_maps_are_classified_by_trace_and_determinant() {
             ];
             assert_eq!(found, counts, "{case}");
             assert_eq!(verdict.period_two_orbit, period_two, "{case}");
-            assert_eq!(verdict.minus.exists_for.name(), exists_for(&map, border, true), "{case}");
-            assert_eq!(verdict.plus.exists_for.name(), exists_for(&map, border, false), "{case}");
+            assert_eq!(verdict.minus.exists_for.to_string(), exists_for(&map, border, true), "{case}");
+            assert_eq!(verdict.plus.exists_for.to_string(), exists_for(&map, border, false), "{case}");
             // Feigin's counts and the fixed points' own places must tell the same story.
             let same_side = verdict.minus.exists_for == verdict.plus.exists_for;
             assert_eq!(same_side, scenario == "nonsmooth-fold", "{case}");

@@ -77,8 +77,8 @@ fn fixed_points_matrices_eigenvalues_and_normal_forms() {
                 "C_bar": kept(form.c_bar.as_slice()),
             },
             "classification": {
-                "scenario": verdict.scenario.name(),
-                "fixed_points_exist_for": [verdict.minus.exists_for.name(), verdict.plus.exists_for.name()],
+                "scenario": verdict.scenario,
+                "fixed_points_exist_for": [verdict.minus.exists_for, verdict.plus.exists_for],
                 "stable": [verdict.minus.stable, verdict.plus.stable],
             },
             "local_map_from_the_corner_impact": {
