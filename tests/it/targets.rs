@@ -6,6 +6,7 @@
 
 use crate::common;
 use approx::assert_relative_eq;
+use corner_impact::border_collision::feigin::{Scenario, Speeds};
 use corner_impact::corner::closed_form;
 use corner_impact::study::verify::{External, Findings, verify};
 
@@ -91,10 +92,10 @@ fn eigenvalues_and_normal_form() {
 #[test]
 fn the_classification() {
     let verdict = findings().classification.unwrap();
-    assert_eq!(verdict.scenario.name(), "nonsmooth-fold");
+    assert_eq!(verdict.scenario, Scenario::NonsmoothFold);
     assert_eq!((verdict.minus.above_one, verdict.plus.above_one), (1, 0));
     assert_eq!((verdict.minus.below_minus_one, verdict.plus.below_minus_one), (0, 0));
-    assert_eq!((verdict.minus.exists_for.name(), verdict.plus.exists_for.name()), ("faster", "faster"));
+    assert_eq!((verdict.minus.exists_for, verdict.plus.exists_for), (Speeds::Faster, Speeds::Faster));
     assert_eq!((verdict.minus.stable, verdict.plus.stable), (false, true));
     meets(&[verdict.minus.determinant], &[-0.00186993642955521279]);
     meets(&[verdict.plus.determinant], &[0.268578558559188212]);
