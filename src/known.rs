@@ -1,0 +1,19 @@
+//! How a result is known: the word that every result carries, in documents and on pages.
+
+use serde::Serialize;
+
+/// How a result is known; the strongest first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Known {
+    /// By algebra, or by enclosures that leave no case out.
+    Proved,
+    /// By a computation in rounded numbers, held against a tolerance.
+    Computed,
+    /// By computations for some cases out of many; what lies between the cases is not looked at.
+    Sampled,
+    /// By somebody who read it; nothing was computed.
+    Read,
+}
+
+named!(Known);
