@@ -15,7 +15,7 @@ use crate::tolerance::Comparison;
 const PRINTED: &str = include_str!("../golden/published/osorio-2008.json");
 
 /// What was found about a printed number or a statement.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
     /// It is right.
@@ -29,6 +29,11 @@ pub enum Verdict {
 }
 
 named!(Verdict);
+
+impl Verdict {
+    /// All of them, the ones to read first in front.
+    pub(crate) const WORST_FIRST: [Self; 4] = [Self::Refuted, Self::Misprint, Self::Open, Self::Holds];
+}
 
 /// A printed number beside the computed one.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,9 +2,9 @@
 
 use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
 use crate::cam::Cam;
-use crate::pages::ClaimsDocument;
-use crate::paper::{Context, hold_watched};
-use crate::show::json;
+use crate::pages;
+use crate::paper::{Claims, Context};
+use crate::show::{Page, json, markdown};
 use crate::study::verify::{External, verify_watched};
 
 /// Prints what the paper states, statement by statement, with a verdict and its evidence.
@@ -32,13 +32,19 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let findings = verify_watched(&model, External::LeftOut, &progress).map_err(CommandError::input)?;
     let cam = Cam::new(&model).map_err(CommandError::input)?;
     let context = Context::new(&model, &cam, &findings).map_err(CommandError::report)?;
-    let document = ClaimsDocument::new(&model.name, &hold_watched(&context, &progress).map_err(CommandError::report)?);
+    let claims = Claims::hold(&context, &progress).map_err(CommandError::report)?;
     drop(progress);
     let page = match (arguments.json, arguments.markdown) {
-        (true, _) => json::render(&document).map_err(CommandError::report)?,
-        (_, true) => document.markdown().map_err(CommandError::report)?,
-        _ => session.shown(&document.page(session.width()).map_err(CommandError::report)?),
+        (true, _) => json::render(&claims).map_err(CommandError::report)?,
+        (_, true) => {
+            let (lead, sections) = pages::claims::document(&claims);
+            markdown::page(&lead, &sections).map_err(CommandError::report)?
+        }
+        _ => {
+            let page = Page::of(session.width(), &pages::claims::terminal(&claims));
+            session.shown(&page.map_err(CommandError::report)?)
+        }
     };
     session.print(&page)?;
-    Ok(if document.agrees { Exit::Agrees } else { Exit::Disagrees })
+    Ok(if claims.agrees { Exit::Agrees } else { Exit::Disagrees })
 }

@@ -14,7 +14,6 @@ mod verify;
 
 pub use basins::BasinsSummary;
 pub use cam::CamDocument;
-pub use claims::ClaimsDocument;
 pub use locate::LocateDocument;
 pub use orbit::OrbitDocument;
 pub use report::Dossier;

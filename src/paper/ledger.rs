@@ -1,10 +1,12 @@
 //! The ledger: what the paper says, what was found, and whether the check still finds it.
 
-use serde::Deserialize;
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
 
 use super::checks;
 use super::context::{Context, Found, LedgerError};
-use crate::progress::{Unwatched, Watch};
+use crate::progress::Watch;
 use crate::published::Verdict;
 
 /// The statements and the verdicts found.
@@ -27,15 +29,42 @@ pub struct Claim {
     pub correct: Option<String>,
 }
 
-/// A statement beside what its check found.
-#[derive(Clone, Debug, PartialEq)]
+/// A statement with what its check found.
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Held {
-    /// The statement.
-    pub claim: Claim,
+    /// Names the statement.
+    pub id: String,
+    /// Where the paper has it.
+    #[serde(rename = "where")]
+    pub place: String,
+    /// What it says.
+    pub statement: String,
     /// What the check found; `open` for another model where the statement is about the paper's.
-    pub found: Found,
+    pub verdict: Verdict,
+    /// What the ledger says.
+    #[serde(skip)]
+    pub listed: Verdict,
+    /// The numbers that the verdict rests on.
+    pub evidence: String,
+    /// What is right instead, where the check finds it wrong.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub correct: Option<String>,
     /// Whether that is the ledger's verdict, or the statement is not about this model.
     pub as_found: bool,
+}
+
+/// Every statement held against its check: what `claims` finds; serializes to `corner-impact/claims/1`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Claims {
+    schema: &'static str,
+    /// Name of the model.
+    pub model: String,
+    /// Every statement.
+    pub claims: Vec<Held>,
+    /// How many statements have each verdict.
+    pub counts: BTreeMap<Verdict, usize>,
+    /// Whether every check comes to the ledger's verdict.
+    pub agrees: bool,
 }
 
 #[derive(Deserialize)]
@@ -49,22 +78,32 @@ pub fn claims() -> Result<Vec<Claim>, LedgerError> {
     Ok(ledger.claim)
 }
 
-/// Holds every statement against its check.
-pub fn hold(context: &Context<'_>) -> Result<Vec<Held>, LedgerError> {
-    hold_watched(context, &Unwatched)
-}
+impl Claims {
+    /// Holds every statement against its check, told to `watch` statement by statement.
+    pub fn hold(context: &Context<'_>, watch: &dyn Watch) -> Result<Self, LedgerError> {
+        let claims = claims()?;
+        let total = claims.len() as u64;
+        let mut counts = Verdict::WORST_FIRST.map(|verdict| (verdict, 0)).into_iter().collect::<BTreeMap<_, _>>();
+        let one = |(done, claim): (usize, Claim)| {
+            watch.at(&claim.id, done as u64, total);
+            let check = checks::find(&claim.id).ok_or_else(|| LedgerError::Unchecked(claim.id.clone()))?;
+            let Found { verdict, evidence } = check.run(context);
+            let elsewhere = !context.is_paper && check.is_about_the_papers_model() && verdict == Verdict::Open;
+            let as_found = verdict == claim.verdict || elsewhere;
+            let correct = claim.correct.filter(|_| matches!(verdict, Verdict::Misprint | Verdict::Refuted));
+            *counts.entry(verdict).or_default() += 1;
+            let Claim { id, place, statement, verdict: listed, .. } = claim;
+            Ok(Held { id, place, statement, verdict, listed, evidence, correct, as_found })
+        };
+        let claims = claims.into_iter().enumerate().map(one).collect::<Result<Vec<_>, LedgerError>>()?;
+        let agrees = claims.iter().all(|held| held.as_found);
+        Ok(Self { schema: "corner-impact/claims/1", model: context.model.name.clone(), claims, counts, agrees })
+    }
 
-/// The same, told to `watch` statement by statement.
-pub fn hold_watched(context: &Context<'_>, watch: &dyn Watch) -> Result<Vec<Held>, LedgerError> {
-    let claims = claims()?;
-    let total = claims.len() as u64;
-    let one = |(done, claim): (usize, Claim)| {
-        watch.at(&claim.id, done as u64, total);
-        let check = checks::find(&claim.id).ok_or_else(|| LedgerError::Unchecked(claim.id.clone()))?;
-        let found = check.run(context);
-        let elsewhere = !context.is_paper && check.is_about_the_papers_model() && found.verdict == Verdict::Open;
-        let as_found = found.verdict == claim.verdict || elsewhere;
-        Ok(Held { claim, found, as_found })
-    };
-    claims.into_iter().enumerate().map(one).collect()
+    /// The verdicts, the ones to read first in front, each with its statements.
+    pub(crate) fn groups(&self) -> impl Iterator<Item = (Verdict, Vec<&Held>)> {
+        Verdict::WORST_FIRST
+            .into_iter()
+            .map(|verdict| (verdict, self.claims.iter().filter(|held| held.verdict == verdict).collect()))
+    }
 }

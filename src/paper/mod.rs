@@ -12,4 +12,4 @@ pub mod ledger;
 pub mod statements;
 
 pub use context::{Context, Found, LedgerError};
-pub use ledger::{Claim, Held, hold, hold_watched};
+pub use ledger::{Claim, Claims, Held};

@@ -5,32 +5,54 @@ use std::fmt::{self, Write};
 use crate::show::block::{Block, Section, Span, Table, Words};
 use crate::show::page;
 
+/// A page: what stands before its sections, and these.
+pub fn page(lead: &[Block], sections: &[Section]) -> Result<String, fmt::Error> {
+    let mut out = String::new();
+    blocks(&mut out, lead)?;
+    for section in sections {
+        after_a_gap(&mut out)?;
+        writeln!(out, "## {}", text(&section.title))?;
+        blocks(&mut out, &section.blocks)?;
+    }
+    Ok(out)
+}
+
+/// An empty line between two blocks.
+fn after_a_gap(out: &mut String) -> fmt::Result {
+    if out.is_empty() { Ok(()) } else { writeln!(out) }
+}
+
 /// Blocks one after the other.
-pub fn blocks(out: &mut String, blocks: &[Block]) -> fmt::Result {
-    blocks.iter().try_for_each(|block| match block {
-        Block::Title(words) => writeln!(out, "# {}\n", text(words)),
-        Block::Heading(words) => writeln!(out, "\n### {}\n", text(words)),
-        Block::Paragraph(_, words) | Block::Note(words) => writeln!(out, "{}\n", text(words)),
+fn blocks(out: &mut String, blocks: &[Block]) -> fmt::Result {
+    for block in blocks {
+        match block {
+            Block::Full(inside) => self::blocks(out, inside)?,
+            Block::Brief(_) | Block::Gap | Block::Markup(_) => {}
+            block => {
+                after_a_gap(out)?;
+                self::block(out, block)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn block(out: &mut String, block: &Block) -> fmt::Result {
+    match block {
+        Block::Title(words) => writeln!(out, "# {}", text(words)),
+        Block::Heading(words) => writeln!(out, "### {}", text(words)),
+        Block::Paragraph(_, words) | Block::Note(words) => writeln!(out, "{}", text(words)),
         Block::Entries(_, entries) => {
             entries.iter().try_for_each(|(name, words)| writeln!(out, "- {}: {}", text(name), text(words)))
         }
         Block::Table(table) => self::table(out, table),
         Block::List(items) => items.iter().try_for_each(|words| writeln!(out, "- {}", text(words))),
         Block::Details(summary, inside) => {
-            writeln!(out, "{}\n", text(summary))?;
-            self::blocks(out, inside)
+            writeln!(out, "{}", text(summary))?;
+            blocks(out, inside)
         }
-        Block::Full(inside) => self::blocks(out, inside),
-        Block::Brief(_) | Block::Gap | Block::Markup(_) => Ok(()),
-    })
-}
-
-/// Sections one after the other.
-pub fn sections<'a>(out: &mut String, sections: impl IntoIterator<Item = &'a Section>) -> fmt::Result {
-    sections.into_iter().try_for_each(|section| {
-        writeln!(out, "\n## {}\n", text(&section.title))?;
-        blocks(out, &section.blocks)
-    })
+        Block::Full(_) | Block::Brief(_) | Block::Gap | Block::Markup(_) => Ok(()),
+    }
 }
 
 fn table(out: &mut String, table: &Table) -> fmt::Result {

@@ -8,7 +8,6 @@ use std::sync::OnceLock;
 
 use corner_impact::model::Model;
 use corner_impact::pages::Dossier;
-use corner_impact::pages::claims::ClaimsDocument;
 use corner_impact::pages::report::html;
 use corner_impact::pages::report::through::{FrameEntry, ThroughEntry};
 use corner_impact::progress::Unwatched;
@@ -42,7 +41,7 @@ fn through() -> &'static ThroughEntry {
     written().dossier.through.as_ref().unwrap()
 }
 
-fn ledger() -> &'static ClaimsDocument {
+fn ledger() -> &'static corner_impact::paper::Claims {
     written().dossier.claims.as_ref().unwrap()
 }
 
@@ -252,7 +251,7 @@ fn the_ledger_is_filtered_by_verdict_and_words_and_linked_to() {
     page.click("#verdict-all");
     page.click("#ledger-search");
     page.call("Input.insertText", serde_json::json!({ "text": "detach" }));
-    let about = |claim: &corner_impact::pages::claims::ClaimEntry| {
+    let about = |claim: &corner_impact::paper::Held| {
         let correct = claim.correct.clone().unwrap_or_default();
         let text =
             [&claim.id, &claim.place, &claim.statement, &correct, &claim.evidence].map(|part| part.to_lowercase());

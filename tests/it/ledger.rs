@@ -5,17 +5,19 @@ use std::path::Path;
 
 use crate::common;
 use corner_impact::model::Model;
-use corner_impact::pages::ClaimsDocument;
+use corner_impact::pages;
 use corner_impact::paper::checks::{CHECKS, Check};
 use corner_impact::paper::ledger::claims;
-use corner_impact::paper::{Context, Held, hold};
+use corner_impact::paper::{Claims, Context};
+use corner_impact::progress::Unwatched;
 use corner_impact::published::Verdict;
+use corner_impact::show::markdown;
 use corner_impact::study::verify::{External, verify};
 
-fn held(model: &Model) -> Vec<Held> {
+fn held(model: &Model) -> Claims {
     let findings = verify(model, External::LeftOut).unwrap();
     let cam = common::cam(model);
-    hold(&Context::new(model, &cam, &findings).unwrap()).unwrap()
+    Claims::hold(&Context::new(model, &cam, &findings).unwrap(), &Unwatched).unwrap()
 }
 
 #[test]
@@ -50,21 +52,23 @@ fn every_equation_and_every_number_has_its_claim() {
 
 #[test]
 fn every_check_comes_to_the_ledgers_verdict() {
-    for held in held(&common::osorio()) {
+    for held in held(&common::osorio()).claims {
         assert!(held.as_found, "{held:#?}");
-        assert_eq!(held.found.verdict, held.claim.verdict, "{held:#?}");
-        assert!(!held.found.evidence.is_empty(), "{held:#?}");
-        let wrong = [Verdict::Misprint, Verdict::Refuted].contains(&held.claim.verdict);
-        assert_eq!(held.claim.correct.is_some(), wrong, "a wrong statement says what is right: {held:#?}");
+        assert_eq!(held.verdict, held.listed, "{held:#?}");
+        assert!(!held.evidence.is_empty(), "{held:#?}");
+    }
+    for claim in claims().unwrap() {
+        let wrong = [Verdict::Misprint, Verdict::Refuted].contains(&claim.verdict);
+        assert_eq!(claim.correct.is_some(), wrong, "a wrong statement says what is right: {claim:#?}");
     }
 }
 
 /// A statement found open is one that no check decides, and the other way round.
 #[test]
 fn open_is_what_no_check_decides() {
-    for held in held(&common::osorio()) {
-        let check = CHECKS.iter().find(|(id, _)| *id == held.claim.id).unwrap().1;
-        assert_eq!(matches!(check, Check::Open(_)), held.claim.verdict == Verdict::Open, "{held:#?}");
+    for held in held(&common::osorio()).claims {
+        let check = CHECKS.iter().find(|(id, _)| *id == held.id).unwrap().1;
+        assert_eq!(matches!(check, Check::Open(_)), held.listed == Verdict::Open, "{held:#?}");
     }
 }
 
@@ -77,28 +81,33 @@ fn a_check_that_sees_another_map_finds_something_else() {
     let cam = common::cam(&model);
     // The paper's model by its numbers, with another map under it.
     let context = Context::new(&model, &cam, &findings).unwrap();
-    let changed: Vec<String> =
-        hold(&context).unwrap().into_iter().filter(|held| !held.as_found).map(|held| held.claim.id).collect();
+    let changed: Vec<String> = Claims::hold(&context, &Unwatched)
+        .unwrap()
+        .claims
+        .into_iter()
+        .filter(|held| !held.as_found)
+        .map(|held| held.id)
+        .collect();
     for id in ["number: A_minus", "fixed points above, none below", "transition at the corner"] {
         assert!(changed.iter().any(|found| found == id), "{id} among {changed:?}");
     }
     // And with another speed range it is the same model.
     model.name = "other".into();
-    assert!(held(&model).iter().all(|held| held.as_found));
+    assert!(held(&model).claims.iter().all(|held| held.as_found));
 }
 
 #[test]
 fn another_model_leaves_the_papers_numbers_open() {
     let files = common::model_files();
     let file = files.iter().find(|file| common::stem(file) == "damped-light").unwrap();
-    let all = held(&common::read(file));
+    let all = held(&common::read(file)).claims;
     assert!(all.iter().all(|held| held.as_found));
     for held in &all {
-        if held.claim.id.starts_with("number: ") {
-            assert_eq!(held.found.verdict, Verdict::Open, "{held:#?}");
+        if held.id.starts_with("number: ") {
+            assert_eq!(held.verdict, Verdict::Open, "{held:#?}");
         }
-        if held.claim.id.starts_with("equation: ") {
-            assert_eq!(held.found.verdict, held.claim.verdict, "{held:#?}");
+        if held.id.starts_with("equation: ") {
+            assert_eq!(held.verdict, held.listed, "{held:#?}");
         }
     }
 }
@@ -106,7 +115,8 @@ fn another_model_leaves_the_papers_numbers_open() {
 #[test]
 fn the_page_in_docs_is_fresh() {
     let model = common::osorio();
-    let page = ClaimsDocument::new(&model.name, &held(&model)).markdown().unwrap();
+    let (lead, sections) = pages::claims::document(&held(&model));
+    let page = markdown::page(&lead, &sections).unwrap();
     let stored = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/claims.md")).unwrap();
     assert!(page == stored, "docs/claims.md is stale: `make claims` writes it");
 }

@@ -10,11 +10,11 @@ use crate::figures::plates::{Plate, plates};
 use crate::figures::plots::corner_marks;
 use crate::figures::{Subject, through_corner};
 use crate::model::{Model, ModelError};
+use crate::pages::CamDocument;
 use crate::pages::report::quantities::{Quantity, quantities};
 use crate::pages::report::through::ThroughEntry;
 use crate::pages::speeds::RegimesDocument;
-use crate::pages::{CamDocument, ClaimsDocument};
-use crate::paper::{Context, LedgerError, hold_watched};
+use crate::paper::{Claims, Context, LedgerError};
 use crate::progress::Watch;
 use crate::show::command::command;
 use crate::study::speeds::{Care, regimes, usual_speeds};
@@ -51,7 +51,7 @@ pub struct Dossier {
     /// Why there is none.
     pub no_through: Option<String>,
     /// The paper's statements, where the model is the paper's.
-    pub claims: Option<ClaimsDocument>,
+    pub claims: Option<Claims>,
     /// What the follower does at other speeds.
     pub speeds: Option<RegimesDocument>,
     /// Why that is not known.
@@ -170,10 +170,7 @@ impl Dossier {
         let is_paper = model.is_the_papers()?;
         let findings = verify_watched(model, external, &part(0.0, VERIFIED));
         let claims = match &findings {
-            Ok(found) if is_paper => Some(ClaimsDocument::new(
-                &model.name,
-                &hold_watched(&Context::new(model, &cam, found)?, &part(VERIFIED, HELD))?,
-            )),
+            Ok(found) if is_paper => Some(Claims::hold(&Context::new(model, &cam, found)?, &part(VERIFIED, HELD))?),
             _ => None,
         };
         let speeds = speeds(model, &part(HELD, SURVEYED));
@@ -276,7 +273,7 @@ pub fn spoken(name: &str) -> String {
 }
 
 impl Headline {
-    fn new(verification: Option<&Verification>, claims: Option<&ClaimsDocument>) -> Self {
+    fn new(verification: Option<&Verification>, claims: Option<&Claims>) -> Self {
         let Some(found) = verification else { return Self::default() };
         let maps = found
             .agreement

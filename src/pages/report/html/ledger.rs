@@ -40,10 +40,10 @@ pub(crate) fn section(dossier: &Dossier) -> Option<Section> {
             fieldset {
                 legend { "Verdict" }
                 label { input type="radio" name="verdict" value="all" id="verdict-all" checked; " all (" (ledger.claims.len()) ")" }
-                @for (verdict, count) in ledger.groups() {
+                @for (verdict, held) in ledger.groups() {
                     label {
                         input type="radio" name="verdict" value=(verdict) id={ "verdict-" (verdict) };
-                        " " (verdict) " (" (count) ")"
+                        " " (verdict) " (" (held.len()) ")"
                     }
                 }
             }

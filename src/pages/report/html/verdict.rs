@@ -5,6 +5,7 @@ use maud::{Markup, html};
 use crate::pages::report::dossier::{Dossier, spoken};
 use crate::pages::report::html::Section;
 use crate::pages::report::html::numbers::{fixed, quantity, shared, size};
+use crate::published::Verdict;
 
 pub(crate) fn section(dossier: &Dossier) -> Section {
     let head = &dossier.headline;
@@ -38,10 +39,11 @@ pub(crate) fn section(dossier: &Dossier) -> Section {
                     }
                 }
                 @if let Some(ledger) = &dossier.claims {
+                    @let count = |verdict| ledger.counts.get(&verdict).copied().unwrap_or_default();
                     li {
-                        "Of the paper's " (ledger.claims.len()) " statements " strong { (ledger.counts.holds) " hold" } ", "
-                        (ledger.counts.misprint) " are misprints, " (ledger.counts.refuted) " are refuted and "
-                        (ledger.counts.open) " open; "
+                        "Of the paper's " (ledger.claims.len()) " statements " strong { (count(Verdict::Holds)) " hold" } ", "
+                        (count(Verdict::Misprint)) " are misprints, " (count(Verdict::Refuted)) " are refuted and "
+                        (count(Verdict::Open)) " open; "
                         @if head.claims_otherwise == 0 { "every check comes to the ledger's verdict." }
                         @else { (head.claims_otherwise) " came out otherwise than the ledger says." }
                     }
