@@ -1,6 +1,8 @@
 //! One check for each statement of the ledger: its id, and what decides it.
+//!
+//! An equation's id names its proof, a number's id its quantity: only the others have a row here.
 
-use super::context::{Context, Found, Residuals};
+use super::context::{Context, Decision, Found, Residuals, decide};
 use super::dynamics::*;
 use super::jump_order::order_of_the_jump;
 use super::statements::*;
@@ -11,77 +13,23 @@ const DRAWING: &str = "a drawing: it states nothing that a computation could con
 
 /// What decides a statement.
 #[derive(Clone, Copy)]
-pub enum Check {
+pub enum Check<'a> {
     /// A proof by computer algebra, by the equation's label.
-    Equation(&'static str),
+    Equation(&'a str),
     /// A printed number, by its quantity.
-    Number(&'static str),
+    Number(&'a str),
     /// A computation on any model.
-    Any(fn(&Context<'_>) -> Found),
+    Any(fn(&Context<'_>) -> Decision),
     /// A computation on the paper's model.
-    Paper(fn(&Context<'_>) -> Found),
+    Paper(fn(&Context<'_>) -> Decision),
     /// Nothing yet, and why.
-    Open(&'static str),
+    Open(&'a str),
 }
 
-/// Every check, by the id of its statement.
-pub static CHECKS: &[(&str, Check)] = &[
-    ("equation: eq:gff", Check::Equation("eq:gff")),
-    ("equation: x_t", Check::Equation("x_t")),
-    ("equation: y_t", Check::Equation("y_t")),
-    ("equation: eq:H", Check::Equation("eq:H")),
-    ("equation: eq:impactdynamics_2", Check::Equation("eq:impactdynamics_2")),
-    ("equation: eq:lmapd", Check::Equation("eq:lmapd")),
-    ("equation: eq:lmap", Check::Equation("eq:lmap")),
-    ("equation: eq:fixedp", Check::Equation("eq:fixedp")),
-    ("equation: eq:dPdx", Check::Equation("eq:dPdx")),
-    ("equation: eq:dPdT", Check::Equation("eq:dPdT")),
-    ("equation: Eq:dP_dxn", Check::Equation("Eq:dP_dxn")),
-    ("equation: Eq:dP_dti", Check::Equation("Eq:dP_dti")),
-    ("equation: Eq:dti_dxn", Check::Equation("Eq:dti_dxn")),
-    ("equation: eq:ftaylormapcornerX", Check::Equation("eq:ftaylormapcornerX")),
-    ("equation: dy_dT", Check::Equation("dy_dT")),
-    ("equation: Eq:dP_dT", Check::Equation("Eq:dP_dT")),
-    ("equation: Eq:dti_dT", Check::Equation("Eq:dti_dT")),
-    ("equation: eq:ftaylormapcornerT", Check::Equation("eq:ftaylormapcornerT")),
-    ("equation: eq:Px", Check::Equation("eq:Px")),
-    ("equation: eq:PT", Check::Equation("eq:PT")),
-    ("equation: eq:linearmap", Check::Equation("eq:linearmap")),
-    ("equation: limits", Check::Equation("limits")),
-    ("equation: eq:pwlf, region", Check::Equation("eq:pwlf, region")),
-    ("equation: eq:pwlf, acceleration", Check::Equation("eq:pwlf, acceleration")),
-    ("equation: eq:pwlf, continuity", Check::Equation("eq:pwlf, continuity")),
-    ("equation: delta x", Check::Equation("delta x")),
-    ("equation: B tilde", Check::Equation("B tilde")),
-    ("equation: B tilde, sides", Check::Equation("B tilde, sides")),
-    ("equation: coordinates", Check::Equation("coordinates")),
-    ("equation: A bar", Check::Equation("A bar")),
-    ("equation: A bar, determinant", Check::Equation("A bar, determinant")),
-    ("equation: B bar", Check::Equation("B bar")),
-    ("equation: appendix A, laws", Check::Equation("appendix A, laws")),
-    ("equation: appendix A, tangency", Check::Equation("appendix A, tangency")),
+/// The checks that the ids of their statements do not name.
+pub static CHECKS: &[(&str, Check<'_>)] = &[
     ("equation: eq:fb1", Check::Any(equation_of_motion)),
     ("equation: eq:i1", Check::Any(restitution_law)),
-    ("number: T_star", Check::Number("T_star")),
-    ("number: speed_rpm", Check::Number("speed_rpm")),
-    ("number: x_star", Check::Number("x_star")),
-    ("number: A_minus", Check::Number("A_minus")),
-    ("number: B_minus", Check::Number("B_minus")),
-    ("number: A_plus", Check::Number("A_plus")),
-    ("number: B_plus", Check::Number("B_plus")),
-    ("number: C", Check::Number("C")),
-    ("number: D", Check::Number("D")),
-    ("number: A_hat_minus", Check::Number("A_hat_minus")),
-    ("number: B_hat_minus", Check::Number("B_hat_minus")),
-    ("number: A_hat_plus", Check::Number("A_hat_plus")),
-    ("number: B_hat_plus", Check::Number("B_hat_plus")),
-    ("number: B_tilde", Check::Number("B_tilde")),
-    ("number: A_bar_minus", Check::Number("A_bar_minus")),
-    ("number: A_bar_plus", Check::Number("A_bar_plus")),
-    ("number: B_bar", Check::Number("B_bar")),
-    ("number: C_bar", Check::Number("C_bar")),
-    ("number: eigenvalues_minus", Check::Number("eigenvalues_minus")),
-    ("number: eigenvalues_plus", Check::Number("eigenvalues_plus")),
     ("cam: acceleration jumps", Check::Paper(acceleration_jumps)),
     ("figure: camprofileeq", Check::Any(drawn_circles)),
     ("appendix B", Check::Any(appendix_b)),
@@ -133,12 +81,15 @@ pub static CHECKS: &[(&str, Check)] = &[
     ("wording: mu", Check::Any(wording)),
 ];
 
-/// The check of a statement.
-pub fn find(id: &str) -> Option<Check> {
-    CHECKS.iter().find(|(name, _)| *name == id).map(|(_, check)| *check)
+/// The check of a statement: that of the table, or else the proof or the number that its id names.
+pub fn find(id: &str) -> Option<Check<'_>> {
+    let listed = CHECKS.iter().find(|(name, _)| *name == id).map(|(_, check)| *check);
+    listed
+        .or_else(|| id.strip_prefix("equation: ").map(Check::Equation))
+        .or_else(|| id.strip_prefix("number: ").map(Check::Number))
 }
 
-impl Check {
+impl Check<'_> {
     /// Whether another model than the paper's leaves it open.
     pub fn is_about_the_papers_model(self) -> bool {
         matches!(self, Self::Number(_) | Self::Paper(_))
@@ -146,43 +97,37 @@ impl Check {
 
     /// Decides the statement.
     pub fn run(self, context: &Context<'_>) -> Found {
-        match self {
-            Self::Open(why) => Found { verdict: Verdict::Open, evidence: why.into() },
+        let decision = match self {
+            _ if self.is_about_the_papers_model() && !context.is_paper => {
+                Err("about the paper's follower and cam; this model has others".into())
+            }
+            Self::Open(why) => Err(why.into()),
             Self::Equation(label) => equation(context, label),
-            Self::Any(check) => check(context),
-            Self::Number(_) | Self::Paper(_) if !context.is_paper => Found {
-                verdict: Verdict::Open,
-                evidence: "about the paper's follower and cam; this model has others".into(),
-            },
             Self::Number(quantity) => number(context, quantity),
-            Self::Paper(check) => check(context),
-        }
+            Self::Any(check) | Self::Paper(check) => check(context),
+        };
+        decision.unwrap_or_else(|why| Found { verdict: Verdict::Open, evidence: why.to_string() })
     }
 }
 
 /// By the residuals: all zero as printed holds; otherwise the repaired form must have none.
-fn equation(context: &Context<'_>, label: &str) -> Found {
-    let Some(equation) = context.equations.get(label) else {
-        return Found { verdict: Verdict::Open, evidence: "not among the derivations".into() };
-    };
+fn equation(context: &Context<'_>, label: &str) -> Decision {
+    let equation = context.equations.get(label).ok_or("not among the derivations")?;
     let Residuals { residual_as_printed, residual_repaired, subsets } = &equation.evidence;
+    // Whether a wrong equation is a slip or a wrong statement is a judgement; that it is wrong is not.
+    let wrong = if equation.verdict == Verdict::Holds { Verdict::Refuted } else { equation.verdict };
     if is_zero(residual_as_printed) {
-        return Found { verdict: Verdict::Holds, evidence: "residual 0, by computer algebra".into() };
+        return decide(true, wrong, "residual 0, by computer algebra".into());
     }
     let printed = shortened(residual_as_printed);
     if !is_zero(residual_repaired) {
-        return Found { verdict: Verdict::Open, evidence: format!("residual {printed}; no repair is proved") };
+        return Err(format!("residual {printed}; no repair is proved").into());
     }
     let parts = match subsets.len() {
         0 => String::new(),
         count => format!("; none of {count} smaller repairs suffices"),
     };
-    // Whether a wrong equation is a slip or a wrong statement is a judgement; that it is wrong is not.
-    let verdict = if equation.verdict == Verdict::Holds { Verdict::Refuted } else { equation.verdict };
-    Found {
-        verdict,
-        evidence: format!("as printed, residual {printed} at a rational point; repaired, residual 0{parts}"),
-    }
+    decide(false, wrong, format!("as printed, residual {printed} at a rational point; repaired, residual 0{parts}"))
 }
 
 fn is_zero(residual: &serde_json::Value) -> bool {
@@ -207,24 +152,13 @@ fn shortened(residual: &serde_json::Value) -> String {
     }
 }
 
-fn number(context: &Context<'_>, quantity: &str) -> Found {
-    match context.findings.published.iter().find(|number| number.agreement.quantity == quantity) {
-        None => Found { verdict: Verdict::Open, evidence: "not compared".into() },
-        Some(number) => {
-            let bound = number.agreement.bound.value;
-            let (verdict, relation) = if number.agreement.agrees {
-                (Verdict::Holds, "within")
-            } else if number.verdict == Verdict::Holds {
-                (Verdict::Refuted, "beyond")
-            } else {
-                (number.verdict, "beyond")
-            };
-            let computed: Vec<_> = number.computed.iter().map(|value| format!("{}", Shown(*value))).collect();
-            let note = if number.note.is_empty() { String::new() } else { format!(": {}", number.note) };
-            Found {
-                verdict,
-                evidence: format!("computed ({}), {relation} {bound:.1e} of the print{note}", computed.join(", ")),
-            }
-        }
-    }
+fn number(context: &Context<'_>, quantity: &str) -> Decision {
+    let number = context.findings.published.iter().find(|number| number.agreement.quantity == quantity);
+    let number = number.ok_or("not compared")?;
+    let (agrees, bound) = (number.agreement.agrees, number.agreement.bound.value);
+    let relation = if agrees { "within" } else { "beyond" };
+    let wrong = if number.verdict == Verdict::Holds { Verdict::Refuted } else { number.verdict };
+    let computed: Vec<_> = number.computed.iter().map(|value| format!("{}", Shown(*value))).collect();
+    let note = if number.note.is_empty() { String::new() } else { format!(": {}", number.note) };
+    decide(agrees, wrong, format!("computed ({}), {relation} {bound:.1e} of the print{note}", computed.join(", ")))
 }

@@ -1,6 +1,7 @@
 //! What a check may look at, and what it gives back.
 
 use std::collections::BTreeMap;
+use std::error::Error;
 
 use serde::Deserialize;
 
@@ -64,6 +65,14 @@ pub struct Found {
     pub verdict: Verdict,
     /// The numbers that it rests on.
     pub evidence: String,
+}
+
+/// What a check comes to; an error says why the statement stays open.
+pub(super) type Decision = Result<Found, Box<dyn Error>>;
+
+/// `holds` or `otherwise`, with the numbers.
+pub(super) fn decide(holds: bool, otherwise: Verdict, evidence: String) -> Decision {
+    Ok(Found { verdict: if holds { Verdict::Holds } else { otherwise }, evidence })
 }
 
 /// Why the ledger cannot be held against anything.

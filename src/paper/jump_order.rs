@@ -2,8 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::context::{Context, Found};
-use super::statements::decide;
+use super::context::{Context, Decision, decide};
 use crate::cam::{Cam, Corner};
 use crate::corner::jump_order::compared::{Compared, compare};
 use crate::corner::jump_order::predicted::Hits;
@@ -112,12 +111,8 @@ impl Example {
 }
 
 /// Exponents and coefficients at corners of order 1 to 4, each by simulation and by formula.
-pub(super) fn order_of_the_jump(_: &Context<'_>) -> Found {
-    let compared: Result<Vec<_>, _> = EXAMPLES.iter().map(Example::compare).collect();
-    let compared = match compared {
-        Ok(compared) => compared,
-        Err(error) => return Found { verdict: Verdict::Open, evidence: error.to_string() },
-    };
+pub(super) fn order_of_the_jump(_: &Context<'_>) -> Decision {
+    let compared = EXAMPLES.iter().map(Example::compare).collect::<Result<Vec<_>, _>>()?;
     let of_order = |order: usize| compared.iter().filter(move |one| one.approach.corner.jump_order == order);
     // The first row of each is the velocity's.
     let velocities = |order: usize| of_order(order).filter_map(|one| one.rows.first());

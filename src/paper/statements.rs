@@ -4,8 +4,9 @@ use std::fmt;
 
 use nalgebra::Vector2;
 
-use super::context::{Context, Found};
+use super::context::{Context, Decision, decide};
 use crate::agreement::worse;
+use crate::border_collision::Classification;
 use crate::border_collision::feigin::{Scenario, Speeds};
 use crate::corner;
 use crate::flight::{Flight, State};
@@ -28,13 +29,8 @@ impl fmt::Display for Shown {
     }
 }
 
-/// `holds` or `otherwise`, with the numbers.
-pub(super) fn decide(holds: bool, otherwise: Verdict, evidence: String) -> Found {
-    Found { verdict: if holds { Verdict::Holds } else { otherwise }, evidence }
-}
-
 /// eq:fb1, by second differences of a flight that knows only its closed form.
-pub(super) fn equation_of_motion(context: &Context<'_>) -> Found {
+pub(super) fn equation_of_motion(context: &Context<'_>) -> Decision {
     let follower = &context.model.follower;
     let flight = Flight::new(follower);
     let start = State { position: follower.rest_position + 0.2, velocity: 1.0 };
@@ -58,7 +54,7 @@ fn round(value: f64) -> String {
 }
 
 /// eq:i1.
-pub(super) fn restitution_law(context: &Context<'_>) -> Found {
+pub(super) fn restitution_law(context: &Context<'_>) -> Decision {
     let r = context.model.follower.restitution;
     let (incoming, cam) = (-3.0, 1.0);
     let (computed, printed) = (rebound(r, incoming, cam), (1.0 + r) * cam - r * incoming);
@@ -67,7 +63,7 @@ pub(super) fn restitution_law(context: &Context<'_>) -> Found {
 }
 
 /// Fig. camprofile: every corner of the cam is one of acceleration.
-pub(super) fn acceleration_jumps(context: &Context<'_>) -> Found {
+pub(super) fn acceleration_jumps(context: &Context<'_>) -> Decision {
     let corners = context.cam.corners();
     let angles: Vec<_> = corners.iter().map(|corner| format!("{:.3}", corner.angle.to_degrees())).collect();
     let orders = corners.iter().all(|corner| corner.jump_order == 2);
@@ -76,7 +72,7 @@ pub(super) fn acceleration_jumps(context: &Context<'_>) -> Found {
 }
 
 /// The coordinates and radii that the drawing is made of.
-pub(super) fn drawn_circles(_: &Context<'_>) -> Found {
+pub(super) fn drawn_circles(_: &Context<'_>) -> Decision {
     let (axis, base) = (Vector2::new(3.25, 4.0), 2.0);
     let (flank, flank_radius) = (Vector2::new(1.8114, 3.4764), 3.5310);
     let (nose, nose_radius, top) = (Vector2::new(4.0440, 1.8184), 0.745, 3.0716);
@@ -100,17 +96,17 @@ pub(super) fn drawn_circles(_: &Context<'_>) -> Found {
 }
 
 /// A reference is checked by reading; its equation is proved elsewhere.
-pub(super) fn appendix_b(_: &Context<'_>) -> Found {
-    Found { verdict: Verdict::Misprint, evidence: "the paper ends with Appendix A; eq:gff is proved without it".into() }
+pub(super) fn appendix_b(_: &Context<'_>) -> Decision {
+    decide(false, Verdict::Misprint, "the paper ends with Appendix A; eq:gff is proved without it".into())
 }
 
 /// Words are checked by reading: no computation decides what a sentence should have said.
-pub(super) fn wording(_: &Context<'_>) -> Found {
-    Found { verdict: Verdict::Misprint, evidence: "by reading: the formulas around it mean what is right".into() }
+pub(super) fn wording(_: &Context<'_>) -> Decision {
+    decide(false, Verdict::Misprint, "by reading: the formulas around it mean what is right".into())
 }
 
 /// At the corners the lift and its slope have one value, the second derivative two.
-pub(super) fn profile_is_continuous(context: &Context<'_>) -> Found {
+pub(super) fn profile_is_continuous(context: &Context<'_>) -> Decision {
     let corners = context.cam.corners();
     let continuous = corners.iter().all(|corner| corner.jump_order > 1);
     let orders: Vec<_> = corners.iter().map(|corner| corner.jump_order.to_string()).collect();
@@ -119,7 +115,7 @@ pub(super) fn profile_is_continuous(context: &Context<'_>) -> Found {
 }
 
 /// By symmetry in time of the undamped flight only: with a little damping it is not so.
-pub(super) fn at_rest(context: &Context<'_>) -> Found {
+pub(super) fn at_rest(context: &Context<'_>) -> Decision {
     let velocity = context.findings.at.x_star()[1];
     let mut damped = context.model.clone();
     damped.follower.damping = 2.0 * damped.follower.mass;
@@ -130,7 +126,7 @@ pub(super) fn at_rest(context: &Context<'_>) -> Found {
 }
 
 /// Each revolution that an estimator samples must have one impact, near the corner, or the estimator fails.
-pub(super) fn one_impact(context: &Context<'_>) -> Found {
+pub(super) fn one_impact(context: &Context<'_>) -> Decision {
     let ran: Vec<_> =
         context.findings.routes.iter().filter(|route| route.uncertainty.is_some()).map(|route| route.name).collect();
     let evidence =
@@ -138,7 +134,7 @@ pub(super) fn one_impact(context: &Context<'_>) -> Found {
     decide(ran.contains(&"least_squares") && ran.contains(&"finite_difference"), Verdict::Refuted, evidence)
 }
 
-pub(super) fn two_sides(context: &Context<'_>) -> Found {
+pub(super) fn two_sides(context: &Context<'_>) -> Decision {
     let map = &context.findings.closed_form().map;
     let jumps = [(map.plus.a - map.minus.a).abs().max(), (map.plus.b - map.minus.b).abs().max()];
     let sizes = [map.minus.a.abs().max(), map.minus.b.abs().max()];
@@ -148,7 +144,7 @@ pub(super) fn two_sides(context: &Context<'_>) -> Found {
 }
 
 /// Undamped, A has equal diagonal entries; the printed matrices have them, to all digits.
-pub(super) fn positive_constants(context: &Context<'_>) -> Found {
+pub(super) fn positive_constants(context: &Context<'_>) -> Decision {
     let difference = |quantity: &str| {
         let number = context.findings.published.iter().find(|number| number.agreement.quantity == quantity)?;
         let entry = |index: usize| number.printed.get(index)?.parse::<f64>().ok();
@@ -159,19 +155,16 @@ pub(super) fn positive_constants(context: &Context<'_>) -> Found {
     let with_damping = corner::locate(&damped, context.cam)
         .map(|(at, _)| corner::closed_form::route(&damped, &at).map.plus.a)
         .map_or_else(|error| error.to_string(), |a| format!("{:.4}", a[(0, 0)] - a[(1, 1)]));
-    match (difference("A_minus"), difference("A_plus")) {
-        (Some(minus), Some(plus)) => {
-            let evidence = format!(
-                "the printed A- and A+ have equal diagonals (differences {minus} and {plus}), which needs b = 0: zeta = 1/s \
-                 would part those of A+ by {with_damping}"
-            );
-            decide(minus != 0.0 && plus != 0.0, Verdict::Refuted, evidence)
-        }
-        _ => Found { verdict: Verdict::Open, evidence: "the printed matrices were not compared".into() },
-    }
+    let differences = difference("A_minus").zip(difference("A_plus"));
+    let (minus, plus) = differences.ok_or("the printed matrices were not compared")?;
+    let evidence = format!(
+        "the printed A- and A+ have equal diagonals (differences {minus} and {plus}), which needs b = 0: zeta = 1/s would \
+         part those of A+ by {with_damping}"
+    );
+    decide(minus != 0.0 && plus != 0.0, Verdict::Refuted, evidence)
 }
 
-pub(super) fn validation(context: &Context<'_>) -> Found {
+pub(super) fn validation(context: &Context<'_>) -> Decision {
     let entries: Vec<_> = context
         .findings
         .comparisons
@@ -182,15 +175,13 @@ pub(super) fn validation(context: &Context<'_>) -> Found {
         })
         .collect();
     let agree = entries.len() == 4 && entries.iter().all(|entry| entry.agrees);
-    {
-        let worst = entries.iter().fold(0.0_f64, |worst, entry| worst.max(entry.max_abs_diff));
-        let within = if worst < tolerance::FIVE_DECIMALS { "within" } else { "beyond" };
-        let evidence = format!("this program's fit of all twelve entries is {within} five decimals of the closed form");
-        decide(agree, Verdict::Refuted, evidence)
-    }
+    let worst = entries.iter().fold(0.0_f64, |worst, entry| worst.max(entry.max_abs_diff));
+    let within = if worst < tolerance::FIVE_DECIMALS { "within" } else { "beyond" };
+    let evidence = format!("this program's fit of all twelve entries is {within} five decimals of the closed form");
+    decide(agree, Verdict::Refuted, evidence)
 }
 
-pub(super) fn five_decimals(context: &Context<'_>) -> Found {
+pub(super) fn five_decimals(context: &Context<'_>) -> Decision {
     let estimates = context.findings.published.iter().filter(|number| number.agreement.quantity.contains("_hat_"));
     let parts: Vec<_> = estimates
         .clone()
@@ -200,60 +191,52 @@ pub(super) fn five_decimals(context: &Context<'_>) -> Found {
     decide(all, Verdict::Refuted, format!("largest differences: {}; five decimals allow 5e-6", parts.join(", ")))
 }
 
-/// A statement about the classification; without one it is open.
-fn by_classification(
-    context: &Context<'_>,
-    decide: impl Fn(&crate::border_collision::Classification) -> Found,
-) -> Found {
-    let degenerate = || Found { verdict: Verdict::Open, evidence: "the map is degenerate".into() };
-    context.findings.classification.as_ref().map_or_else(degenerate, decide)
+/// What decides about the local map; a degenerate one has none.
+fn classification<'a>(context: &'a Context<'_>) -> Result<&'a Classification, &'static str> {
+    context.findings.classification.as_ref().ok_or("the map is degenerate")
 }
 
-pub(super) fn odd_count(context: &Context<'_>) -> Found {
-    by_classification(context, |verdict| {
-        let evidence = format!(
-            "{} and {} real eigenvalues above 1; det(I - A-) = {:.6}, det(I - A+) = {:.6}",
-            verdict.minus.above_one, verdict.plus.above_one, verdict.minus.determinant, verdict.plus.determinant
-        );
-        let opposite = verdict.minus.determinant * verdict.plus.determinant < 0.0;
-        decide((verdict.minus.above_one, verdict.plus.above_one) == (1, 0) && opposite, Verdict::Refuted, evidence)
-    })
+pub(super) fn odd_count(context: &Context<'_>) -> Decision {
+    let verdict = classification(context)?;
+    let evidence = format!(
+        "{} and {} real eigenvalues above 1; det(I - A-) = {:.6}, det(I - A+) = {:.6}",
+        verdict.minus.above_one, verdict.plus.above_one, verdict.minus.determinant, verdict.plus.determinant
+    );
+    let opposite = verdict.minus.determinant * verdict.plus.determinant < 0.0;
+    decide((verdict.minus.above_one, verdict.plus.above_one) == (1, 0) && opposite, Verdict::Refuted, evidence)
 }
 
-pub(super) fn nonsmooth_fold(context: &Context<'_>) -> Found {
-    by_classification(context, |verdict| {
-        let same = verdict.minus.exists_for == verdict.plus.exists_for;
-        let evidence = format!(
-            "{}; fixed points exist at speeds {} (minus) and {} (plus) than omega*",
-            verdict.scenario, verdict.minus.exists_for, verdict.plus.exists_for
-        );
-        decide(verdict.scenario == Scenario::NonsmoothFold && same, Verdict::Refuted, evidence)
-    })
+pub(super) fn nonsmooth_fold(context: &Context<'_>) -> Decision {
+    let verdict = classification(context)?;
+    let same = verdict.minus.exists_for == verdict.plus.exists_for;
+    let evidence = format!(
+        "{}; fixed points exist at speeds {} (minus) and {} (plus) than omega*",
+        verdict.scenario, verdict.minus.exists_for, verdict.plus.exists_for
+    );
+    decide(verdict.scenario == Scenario::NonsmoothFold && same, Verdict::Refuted, evidence)
 }
 
-pub(super) fn figure_of_the_local_map(context: &Context<'_>) -> Found {
-    by_classification(context, |verdict| {
-        let (minus, plus) = (verdict.minus.exists_for, verdict.plus.exists_for);
-        let evidence =
-            format!("minus side's fixed point at speeds {minus} than omega*, plus side's {plus}: faster is dT < 0");
-        decide(minus == Speeds::Slower && plus == Speeds::Slower, Verdict::Refuted, evidence)
-    })
+pub(super) fn figure_of_the_local_map(context: &Context<'_>) -> Decision {
+    let verdict = classification(context)?;
+    let (minus, plus) = (verdict.minus.exists_for, verdict.plus.exists_for);
+    let evidence =
+        format!("minus side's fixed point at speeds {minus} than omega*, plus side's {plus}: faster is dT < 0");
+    decide(minus == Speeds::Slower && plus == Speeds::Slower, Verdict::Refuted, evidence)
 }
 
-pub(super) fn fixed_points_above(context: &Context<'_>) -> Found {
-    by_classification(context, |verdict| {
-        let (minus, plus) = (&verdict.minus, &verdict.plus);
-        let above = minus.exists_for == Speeds::Faster && plus.exists_for == Speeds::Faster;
-        let evidence = format!(
-            "plus: stable {}, exists at speeds {} than omega*; minus: stable {}, {}",
-            plus.stable, plus.exists_for, minus.stable, minus.exists_for
-        );
-        decide(above && plus.stable && !minus.stable, Verdict::Refuted, evidence)
-    })
+pub(super) fn fixed_points_above(context: &Context<'_>) -> Decision {
+    let verdict = classification(context)?;
+    let (minus, plus) = (&verdict.minus, &verdict.plus);
+    let above = minus.exists_for == Speeds::Faster && plus.exists_for == Speeds::Faster;
+    let evidence = format!(
+        "plus: stable {}, exists at speeds {} than omega*; minus: stable {}, {}",
+        plus.stable, plus.exists_for, minus.stable, minus.exists_for
+    );
+    decide(above && plus.stable && !minus.stable, Verdict::Refuted, evidence)
 }
 
 /// On the border the two sides of this model's map are one.
-pub(super) fn continuity(context: &Context<'_>) -> Found {
+pub(super) fn continuity(context: &Context<'_>) -> Decision {
     let map = &context.findings.closed_form().map;
     let (c, d) = (map.c(), map.d());
     let (jump_a, jump_b) = (map.plus.a - map.minus.a, map.plus.b - map.minus.b);

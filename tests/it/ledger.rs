@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::common;
 use corner_impact::model::Model;
 use corner_impact::pages;
-use corner_impact::paper::checks::{CHECKS, Check};
+use corner_impact::paper::checks::{CHECKS, Check, find};
 use corner_impact::paper::ledger::claims;
 use corner_impact::paper::{Claims, Context};
 use corner_impact::progress::Unwatched;
@@ -23,11 +23,14 @@ fn held(model: &Model) -> Claims {
 #[test]
 fn claims_and_checks_are_the_same_set() {
     let listed: Vec<String> = claims().unwrap().into_iter().map(|claim| claim.id).collect();
-    let checked: Vec<String> = CHECKS.iter().map(|(id, _)| (*id).to_owned()).collect();
-    let set = |ids: &[String]| ids.iter().cloned().collect::<BTreeSet<_>>();
-    assert_eq!(set(&listed), set(&checked));
-    assert_eq!(set(&listed).len(), listed.len(), "no id twice");
-    assert_eq!(set(&checked).len(), checked.len(), "no check twice");
+    let ids: BTreeSet<&str> = listed.iter().map(String::as_str).collect();
+    let checked: BTreeSet<&str> = CHECKS.iter().map(|(id, _)| *id).collect();
+    assert_eq!(ids.len(), listed.len(), "no id twice");
+    assert_eq!(checked.len(), CHECKS.len(), "no check twice");
+    assert!(checked.is_subset(&ids), "{:?}", checked.difference(&ids));
+    for id in ids {
+        assert!(find(id).is_some(), "{id}");
+    }
 }
 
 /// Nothing that the derivations judged, or that the paper prints in digits, is left out of the ledger.
@@ -67,7 +70,7 @@ fn every_check_comes_to_the_ledgers_verdict() {
 #[test]
 fn open_is_what_no_check_decides() {
     for held in held(&common::osorio()).claims {
-        let check = CHECKS.iter().find(|(id, _)| *id == held.id).unwrap().1;
+        let check = find(&held.id).unwrap();
         assert_eq!(matches!(check, Check::Open(_)), held.listed == Verdict::Open, "{held:#?}");
     }
 }

@@ -2,11 +2,10 @@
 
 use std::ops::ControlFlow;
 
-use super::{Round, by_runs, corners, machine, turn};
+use super::{Round, corners, machine, turn};
 use crate::diagram::growth;
 use crate::flight::Flight;
-use crate::paper::context::{Context, Found};
-use crate::paper::statements::decide;
+use crate::paper::context::{Context, Decision, decide};
 use crate::published::Verdict;
 use crate::simulate::{Event, Machine, SimulateError, angular_velocity};
 use crate::tolerance;
@@ -34,45 +33,42 @@ fn listed(numbers: &[f64], places: usize) -> String {
 
 /// The lowest speed with a release, by simulation; and where the nose would first have to pull, right after P:
 /// `c'' w^2 = a(c)`.
-pub(in crate::paper) fn detachment(context: &Context<'_>) -> Found {
-    let decision = || {
-        let machine = machine(context, 100.0);
-        let first_event = |rpm: f64| {
-            let machine = machine.at_speed(angular_velocity(rpm));
-            let mut motion = machine.start_on_cam(0.0, 0.0)?;
-            let (goal, mut found) = (motion.after(1), None);
-            let _ = machine.advance(&mut motion, goal, &mut |event: &Event| {
-                found = Some(event.cam_angle);
-                ControlFlow::Break(())
-            })?;
-            Ok::<_, SimulateError>(found)
-        };
-        let mut silent = 0;
-        for rpm in 1..=114 {
-            silent += usize::from(first_event(f64::from(rpm))?.is_none());
-        }
-        let speed = first_speed(114.0, 116.0, |rpm| Ok(first_event(rpm)?.is_some()))?;
-        let at = first_event(speed)?.unwrap_or(f64::NAN);
-        let corners = context.cam.corners();
-        let nose = corners.get(1).map_or(f64::NAN, |corner| {
-            let force = Flight::new(&context.model.follower).force(corner.plus.value);
-            (force / corner.plus.curvature).sqrt() / angular_velocity(1.0)
-        });
-        let evidence = format!(
-            "no event in a revolution from rest on the cam at {silent} of the speeds 1, 2, ..., 114 rpm; the lowest speed with a \
-             release is {speed:.6} rpm, at {:.4} deg; the nose would first have to pull at P, from {nose:.6} rpm on",
-            at.to_degrees()
-        );
-        let at_p = corners.get(1).is_some_and(|corner| corner.angle == at);
-        let same = (speed - nose).abs() <= tolerance::SPEED_FOUND.value;
-        let about = (speed - 114.0).abs() <= tolerance::ABOUT_RPM.value;
-        Ok(decide(silent == 114 && at_p && same && about, Verdict::Refuted, evidence))
+pub(in crate::paper) fn detachment(context: &Context<'_>) -> Decision {
+    let machine = machine(context, 100.0);
+    let first_event = |rpm: f64| {
+        let machine = machine.at_speed(angular_velocity(rpm));
+        let mut motion = machine.start_on_cam(0.0, 0.0)?;
+        let (goal, mut found) = (motion.after(1), None);
+        let _ = machine.advance(&mut motion, goal, &mut |event: &Event| {
+            found = Some(event.cam_angle);
+            ControlFlow::Break(())
+        })?;
+        Ok::<_, SimulateError>(found)
     };
-    by_runs(decision())
+    let mut silent = 0;
+    for rpm in 1..=114 {
+        silent += usize::from(first_event(f64::from(rpm))?.is_none());
+    }
+    let speed = first_speed(114.0, 116.0, |rpm| Ok(first_event(rpm)?.is_some()))?;
+    let at = first_event(speed)?.unwrap_or(f64::NAN);
+    let corners = context.cam.corners();
+    let nose = corners.get(1).map_or(f64::NAN, |corner| {
+        let force = Flight::new(&context.model.follower).force(corner.plus.value);
+        (force / corner.plus.curvature).sqrt() / angular_velocity(1.0)
+    });
+    let evidence = format!(
+        "no event in a revolution from rest on the cam at {silent} of the speeds 1, 2, ..., 114 rpm; the lowest speed with a \
+         release is {speed:.6} rpm, at {:.4} deg; the nose would first have to pull at P, from {nose:.6} rpm on",
+        at.to_degrees()
+    );
+    let at_p = corners.get(1).is_some_and(|corner| corner.angle == at);
+    let same = (speed - nose).abs() <= tolerance::SPEED_FOUND.value;
+    let about = (speed - 114.0).abs() <= tolerance::ABOUT_RPM.value;
+    decide(silent == 114 && at_p && same && about, Verdict::Refuted, evidence)
 }
 
 /// Release at P, impacts that accumulate, sticking up to P again, and no memory of what was before.
-fn chattering(context: &Context<'_>, rpm: f64) -> Result<Found, SimulateError> {
+fn chattering(context: &Context<'_>, rpm: f64) -> Decision {
     let [_, p, ..] = corners(context);
     let machine = machine(context, rpm);
     let round = Round::new(&machine, p)?;
@@ -93,87 +89,81 @@ fn chattering(context: &Context<'_>, rpm: f64) -> Result<Found, SimulateError> {
         round.period,
     );
     let geometric = (ratio - machine.restitution()).abs() <= tolerance::GEOMETRIC.value;
-    Ok(decide(geometric && round.period == 1 && round.releases == 0 && forgets, Verdict::Refuted, evidence))
+    decide(geometric && round.period == 1 && round.releases == 0 && forgets, Verdict::Refuted, evidence)
 }
 
-pub(in crate::paper) fn chattering_at_183(context: &Context<'_>) -> Found {
-    by_runs(chattering(context, 183.0))
+pub(in crate::paper) fn chattering_at_183(context: &Context<'_>) -> Decision {
+    chattering(context, 183.0)
 }
 
-pub(in crate::paper) fn chattering_at_175(context: &Context<'_>) -> Found {
-    by_runs(chattering(context, 175.0))
+pub(in crate::paper) fn chattering_at_175(context: &Context<'_>) -> Decision {
+    chattering(context, 175.0)
 }
 
 /// Several impacts and an accumulation at every speed of the figure, up to where the accumulation reaches P.
-pub(in crate::paper) fn impact_diagram_of_slow_cams(context: &Context<'_>) -> Found {
+pub(in crate::paper) fn impact_diagram_of_slow_cams(context: &Context<'_>) -> Decision {
     const SEVERAL: usize = 10;
-    let decision = || {
-        let [_, p, ..] = corners(context);
-        let at = |rpm: f64| Round::new(&machine(context, rpm), p);
-        // Right above detachment the hops are there, but a thousandth of a millimetre per second.
-        let mut all = true;
-        for rpm in 115..=198 {
-            let round = at(f64::from(rpm))?;
-            all &= round.period == 1 && round.accumulation.is_finite() && round.impacts.len() > SEVERAL;
-        }
-        let felt = [at(115.0)?.felt(), at(120.0)?.felt(), at(198.0)?.felt()];
-        let one_release = first_speed(130.0, 140.0, |rpm| Ok(at(rpm)?.releases == 0))?;
-        let end = first_speed(198.0, 198.6, |rpm| Ok(at(rpm)?.period != 1))?;
-        let reach = (p + at(end - tolerance::SPEED_FOUND.value)?.accumulation).to_degrees() - 360.0;
-        // How many revolutions instead is for rounding to decide: each multiplies a deviation by a large number.
-        let above = at(200.0)?.period != 1;
-        let evidence = format!(
-            "at each of 115, 116, ..., 198 rpm one revolution from release to release at P, with more than {SEVERAL} impacts that \
-             accumulate: {all}; above 1e-6 m/s are {}, {} and {} of them at 115, 120 and 198 rpm; up to \
-             {one_release:.3} rpm it is released a second time, on the nose; the accumulation reaches P ({reach:.2} deg, a revolution on) at {end:.6} rpm and this motion ends; at 200 rpm it \
-             takes longer to return: {above}",
-            felt[0], felt[1], felt[2]
-        );
-        let ends_at_p = (reach - p.to_degrees()).abs() <= tolerance::DRAWN_DEGREES.value;
-        Ok(decide(all && ends_at_p && above, Verdict::Refuted, evidence))
-    };
-    by_runs(decision())
+    let [_, p, ..] = corners(context);
+    let at = |rpm: f64| Round::new(&machine(context, rpm), p);
+    // Right above detachment the hops are there, but a thousandth of a millimetre per second.
+    let mut all = true;
+    for rpm in 115..=198 {
+        let round = at(f64::from(rpm))?;
+        all &= round.period == 1 && round.accumulation.is_finite() && round.impacts.len() > SEVERAL;
+    }
+    let felt = [at(115.0)?.felt(), at(120.0)?.felt(), at(198.0)?.felt()];
+    let one_release = first_speed(130.0, 140.0, |rpm| Ok(at(rpm)?.releases == 0))?;
+    let end = first_speed(198.0, 198.6, |rpm| Ok(at(rpm)?.period != 1))?;
+    let reach = (p + at(end - tolerance::SPEED_FOUND.value)?.accumulation).to_degrees() - 360.0;
+    // How many revolutions instead is for rounding to decide: each multiplies a deviation by a large number.
+    let above = at(200.0)?.period != 1;
+    let evidence = format!(
+        "at each of 115, 116, ..., 198 rpm one revolution from release to release at P, with more than {SEVERAL} impacts that \
+         accumulate: {all}; above 1e-6 m/s are {}, {} and {} of them at 115, 120 and 198 rpm; up to \
+         {one_release:.3} rpm it is released a second time, on the nose; the accumulation reaches P ({reach:.2} deg, a revolution on) at {end:.6} rpm and this motion ends; at 200 rpm it \
+         takes longer to return: {above}",
+        felt[0], felt[1], felt[2]
+    );
+    let ends_at_p = (reach - p.to_degrees()).abs() <= tolerance::DRAWN_DEGREES.value;
+    decide(all && ends_at_p && above, Verdict::Refuted, evidence)
 }
 
 /// Where the impact of an index crosses a corner the accumulation angle has a cusp: on the way up to the nose's top a
 /// lowest point, on the way down a highest.
-pub(in crate::paper) fn resonant_peaks(context: &Context<'_>) -> Found {
+pub(in crate::paper) fn resonant_peaks(context: &Context<'_>) -> Decision {
     /// How far from the crossing the accumulation is compared, rpm.
     const BESIDE: f64 = 1e-3;
-    let decision = || {
-        let [_, p, q, q_mirrored, ..] = corners(context);
-        let round = |rpm: f64| Round::new(&machine(context, rpm), p);
-        let crossing = |index: usize, corner: f64, between: [f64; 2]| {
-            let past = |rpm: f64| Ok(round(rpm)?.impacts.get(index).is_some_and(|[turned, _]| p + turned >= corner));
-            first_speed(between[0], between[1], past)
-        };
-        // Above 0 where the accumulation at the crossing lies above that on both sides, below 0 where it lies below both.
-        let peak = |rpm: f64| {
-            let [below, at, above] = [round(rpm - BESIDE)?, round(rpm)?, round(rpm + BESIDE)?].map(|r| r.accumulation);
-            let (left, right) = (at - below, at - above);
-            Ok::<_, SimulateError>(if left * right > 0.0 { left.signum() } else { 0.0 })
-        };
-        let (mut lowest, mut highest, mut cusps) = (Vec::new(), Vec::new(), true);
-        for index in 0..6 {
-            let rpm = crossing(index, q, [115.5, 130.0])?;
-            cusps &= peak(rpm)? < 0.0;
-            lowest.push(rpm);
-        }
-        for index in 1..6 {
-            let rpm = crossing(index, q_mirrored, [137.0, 198.0])?;
-            cusps &= peak(rpm)? > 0.0;
-            highest.push(rpm);
-        }
-        let evidence = format!(
-            "impacts 2 to 6 after the release cross Q' (200 deg) at {} rpm: at each the angle where impacts accumulate has a cusp \
-             upwards; impacts 1 to 6 cross Q (160 deg) at {} rpm: at each a cusp downwards: {cusps}. The crossing impact's own \
-             line is smooth, those after it have the cusp",
-            listed(&highest, 3),
-            listed(&lowest, 3)
-        );
-        Ok(decide(cusps, Verdict::Refuted, evidence))
+    let [_, p, q, q_mirrored, ..] = corners(context);
+    let round = |rpm: f64| Round::new(&machine(context, rpm), p);
+    let crossing = |index: usize, corner: f64, between: [f64; 2]| {
+        let past = |rpm: f64| Ok(round(rpm)?.impacts.get(index).is_some_and(|[turned, _]| p + turned >= corner));
+        first_speed(between[0], between[1], past)
     };
-    by_runs(decision())
+    // Above 0 where the accumulation at the crossing lies above that on both sides, below 0 where it lies below both.
+    let peak = |rpm: f64| {
+        let [below, at, above] = [round(rpm - BESIDE)?, round(rpm)?, round(rpm + BESIDE)?].map(|r| r.accumulation);
+        let (left, right) = (at - below, at - above);
+        Ok::<_, SimulateError>(if left * right > 0.0 { left.signum() } else { 0.0 })
+    };
+    let (mut lowest, mut highest, mut cusps) = (Vec::new(), Vec::new(), true);
+    for index in 0..6 {
+        let rpm = crossing(index, q, [115.5, 130.0])?;
+        cusps &= peak(rpm)? < 0.0;
+        lowest.push(rpm);
+    }
+    for index in 1..6 {
+        let rpm = crossing(index, q_mirrored, [137.0, 198.0])?;
+        cusps &= peak(rpm)? > 0.0;
+        highest.push(rpm);
+    }
+    let evidence = format!(
+        "impacts 2 to 6 after the release cross Q' (200 deg) at {} rpm: at each the angle where impacts accumulate has a cusp \
+         upwards; impacts 1 to 6 cross Q (160 deg) at {} rpm: at each a cusp downwards: {cusps}. The crossing impact's own \
+         line is smooth, those after it have the cusp",
+        listed(&highest, 3),
+        listed(&lowest, 3)
+    );
+    decide(cusps, Verdict::Refuted, evidence)
 }
 
 /// Speeds in windows of stable motions that return to the release at P after 2, 3, ..., 8 revolutions: each has one more
@@ -183,28 +173,25 @@ const ADDING_ONE: [f64; 7] = [299.5, 304.68, 305.52, 305.6775, 305.7079, 305.713
 /// The same for 4, 6, 8, ..., 14 revolutions: each has two more, of two and four impacts.
 const ADDING_TWO: [f64; 6] = [313.2617, 315.2107, 316.2112, 316.85478, 317.35962, 317.79971];
 
-pub(in crate::paper) fn period_adding(context: &Context<'_>) -> Found {
-    let decision = || {
-        let [_, p, ..] = corners(context);
-        let machine: Machine = machine(context, 300.0);
-        let period = |rpm: f64| Ok::<_, SimulateError>(Round::new(&machine.at_speed(angular_velocity(rpm)), p)?.period);
-        let ones = ADDING_ONE.iter().map(|rpm| period(*rpm)).collect::<Result<Vec<_>, _>>()?;
-        let twos = ADDING_TWO.iter().map(|rpm| period(*rpm)).collect::<Result<Vec<_>, _>>()?;
-        let shown = |periods: &[u64]| periods.iter().map(u64::to_string).collect::<Vec<_>>().join(", ");
-        let gaps: Vec<f64> = ADDING_ONE.windows(2).map(|two| two[1] - two[0]).collect();
-        let shrinks = gaps.windows(2).all(|two| two[1] < two[0]);
-        let steps = |periods: &[u64], step: u64| periods.windows(2).all(|two| two[1] == two[0] + step);
-        let holds = steps(&ones, 1) && steps(&twos, 2) && shrinks;
-        let evidence = format!(
-            "stable motions of {} revolutions at {} rpm: each has one more revolution of three impacts, and the windows \
-             accumulate, five times closer each time; of {} revolutions at {} rpm; windows of other periods lie in between, and \
-             there are none up to 198.56 rpm, where all is period one",
-            shown(&ones),
-            listed(&ADDING_ONE, 3),
-            shown(&twos),
-            listed(&ADDING_TWO, 3)
-        );
-        Ok(decide(holds, Verdict::Refuted, evidence))
-    };
-    by_runs(decision())
+pub(in crate::paper) fn period_adding(context: &Context<'_>) -> Decision {
+    let [_, p, ..] = corners(context);
+    let machine: Machine = machine(context, 300.0);
+    let period = |rpm: f64| Ok::<_, SimulateError>(Round::new(&machine.at_speed(angular_velocity(rpm)), p)?.period);
+    let ones = ADDING_ONE.iter().map(|rpm| period(*rpm)).collect::<Result<Vec<_>, _>>()?;
+    let twos = ADDING_TWO.iter().map(|rpm| period(*rpm)).collect::<Result<Vec<_>, _>>()?;
+    let shown = |periods: &[u64]| periods.iter().map(u64::to_string).collect::<Vec<_>>().join(", ");
+    let gaps: Vec<f64> = ADDING_ONE.windows(2).map(|two| two[1] - two[0]).collect();
+    let shrinks = gaps.windows(2).all(|two| two[1] < two[0]);
+    let steps = |periods: &[u64], step: u64| periods.windows(2).all(|two| two[1] == two[0] + step);
+    let holds = steps(&ones, 1) && steps(&twos, 2) && shrinks;
+    let evidence = format!(
+        "stable motions of {} revolutions at {} rpm: each has one more revolution of three impacts, and the windows \
+         accumulate, five times closer each time; of {} revolutions at {} rpm; windows of other periods lie in between, and \
+         there are none up to 198.56 rpm, where all is period one",
+        shown(&ones),
+        listed(&ADDING_ONE, 3),
+        shown(&twos),
+        listed(&ADDING_TWO, 3)
+    );
+    decide(holds, Verdict::Refuted, evidence)
 }

@@ -2,13 +2,12 @@
 //! how the motion goes over to it when its orbit is gone.
 
 use super::transition::{from_x_star, is_period_one, map};
-use super::{by_runs, machine, settles, turn};
+use super::{machine, settles, turn};
 use crate::border_collision::passage;
 use crate::diagram::growth;
 use crate::flight::State;
 use crate::orbit::{Course, Search, search};
-use crate::paper::context::{Context, Found};
-use crate::paper::statements::decide;
+use crate::paper::context::{Context, Decision, decide};
 use crate::published::Verdict;
 use crate::section::StroboscopicMap;
 use crate::simulate::{SimulateError, angular_velocity};
@@ -21,38 +20,35 @@ const BELOW: [f64; 4] = [1e-2, 1e-4, 1e-6, 1e-8];
 const LEFT: f64 = 1e-3;
 
 /// The settled motion, with the speed lowered through the corner impact in one small step; and how it leaves.
-pub(in crate::paper) fn transition(context: &Context<'_>) -> Found {
+pub(in crate::paper) fn transition(context: &Context<'_>) -> Decision {
     const BESIDE: f64 = 1e-4;
     let at = &context.findings.at;
     let speed = at.speed_rpm();
-    let decision = || {
-        let machine = machine(context, speed + BESIDE);
-        let mut motion = from_x_star(context, &machine)?;
-        let above = settles(&machine, &mut motion, 3000)?;
-        let slower = machine.at_speed(angular_velocity(speed - BESIDE));
-        let mut motion = slower.resume(&motion)?;
-        let below = settles(&slower, &mut motion, 10_000)?;
-        let local = &context.findings.closed_form().map;
-        let (mut counts, mut agree) = (Vec::new(), true);
-        for below in BELOW {
-            let map = map(context, speed - below);
-            let dt = 60.0 / (speed - below) - at.period;
-            let linear = passage::linear(local, dt, LEFT, PATIENCE);
-            let run = passage::simulated(&map, at.state, LEFT, PATIENCE)?;
-            agree &= passage::agree(linear, run);
-            counts.push(format!("{}/{}", shown(linear), shown(run)));
-        }
-        let decade = passage::revolutions_per_decade(local).unwrap_or(f64::NAN);
-        let evidence = format!(
-            "one impact a revolution after 3000 from x* at 1e-4 rpm above {speed:.6} rpm: {above}; with the speed then lowered to \
-             1e-4 rpm below it, after 10000 more: {below}; {} rpm below it the motion has left x* by {LEFT} m after {} revolutions \
-             (piecewise-linear map/runs), {decade:.1} more for each factor of ten",
-            BELOW.map(|below| format!("{below:e}")).join(", "),
-            counts.join(", "),
-        );
-        Ok(decide(above && !below && agree, Verdict::Refuted, evidence))
-    };
-    by_runs(decision())
+    let machine = machine(context, speed + BESIDE);
+    let mut motion = from_x_star(context, &machine)?;
+    let above = settles(&machine, &mut motion, 3000)?;
+    let slower = machine.at_speed(angular_velocity(speed - BESIDE));
+    let mut motion = slower.resume(&motion)?;
+    let below = settles(&slower, &mut motion, 10_000)?;
+    let local = &context.findings.closed_form().map;
+    let (mut counts, mut agree) = (Vec::new(), true);
+    for below in BELOW {
+        let map = map(context, speed - below);
+        let dt = 60.0 / (speed - below) - at.period;
+        let linear = passage::linear(local, dt, LEFT, PATIENCE);
+        let run = passage::simulated(&map, at.state, LEFT, PATIENCE)?;
+        agree &= passage::agree(linear, run);
+        counts.push(format!("{}/{}", shown(linear), shown(run)));
+    }
+    let decade = passage::revolutions_per_decade(local).unwrap_or(f64::NAN);
+    let evidence = format!(
+        "one impact a revolution after 3000 from x* at 1e-4 rpm above {speed:.6} rpm: {above}; with the speed then lowered to \
+         1e-4 rpm below it, after 10000 more: {below}; {} rpm below it the motion has left x* by {LEFT} m after {} revolutions \
+         (piecewise-linear map/runs), {decade:.1} more for each factor of ten",
+        BELOW.map(|below| format!("{below:e}")).join(", "),
+        counts.join(", "),
+    );
+    decide(above && !below && agree, Verdict::Refuted, evidence)
 }
 
 /// Revolutions within which a motion must have left.
@@ -65,36 +61,33 @@ fn shown(count: Option<u64>) -> String {
 /// Speeds above the corner impact at which a start on the cam is held against x*.
 const COEXISTING: [f64; 2] = [674.0, 682.0];
 
-pub(in crate::paper) fn coexisting(context: &Context<'_>) -> Found {
-    let decision = || {
-        let mut both = true;
-        for rpm in COEXISTING {
-            let machine = machine(context, rpm);
-            let mut motion = machine.start_on_cam(0.0, 0.0)?;
-            turn(&machine, &mut motion, 300)?;
-            both &= growth(&machine, motion, 1000)? > tolerance::CHAOTIC_GROWTH.value;
-            both &= !settles(&machine, &mut motion, 10_000)? && is_period_one(context, rpm, 3000)?;
-        }
-        // Above it the chaotic motion is left within some hundred revolutions.
-        let machine = machine(context, 683.0);
-        let alone = settles(&machine, &mut machine.start_on_cam(0.0, 0.0)?, 20_000)?;
-        let (lines, farthest) = borders(context, 678.0)?;
-        let parted = lines > 0 && farthest <= tolerance::BORDER_ON_MANIFOLD.value;
-        let lost = lost(context)?;
-        let evidence = format!(
-            "at {} rpm a start at rest on the cam does not settle in 10000 revolutions, with a Lyapunov exponent above {} a \
-             revolution, and x* goes to one impact a revolution: {both}; at 678 rpm the border of their basins, by halving on \
-             {lines} lines, is the stable manifold of the unstable orbit of one impact, by runs backwards, within {:e} m: \
-             {parted}; that orbit's unstable manifold, which the chaotic motion fills, meets it at {lost:.2} rpm; at 683 rpm both \
-             starts settle: {alone}",
-            COEXISTING.map(|rpm| rpm.to_string()).join(", "),
-            tolerance::CHAOTIC_GROWTH.value,
-            tolerance::BORDER_ON_MANIFOLD.value,
-        );
-        let between = lost > COEXISTING[1] && lost < 683.0;
-        Ok(decide(both && alone && parted && between, Verdict::Refuted, evidence))
-    };
-    by_runs(decision())
+pub(in crate::paper) fn coexisting(context: &Context<'_>) -> Decision {
+    let mut both = true;
+    for rpm in COEXISTING {
+        let machine = machine(context, rpm);
+        let mut motion = machine.start_on_cam(0.0, 0.0)?;
+        turn(&machine, &mut motion, 300)?;
+        both &= growth(&machine, motion, 1000)? > tolerance::CHAOTIC_GROWTH.value;
+        both &= !settles(&machine, &mut motion, 10_000)? && is_period_one(context, rpm, 3000)?;
+    }
+    // Above it the chaotic motion is left within some hundred revolutions.
+    let machine = machine(context, 683.0);
+    let alone = settles(&machine, &mut machine.start_on_cam(0.0, 0.0)?, 20_000)?;
+    let (lines, farthest) = borders(context, 678.0)?;
+    let parted = lines > 0 && farthest <= tolerance::BORDER_ON_MANIFOLD.value;
+    let lost = lost(context)?;
+    let evidence = format!(
+        "at {} rpm a start at rest on the cam does not settle in 10000 revolutions, with a Lyapunov exponent above {} a \
+         revolution, and x* goes to one impact a revolution: {both}; at 678 rpm the border of their basins, by halving on \
+         {lines} lines, is the stable manifold of the unstable orbit of one impact, by runs backwards, within {:e} m: \
+         {parted}; that orbit's unstable manifold, which the chaotic motion fills, meets it at {lost:.2} rpm; at 683 rpm both \
+         starts settle: {alone}",
+        COEXISTING.map(|rpm| rpm.to_string()).join(", "),
+        tolerance::CHAOTIC_GROWTH.value,
+        tolerance::BORDER_ON_MANIFOLD.value,
+    );
+    let between = lost > COEXISTING[1] && lost < 683.0;
+    decide(both && alone && parted && between, Verdict::Refuted, evidence)
 }
 
 /// The saddle of one impact a revolution and the half of its stable manifold on the cam's side.

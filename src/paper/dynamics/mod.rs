@@ -9,9 +9,8 @@ mod transition;
 
 use std::ops::ControlFlow;
 
-use super::context::{Context, Found};
+use super::context::Context;
 use crate::flight::State;
-use crate::published::Verdict;
 use crate::section::StroboscopicMap;
 use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError, Unobserved, angular_velocity};
 use crate::tolerance;
@@ -22,11 +21,6 @@ pub(super) use global::{coexisting, transition};
 pub(super) use transition::{
     chaos_below, chaos_for_good, impact_diagram, orbit_at_700, period_one_above, transitions_at_corners,
 };
-
-/// A statement about runs; one that the simulator gives up leaves it open.
-fn by_runs(decision: Result<Found, SimulateError>) -> Found {
-    decision.unwrap_or_else(|error| Found { verdict: Verdict::Open, evidence: error.to_string() })
-}
 
 /// The paper's machine at a speed.
 fn machine(context: &Context<'_>, rpm: f64) -> Machine {
