@@ -51,36 +51,13 @@ pub struct EndingEntry {
     pub share_standard_error: f64,
 }
 
-/// The name of an ending in tables.
-pub fn name(ending: &Ending) -> &'static str {
-    match ending {
-        Ending::Orbit(_) => "orbit",
-        Ending::Chaotic => "chaotic",
-        Ending::Resting => "resting",
-        Ending::Undecided => "undecided",
-    }
-}
-
-/// What an ending is called in a legend.
-pub fn described(ending: &Ending) -> String {
-    match ending {
-        Ending::Orbit(orbit) => {
-            let many = |count: u64, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
-            format!("{} in {}", many(orbit.impacts().count() as u64, "impact"), many(orbit.revolutions, "revolution"))
-        }
-        Ending::Chaotic => "chaotic".into(),
-        Ending::Resting => "comes to rest, repeats later".into(),
-        Ending::Undecided => "undecided".into(),
-    }
-}
-
 impl BasinsSummary {
     /// Of `basins` at `rpm`.
     pub fn new(model: &str, rpm: f64, basins: &Basins, wall_s: f64) -> Self {
         let entry = |part: &Part| {
             let orbit = if let Ending::Orbit(orbit) = &part.ending { Some(orbit) } else { None };
             EndingEntry {
-                ending: name(&part.ending),
+                ending: part.ending.name(),
                 revolutions: orbit.map(|orbit| orbit.revolutions),
                 impacts: orbit.map(|orbit| orbit.impacts().count()),
                 starts: part.starts,

@@ -88,7 +88,7 @@ pub fn basins(basins: &Basins) -> String {
             Some((index, Ending::Orbit(orbit))) => {
                 writeln!(lines, "orbit,{index},{},{}", orbit.revolutions, orbit.impacts().count())
             }
-            Some((index, ending)) => writeln!(lines, "{},{index},,", crate::pages::basins::name(ending)),
+            Some((index, ending)) => writeln!(lines, "{},{index},,", ending.name()),
         };
     }
     lines

@@ -10,6 +10,7 @@ use crate::cam::Side;
 use crate::published::Verdict;
 use crate::show::block::{Mark, Symbol, Words, words};
 use crate::show::digits::Digits;
+use crate::study::basins::Ending;
 use crate::study::speeds::Regime;
 
 /// A name with spaces for its hyphens and underscores.
@@ -119,6 +120,19 @@ pub fn regime(regime: Regime) -> &'static str {
         Regime::Chaotic => "chaotic",
         Regime::Free => "never meets the cam",
         Regime::Unsettled => "not settled",
+    }
+}
+
+/// What starts end on, in a legend.
+pub fn ending(ending: &Ending) -> String {
+    match ending {
+        Ending::Orbit(orbit) => {
+            let many = |count: u64, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
+            format!("{} in {}", many(orbit.impacts().count() as u64, "impact"), many(orbit.revolutions, "revolution"))
+        }
+        Ending::Chaotic => "chaotic".into(),
+        Ending::Resting => "comes to rest, repeats later".into(),
+        Ending::Undecided => "undecided".into(),
     }
 }
 

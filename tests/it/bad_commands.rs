@@ -1,8 +1,9 @@
 //! Do `simulate`, `diagram` and `cam` refuse what cannot be, say what would be, and leave no file behind?
 
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
+use crate::common;
 use tempfile::TempDir;
 
 const MODEL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/models/osorio-2008.toml");
@@ -28,8 +29,7 @@ impl Place {
 
     fn run(&self, line: &str) -> Output {
         let arguments = line.split_whitespace().map(|word| word.replace("MODEL", MODEL));
-        let program = env!("CARGO_BIN_EXE_corner-impact");
-        Command::new(program).args(arguments).current_dir(&self.0).output().unwrap()
+        common::program(arguments).current_dir(&self.0).output().unwrap()
     }
 
     /// Exit 2, nothing on standard output, one message with these parts, and every file as it was.
@@ -263,7 +263,6 @@ fn standard_output_that_is_full() {
     if !Path::new("/dev/full").exists() {
         return;
     }
-    let program = env!("CARGO_BIN_EXE_corner-impact");
     for line in [
         "simulate MODEL --rpm 183 --events -",
         "simulate MODEL --rpm 183 --strobe 1 --strobe-out -",
@@ -276,7 +275,7 @@ fn standard_output_that_is_full() {
     ] {
         let full = std::fs::File::options().write(true).open("/dev/full").unwrap();
         let arguments = line.split_whitespace().map(|word| word.replace("MODEL", MODEL));
-        let output = Command::new(program).args(arguments).stdout(full).output().unwrap();
+        let output = common::program(arguments).stdout(full).output().unwrap();
         let message = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2), "{line}: {message}");
         assert!(message.contains("standard output") && message.contains("No space left"), "{line}: {message}");

@@ -2,7 +2,7 @@
 
 use crate::common;
 use std::path::PathBuf;
-use std::process::{Command, Output};
+use std::process::Output;
 
 struct Case {
     changes: &'static [(&'static str, &'static str)],
@@ -17,11 +17,7 @@ fn folder() -> PathBuf {
 }
 
 fn verify(arguments: &[&std::ffi::OsStr]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_corner-impact"))
-        .args(["verify", "--no-external"])
-        .args(arguments)
-        .output()
-        .unwrap()
+    common::program(["verify", "--no-external"]).args(arguments).output().unwrap()
 }
 
 /// Runs `verify` on `text` and demands exit 2, an empty standard output and one message with these parts.

@@ -2,9 +2,8 @@
 
 use std::f64::consts::TAU;
 use std::path::Path;
-use std::process::{Command, Output};
 
-use crate::common;
+use crate::common::{self, corner_impact};
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use corner_impact::cam::{Cam, Corner, Side};
 use corner_impact::model::Model;
@@ -188,10 +187,6 @@ fn laws_are_continued_past_any_corner() {
     assert_eq!(first.law.lift(0.0), last.law.lift(TAU));
     assert!(wrapped.continued(&corners[0], Side::Minus, 4.0).is_none());
     assert!(wrapped.continued(&corners[0], Side::Plus, f64::NAN).is_none());
-}
-
-fn corner_impact(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_corner-impact")).args(arguments).output().unwrap()
 }
 
 #[test]

@@ -2,9 +2,8 @@
 
 use std::f64::consts::TAU;
 use std::path::PathBuf;
-use std::process::Command;
-use std::time::Instant;
 
+use crate::common;
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use corner_impact::cam::Cam;
 use corner_impact::model::Model;
@@ -239,14 +238,14 @@ fn commands_refuse_a_bad_table() {
     let file = folder().join("bad.toml");
     std::fs::write(&file, model_text("bad.csv", "cubic")).unwrap();
     for command in ["cam", "verify"] {
-        let output = Command::new(env!("CARGO_BIN_EXE_corner-impact")).arg(command).arg(&file).output().unwrap();
+        let output = common::program([command]).arg(&file).output().unwrap();
         let message = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2), "{message}");
         assert!(output.stdout.is_empty() && message.starts_with("error: ") && message.contains("bad.csv:3: lift = x"));
     }
 }
 
-/// As many rows as are allowed, in seconds; one more is one too many.
+/// As many rows as are allowed; one more is one too many.
 #[test]
 fn a_million_rows() {
     let count = 1_000_000_u32;
@@ -254,9 +253,7 @@ fn a_million_rows() {
         (0..count).map(|k| 360.0 * f64::from(k) / f64::from(count)).map(|a| (a, smooth(a))).collect();
     let text = csv(&rows);
     for (spline, _) in SPLINES {
-        let clock = Instant::now();
         let cam = cam_of("million", &text, spline).unwrap();
-        assert!(clock.elapsed().as_secs_f64() < 20.0, "{spline}: {:?}", clock.elapsed());
         assert_eq!(cam.segments().len(), rows.len());
         for k in 0..1000 {
             let angle = 0.36 * f64::from(k) + 1e-4;

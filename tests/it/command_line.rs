@@ -4,10 +4,10 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
+use crate::common::{PROGRAM, ROOT, corner_impact, program, text};
 use rayon::prelude::*;
 use tempfile::TempDir;
 
-const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 const COMMANDS: [&str; 16] = [
     "verify",
     "report",
@@ -27,22 +27,8 @@ const COMMANDS: [&str; 16] = [
     "man",
 ];
 
-/// The program in `folder`, in an environment that says nothing about terminals.
-fn program(folder: &Path, words: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_corner-impact"));
-    command.current_dir(folder).args(words);
-    for name in ["COLUMNS", "NO_COLOR", "CLICOLOR", "CLICOLOR_FORCE"] {
-        command.env_remove(name);
-    }
-    command
-}
-
 fn run(line: &str) -> Output {
-    program(Path::new(ROOT), &line.split_whitespace().collect::<Vec<_>>()).output().unwrap()
-}
-
-fn text(bytes: Vec<u8>) -> String {
-    String::from_utf8(bytes).unwrap()
+    corner_impact(line.split_whitespace())
 }
 
 /// The lines under "Examples:", without the explanations beside them.
@@ -66,7 +52,8 @@ fn examples_work_as_written() {
         }
     }
     // Wide enough for an example to be one line.
-    let help = |words: &[&str]| text(program(folder.path(), words).env("COLUMNS", "120").output().unwrap().stdout);
+    let help =
+        |words: &[&str]| text(program(words).current_dir(folder.path()).env("COLUMNS", "120").output().unwrap().stdout);
     let first = help(&["--help"]);
     assert_eq!(examples(&first).len(), 2, "{first}");
     let mut lines = examples(&first);
@@ -89,7 +76,7 @@ fn examples_work_as_written() {
     );
     let wrong = |line: &String| {
         let words: Vec<&str> = line.split_whitespace().skip(1).collect();
-        let output = program(folder.path(), &words).output().unwrap();
+        let output = program(words).current_dir(folder.path()).output().unwrap();
         let (out, err) = (text(output.stdout), text(output.stderr));
         // Python need not be here.
         let without_python = output.status.code() == Some(1) && err.contains("did not run");
@@ -100,6 +87,24 @@ fn examples_work_as_written() {
     };
     let complaints: Vec<String> = lines.par_iter().filter_map(wrong).collect();
     assert!(complaints.is_empty(), "{}", complaints.join("\n"));
+}
+
+#[test]
+fn help_and_version_go_to_standard_output() {
+    let lines = COMMANDS.map(|command| format!("{command} --help"));
+    for line in ["--help", "--version"].into_iter().chain(lines.iter().map(String::as_str)) {
+        let output = run(line);
+        assert_eq!(output.status.code(), Some(0), "{line}");
+        assert!(output.stderr.is_empty(), "{line}");
+        let said = text(output.stdout);
+        assert!(
+            if line == "--version" { said.starts_with("corner-impact ") } else { said.contains("Usage: ") },
+            "{said}"
+        );
+        assert!(said.contains("Exit code: 0") || line.starts_with("--"), "{said}");
+    }
+    assert_eq!(run("").status.code(), Some(2));
+    assert_eq!(run("conquer").status.code(), Some(2));
 }
 
 #[test]
@@ -118,10 +123,7 @@ fn pages_fit_the_width_that_is_asked_for() {
         "--help",
         "diagram --help",
     ] {
-        let page = |columns: &str| {
-            let words: Vec<&str> = line.split_whitespace().collect();
-            text(program(Path::new(ROOT), &words).env("COLUMNS", columns).output().unwrap().stdout)
-        };
+        let page = |columns: &str| text(program(line.split(' ')).env("COLUMNS", columns).output().unwrap().stdout);
         for width in [60, 80, 120] {
             let page = page(&width.to_string());
             assert!(!page.is_empty());
@@ -133,8 +135,7 @@ fn pages_fit_the_width_that_is_asked_for() {
                 assert!(found.chars().count() <= width || is_one_word || is_usage, "{line} at {width}: {found}");
             }
         }
-        let unasked: Vec<&str> = line.split_whitespace().collect();
-        let unasked = text(program(Path::new(ROOT), &unasked).output().unwrap().stdout);
+        let unasked = text(run(line).stdout);
         let same = |text: &str| {
             text.lines()
                 .filter(|line| !line.contains(" s, ") && !line.ends_with(" s"))
@@ -145,7 +146,7 @@ fn pages_fit_the_width_that_is_asked_for() {
     }
     // Nothing is lost on the way: the same words in the same order, but for the heads of tables.
     let words = |columns: &str| {
-        let page = program(Path::new(ROOT), &["claims"]).env("COLUMNS", columns).output().unwrap().stdout;
+        let page = program(["claims"]).env("COLUMNS", columns).output().unwrap().stdout;
         let page = text(page);
         assert!(page.lines().all(|line| line.chars().count() <= columns.parse().unwrap()), "{page}");
         page.split_whitespace().map(String::from).collect::<Vec<_>>()
@@ -163,8 +164,7 @@ fn stripped(text: &str) -> String {
 #[test]
 fn colour_is_where_it_belongs_and_says_nothing_by_itself() {
     let coloured = |line: &str, set: &[(&str, &str)]| {
-        let words: Vec<&str> = line.split_whitespace().collect();
-        let output = program(Path::new(ROOT), &words).envs(set.iter().copied()).output().unwrap();
+        let output = program(line.split_whitespace()).envs(set.iter().copied()).output().unwrap();
         (text(output.stdout), text(output.stderr))
     };
     for line in ["verify --no-external", "cam", "orbit --rpm 680", "--help"] {
@@ -225,7 +225,7 @@ fn a_model_need_not_be_named() {
 #[test]
 fn templates_load_as_they_stand() {
     let folder = TempDir::new().unwrap();
-    let at = |words: &[&str]| program(folder.path(), words).output().unwrap();
+    let at = |words: &[&str]| program(words).current_dir(folder.path()).output().unwrap();
     for law in ["arcs", "harmonic", "rectified-sine", "program", "polynomial", "table"] {
         let file = format!("{law}.toml");
         let written = at(&["new", &file, "--law", law]);
@@ -269,12 +269,12 @@ fn templates_load_as_they_stand() {
 #[test]
 fn manual_and_completions_know_every_command() {
     let folder = TempDir::new().unwrap();
-    let written = program(folder.path(), &["man", "--out", "pages"]).output().unwrap();
+    let written = program(["man", "--out", "pages"]).current_dir(folder.path()).output().unwrap();
     assert_eq!(written.status.code(), Some(0), "{}", text(written.stderr));
     let page = |name: &str| std::fs::read_to_string(folder.path().join("pages").join(name)).unwrap();
     assert_eq!(std::fs::read_dir(folder.path().join("pages")).unwrap().count(), COMMANDS.len() + 1);
     let first = page("corner-impact.1");
-    assert_eq!(first.as_bytes(), program(folder.path(), &["man"]).output().unwrap().stdout);
+    assert_eq!(first.as_bytes(), run("man").stdout);
     for command in COMMANDS {
         let page = page(&format!("corner-impact-{command}.1"));
         // A hyphen that is typed is written \- in a manual page.
@@ -298,7 +298,7 @@ fn manual_and_completions_know_every_command() {
 fn from_any_folder() {
     let (home, empty) = (TempDir::new().unwrap(), TempDir::new().unwrap());
     let copy = home.path().join("corner-impact");
-    std::fs::copy(env!("CARGO_BIN_EXE_corner-impact"), &copy).unwrap();
+    std::fs::copy(PROGRAM, &copy).unwrap();
     let run = |line: &str| {
         let mut command = Command::new(&copy);
         command
@@ -337,17 +337,18 @@ fn from_any_folder() {
 /// In front of a person work of more than a second has a bar, or a spinner; `script` makes a terminal.
 #[test]
 fn a_terminal_sees_how_far_it_is() {
-    let line = format!("{} claims", env!("CARGO_BIN_EXE_corner-impact"));
-    let typed = Command::new("script").args(["-qec", &line, "/dev/null"]).env("TERM", "xterm").output();
-    let Ok(typed) = typed.map(|output| text(output.stdout)) else {
+    let typed = |line: &str| {
+        let line = format!("{PROGRAM} {line}");
+        let typed = Command::new("script").args(["-qec", &line, "/dev/null"]).env("TERM", "xterm").output();
+        typed.map(|output| text(output.stdout))
+    };
+    let Ok(claims) = typed("claims") else {
         return println!("skipped: there is no `script` here to make a terminal");
     };
-    assert!(typed.contains("REFUTED"), "{typed}");
-    // Time enough for a bar to appear at all.
-    let clock = std::time::Instant::now();
-    let plain = run("claims");
-    let is_slow = clock.elapsed().as_secs_f64() > 2.0;
-    assert!(!is_slow || typed.contains(" %  "), "no bar in {typed:?}");
-    assert!(typed.contains("\x1b[1;31mREFUTED\x1b[0m"), "a terminal is coloured");
-    assert!(text(plain.stderr).lines().count() == 1);
+    assert!(claims.contains("\x1b[1;31mREFUTED\x1b[0m"), "a terminal is coloured: {claims}");
+    // Three seconds or more on one core.
+    let sweep = "diagram --rpm 660:670:2000 --transient 2000 --record 200 --threads 1 --summary";
+    let shown = typed(sweep).unwrap();
+    assert!(shown.contains(" %  "), "no bar in {shown:?}");
+    assert_eq!(text(run("claims").stderr).lines().count(), 1, "no bar where there is no terminal");
 }

@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 use std::path::Path;
-use std::process::{Command, Output};
 
+use crate::common;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -13,18 +13,13 @@ const EVENTS: &str =
 const STROBE: &str = "revolution,position_m,velocity_m_s,gap_m,contact";
 const IMPACTS: &str = "rpm,revolution,cam_angle_rad,event,position_m,velocity_before_m_s,velocity_after_m_s";
 
-fn run(arguments: &[&str]) -> Output {
-    let root = env!("CARGO_MANIFEST_DIR");
-    Command::new(env!("CARGO_BIN_EXE_corner-impact")).args(arguments).current_dir(root).output().unwrap()
-}
-
 /// Standard output of a command that is done and has nothing to complain about.
 #[track_caller]
 fn prints(arguments: &[&str]) -> String {
-    let output = run(arguments);
-    let complaints = String::from_utf8(output.stderr).unwrap();
+    let output = common::corner_impact(arguments);
+    let complaints = common::text(output.stderr);
     assert_eq!((output.status.code(), complaints.as_str()), (Some(0), ""), "{arguments:?}");
-    String::from_utf8(output.stdout).unwrap()
+    common::text(output.stdout)
 }
 
 #[track_caller]
@@ -309,9 +304,7 @@ fn a_reader_that_has_enough_gets_no_complaint() {
         &["simulate", MODEL, "--rpm", "183", "--revolutions", "100000", "--events", "-"][..],
         &["diagram", MODEL, "--rpm", "180:190:1000", "--out", "-"],
     ] {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_corner-impact"))
-            .args(arguments)
-            .current_dir(env!("CARGO_MANIFEST_DIR"))
+        let mut child = common::program(arguments)
             .stdout(std::process::Stdio::piped())
             .stderr(std::process::Stdio::piped())
             .spawn()
@@ -344,13 +337,4 @@ fn a_cam_as_a_document() {
     // Its slopes jump at two angles; at order 0 nothing does.
     let none = document(&["cam", "models/laws/rectified-sine.toml", "--json", "--order", "0"]);
     assert_eq!(none["corners"].as_array().unwrap().len(), 0);
-}
-
-#[test]
-fn help_has_an_example() {
-    for command in ["simulate", "diagram", "cam"] {
-        let help = prints(&[command, "--help"]);
-        assert!(help.contains("Example") && help.contains(&format!("corner-impact {command} models/")), "{help}");
-        assert!(help.contains("Exit code: 0 done, 2 "), "{help}");
-    }
 }

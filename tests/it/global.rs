@@ -1,8 +1,6 @@
 //! The global picture: are the basins' borders the saddle's stable manifold, where is the chaotic motion lost, how does the
 //! motion leave a place without an orbit?
 
-use std::process::Command;
-
 use crate::common;
 use corner_impact::border_collision::passage;
 use corner_impact::diagram::{exponent, growth};
@@ -212,10 +210,9 @@ fn exponents_have_errors() {
 
 #[test]
 fn the_command_keeps_its_columns_and_fields() {
-    let binary = env!("CARGO_BIN_EXE_corner-impact");
     let run = |more: &[&str]| {
         let arguments = ["basins", "models/osorio-2008.toml", "--rpm", "678", "--strobe", "5.762717154756"];
-        Command::new(binary).args(arguments).args(more).output().unwrap()
+        common::program(arguments).args(more).output().unwrap()
     };
     let table = run(&["--grid", "4x3", "--position", "0.3:6", "--velocity=-60:60", "--out", "-"]);
     assert_eq!(table.status.code(), Some(0), "{}", String::from_utf8_lossy(&table.stderr));

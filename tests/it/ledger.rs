@@ -127,8 +127,7 @@ fn the_page_in_docs_is_fresh() {
 #[test]
 fn the_json_document_has_the_fields_of_the_contract() {
     let file = common::model_files().into_iter().find(|file| common::stem(file) == "osorio-2008").unwrap();
-    let binary = env!("CARGO_BIN_EXE_corner-impact");
-    let output = std::process::Command::new(binary).args(["claims", "--json"]).arg(&file).output().unwrap();
+    let output = common::program(["claims", "--json"]).arg(&file).output().unwrap();
     assert_eq!(output.status.code(), Some(0));
     let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(document["schema"], "corner-impact/claims/1");

@@ -5,6 +5,8 @@
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Child, Command, Stdio};
 
+use crate::common;
+
 const MODEL: &str = "models/osorio-2008.toml";
 /// The goal for every command, kB. The program itself takes about 10 MB, most of it code and the threads' stacks.
 const MOST: u64 = 20_000;
@@ -18,12 +20,7 @@ fn most_resident(child: &Child) -> u64 {
 
 /// The same while most of the output is still to be read: the pipe holds the program up.
 fn most_while_printing(arguments: &[&str], rows: usize) -> u64 {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_corner-impact"))
-        .args(arguments)
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .stdout(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let mut child = common::program(arguments).stdout(Stdio::piped()).spawn().unwrap();
     let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
     // Far enough from the end for some of it to be in the program's own hands.
     assert_eq!(lines.by_ref().take(rows).count(), rows, "{arguments:?}");
@@ -56,13 +53,8 @@ fn pictures_take_no_more_than_a_run() {
     ] {
         let pipe = folder.path().join(name);
         assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
-        let mut child = Command::new(env!("CARGO_BIN_EXE_corner-impact"))
-            .args(line.split(' ').map(|word| word.replace("MODEL", MODEL)))
-            .arg(&pipe)
-            .current_dir(env!("CARGO_MANIFEST_DIR"))
-            .stdout(Stdio::null())
-            .spawn()
-            .unwrap();
+        let words = line.split(' ').map(|word| word.replace("MODEL", MODEL));
+        let mut child = common::program(words).arg(&pipe).stdout(Stdio::null()).spawn().unwrap();
         let mut reader = std::fs::File::open(&pipe).unwrap();
         reader.read_exact(&mut [0; 8]).unwrap();
         let most = most_resident(&child);

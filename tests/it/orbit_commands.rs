@@ -1,6 +1,8 @@
 //! Do `orbit`, `continue`, `curve` and `speeds` keep their contract, say what they found, and refuse what they cannot do?
 
-use std::process::{Command, Output};
+use std::process::Output;
+
+use crate::common::{corner_impact, text};
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use serde_json::{Value, json};
@@ -12,16 +14,11 @@ const BRANCH: &str = "rpm,parameter,value,revolutions,impacts,cam_angle_rad,posi
 /// omega*, rpm, of the paper's model.
 const CORNER_IMPACT: f64 = 673.234_445_003_848_8;
 
-fn run(arguments: &[&str]) -> Output {
-    let root = env!("CARGO_MANIFEST_DIR");
-    Command::new(env!("CARGO_BIN_EXE_corner-impact")).args(arguments).current_dir(root).output().unwrap()
-}
-
 /// Standard output and standard error of a command that is done.
 #[track_caller]
 fn done(arguments: &[&str]) -> (String, String) {
-    let Output { status, stdout, stderr } = run(arguments);
-    let (out, err) = (String::from_utf8(stdout).unwrap(), String::from_utf8(stderr).unwrap());
+    let Output { status, stdout, stderr } = corner_impact(arguments);
+    let (out, err) = (text(stdout), text(stderr));
     assert_eq!(status.code(), Some(0), "{arguments:?}: {err}");
     (out, err)
 }
@@ -29,9 +26,9 @@ fn done(arguments: &[&str]) -> (String, String) {
 /// The complaint of a command that is refused; nothing is printed.
 #[track_caller]
 fn refused(arguments: &[&str]) -> String {
-    let Output { status, stdout, stderr } = run(arguments);
+    let Output { status, stdout, stderr } = corner_impact(arguments);
     assert_eq!((status.code(), stdout.as_slice()), (Some(2), &[][..]), "{arguments:?}");
-    String::from_utf8(stderr).unwrap()
+    text(stderr)
 }
 
 fn document(arguments: &[&str]) -> Value {

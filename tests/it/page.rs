@@ -2,7 +2,6 @@
 
 use std::collections::BTreeSet;
 use std::path::Path;
-use std::process::Command;
 use std::sync::OnceLock;
 
 use crate::common;
@@ -206,14 +205,8 @@ fn what_disagrees_stands_in_the_headline() {
 }
 
 fn report(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
-    let run = Command::new(env!("CARGO_BIN_EXE_corner-impact"))
-        .arg("report")
-        .args(arguments)
-        .current_dir(folder)
-        .output()
-        .unwrap();
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-    (run.status.code().unwrap(), text(run.stdout), text(run.stderr))
+    let run = common::program(["report"]).args(arguments).current_dir(folder).output().unwrap();
+    (run.status.code().unwrap(), common::text(run.stdout), common::text(run.stderr))
 }
 
 #[test]

@@ -1,7 +1,6 @@
 //! Does a complaint point into the file, and ask whether a near name was meant?
 
 use std::path::PathBuf;
-use std::process::Command;
 
 use crate::common;
 use corner_impact::model::Model;
@@ -15,9 +14,7 @@ fn folder() -> PathBuf {
 /// What `verify` says about a file, from the file's folder.
 fn complaint(name: &str, text: &str) -> String {
     std::fs::write(folder().join(name), text).unwrap();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_corner-impact"));
-    command.current_dir(folder()).args(["verify", "--no-external", name]).env_remove("CLICOLOR_FORCE");
-    let output = command.output().unwrap();
+    let output = common::program(["verify", "--no-external", name]).current_dir(folder()).output().unwrap();
     assert_eq!(output.status.code(), Some(2), "{name}");
     assert!(output.stdout.is_empty());
     String::from_utf8(output.stderr).unwrap()
@@ -149,7 +146,7 @@ fn near_parameters_are_asked_for() {
         ("continue --from-rpm 700 --parameter rmp=600:700", "did you mean rpm?"),
         ("curve --rpm 600:700 --parameter cam.flank_radus=0.5:0.9", "did you mean cam.flank_radius?"),
     ] {
-        let output = Command::new(env!("CARGO_BIN_EXE_corner-impact")).args(line.split(' ')).output().unwrap();
+        let output = common::corner_impact(line.split(' '));
         let message = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2));
         assert!(

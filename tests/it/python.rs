@@ -14,9 +14,7 @@ fn interpreter() -> PathBuf {
 }
 
 fn verify(arguments: &[&str], environment: &[(&str, &str)]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_corner-impact"));
-    command.current_dir(env!("CARGO_MANIFEST_DIR")).arg("verify").args(arguments);
-    command.envs(environment.iter().copied()).output().unwrap()
+    common::program(["verify"]).args(arguments).envs(environment.iter().copied()).output().unwrap()
 }
 
 /// A page as one line: where it breaks depends on the length of paths.
@@ -107,7 +105,7 @@ fn nothing_of_the_current_folder_is_run() {
     let (home, stranger, private) =
         (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let program = home.path().join("corner-impact");
-    std::fs::copy(env!("CARGO_BIN_EXE_corner-impact"), &program).unwrap();
+    std::fs::copy(common::PROGRAM, &program).unwrap();
     let marks = stranger.path().join("marks");
     std::fs::create_dir_all(&marks).unwrap();
     let python = |name: &str| {

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
+use crate::common;
 use tempfile::TempDir;
 
 const MODEL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/models/osorio-2008.toml");
@@ -68,12 +69,7 @@ fn ctrl_c_leaves_the_old_files_and_no_others() {
         ("diagram MODEL --rpm 180:190:1000000 --out out.png".into(), 1, false),
     ] {
         let folder = folder();
-        let mut child = Command::new(env!("CARGO_BIN_EXE_corner-impact"))
-            .args(words(&line))
-            .current_dir(&folder)
-            .stdout(Stdio::null())
-            .spawn()
-            .unwrap();
+        let mut child = common::program(words(&line)).current_dir(&folder).stdout(Stdio::null()).spawn().unwrap();
         // Pictures are drawn in the end: until then there is an empty file.
         let begun = || {
             let files_there = hidden(&folder);
@@ -119,8 +115,7 @@ fn a_picture_on_a_full_device_is_an_error() {
             let folder = TempDir::new().unwrap();
             symlink("/dev/full", folder.path().join(name)).unwrap();
             let line = line.replace("FILE", name);
-            let mut program = Command::new(env!("CARGO_BIN_EXE_corner-impact"));
-            let output = program.args(words(&line)).current_dir(&folder).output().unwrap();
+            let output = common::program(words(&line)).current_dir(&folder).output().unwrap();
             complains(&output, &[name, "cannot be written", "No space left"], &line);
             assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "{line}");
             assert!(fs::symlink_metadata(folder.path().join(name)).unwrap().is_symlink(), "{line}");

@@ -3,7 +3,7 @@
 use crate::draw::{Axis, Colour, Data, Density, Figure, Marker, Series, Stroke};
 use crate::figures::plots::panel;
 use crate::flight::State;
-use crate::pages::basins::described;
+use crate::show::words;
 use crate::study::basins::{Basins, Curve};
 
 /// Colours of the parts and how much of them, in order, so that each is a grey of its own; further ones share the last.
@@ -42,7 +42,7 @@ pub fn basins_figure(picture: &BasinsPicture<'_>) -> Figure {
     }
     let mut series: Vec<Series> = Vec::new();
     for ((cells, part), (colour, strength)) in areas.into_iter().zip(&picture.basins.parts).zip(COLOURS) {
-        series.push(Series { label: described(&part.ending), colour, data: Data::Region { cells, strength } });
+        series.push(Series { label: words::ending(&part.ending), colour, data: Data::Region { cells, strength } });
     }
     let at = |state: &State| [state.position, state.velocity];
     let mut line: Vec<[f64; 2]> = Vec::new();

@@ -38,6 +38,16 @@ pub enum Ending {
 }
 
 impl Ending {
+    /// The name of an ending in tables.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Orbit(_) => "orbit",
+            Self::Chaotic => "chaotic",
+            Self::Resting => "resting",
+            Self::Undecided => "undecided",
+        }
+    }
+
     /// Whether two runs end alike: on the same orbit, or on none of the same kind.
     pub fn is_same(&self, other: &Self) -> bool {
         match (self, other) {

@@ -1,10 +1,37 @@
-//! What several questions need: the models under `models/`, and a model with some fields changed.
-#![allow(dead_code, clippy::unwrap_used, clippy::panic)]
+//! What several questions need: the program, the models under `models/`, and a model with some fields changed.
+// `documents` needs a part of it.
+#![allow(dead_code)]
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
 
 use corner_impact::cam::Cam;
 use corner_impact::model::{Model, OSORIO_2008};
+
+/// The project's folder.
+pub const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+/// The program under test.
+pub const PROGRAM: &str = env!("CARGO_BIN_EXE_corner-impact");
+
+/// The program in the project's folder, in an environment that says nothing about terminals.
+pub fn program<Word: AsRef<OsStr>>(words: impl IntoIterator<Item = Word>) -> Command {
+    let mut command = Command::new(PROGRAM);
+    command.current_dir(ROOT).args(words);
+    for name in ["COLUMNS", "NO_COLOR", "CLICOLOR", "CLICOLOR_FORCE"] {
+        command.env_remove(name);
+    }
+    command
+}
+
+/// Runs the program in the project's folder.
+pub fn corner_impact<Word: AsRef<OsStr>>(words: impl IntoIterator<Item = Word>) -> Output {
+    program(words).output().unwrap()
+}
+
+pub fn text(bytes: Vec<u8>) -> String {
+    String::from_utf8(bytes).unwrap()
+}
 
 /// Every model file that has a corner impact to verify, by name; `models/laws` has those that need none.
 pub fn model_files() -> Vec<PathBuf> {

@@ -1,21 +1,16 @@
-//! Does the command keep its contract: fields, exit codes, streams?
+//! Does `verify` keep its contract: fields, exit codes, streams?
 
 use std::path::PathBuf;
-use std::process::{Command, Output};
 
-use crate::common;
+use crate::common::{self, corner_impact};
 use serde_json::Value;
-
-fn corner_impact(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_corner-impact")).args(arguments).output().unwrap()
-}
 
 fn model(name: &str) -> String {
     common::model_files().iter().find(|file| common::stem(file) == name).unwrap().to_string_lossy().into_owned()
 }
 
 fn document(name: &str) -> Value {
-    let output = corner_impact(&["verify", "--json", "--no-external", &model(name)]);
+    let output = corner_impact(["verify", "--json", "--no-external", &model(name)]);
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     serde_json::from_slice(&output.stdout).unwrap()
 }
@@ -55,7 +50,6 @@ fn the_json_document_has_the_fields_of_the_contract() {
     }
     assert!(routes["least_squares"]["condition_number"].is_f64());
     let comparisons = document["agreement"].as_array().unwrap();
-    assert_eq!(comparisons.len(), 55);
     for entry in comparisons {
         assert!(entry["routes"].as_array().unwrap().len() == 2 && entry["quantity"].is_string());
         assert!(["max_abs_diff", "max_rel_diff", "tolerance"].iter().all(|field| entry[field].is_f64()));
@@ -133,8 +127,8 @@ fn disagreement_is_said_plainly() {
 fn a_route_that_cannot_run_is_no_agreement() {
     let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("plastic.toml");
     std::fs::write(&file, common::osorio_text(&[("restitution", "0.0"), ("rpm_max", "1500.0")])).unwrap();
-    let output = corner_impact(&["verify", "--no-external", file.to_str().unwrap()]);
-    let page = String::from_utf8(output.stdout).unwrap();
+    let output = corner_impact(["verify", "--no-external", file.to_str().unwrap()]);
+    let page = common::text(output.stdout);
     assert_eq!(output.status.code(), Some(1), "{page}");
     assert!(
         page.contains("NOT RUN") && page.contains("least_squares: ") && page.contains("sticks to the cam"),
@@ -146,24 +140,11 @@ fn a_route_that_cannot_run_is_no_agreement() {
 #[test]
 fn pages_fit_a_terminal() {
     for file in common::model_files() {
-        let output = corner_impact(&["verify", "--no-external", file.to_str().unwrap()]);
-        let page = String::from_utf8(output.stdout).unwrap();
+        let output = corner_impact(["verify", "--no-external", file.to_str().unwrap()]);
+        let page = common::text(output.stdout);
         for line in page.lines() {
             assert!(line.chars().count() <= 100, "{file:?}: {line}");
         }
         assert!(page.contains("AGREES") && output.stderr.is_empty());
     }
-}
-
-#[test]
-fn help_and_version_go_to_standard_output() {
-    for arguments in [&["--help"][..], &["verify", "--help"], &["--version"]] {
-        let output = corner_impact(arguments);
-        assert_eq!(output.status.code(), Some(0));
-        assert!(!output.stdout.is_empty() && output.stderr.is_empty());
-    }
-    let help = String::from_utf8(corner_impact(&["verify", "--help"]).stdout).unwrap();
-    assert!(help.contains("Examples:\n  corner-impact verify\n") && help.contains("--no-external"));
-    assert_eq!(corner_impact(&[]).status.code(), Some(2));
-    assert_eq!(corner_impact(&["conquer"]).status.code(), Some(2));
 }
