@@ -1,20 +1,20 @@
 //! `corner-impact basins [MODEL] --rpm R --grid NxM`.
 
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
-use super::start::{finite, rpm, turn};
-use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
+use super::start::{finite, range, rpm, turn};
+use super::{CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::Progress};
 use crate::cam::Cam;
-use crate::cli::file::Output;
+use crate::draw::Figure;
 use crate::figures::plots::{BasinsPicture, basins_figure};
 use crate::flight::State;
 use crate::model::Model;
 use crate::orbit::{Course, PeriodicOrbit, Search, search};
 use crate::pages::BasinsSummary;
 use crate::section::StroboscopicMap;
-use crate::show::{csv, json};
+use crate::show::csv;
 use crate::simulate::{Machine, angular_velocity};
 use crate::study::basins::{Basins, Curve, Ending, Extent, Grid, Patience, Reversed, Saddle};
 
@@ -73,13 +73,6 @@ fn cells(text: &str) -> Result<[usize; 2], String> {
     }
 }
 
-/// `LO:HI`.
-fn range(text: &str) -> Result<[f64; 2], String> {
-    let Some((low, high)) = text.split_once(':') else { return Err("must be LO:HI".into()) };
-    let (low, high) = (finite(low)?, finite(high)?);
-    if low < high && (high - low).is_finite() { Ok([low, high]) } else { Err(format!("{low} is not below {high}")) }
-}
-
 /// Where an orbit of impacts crosses the section.
 fn crossing(machine: &Machine, orbit: &PeriodicOrbit, cam_angle: f64) -> Option<State> {
     match &orbit.course {
@@ -89,41 +82,29 @@ fn crossing(machine: &Machine, orbit: &PeriodicOrbit, cam_angle: f64) -> Option<
 }
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
-    let to_standard = arguments.out.as_ref().is_some_and(|path| path.as_os_str() == "-");
-    if to_standard && arguments.summary {
-        return Err(CommandError::Input("--out - and --summary both print to standard output".into()));
-    }
+    let to_standard = picture::out_is_standard(arguments.out.as_ref(), arguments.summary)?;
     let model = arguments.model.read(session)?;
-    let cam = Cam::new(&model).map_err(CommandError::input)?;
+    let cam = Cam::new(&model)?;
     let machine = Machine::new(cam, &model.follower, angular_velocity(arguments.rpm));
     let map = StroboscopicMap { machine, cam_angle: turn(arguments.strobe) };
-    let orbits = search(&map.machine, &Search { revolutions: 1, impacts: Some(1) }).map_err(CommandError::input)?;
+    let orbits = search(&map.machine, &Search { revolutions: 1, impacts: Some(1) })?;
     let grid = grid(arguments, &map, &orbits)?;
     let patience = Patience { revolutions: arguments.revolutions, longest: arguments.longest };
     let clock = Instant::now();
     let threads = arguments.threads.map(usize::from);
     let progress = Progress::new((grid.columns * grid.rows) as u64);
-    let basins = grid.basins_watched(&map.machine, patience, threads, &progress).map_err(CommandError::input)?;
+    let basins = grid.basins_watched(&map.machine, patience, threads, &progress)?;
     drop(progress);
     let wall_s = clock.elapsed().as_secs_f64();
-    match &arguments.out {
-        None => {}
-        Some(path) if picture::kind(path).is_some() => draw(path, &model, &map, &orbits, &basins, arguments.rpm)?,
-        Some(path) => {
-            let mut file = Output::create(path, &mut *session.out).map_err(CommandError::file)?;
-            file.write_all(csv::basins(&basins).as_bytes()).map_err(CommandError::write)?;
-            file.commit().map_err(CommandError::file)?;
-        }
+    if let Some(path) = &arguments.out {
+        let table = |table: &mut dyn Write| Ok(table.write_all(csv::basins(&basins).as_bytes())?);
+        let picture = || Ok(draw(&model, &map, &orbits, &basins, arguments.rpm));
+        Target::create(path, &mut *session.out)?.fill(table, picture)?;
     }
     let summary = BasinsSummary::new(&model.name, arguments.rpm, &basins, wall_s);
-    let page = if arguments.summary {
-        json::render(&summary).map_err(CommandError::report)?
-    } else if to_standard {
-        String::new()
-    } else {
-        session.shown(&summary.page(session.width()).map_err(CommandError::report)?)
-    };
-    session.print(&page)?;
+    if !to_standard {
+        session.answer(&summary, arguments.summary, |width| summary.page(width))?;
+    }
     Ok(Exit::Agrees)
 }
 
@@ -148,20 +129,11 @@ fn grid(arguments: &Arguments, map: &StroboscopicMap, orbits: &[PeriodicOrbit]) 
     if is_range(grid.positions) && is_range(grid.velocities) {
         return Ok(grid);
     }
-    Err(CommandError::Input("no range to put starts in: give --position and --velocity".into()))
+    Err(CommandError::Words("no range to put starts in: give --position and --velocity".into()))
 }
 
-fn draw(
-    path: &Path,
-    model: &Model,
-    map: &StroboscopicMap,
-    orbits: &[PeriodicOrbit],
-    basins: &Basins,
-    rpm: f64,
-) -> Result<(), CommandError> {
+fn draw(model: &Model, map: &StroboscopicMap, orbits: &[PeriodicOrbit], basins: &Basins, rpm: f64) -> Figure {
     let machine = &map.machine;
-    let mut nobody = std::io::sink();
-    let canvas = picture::Canvas::create(path, &mut nobody)?;
     let endings = basins.parts.iter().filter_map(|part| match &part.ending {
         Ending::Orbit(orbit) => crossing(machine, orbit, map.cam_angle),
         _ => None,
@@ -188,5 +160,5 @@ fn draw(
         saddles: &saddles.iter().map(|saddle| saddle.state).collect::<Vec<_>>(),
         curves: &curves,
     };
-    super::commit(vec![canvas.draw(&basins_figure(&picture))?])
+    basins_figure(&picture)
 }

@@ -6,7 +6,6 @@ use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progr
 use crate::cam::{Cam, Jet};
 use crate::figures::plots::cam_figure;
 use crate::pages::CamDocument;
-use crate::show::json;
 
 /// Lists the segments of a model's cam and the corners where they meet.
 #[derive(clap::Args)]
@@ -32,18 +31,12 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let model = arguments.model.read(session)?;
     let progress = Progress::spinner("laying out the cam");
-    let cam = Cam::new(&model).map_err(CommandError::input)?;
+    let cam = Cam::new(&model)?;
     if let Some(path) = &arguments.out {
-        let drawn = picture::Canvas::create(path, &mut *session.out)?.draw(&cam_figure(&cam, &model.name))?;
-        drawn.commit().map_err(CommandError::file)?;
+        super::commit(vec![picture::Canvas::create(path)?.draw(&cam_figure(&cam, &model.name))?])?;
     }
     drop(progress);
     let document = CamDocument::new(&model, &cam, arguments.order);
-    let page = if arguments.json {
-        json::render(&document).map_err(CommandError::report)?
-    } else {
-        session.shown(&document.page(session.width()).map_err(CommandError::report)?)
-    };
-    session.print(&page)?;
+    session.answer(&document, arguments.json, |width| document.page(width))?;
     Ok(Exit::Agrees)
 }

@@ -29,21 +29,18 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let model = arguments.model.read(session)?;
     let progress = Progress::spinner("verifying the model");
-    let findings = verify_watched(&model, External::LeftOut, &progress).map_err(CommandError::input)?;
-    let cam = Cam::new(&model).map_err(CommandError::input)?;
-    let context = Context::new(&model, &cam, &findings).map_err(CommandError::report)?;
-    let claims = Claims::hold(&context, &progress).map_err(CommandError::report)?;
+    let findings = verify_watched(&model, External::LeftOut, &progress)?;
+    let cam = Cam::new(&model)?;
+    let context = Context::new(&model, &cam, &findings)?;
+    let claims = Claims::hold(&context, &progress)?;
     drop(progress);
     let page = match (arguments.json, arguments.markdown) {
-        (true, _) => json::render(&claims).map_err(CommandError::report)?,
+        (true, _) => json::render(&claims)?,
         (_, true) => {
             let (lead, sections) = pages::claims::document(&claims);
-            markdown::page(&lead, &sections).map_err(CommandError::report)?
+            markdown::page(&lead, &sections)?
         }
-        _ => {
-            let page = Page::of(session.width(), &pages::claims::terminal(&claims));
-            session.shown(&page.map_err(CommandError::report)?)
-        }
+        _ => session.shown(&Page::of(session.width(), &pages::claims::terminal(&claims))?),
     };
     session.print(&page)?;
     Ok(if claims.agrees { Exit::Agrees } else { Exit::Disagrees })

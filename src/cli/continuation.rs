@@ -3,10 +3,10 @@
 use std::io::Write;
 use std::path::PathBuf;
 
-use super::start::{finite, positive, rpm};
-use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
+use super::picture::{Target, picture_or_table};
+use super::start::{parameter, positive, rpm};
+use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
 use crate::cam::Cam;
-use crate::cli::file::Output;
 use crate::diagram::settled_impacts;
 use crate::draw::Density;
 use crate::figures::plots::{Branches, branches_figure, corner_marks};
@@ -50,29 +50,19 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     points: u32,
     /// A table (.csv, or - for standard output) or a picture (.svg, .png).
-    #[arg(long, value_name = "FILE", default_value = "-", value_parser = picture::picture_or_table)]
+    #[arg(long, value_name = "FILE", default_value = "-", value_parser = picture_or_table)]
     out: PathBuf,
     /// Values of the parameter at which a picture shows what runs settle on; 0 for none.
     #[arg(long, value_name = "N", default_value_t = 400, value_parser = clap::value_parser!(u32).range(0..=100_000))]
     runs: u32,
 }
 
-/// `NAME=LO:HI`.
-pub(super) fn parameter(text: &str) -> Result<(String, [f64; 2]), String> {
-    let parts = text.split_once('=').and_then(|(name, range)| Some((name, range.split_once(':')?)));
-    let Some((name, (low, high))) = parts else {
-        return Err("must be NAME=LO:HI: what changes, and from where to where".into());
-    };
-    let range = [finite(low)?, finite(high)?];
-    if range[0] < range[1] { Ok((name.trim().into(), range)) } else { Err(format!("{low} is not below {high}")) }
-}
-
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let model = arguments.model.read(session)?;
-    let cam = Cam::new(&model).map_err(CommandError::input)?;
+    let cam = Cam::new(&model)?;
     let corners = corner_marks(&cam);
     let (name, range) = &arguments.parameter;
-    let parameter = Parameter::named(&model, name).map_err(CommandError::input)?;
+    let parameter = Parameter::named(&model, name)?;
     let value = parameter.value(&model, arguments.from_rpm).unwrap_or(f64::NAN);
     if !(range[0] <= value && value <= range[1]) {
         let words = format!(
@@ -82,12 +72,12 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
             range[0],
             range[1]
         );
-        return Err(CommandError::Input(words));
+        return Err(CommandError::Words(words));
     }
     let machine = Machine::new(cam, &model.follower, angular_velocity(arguments.from_rpm));
     let wanted = Search { revolutions: arguments.revolutions, impacts: arguments.impacts };
     let progress = Progress::spinner("looking for periodic orbits");
-    let orbits = search(&machine, &wanted).map_err(CommandError::input)?;
+    let orbits = search(&machine, &wanted)?;
     drop(progress);
     if orbits.is_empty() {
         let words = format!(
@@ -96,7 +86,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
             arguments.revolutions,
             arguments.from_rpm
         );
-        return Err(CommandError::Input(words));
+        return Err(CommandError::Words(words));
     }
     let following = Following {
         parameter: parameter.clone(),
@@ -104,42 +94,34 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         longest_step: arguments.step,
         most_points: arguments.points as usize,
     };
-    // Every file is begun before the work: a name that cannot be is told at once.
-    let is_picture = picture::kind(&arguments.out).is_some();
-    let mut nobody = std::io::sink();
-    let (canvas, table) = if is_picture {
-        (Some(picture::Canvas::create(&arguments.out, &mut nobody)?), None)
-    } else {
-        (None, Some(Output::create(&arguments.out, &mut *session.out).map_err(CommandError::file)?))
-    };
+    let target = Target::create(&arguments.out, &mut *session.out)?;
     let branches = follow(&model, arguments.from_rpm, value, &orbits, &following)?;
     for (index, found) in branches.iter().enumerate() {
-        let account = branch::account(found, parameter.name(), index + 1).map_err(CommandError::report)?;
+        let account = branch::account(found, parameter.name(), index + 1)?;
         // Nobody is left to tell where standard error is closed.
         let _ = session.err.write_all(account.as_bytes());
     }
-    if let Some(mut table) = table {
-        table.write_all(branch::COLUMNS.as_bytes()).map_err(CommandError::write)?;
+    let table = |table: &mut dyn Write| {
+        table.write_all(branch::COLUMNS.as_bytes())?;
         for (index, found) in branches.iter().enumerate() {
             let mut lines = String::new();
             found.points.iter().for_each(|point| branch::line(&mut lines, parameter.name(), index + 1, point));
-            table.write_all(lines.as_bytes()).map_err(CommandError::write)?;
+            table.write_all(lines.as_bytes())?;
         }
-        super::commit(vec![table])?;
-    }
-    if let Some(canvas) = canvas {
+        Ok(())
+    };
+    target.fill(table, || {
         let settled = settled(&model, arguments, &parameter, *range)?;
         let what = if parameter == Parameter::Speed { "speed" } else { parameter.name() };
         let title = format!("{}: orbits found at {} rpm, followed in {what}", model.name, arguments.from_rpm);
-        let drawn = Branches {
+        Ok(branches_figure(Branches {
             title: &title,
             parameter: (parameter.name(), *range),
             branches: &branches,
             settled,
             corners: &corners,
-        };
-        super::commit(vec![canvas.draw(&branches_figure(drawn))?])?;
-    }
+        }))
+    })?;
     Ok(Exit::Agrees)
 }
 
@@ -156,7 +138,7 @@ fn follow(
     for (index, orbit) in orbits.iter().enumerate() {
         progress.at("following the orbits found", index as u64, orbits.len() as u64);
         if !branches.iter().any(|branch| branch.holds(value, orbit)) {
-            branches.push(Branch::through(model, rpm, orbit, following).map_err(CommandError::input)?);
+            branches.push(Branch::through(model, rpm, orbit, following)?);
         }
     }
     Ok(branches)
@@ -174,7 +156,7 @@ fn settled(
     if arguments.runs == 0 {
         return Ok(None);
     }
-    let family = Family::new(model, arguments.from_rpm, vec![parameter.clone()]).map_err(CommandError::input)?;
+    let family = Family::new(model, arguments.from_rpm, vec![parameter.clone()])?;
     let mut density = Density::new([low, high], [0.0, 360.0]);
     let progress = Progress::new(u64::from(arguments.runs));
     for index in 0..arguments.runs {
@@ -182,7 +164,7 @@ fn settled(
         let value = low + (high - low) * (f64::from(index) + 0.5) / f64::from(arguments.runs);
         // The edge of what the model allows has been told already.
         let Ok((machine, _)) = family.machine(&[value]) else { continue };
-        for angle in settled_impacts(&machine, TRANSIENT, RECORD).map_err(CommandError::input)? {
+        for angle in settled_impacts(&machine, TRANSIENT, RECORD)? {
             density.push(value, angle.to_degrees());
         }
     }

@@ -3,11 +3,10 @@
 use std::io::Write;
 use std::path::PathBuf;
 
-use super::continuation::parameter;
-use super::start::{positive, range};
-use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
+use super::picture::{Target, picture_or_table};
+use super::start::{parameter, positive, rpm_range};
+use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
 use crate::border_collision::{AtCorner, ImpactCurve};
-use crate::cli::file::Output;
 use crate::draw::layout::widened;
 use crate::figures::plots::curve_figure;
 use crate::orbit::branch::{Branch, Following, corner_impacts, find_branches};
@@ -27,7 +26,7 @@ pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
     /// Speeds between which corner impacts of the model are looked for.
-    #[arg(long, value_name = "LO:HI", value_parser = range, allow_hyphen_values = true)]
+    #[arg(long, value_name = "LO:HI", value_parser = rpm_range, allow_hyphen_values = true)]
     rpm: [f64; 2],
     /// What changes, and from where to where: a number of the model file, such as restitution.
     #[arg(long, value_name = "NAME=LO:HI", value_parser = parameter)]
@@ -42,7 +41,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "STEP", default_value_t = 0.02, value_parser = positive)]
     step: f64,
     /// A table (.csv, or - for standard output) or a picture (.svg, .png).
-    #[arg(long, value_name = "FILE", default_value = "-", value_parser = picture::picture_or_table)]
+    #[arg(long, value_name = "FILE", default_value = "-", value_parser = picture_or_table)]
     out: PathBuf,
 }
 
@@ -52,25 +51,20 @@ const MOST_POINTS: usize = 2000;
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let model = arguments.model.read(session)?;
     let (name, range) = &arguments.parameter;
-    let parameter = Parameter::named(&model, name).map_err(CommandError::input)?;
+    let parameter = Parameter::named(&model, name)?;
     if parameter == Parameter::Speed {
         let words = "--parameter must be a number of the model: the speed is what the corner impacts are at";
-        return Err(CommandError::Input(words.into()));
+        return Err(CommandError::Words(words.into()));
     }
     let value = parameter.value(&model, arguments.rpm[0]).unwrap_or(f64::NAN);
     if !(range[0] <= value && value <= range[1]) {
         let words = format!("the model's {} = {value} is outside of {}:{}", parameter.name(), range[0], range[1]);
-        return Err(CommandError::Input(words));
+        return Err(CommandError::Words(words));
     }
-    let mut nobody = std::io::sink();
-    let (canvas, table) = if picture::kind(&arguments.out).is_some() {
-        (Some(picture::Canvas::create(&arguments.out, &mut nobody)?), None)
-    } else {
-        (None, Some(Output::create(&arguments.out, &mut *session.out).map_err(CommandError::file)?))
-    };
+    let target = Target::create(&arguments.out, &mut *session.out)?;
     let wanted = Search { revolutions: arguments.revolutions, impacts: arguments.impacts };
     let progress = Progress::spinner("looking for corner impacts of the model");
-    let found = find_branches(&model, arguments.rpm, &wanted).map_err(CommandError::input)?;
+    let found = find_branches(&model, arguments.rpm, &wanted)?;
     drop(progress);
     let corners = corner_impacts(&found.branches);
     let following = Following {
@@ -85,7 +79,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         progress.at("following the corner impacts found", index as u64, corners.len() as u64);
         let Some(at) = AtCorner::of(corner) else { continue };
         let found = Branch::of_corner_impacts(&model, corner, arguments.rpm, &following);
-        curves.push(ImpactCurve::new(&found.map_err(CommandError::input)?, at));
+        curves.push(ImpactCurve::new(&found?, at));
     }
     let mut say = |words: &str| {
         // Nobody is left to tell where standard error is closed.
@@ -99,24 +93,23 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         ));
     }
     for (index, found) in curves.iter().enumerate() {
-        say(&curve::account(found, parameter.name(), index + 1).map_err(CommandError::report)?);
+        say(&curve::account(found, parameter.name(), index + 1)?);
     }
-    if let Some(mut table) = table {
-        table.write_all(curve::COLUMNS.as_bytes()).map_err(CommandError::write)?;
+    let table = |table: &mut dyn Write| {
+        table.write_all(curve::COLUMNS.as_bytes())?;
         for (index, found) in curves.iter().enumerate() {
             let mut lines = String::new();
             curve::lines(&mut lines, parameter.name(), index + 1, found);
-            table.write_all(lines.as_bytes()).map_err(CommandError::write)?;
+            table.write_all(lines.as_bytes())?;
         }
-        super::commit(vec![table])?;
-    }
-    if let Some(canvas) = canvas {
+        Ok(())
+    };
+    target.fill(table, || {
         let title = format!("{}: corner impacts against {}", model.name, parameter.name());
         let speeds = curves.iter().flat_map(|found| &found.impacts).map(|impact| impact.rpm);
         let extent = speeds.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], rpm| [low.min(rpm), high.max(rpm)]);
         let shown = if extent[0] < extent[1] { widened(extent, 0.04) } else { arguments.rpm };
-        let figure = curve_figure(&title, (parameter.name(), *range, value), shown, &curves);
-        super::commit(vec![canvas.draw(&figure)?])?;
-    }
+        Ok(curve_figure(&title, (parameter.name(), *range, value), shown, &curves))
+    })?;
     Ok(Exit::Agrees)
 }

@@ -1,21 +1,21 @@
 //! `corner-impact diagram [MODEL] --rpm LO:HI:N`.
 
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::ValueEnum;
 
 use super::start::{StartArguments, count, finite, speeds, turn};
-use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
+use super::{CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::Progress};
 use crate::cam::Cam;
 use crate::cli::file::Output;
-use crate::diagram::{Counted, Following, Places, Section, Speeds, Sweep, SweepError, Tally};
+use crate::diagram::{Counted, Following, Places, Section, Speeds, Sweep, Tally};
 use crate::draw::layout::widened;
 use crate::draw::{Cloud, Density, Figure};
 use crate::figures::SweepSummary;
 use crate::figures::plots::{Diagram, corner_marks, impact_diagram, shown_impacts, strobe_diagram};
-use crate::show::{csv, json};
+use crate::show::csv;
 use crate::simulate::{Machine, angular_velocity};
 
 /// Sweeps over speeds: what the motion settles on, as a table or a picture.
@@ -76,34 +76,13 @@ enum FollowingName {
     Down,
 }
 
-impl From<SweepError> for CommandError {
-    fn from(error: SweepError) -> Self {
-        Self::Input(error.to_string())
-    }
-}
-
-/// Where the rows go.
-enum Target<'a> {
-    Nowhere,
-    Table(&'a Path),
-    Picture(&'a Path),
-}
-
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
-    let target = match &arguments.out {
-        None => Target::Nowhere,
-        Some(path) if picture::kind(path).is_some() => Target::Picture(path),
-        Some(path) => Target::Table(path),
-    };
-    let to_standard = matches!(target, Target::Table(path) if path.as_os_str() == "-");
-    if to_standard && arguments.summary {
-        return Err(CommandError::Input("--out - and --summary both print to standard output".into()));
-    }
+    let to_standard = picture::out_is_standard(arguments.out.as_ref(), arguments.summary)?;
     if arguments.strobe.is_some() && matches!(arguments.section, SectionName::Impact) {
-        return Err(CommandError::Input("--strobe is the angle of --section strobe, which is not there".into()));
+        return Err(CommandError::Words("--strobe is the angle of --section strobe, which is not there".into()));
     }
     let model = arguments.model.read(session)?;
-    let cam = Cam::new(&model).map_err(CommandError::input)?;
+    let cam = Cam::new(&model)?;
     let corners = corner_marks(&cam);
     let sweep = Sweep {
         machine: Machine::new(cam, &model.follower, angular_velocity(arguments.rpm.low)),
@@ -128,18 +107,17 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         Following::Up | Following::Down => 1,
     };
     let clock = Instant::now();
-    let tally = match target {
-        Target::Nowhere => {
+    let target = arguments.out.as_deref();
+    let tally = match target.map(|path| Target::create(path, &mut *session.out)).transpose()? {
+        None => {
             let progress = Progress::new(sweep.speeds.count as u64);
             sweep.run(Some(threads), |index, _: Counted| {
                 progress.set(index as u64);
                 Ok::<(), CommandError>(())
             })?
         }
-        Target::Table(path) => table(&sweep, threads, path, &mut *session.out)?,
-        Target::Picture(path) => {
-            let mut nobody = std::io::sink();
-            let canvas = picture::Canvas::create(path, &mut nobody)?;
+        Some(Target::Table(file)) => table(&sweep, threads, file)?,
+        Some(Target::Picture(canvas)) => {
             let (points, exponents, tally) = points(&sweep, threads)?;
             let title = format!("{}: {}", model.name, title(&sweep));
             let diagram = Diagram {
@@ -158,14 +136,9 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         }
     };
     let summary = SweepSummary::new(&model.name, tally, threads, clock.elapsed().as_secs_f64());
-    let page = if arguments.summary {
-        json::render(&summary).map_err(CommandError::report)?
-    } else if to_standard {
-        String::new()
-    } else {
-        session.shown(&summary.page(session.width()).map_err(CommandError::report)?)
-    };
-    session.print(&page)?;
+    if !to_standard {
+        session.answer(&summary, arguments.summary, |width| summary.page(width))?;
+    }
     Ok(Exit::Agrees)
 }
 
@@ -182,20 +155,19 @@ fn title(sweep: &Sweep) -> String {
     format!("{what} of {} revolutions after {}, {how}", sweep.record, sweep.transient)
 }
 
-fn table(sweep: &Sweep, threads: usize, path: &Path, out: &mut dyn Write) -> Result<Tally, CommandError> {
-    let mut file = Output::create(path, out).map_err(CommandError::file)?;
+fn table(sweep: &Sweep, threads: usize, mut file: Output<'_>) -> Result<Tally, CommandError> {
     let columns = match sweep.section {
         Section::Impacts => csv::IMPACT_DIAGRAM,
         Section::Strobe(_) => csv::STROBE_DIAGRAM,
     };
     let lyapunov = if sweep.lyapunov { csv::LYAPUNOV } else { "" };
-    writeln!(file, "{columns}{lyapunov}").map_err(CommandError::write)?;
+    writeln!(file, "{columns}{lyapunov}")?;
     let progress = Progress::new(sweep.speeds.count as u64);
     let tally = sweep.run(Some(threads), |index, lines: csv::Lines| {
         progress.set(index as u64);
-        file.write_all(lines.0.as_bytes()).map_err(CommandError::write)
+        Ok::<(), CommandError>(file.write_all(lines.0.as_bytes())?)
     })?;
-    file.commit().map_err(CommandError::file)?;
+    super::commit(vec![file])?;
     Ok(tally)
 }
 

@@ -56,7 +56,7 @@ fn named(words: &[String]) -> Result<(Option<&str>, Option<&str>), CommandError>
         [word] if is_file(word) => Ok((Some(word), None)),
         [word] => Ok((None, Some(word))),
         [model, id] => Ok((Some(model), Some(id))),
-        _ => Err(CommandError::Input("at most a model file and a figure".into())),
+        _ => Err(CommandError::Words("at most a model file and a figure".into())),
     }
 }
 
@@ -64,27 +64,26 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let (file, id) = named(&arguments.words)?;
     let model = ModelArgument::of(file.map(Path::new)).read(session)?;
     if id.is_none() && arguments.out.is_some() {
-        return Err(CommandError::Input("--out is for one figure: name it, from the list without --out".into()));
+        return Err(CommandError::Words("--out is for one figure: name it, from the list without --out".into()));
     }
     let progress = Progress::spinner("verifying the model");
-    let subject = Subject::new(&model).map_err(CommandError::input)?;
+    let subject = Subject::new(&model)?;
     drop(progress);
     let page = match id {
         None => list(&model, &subject, arguments.json)?,
         Some(id) => {
             if !listed(&subject).iter().any(|figure| figure.id == id) {
                 let there = listed(&subject).iter().map(|figure| figure.id).collect::<Vec<_>>().join(", ");
-                return Err(CommandError::Input(format!("no figure called \"{id}\"; there are: {there}")));
+                return Err(CommandError::Words(format!("no figure called \"{id}\"; there are: {there}")));
             }
             // Opened before the work: a name that cannot be is told at once.
-            let mut nobody = std::io::sink();
-            let canvas = arguments.out.as_ref().map(|path| picture::Canvas::create(path, &mut nobody)).transpose()?;
+            let canvas = arguments.out.as_deref().map(picture::Canvas::create).transpose()?;
             let progress = Progress::spinner("computing the figure");
-            let plate = plate(&subject, id).ok_or_else(|| CommandError::Input(format!("no figure called \"{id}\"")))?;
+            let plate = plate(&subject, id).ok_or_else(|| CommandError::Words(format!("no figure called \"{id}\"")))?;
             drop(progress);
             // A document says why there is none; a file cannot.
             if let (Some(why), true) = (&plate.absent, arguments.out.is_some() || !arguments.json) {
-                return Err(CommandError::Input(format!("{}: no figure {id}: {why}", model.file())));
+                return Err(CommandError::Words(format!("{}: no figure {id}: {why}", model.file())));
             }
             if let Some((canvas, figure)) = canvas.zip(plate.figure.as_ref()) {
                 super::commit(vec![canvas.draw(figure)?])?;
@@ -99,22 +98,20 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
 fn list(model: &Model, subject: &Subject, as_json: bool) -> Result<String, CommandError> {
     let figures = listed(subject);
     if as_json {
-        return json::render(&List { schema: SCHEMA, model: model.name.clone(), figures })
-            .map_err(CommandError::report);
+        return Ok(json::render(&List { schema: SCHEMA, model: model.name.clone(), figures })?);
     }
     let wide = |part: fn(&Listed) -> &str| figures.iter().map(|figure| part(figure).len()).max().unwrap_or(0);
     let (ids, places) = (wide(|figure| figure.id), wide(|figure| figure.place));
     let mut page = String::new();
     for Listed { id, place, title } in &figures {
-        writeln!(page, "{id:ids$}  {place:places$}  {title}").map_err(CommandError::report)?;
+        writeln!(page, "{id:ids$}  {place:places$}  {title}")?;
     }
     Ok(page)
 }
 
 fn one(subject: &Subject, plate: Plate, arguments: &Arguments) -> Result<String, CommandError> {
     if arguments.json {
-        return json::render(&One { schema: SCHEMA, model: subject.model.name.clone(), plate })
-            .map_err(CommandError::report);
+        return Ok(json::render(&One { schema: SCHEMA, model: subject.model.name.clone(), plate })?);
     }
     let of = match (plate.place, subject.is_paper) {
         ("", _) => String::new(),

@@ -73,7 +73,7 @@ enum Sink<'a> {
     },
     /// A device or pipe: there is nothing to replace.
     Device(BufWriter<File>),
-    Standard(BufWriter<&'a mut dyn Write>),
+    Standard(BufWriter<Box<dyn Write + 'a>>),
 }
 
 impl std::fmt::Debug for Sink<'_> {
@@ -89,8 +89,15 @@ impl std::fmt::Debug for Sink<'_> {
 impl<'a> Output<'a> {
     /// Begins to write `path`; `-` stands for `standard`.
     pub fn create(path: &Path, standard: &'a mut dyn Write) -> Result<Self, FileError> {
-        let sink = if path == Path::new("-") { Sink::Standard(BufWriter::new(standard)) } else { begin(path)? };
-        Ok(Self { path: path.to_owned(), sink })
+        if path != Path::new("-") {
+            return Self::file(path);
+        }
+        Ok(Self { path: path.to_owned(), sink: Sink::Standard(BufWriter::new(Box::new(standard))) })
+    }
+
+    /// Begins to write a file of that name, whatever it is.
+    pub fn file(path: &Path) -> Result<Output<'static>, FileError> {
+        Ok(Output { path: path.to_owned(), sink: begin(path)? })
     }
 
     /// Completes it: every byte is on the disk, and the file has its name, or there is an error and no file.

@@ -1,10 +1,10 @@
 //! `corner-impact locate [MODEL]`.
 
+use super::start::rpm_range;
 use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
 use crate::model::Study;
 use crate::orbit::Search;
 use crate::pages::LocateDocument;
-use crate::show::json;
 use crate::study::locate::{SurveyError, survey};
 
 /// Lists the speeds at which a periodic orbit has an impact on a corner of the cam, and what happens there.
@@ -18,7 +18,7 @@ pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
     /// Range of speeds, rpm.
-    #[arg(long, value_name = "LO:HI", value_parser = range)]
+    #[arg(long, value_name = "LO:HI", value_parser = study)]
     rpm: Study,
     /// Turns of the cam after which the orbits repeat, and no fewer.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=Search::MOST_REVOLUTIONS))]
@@ -28,32 +28,20 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-/// `LO:HI`, both above 0, the second higher.
-fn range(text: &str) -> Result<Study, String> {
-    let number = |part: &str| part.trim().parse::<f64>().map_err(|error| format!("\"{part}\": {error}"));
-    let (low, high) = text.split_once(':').ok_or("a range is written LO:HI")?;
-    let (rpm_min, rpm_max) = (number(low)?, number(high)?);
-    if rpm_min > 0.0 && rpm_max > rpm_min && rpm_max.is_finite() {
-        Ok(Study { rpm_min, rpm_max })
-    } else {
-        Err("a range goes from a speed above 0 to a higher one".into())
-    }
+/// `LO:HI`.
+fn study(text: &str) -> Result<Study, String> {
+    rpm_range(text).map(|[rpm_min, rpm_max]| Study { rpm_min, rpm_max })
 }
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let model = arguments.model.read(session)?;
     let progress = Progress::spinner("looking for orbits with an impact on a corner");
     let found = survey(&model, arguments.rpm, arguments.revolutions).map_err(|error| match error {
-        SurveyError::Range(error) => CommandError::Input(format!("{}: {error}", model.file())),
-        error => CommandError::input(error),
+        SurveyError::Range(error) => CommandError::Words(format!("{}: {error}", model.file())),
+        error => error.into(),
     })?;
     drop(progress);
     let document = LocateDocument::new(&model, &found);
-    let page = if arguments.json {
-        json::render(&document).map_err(CommandError::report)?
-    } else {
-        session.shown(&document.page(session.width()).map_err(CommandError::report)?)
-    };
-    session.print(&page)?;
+    session.answer(&document, arguments.json, |width| document.page(width))?;
     Ok(if document.agrees { Exit::Agrees } else { Exit::Disagrees })
 }

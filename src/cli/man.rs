@@ -30,15 +30,13 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         session.print(&String::from_utf8_lossy(&page(program)?))?;
         return Ok(Exit::Agrees);
     };
-    let refused = |error: std::io::Error| CommandError::Input(format!("{}: {error}", folder.display()));
+    let refused = |error: std::io::Error| CommandError::Words(format!("{}: {error}", folder.display()));
     std::fs::create_dir_all(folder).map_err(refused)?;
     let commands: Vec<clap::Command> = program.get_subcommands().cloned().chain([program.clone()]).collect();
-    let mut nobody: Vec<std::io::Sink> = commands.iter().map(|_| std::io::sink()).collect();
     let mut files = Vec::new();
-    for (command, nobody) in commands.into_iter().zip(&mut nobody) {
-        let path = folder.join(Man::new(command.clone()).get_filename());
-        let mut file = Output::create(&path, nobody).map_err(CommandError::file)?;
-        file.write_all(&page(command)?).map_err(CommandError::write)?;
+    for command in commands {
+        let mut file = Output::file(&folder.join(Man::new(command.clone()).get_filename()))?;
+        file.write_all(&page(command)?)?;
         files.push(file);
     }
     let count = files.len();
@@ -65,7 +63,7 @@ fn page(command: clap::Command) -> Result<Vec<u8>, CommandError> {
         examples(&after).to_writer(&mut text)?;
         if has_version { man.render_version_section(&mut text) } else { Ok(()) }
     };
-    render().map_err(CommandError::write)?;
+    render()?;
     Ok(text)
 }
 

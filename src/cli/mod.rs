@@ -25,8 +25,9 @@ mod speeds;
 mod start;
 mod verify;
 
+use std::error::Error;
 use std::ffi::OsString;
-use std::io::{ErrorKind, Write};
+use std::io::Write;
 
 use clap::{FromArgMatches, Parser, Subcommand};
 
@@ -104,62 +105,43 @@ subcommands! {
 }
 
 /// Why a command has no result.
-#[derive(Debug, thiserror::Error)]
+#[derive(Debug)]
 enum CommandError {
-    #[error("{0}")]
-    Input(String),
+    Words(String),
     /// Something that points into a model file.
-    #[error("{words}")]
-    Model { words: String, at: Box<ModelError> },
-    #[error("report: {0}")]
-    Report(String),
-    #[error("{0}")]
-    Write(String),
-    #[error("standard output: nobody reads it any more")]
+    Model {
+        words: String,
+        at: Box<ModelError>,
+    },
+    /// Whoever read standard output has had enough.
     Unread,
 }
 
-impl CommandError {
-    /// What is wrong with what a user gave; with its place where a model file has it.
-    fn input(error: impl std::error::Error + 'static) -> Self {
+/// Every error of the library; with its place where a model file has it.
+impl<E: Error + 'static> From<E> for CommandError {
+    fn from(error: E) -> Self {
         let words = error.to_string();
-        let mut cause: Option<&(dyn std::error::Error + 'static)> = Some(&error);
+        let mut cause: Option<&(dyn Error + 'static)> = Some(&error);
         while let Some(error) = cause {
             if let Some(at) = error.downcast_ref::<ModelError>() {
                 return Self::Model { words, at: Box::new(at.clone()) };
             }
+            // What a stream's error holds is not its source.
+            let held = error.downcast_ref::<std::io::Error>().and_then(|error| error.get_ref());
+            let file = error.downcast_ref().or_else(|| held.and_then(|held| held.downcast_ref::<FileError>()));
+            if file.is_some_and(FileError::is_unread) {
+                return Self::Unread;
+            }
             cause = error.source();
         }
-        Self::Input(words)
-    }
-
-    fn report(error: impl std::fmt::Display) -> Self {
-        Self::Report(error.to_string())
-    }
-
-    fn file(error: FileError) -> Self {
-        if error.is_unread() { Self::Unread } else { Self::Write(error.to_string()) }
-    }
-
-    fn write(error: std::io::Error) -> Self {
-        match error.downcast::<FileError>() {
-            Ok(error) => Self::file(error),
-            Err(error) => Self::Write(error.to_string()),
-        }
-    }
-
-    fn standard(error: std::io::Error) -> Self {
-        match error.kind() {
-            ErrorKind::BrokenPipe => Self::Unread,
-            _ => Self::Write(format!("standard output: {error}")),
-        }
+        Self::Words(words)
     }
 }
 
 /// Gives files their names, when every one of them is on the disk as far as can be told.
 fn commit(mut files: Vec<Output<'_>>) -> Result<(), CommandError> {
-    files.iter_mut().try_for_each(Write::flush).map_err(CommandError::write)?;
-    files.into_iter().try_for_each(Output::commit).map_err(CommandError::file)
+    files.iter_mut().try_for_each(Write::flush)?;
+    Ok(files.into_iter().try_for_each(Output::commit)?)
 }
 
 /// Runs one command line, program name first; neither stream is a terminal.
@@ -188,7 +170,7 @@ pub fn run_at(
         match &error {
             CommandError::Unread => {}
             CommandError::Model { words, at } => session.complain_at(words, at),
-            _ => session.complain(&error.to_string()),
+            CommandError::Words(words) => session.complain(words),
         }
         Exit::BadInput
     })

@@ -25,10 +25,10 @@ impl ModelArgument {
             Some(path) => {
                 // A table of a million lifts takes its time.
                 let _progress = Progress::spinner("reading the model");
-                Model::read(path).map_err(CommandError::input)
+                Ok(Model::read(path)?)
             }
             None => {
-                let model = Model::built_in().map_err(CommandError::input)?;
+                let model = Model::built_in()?;
                 session.note(&format!("no MODEL given: using the paper's, {}, which is built in", model.name));
                 Ok(model)
             }

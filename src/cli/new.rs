@@ -87,13 +87,12 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     }
     if let Some((there, _)) = files.iter().find(|(path, _)| path.is_file()).filter(|_| !arguments.force) {
         let words = format!("{}: is there already; --force writes over it", there.display());
-        return Err(CommandError::Input(words));
+        return Err(CommandError::Words(words));
     }
-    let mut nobody = [std::io::sink(), std::io::sink()];
     let mut outputs = Vec::new();
-    for ((path, text), nobody) in files.iter().zip(&mut nobody) {
-        let mut output = Output::create(path, nobody).map_err(CommandError::file)?;
-        output.write_all(text.as_bytes()).map_err(CommandError::write)?;
+    for (path, text) in &files {
+        let mut output = Output::file(path)?;
+        output.write_all(text.as_bytes())?;
         outputs.push(output);
     }
     super::commit(outputs)?;

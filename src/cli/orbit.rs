@@ -7,7 +7,6 @@ use crate::flight::State;
 use crate::orbit::search::near;
 use crate::orbit::{Search, search};
 use crate::pages::OrbitDocument;
-use crate::show::json;
 use crate::simulate::{Machine, angular_velocity};
 
 /// Finds periodic orbits at one speed, stable and unstable, with their multipliers.
@@ -40,26 +39,21 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let model = arguments.model.read(session)?;
-    let cam = Cam::new(&model).map_err(CommandError::input)?;
+    let cam = Cam::new(&model)?;
     let machine = Machine::new(cam, &model.follower, angular_velocity(arguments.rpm));
     let progress = Progress::spinner("looking for periodic orbits");
     let orbits = match arguments.guess {
         Some(state) => {
-            let found = near(&machine, turn(0.0), state, arguments.revolutions).map_err(CommandError::input)?;
+            let found = near(&machine, turn(0.0), state, arguments.revolutions)?;
             found.into_iter().collect()
         }
         None => {
             let wanted = Search { revolutions: arguments.revolutions, impacts: arguments.impacts };
-            search(&machine, &wanted).map_err(CommandError::input)?
+            search(&machine, &wanted)?
         }
     };
     drop(progress);
     let document = OrbitDocument::new(&model.name, arguments.rpm, &orbits);
-    let page = if arguments.json {
-        json::render(&document).map_err(CommandError::report)?
-    } else {
-        session.shown(&document.page(session.width()).map_err(CommandError::report)?)
-    };
-    session.print(&page)?;
+    session.answer(&document, arguments.json, |width| document.page(width))?;
     Ok(Exit::Agrees)
 }

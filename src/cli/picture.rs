@@ -42,25 +42,67 @@ pub(super) fn picture_or_table(text: &str) -> Result<PathBuf, String> {
 }
 
 /// A file that a figure goes to, whole or not at all; opened before the work that the figure shows.
-pub(super) struct Canvas<'a> {
-    file: Output<'a>,
+pub(super) struct Canvas {
+    file: Output<'static>,
     kind: Kind,
 }
 
-impl<'a> Canvas<'a> {
-    /// Begins to write `path`, which names a kind of picture; `nobody` stands for a standard output that is not meant.
-    pub(super) fn create(path: &Path, nobody: &'a mut dyn Write) -> Result<Self, CommandError> {
-        let file = Output::create(path, nobody).map_err(CommandError::file)?;
-        Ok(Self { file, kind: kind(path).unwrap_or(Kind::Svg) })
+impl Canvas {
+    /// Begins to write `path`, which names a kind of picture.
+    pub(super) fn create(path: &Path) -> Result<Self, CommandError> {
+        Ok(Self { file: Output::file(path)?, kind: kind(path).unwrap_or(Kind::Svg) })
     }
 
     /// The figure, written but not yet a file of that name.
-    pub(super) fn draw(mut self, figure: &Figure) -> Result<Output<'a>, CommandError> {
+    pub(super) fn draw(mut self, figure: &Figure) -> Result<Output<'static>, CommandError> {
         let bytes = match self.kind {
-            Kind::Png => png::render(figure, PNG_WIDTH).map_err(CommandError::report)?,
-            Kind::Svg => svg::render(figure).map_err(CommandError::report)?.into_bytes(),
+            Kind::Png => png::render(figure, PNG_WIDTH)?,
+            Kind::Svg => svg::render(figure)?.into_bytes(),
         };
-        self.file.write_all(&bytes).map_err(CommandError::write)?;
+        self.file.write_all(&bytes)?;
         Ok(self.file)
     }
+}
+
+/// Where a table or a picture goes, as its name says; opened before the work.
+pub(super) enum Target<'a> {
+    Table(Output<'a>),
+    Picture(Canvas),
+}
+
+impl<'a> Target<'a> {
+    /// Begins to write `path`; `-` is a table on `standard`.
+    pub(super) fn create(path: &Path, standard: &'a mut dyn Write) -> Result<Self, CommandError> {
+        Ok(match kind(path) {
+            Some(_) => Self::Picture(Canvas::create(path)?),
+            None => Self::Table(Output::create(path, standard)?),
+        })
+    }
+
+    /// Writes the one or the other, and gives the file its name.
+    pub(super) fn fill(
+        self,
+        table: impl FnOnce(&mut dyn Write) -> Result<(), CommandError>,
+        figure: impl FnOnce() -> Result<Figure, CommandError>,
+    ) -> Result<(), CommandError> {
+        let file = match self {
+            Self::Table(mut file) => table(&mut file).map(|()| file)?,
+            Self::Picture(canvas) => canvas.draw(&figure()?)?,
+        };
+        super::commit(vec![file])
+    }
+}
+
+/// Whether a name stands for standard output.
+pub(super) fn is_standard(path: Option<&PathBuf>) -> bool {
+    path.is_some_and(|path| path.as_os_str() == "-")
+}
+
+/// Whether `--out` is standard output, which then has no room for a summary.
+pub(super) fn out_is_standard(out: Option<&PathBuf>, summary: bool) -> Result<bool, CommandError> {
+    let standard = is_standard(out);
+    if standard && summary {
+        return Err(CommandError::Words("--out - and --summary both print to standard output".into()));
+    }
+    Ok(standard)
 }

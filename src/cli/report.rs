@@ -47,7 +47,7 @@ fn page(text: &str) -> Result<PathBuf, String> {
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     if arguments.json && arguments.out.as_deref() == Some(Path::new("-")) {
-        return Err(CommandError::Input("--json and --out - both want standard output".into()));
+        return Err(CommandError::Words("--json and --out - both want standard output".into()));
     }
     let model = arguments.model.read(session)?;
     let path = match (&arguments.out, arguments.json) {
@@ -57,16 +57,16 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     };
     // The file is begun before the work: a name that cannot be is told at once.
     let file = match &path {
-        Some(path) => Some(Output::create(path, &mut *session.out).map_err(CommandError::file)?),
+        Some(path) => Some(Output::create(path, &mut *session.out)?),
         None => None,
     };
     let external = if arguments.no_external { External::LeftOut } else { External::Run };
     let progress = Progress::spinner("");
-    let dossier = Dossier::of(&model, external, &progress).map_err(CommandError::input)?;
+    let dossier = Dossier::of(&model, external, &progress)?;
     drop(progress);
     let write = |mut file: Output<'_>| {
-        let page = html::render(&dossier).map_err(CommandError::report)?;
-        file.write_all(page.as_bytes()).map_err(CommandError::write)?;
+        let page = html::render(&dossier)?;
+        file.write_all(page.as_bytes())?;
         super::commit(vec![file])
     };
     file.map(write).transpose()?;
@@ -74,7 +74,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         session.complain(&format!("{route} did not run; the page says why"));
     }
     match (arguments.json, &path) {
-        (true, _) => session.print(&json::render(&dossier).map_err(CommandError::report)?)?,
+        (true, _) => session.print(&json::render(&dossier)?)?,
         (false, Some(path)) if path.as_path() != Path::new("-") => session.print(&format!("{}\n", path.display()))?,
         _ => {}
     }

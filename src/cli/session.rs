@@ -1,11 +1,14 @@
 //! What a command talks to: the two streams, and what is known about the terminal that they may be.
 
 use std::ffi::OsString;
-use std::io::{IsTerminal, Write};
+use std::fmt;
+use std::io::{ErrorKind, IsTerminal, Write};
+
+use serde::Serialize;
 
 use super::{CommandError, Exit, complaint};
 use crate::model::ModelError;
-use crate::show::Page;
+use crate::show::{Page, json};
 
 /// Whether to colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
@@ -158,6 +161,20 @@ impl Session<'_> {
 
     /// Prints a result whole.
     pub(super) fn print(&mut self, text: &str) -> Result<(), CommandError> {
-        self.out.write_all(text.as_bytes()).and_then(|()| self.out.flush()).map_err(CommandError::standard)
+        self.out.write_all(text.as_bytes()).and_then(|()| self.out.flush()).map_err(|error| match error.kind() {
+            ErrorKind::BrokenPipe => CommandError::Unread,
+            _ => CommandError::Words(format!("standard output: {error}")),
+        })
+    }
+
+    /// Prints what was found: one document for a program, or the page for people, in as many columns as there are.
+    pub(super) fn answer(
+        &mut self,
+        found: &impl Serialize,
+        as_json: bool,
+        page: impl FnOnce(usize) -> Result<Page, fmt::Error>,
+    ) -> Result<(), CommandError> {
+        let text = if as_json { json::render(found)? } else { self.shown(&page(self.width())?) };
+        self.print(&text)
     }
 }

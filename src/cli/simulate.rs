@@ -5,8 +5,9 @@ use std::ops::ControlFlow;
 use std::path::{Component, Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use super::picture::{Canvas, is_standard, picture};
 use super::start::{StartArguments, count, finite, rpm, turn};
-use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
+use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
 use crate::cam::Cam;
 use crate::cli::file::Output;
 use crate::diagram::growth_and_error;
@@ -15,7 +16,7 @@ use crate::figures::run::Exponent;
 use crate::figures::{RunSummary, run};
 use crate::model::Model;
 use crate::section;
-use crate::show::{csv, json};
+use crate::show::csv;
 use crate::simulate::{Event, EventKind, Goal, Machine, Motion, angular_velocity};
 
 /// Runs one motion of a model and says what happened.
@@ -57,10 +58,10 @@ pub(super) struct Arguments {
     #[arg(long, conflicts_with = "impacts")]
     lyapunov: bool,
     /// Draw follower, cam and gap over the last revolutions (.svg or .png).
-    #[arg(long, value_name = "FILE", value_parser = picture::picture, conflicts_with = "impacts")]
+    #[arg(long, value_name = "FILE", value_parser = picture, conflicts_with = "impacts")]
     trace: Option<PathBuf>,
     /// Draw the gap against its velocity over the last revolutions (.svg or .png).
-    #[arg(long, value_name = "FILE", value_parser = picture::picture, conflicts_with = "impacts")]
+    #[arg(long, value_name = "FILE", value_parser = picture, conflicts_with = "impacts")]
     phase_plane: Option<PathBuf>,
     /// How many revolutions are drawn [default: 2].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
@@ -102,13 +103,11 @@ impl Seen {
 }
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
-    let to_standard = |path: &Option<PathBuf>| path.as_deref().is_some_and(|path| path.as_os_str() == "-");
-    let streams = usize::from(to_standard(&arguments.events))
-        + usize::from(to_standard(&arguments.strobe_out))
-        + usize::from(arguments.summary);
+    let streams = [&arguments.events, &arguments.strobe_out].map(|path| is_standard(path.as_ref()));
+    let streams = streams.into_iter().chain([arguments.summary]).filter(|to_standard| *to_standard).count();
     if streams > 1 {
         let words = "--events -, --strobe-out - and --summary all print to standard output: give the tables files";
-        return Err(CommandError::Input(words.into()));
+        return Err(CommandError::Words(words.into()));
     }
     let Arguments { events, strobe_out, trace, phase_plane, .. } = arguments;
     distinct(&[
@@ -118,29 +117,27 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         ("--phase-plane", phase_plane),
     ])?;
     if arguments.drawn.is_some() && trace.is_none() && phase_plane.is_none() {
-        return Err(CommandError::Input(
+        return Err(CommandError::Words(
             "--drawn says how much --trace and --phase-plane draw: neither is there".into(),
         ));
     }
     let model = arguments.model.read(session)?;
-    let cam = Cam::new(&model).map_err(CommandError::input)?;
+    let cam = Cam::new(&model)?;
     let machine = Machine::new(cam, &model.follower, angular_velocity(arguments.rpm));
     let start = arguments.start.start();
-    let first = start.motion(&machine).map_err(CommandError::input)?;
+    let first = start.motion(&machine)?;
     let drawn = first.after(arguments.revolutions.saturating_sub(arguments.drawn.unwrap_or(DRAWN)));
 
     // Every file is begun before the run: a name that cannot be is told at once.
-    let mut nobody = [std::io::sink(), std::io::sink(), std::io::sink()];
-    let [of_trace, of_plane, of_tables] = &mut nobody;
-    let trace = arguments.trace.as_deref().map(|path| picture::Canvas::create(path, of_trace)).transpose()?;
-    let plane = arguments.phase_plane.as_deref().map(|path| picture::Canvas::create(path, of_plane)).transpose()?;
-    let (run, mut files) = simulate(arguments, &machine, first, drawn, [&mut *session.out, of_tables])?;
+    let trace = arguments.trace.as_deref().map(Canvas::create).transpose()?;
+    let plane = arguments.phase_plane.as_deref().map(Canvas::create).transpose()?;
+    let (run, mut files) = simulate(arguments, &machine, first, drawn, &mut *session.out)?;
     let Run { motion, seen, wall, before_drawn } = run;
     let turned = (motion.revolution as f64) + (motion.cam_angle - first.cam_angle) / std::f64::consts::TAU;
     let progress = arguments.lyapunov.then(|| Progress::spinner("how fast a small deviation grows"));
     // A run of its own: it begins where the follower leaves the cam, and stops after each revolution.
     let grown = || growth_and_error(&machine, first, arguments.revolutions, BLOCKS);
-    let grown = arguments.lyapunov.then(grown).transpose().map_err(CommandError::input)?;
+    let grown = arguments.lyapunov.then(grown).transpose()?;
     drop(progress);
     files.extend(draw(arguments, &model, &machine, before_drawn, [trace, plane])?);
     super::commit(files)?;
@@ -157,14 +154,9 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         lyapunov_standard_error: grown.and_then(|(_, error)| error),
         wall_s: wall.as_secs_f64(),
     };
-    let page = if arguments.summary {
-        json::render(&summary).map_err(CommandError::report)?
-    } else if streams == 0 {
-        session.shown(&summary.page(session.width()).map_err(CommandError::report)?)
-    } else {
-        String::new()
-    };
-    session.print(&page)?;
+    if arguments.summary || streams == 0 {
+        session.answer(&summary, arguments.summary, |width| summary.page(width))?;
+    }
     Ok(Exit::Agrees)
 }
 
@@ -177,7 +169,7 @@ fn distinct(files: &[(&str, &Option<PathBuf>)]) -> Result<(), CommandError> {
     for (option, path) in given.filter(|(_, path)| path.as_os_str() != "-") {
         let name = parts(path);
         if let Some((before, _)) = names.iter().find(|(_, other)| *other == name) {
-            return Err(CommandError::Input(format!("{before} and {option} are both {}", path.display())));
+            return Err(CommandError::Words(format!("{before} and {option} are both {}", path.display())));
         }
         names.push((option, name));
     }
@@ -198,14 +190,17 @@ fn simulate<'a>(
     machine: &Machine,
     first: Motion,
     drawn: Goal,
-    [out, nobody]: [&'a mut dyn Write; 2],
+    out: &'a mut dyn Write,
 ) -> Result<(Run, Vec<Output<'a>>), CommandError> {
     // At most one of the tables is standard output.
-    let states_to_standard = arguments.strobe_out.as_deref().is_some_and(|path| path.as_os_str() == "-");
-    let (to_events, to_states) = if states_to_standard { (nobody, out) } else { (out, nobody) };
-    let open = |path: Option<&PathBuf>, standard| path.map(|path| Output::create(path, standard)).transpose();
-    let mut events = open(arguments.events.as_ref(), to_events).map_err(CommandError::file)?;
-    let mut states = open(arguments.strobe_out.as_ref(), to_states).map_err(CommandError::file)?;
+    let mut out = Some(out);
+    let mut open = |path: Option<&PathBuf>| -> Result<Option<Output<'a>>, CommandError> {
+        let Some(path) = path else { return Ok(None) };
+        let standard = if is_standard(Some(path)) { out.take() } else { None };
+        Ok(Some(standard.map_or_else(|| Output::file(path), |out| Output::create(path, out))?))
+    };
+    let mut events = open(arguments.events.as_ref())?;
+    let mut states = open(arguments.strobe_out.as_ref())?;
     write(&mut events, csv::EVENTS)?;
     write(&mut states, csv::STROBE)?;
     let strobe = arguments.strobe.map(turn);
@@ -235,12 +230,12 @@ fn simulate<'a>(
         }
         write(&mut events, &lines)?;
         lines.clear();
-        let flow = flow.map_err(CommandError::input)?;
+        let flow = flow?;
         if seen.impacts > impacts {
             last_impact = motion.revolution;
         } else if arguments.impacts.is_some() && motion.revolution - last_impact > PATIENCE {
             let at = motion.cam_angle.to_degrees();
-            return Err(CommandError::Input(format!(
+            return Err(CommandError::Words(format!(
                 "simulate: no impact in {PATIENCE} revolutions after impact {impacts}; the cam is at {at:.4} deg of revolution {}",
                 motion.revolution
             )));
@@ -269,24 +264,23 @@ fn earlier(one: Goal, other: Goal) -> Goal {
 }
 
 fn write(output: &mut Option<Output<'_>>, text: &str) -> Result<(), CommandError> {
-    output.as_mut().map_or(Ok(()), |output| output.write_all(text.as_bytes()).map_err(CommandError::write))
+    Ok(output.as_mut().map_or(Ok(()), |output| output.write_all(text.as_bytes()))?)
 }
 
 /// The pictures, of the revolutions from `motion` on.
-fn draw<'a>(
+fn draw(
     arguments: &Arguments,
     model: &Model,
     machine: &Machine,
     motion: Motion,
-    [trace, plane]: [Option<picture::Canvas<'a>>; 2],
-) -> Result<Vec<Output<'a>>, CommandError> {
+    [trace, plane]: [Option<Canvas>; 2],
+) -> Result<Vec<Output<'static>>, CommandError> {
     let mut files = Vec::new();
     if trace.is_none() && plane.is_none() {
         return Ok(files);
     }
     let revolutions = arguments.drawn.unwrap_or(DRAWN).min(arguments.revolutions);
-    let (samples, events) =
-        section::trace(machine, motion, revolutions, run::TRACE_SAMPLES).map_err(CommandError::input)?;
+    let (samples, events) = section::trace(machine, motion, revolutions, run::TRACE_SAMPLES)?;
     let (points, impacts) = run::trace_points(&samples, &events, machine.angular_velocity());
     let title = format!("{} at {} rpm", model.name, arguments.rpm);
     if let Some(canvas) = trace {

@@ -2,10 +2,9 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::start::range;
+use super::start::rpm_range;
 use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
 use crate::pages::RegimesDocument;
-use crate::show::json;
 use crate::study::speeds::{Care, regimes, usual_speeds};
 
 /// Tells at which speeds the follower leaves the cam, chatters, bounces regularly, is chaotic, and where hysteresis is.
@@ -20,7 +19,7 @@ pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
     /// Lowest and highest speed [default: up to the end of the model's [study], or 1000 rpm, from a twentieth of that].
-    #[arg(long, value_name = "LO:HI", value_parser = range, allow_hyphen_values = true)]
+    #[arg(long, value_name = "LO:HI", value_parser = rpm_range, allow_hyphen_values = true)]
     rpm: Option<[f64; 2]>,
     /// Speeds that are run.
     #[arg(long, value_name = "N", default_value_t = 300, value_parser = clap::value_parser!(u32).range(2..=100_000))]
@@ -39,14 +38,9 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let care = Care { speeds: arguments.speeds as usize, settling: arguments.settling, ..Care::default() };
     let (progress, done) = (Progress::new(2 * u64::from(arguments.speeds)), AtomicU64::new(0));
     let passed = || progress.set(done.fetch_add(1, Ordering::Relaxed) + 1);
-    let found = regimes(&model, rpm, care, &passed).map_err(CommandError::input)?;
+    let found = regimes(&model, rpm, care, &passed)?;
     drop(progress);
     let document = RegimesDocument::new(&model.name, &found);
-    let page = if arguments.json {
-        json::render(&document).map_err(CommandError::report)?
-    } else {
-        session.shown(&document.page(session.width()).map_err(CommandError::report)?)
-    };
-    session.print(&page)?;
+    session.answer(&document, arguments.json, |width| document.page(width))?;
     Ok(Exit::Agrees)
 }

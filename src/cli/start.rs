@@ -59,11 +59,29 @@ pub(super) fn rpm(text: &str) -> Result<f64, String> {
     if number <= Speeds::FASTEST { Ok(number) } else { Err(format!("must be {:e} or less", Speeds::FASTEST)) }
 }
 
-/// `LO:HI`, speeds.
+/// `LO:HI` of what `number` takes.
+fn ends(text: &str, number: fn(&str) -> Result<f64, String>) -> Result<[f64; 2], String> {
+    let (low, high) = text.split_once(':').ok_or("must be LO:HI: from where to where")?;
+    let (low, high) = (number(low)?, number(high)?);
+    if low < high && (high - low).is_finite() { Ok([low, high]) } else { Err(format!("{low} is not below {high}")) }
+}
+
+/// `LO:HI`, any numbers.
 pub(super) fn range(text: &str) -> Result<[f64; 2], String> {
-    let (low, high) = text.split_once(':').ok_or("must be LO:HI: lowest speed, highest speed")?;
-    let (low, high) = (rpm(low)?, rpm(high)?);
-    if low < high { Ok([low, high]) } else { Err(format!("the highest speed, {high}, is not above the lowest, {low}")) }
+    ends(text, finite)
+}
+
+/// `LO:HI`, speeds.
+pub(super) fn rpm_range(text: &str) -> Result<[f64; 2], String> {
+    ends(text, rpm)
+}
+
+/// `NAME=LO:HI`.
+pub(super) fn parameter(text: &str) -> Result<(String, [f64; 2]), String> {
+    let Some((name, ends)) = text.split_once('=').filter(|(_, ends)| ends.contains(':')) else {
+        return Err("must be NAME=LO:HI: what changes, and from where to where".into());
+    };
+    Ok((name.trim().into(), range(ends)?))
 }
 
 /// `LO:HI:N`.

@@ -1,7 +1,6 @@
 //! `corner-impact verify [MODEL]`.
 
 use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
-use crate::show::json;
 use crate::study::verify::Verification;
 use crate::study::verify::{External, verify_watched};
 
@@ -28,18 +27,13 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let model = arguments.model.read(session)?;
     let external = if arguments.no_external { External::LeftOut } else { External::Run };
     let progress = Progress::spinner("");
-    let findings = verify_watched(&model, external, &progress).map_err(CommandError::input)?;
+    let findings = verify_watched(&model, external, &progress)?;
     drop(progress);
     for failure in findings.skipped.iter().filter(|skipped| skipped.failed) {
         // The page says the same.
         session.complain(&format!("{} did not run: {}", failure.route, failure.why));
     }
     let document = Verification::new(&model, &findings);
-    let page = if arguments.json {
-        json::render(&document).map_err(CommandError::report)?
-    } else {
-        session.shown(&document.page(session.width()).map_err(CommandError::report)?)
-    };
-    session.print(&page)?;
+    session.answer(&document, arguments.json, |width| document.page(width))?;
     Ok(if document.agrees { Exit::Agrees } else { Exit::Disagrees })
 }
