@@ -20,10 +20,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let written = |value: corner_impact::corner::map::Eigenvalue| format!("{:.6}{:+.6}i", value.re, value.im);
         println!("  impact {side} the corner: {}, {}", written(first), written(second));
     }
-    match (&found.classification, &found.refusal) {
-        (Some(verdict), _) => println!("  {}", verdict.scenario),
-        (None, Some(refusal)) => println!("  not classified: {refusal}"),
-        (None, None) => println!("  not classified"),
+    match &found.classification {
+        Ok(verdict) => println!("  {}", verdict.scenario),
+        Err(refusal) => println!("  not classified: {refusal}"),
     }
     println!("  {} comparisons of routes, all agree: {}", found.comparisons.len(), found.agrees);
     Ok(())

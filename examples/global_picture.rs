@@ -11,7 +11,7 @@ use corner_impact::section::StroboscopicMap;
 use corner_impact::simulate::{Machine, angular_velocity};
 use corner_impact::study::basins::boundary::approach;
 use corner_impact::study::basins::{Curve, Ending, Extent, Patience, Reversed, Saddle, ending};
-use corner_impact::study::verify::{External, Findings, verify};
+use corner_impact::study::verify::{External, Verification, verify};
 
 type Done = Result<(), Box<dyn std::error::Error>>;
 
@@ -27,13 +27,13 @@ fn main() -> Done {
     }
 }
 
-fn map(model: &Model, findings: &Findings, rpm: f64) -> Result<StroboscopicMap, Box<dyn std::error::Error>> {
+fn map(model: &Model, findings: &Verification, rpm: f64) -> Result<StroboscopicMap, Box<dyn std::error::Error>> {
     let machine = Machine::new(Cam::new(model)?, &model.follower, angular_velocity(rpm));
     Ok(StroboscopicMap { machine, cam_angle: findings.at.section_angle() })
 }
 
 /// Lyapunov exponents from a start at rest on the cam, by blocks of 250 revolutions.
-fn exponents(model: &Model, findings: &Findings) -> Done {
+fn exponents(model: &Model, findings: &Verification) -> Done {
     println!("rpm exponent standard_error blocks rests");
     let speeds = Speeds { low: 660.0, high: 682.0, count: 23 };
     for rpm in (0..speeds.count).map(|index| speeds.rpm(index)) {
@@ -50,7 +50,7 @@ fn exponents(model: &Model, findings: &Findings) -> Done {
 }
 
 /// Speeds at which a start at rest on the cam does not end on chaos, as far as 3000 revolutions show.
-fn endings(model: &Model, findings: &Findings) -> Done {
+fn endings(model: &Model, findings: &Verification) -> Done {
     let speeds = Speeds { low: 660.0, high: 682.0, count: 441 };
     let (mut orbits, mut resting) = (0, 0);
     for rpm in (0..speeds.count).map(|index| speeds.rpm(index)) {
@@ -75,7 +75,7 @@ fn endings(model: &Model, findings: &Findings) -> Done {
 }
 
 /// The least distance between the saddle's manifolds.
-fn distances(model: &Model, findings: &Findings) -> Done {
+fn distances(model: &Model, findings: &Verification) -> Done {
     for rpm in [674.0, 676.0, 678.0, 680.0, 681.0, 681.5, 682.0, 682.1, 682.15, 682.18, 682.2] {
         let map = map(model, findings, rpm)?;
         let orbits = search(&map.machine, &Search { revolutions: 1, impacts: Some(1) })?;
@@ -95,7 +95,7 @@ fn distances(model: &Model, findings: &Findings) -> Done {
 }
 
 /// Revolutions until the motion has left x*, by the piecewise-linear map and by runs.
-fn passages(model: &Model, findings: &Findings) -> Done {
+fn passages(model: &Model, findings: &Verification) -> Done {
     let local = &findings.closed_form().map;
     println!("revolutions for each factor of ten: {:?}", passage::revolutions_per_decade(local));
     for decade in 1..=9 {

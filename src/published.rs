@@ -54,6 +54,20 @@ pub struct PrintedNumber {
     pub as_found: bool,
 }
 
+document!(PrintedNumber as number {
+    quantity: number.agreement.quantity,
+    where: number.place,
+    printed: number.printed,
+    computed: number.computed,
+    max_abs_diff: number.agreement.max_abs_diff,
+    tolerance: number.agreement.bound.value,
+    reason: number.agreement.bound.reason,
+    agrees: number.agreement.agrees,
+    verdict: number.verdict,
+    note: number.note,
+    as_found: number.as_found,
+});
+
 /// What was found about one quantity, and what it is compared as.
 struct Finding {
     quantity: &'static str,

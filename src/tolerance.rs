@@ -168,9 +168,10 @@ table! {
 }
 
 /// How closely two routes must agree on a quantity, and why.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Bound {
     /// Largest absolute difference of any entry.
+    #[serde(rename = "tolerance")]
     pub value: f64,
     /// Why.
     pub reason: &'static str,

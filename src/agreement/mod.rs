@@ -3,12 +3,13 @@
 //! Nothing is compared with itself, nothing that did not run is compared at all, and what is not a number disagrees.
 
 use nalgebra::Vector2;
+use serde::Serialize;
 
 use crate::corner::map::{CornerMap, Eigenvalue, Route};
 use crate::tolerance::{Bound, Comparison, agreement_bound};
 
 /// One quantity by two routes.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Agreement {
     /// The two routes.
     pub routes: [String; 2],
@@ -19,6 +20,7 @@ pub struct Agreement {
     /// Largest difference of any entry, over that entry.
     pub max_rel_diff: f64,
     /// Most that `max_abs_diff` may be, and why.
+    #[serde(flatten)]
     pub bound: Bound,
     /// Whether it is less.
     pub agrees: bool,

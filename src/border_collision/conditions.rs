@@ -41,6 +41,17 @@ pub struct Condition {
     pub decides: Decides,
 }
 
+document!(Condition as condition {
+    name: condition.name,
+    meaning: condition.meaning,
+    value: condition.value,
+    distance: condition.distance,
+    least: condition.least.value,
+    reason: condition.least.reason,
+    decides: condition.decides,
+    holds: condition.holds(),
+});
+
 impl Condition {
     /// Whether it holds; not where the distance is not a number.
     pub fn holds(&self) -> bool {

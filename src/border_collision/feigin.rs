@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::Degenerate;
 use super::conditions::{Condition, Decides, conditions};
 use super::local_map::LocalMap;
-use crate::corner::map::{CornerMap, Eigenvalue, SideMap};
+use crate::corner::map::{CornerMap, Eigenvalue, SideMap, Sides};
 use crate::orbit::eigenvalues;
 use crate::tolerance;
 
@@ -49,6 +49,18 @@ pub enum Speeds {
     Slower,
 }
 
+impl Speeds {
+    /// Where the period changes by `mu`; none where it does not.
+    pub fn of(mu: f64) -> Option<Self> {
+        if mu == 0.0 { None } else { Some(if mu < 0.0 { Self::Faster } else { Self::Slower }) }
+    }
+}
+
+/// The name of the speeds at which the period changes by `mu`.
+pub(crate) fn speeds_at(mu: f64) -> String {
+    Speeds::of(mu).map_or("at".into(), |speeds| speeds.to_string())
+}
+
 /// What one side contributes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SideCounts {
@@ -77,7 +89,28 @@ pub struct Classification {
     pub minus: SideCounts,
     /// Impacts after the corner.
     pub plus: SideCounts,
+    /// `(e, f)`: the impact comes before the corner where `e dx + f dT < 0`.
+    pub border: (RowVector2<f64>, f64),
 }
+
+impl Classification {
+    /// Something of each side's counts.
+    fn sides<T>(&self, of: impl Fn(&SideCounts) -> T) -> Sides<T> {
+        Sides { minus: of(&self.minus), plus: of(&self.plus) }
+    }
+}
+
+document!(Classification as kind {
+    scenario: kind.scenario,
+    real_eigenvalues_above_one: kind.sides(|side| side.above_one),
+    real_eigenvalues_below_minus_one: kind.sides(|side| side.below_minus_one),
+    fixed_points_exist_for: kind.sides(|side| side.exists_for),
+    period_two_orbit: kind.period_two_orbit,
+    stable: kind.sides(|side| side.stable),
+    fixed_point_per_unit_period: kind.sides(|side| [side.fixed_point[0], side.fixed_point[1]]),
+    determinant_of_identity_minus_a: kind.sides(|side| side.determinant),
+    border: [kind.border.0[0], kind.border.0[1], kind.border.1],
+});
 
 /// Classifies the border collision of `map`.
 ///
@@ -93,7 +126,7 @@ pub fn classify(map: &CornerMap, border: (RowVector2<f64>, f64)) -> Result<Class
     }
     let (above, below) = (minus.above_one + plus.above_one, minus.below_minus_one + plus.below_minus_one);
     let scenario = Scenario::of_counts(above, below);
-    Ok(Classification { scenario, period_two_orbit: below % 2 == 1, minus, plus })
+    Ok(Classification { scenario, period_two_orbit: below % 2 == 1, minus, plus, border })
 }
 
 /// The scenario of A- and A+, 2x2, by their eigenvalues alone.

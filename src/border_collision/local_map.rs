@@ -35,6 +35,15 @@ pub struct PeriodicOrbit {
     pub margin: f64,
 }
 
+document!(PeriodicOrbit as orbit {
+    word: orbit.word.to_string(),
+    points: orbit.points.iter().map(|point| [point[0], point[1]]).collect::<Vec<_>>(),
+    multipliers: orbit.multipliers,
+    stable: orbit.stable(),
+    admissible: orbit.admissible(),
+    margin: orbit.margin,
+});
+
 impl PeriodicOrbit {
     /// Whether every point lies on the side of its letter, and not on the border to rounding.
     pub fn admissible(&self) -> bool {

@@ -29,7 +29,7 @@ pub use normal_form::{NormalForm, normal_form};
 pub use outcome::LocalOutcome;
 
 /// A map that the classification says nothing about, and why.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Degenerate {
     /// A change of coordinates divides by this.
     #[error("{what} is {value:e}, zero to rounding")]
@@ -64,7 +64,7 @@ pub enum Degenerate {
 }
 
 /// Why a corner impact is not classified.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Refusal {
     /// The map is none of the generic kinds.
     #[error("degenerate: {0}")]

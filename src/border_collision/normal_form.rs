@@ -7,6 +7,7 @@ use nalgebra::{Matrix2, RowVector2, Vector2};
 
 use super::Degenerate;
 use crate::corner::CornerMap;
+use crate::corner::map::rows;
 use crate::tolerance;
 
 /// `x -> A_bar x + B_bar dT` with the border at `C_bar x = 0`.
@@ -25,6 +26,15 @@ pub struct NormalForm {
     /// `C W^{-1}`.
     pub c_bar: RowVector2<f64>,
 }
+
+document!(NormalForm as form {
+    B_tilde: form.b_tilde.as_slice(),
+    W: rows(&form.w),
+    A_bar_minus: rows(&form.a_bar_minus),
+    A_bar_plus: rows(&form.a_bar_plus),
+    B_bar: form.b_bar.as_slice(),
+    C_bar: form.c_bar.as_slice(),
+});
 
 /// The normal form of a continuous piecewise-linear map.
 pub fn normal_form(map: &CornerMap) -> Result<NormalForm, Degenerate> {

@@ -2,8 +2,9 @@
 
 use nalgebra::Vector2;
 
+use super::feigin::speeds_at;
 use super::local_map::{LocalMap, PeriodicOrbit};
-use super::long_run::{End, Escape};
+use super::long_run::{End, Escape, Exponent};
 use super::word::Word;
 use crate::cam::Side;
 use crate::tolerance;
@@ -34,6 +35,27 @@ pub struct Fate {
     /// How many starts end there, of [`LocalOutcome::starts`].
     pub starts: usize,
 }
+
+document!(LocalOutcome as outcome {
+    speeds: speeds_at(outcome.mu),
+    fixed_points: outcome.fixed_points,
+    period_two: outcome.period_two,
+    periodic_orbits: outcome.orbits,
+    starts: outcome.starts(),
+    ends: outcome.fates,
+});
+
+document!(Fate as fate {
+    end: fate.end.name(),
+    word if_any: match &fate.end {
+        End::Periodic(orbit) => Some(orbit.word.to_string()),
+        _ => None,
+    },
+    exponent if_any: fate.end.exponent().map(|exponent| exponent.value),
+    standard_error if_any: fate.end.exponent().map(|exponent| exponent.error),
+    starts: fate.starts,
+    basis: fate.end.basis(),
+});
 
 impl LocalOutcome {
     /// How many starts were run.
@@ -132,6 +154,14 @@ impl End {
                 apart <= one.error.hypot(other.error).max(tolerance::DEGENERATE.value)
             }
             _ => self.name() == other.name(),
+        }
+    }
+
+    /// The exponent of a motion that repeats nothing.
+    fn exponent(&self) -> Option<&Exponent> {
+        match self {
+            Self::Chaotic(exponent) | Self::Undecided(exponent) => Some(exponent),
+            _ => None,
         }
     }
 

@@ -9,6 +9,7 @@ use std::f64::consts::TAU;
 use nalgebra::Vector2;
 use serde::Serialize;
 
+use super::feigin::speeds_at;
 use super::local_map::LocalMap;
 use super::word::Word;
 use crate::cam::Cam;
@@ -59,6 +60,15 @@ pub struct Range {
     /// What ends it.
     pub ends: Ends,
 }
+
+document!(Range as range {
+    compared: range.compared,
+    speeds: speeds_at(range.sign),
+    period_change_s: range.period_change,
+    speed_rpm: range.speed_rpm,
+    difference: range.difference,
+    ends: range.ends,
+});
 
 /// A real displacement and the relative difference from the predicted one.
 type Difference = Option<(Vector2<f64>, f64)>;

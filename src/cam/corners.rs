@@ -10,7 +10,7 @@ use super::{Cam, Joint, Segment};
 use crate::tolerance;
 
 /// The side of a corner: the segment before it or the one after.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Side {
     /// Before the corner: `c''-`, the limit from `t < 0`.

@@ -4,8 +4,8 @@ use super::start::rpm_range;
 use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
 use crate::model::Study;
 use crate::orbit::Search;
-use crate::pages::LocateDocument;
-use crate::study::locate::{SurveyError, survey};
+use crate::show::Paged;
+use crate::study::locate::{LocateError, locate};
 
 /// Lists the speeds at which a periodic orbit has an impact on a corner of the cam, and what happens there.
 #[derive(clap::Args)]
@@ -36,12 +36,11 @@ fn study(text: &str) -> Result<Study, String> {
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let model = arguments.model.read(session)?;
     let progress = Progress::spinner("looking for orbits with an impact on a corner");
-    let found = survey(&model, arguments.rpm, arguments.revolutions).map_err(|error| match error {
-        SurveyError::Range(error) => CommandError::Words(format!("{}: {error}", model.file())),
+    let found = locate(&model, arguments.rpm, arguments.revolutions).map_err(|error| match error {
+        LocateError::Range(error) => CommandError::Words(format!("{}: {error}", model.file())),
         error => error.into(),
     })?;
     drop(progress);
-    let document = LocateDocument::new(&model, &found);
-    session.answer(&document, arguments.json, |width| document.page(width))?;
-    Ok(if document.agrees { Exit::Agrees } else { Exit::Disagrees })
+    session.answer(&found, arguments.json, |width| found.page(width))?;
+    Ok(if found.agrees { Exit::Agrees } else { Exit::Disagrees })
 }

@@ -1,7 +1,6 @@
 //! `corner-impact verify [MODEL]`.
 
 use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
-use crate::study::verify::Verification;
 use crate::study::verify::{External, verify_watched};
 
 /// Finds the corner impact of a model, computes its map by every route, and says whether they agree.
@@ -33,7 +32,6 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         // The page says the same.
         session.complain(&format!("{} did not run: {}", failure.route, failure.why));
     }
-    let document = Verification::new(&model, &findings);
-    session.answer(&document, arguments.json, |width| document.page(width))?;
-    Ok(if document.agrees { Exit::Agrees } else { Exit::Disagrees })
+    session.answer(&findings, arguments.json, |width| findings.page(width))?;
+    Ok(if findings.agrees { Exit::Agrees } else { Exit::Disagrees })
 }

@@ -18,6 +18,8 @@ pub struct Rejected {
     pub why: String,
 }
 
+document!(Rejected as it { speed_rpm: it.speed_rpm, cam_angle_rad: it.cam_angle, why: it.why });
+
 /// Why there is no corner impact to study.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LocateError {

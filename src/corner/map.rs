@@ -1,6 +1,7 @@
 //! The piecewise-linear map at a corner impact, and what a route says of it.
 
 use nalgebra::{Matrix2, RowVector2, Vector2};
+use serde::Serialize;
 
 use crate::cam::Side;
 pub use crate::orbit::Eigenvalue;
@@ -16,6 +17,11 @@ pub struct SideMap {
 }
 
 impl SideMap {
+    /// A by rows, then B.
+    pub fn entries(&self) -> [f64; 6] {
+        [self.a[(0, 0)], self.a[(0, 1)], self.a[(1, 0)], self.a[(1, 1)], self.b[0], self.b[1]]
+    }
+
     /// Both eigenvalues of A, the one with the larger real part first, of a pair the one with positive imaginary part.
     ///
     /// Not a number where A is not finite.
@@ -24,8 +30,24 @@ impl SideMap {
     }
 }
 
+document!(SideMap as side { A: rows(&side.a), B: side.b.as_slice() });
+
+/// A matrix as documents have it, by rows.
+pub(crate) fn rows(matrix: &Matrix2<f64>) -> [[f64; 2]; 2] {
+    matrix.transpose().into()
+}
+
+/// Something of either side.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct Sides<T> {
+    /// Impacts before the corner.
+    pub minus: T,
+    /// Impacts after the corner.
+    pub plus: T,
+}
+
 /// Both sides of the map. `minus` holds for impacts before the corner, `plus` for impacts after it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct CornerMap {
     /// With c'' before the corner.
     pub minus: SideMap,
@@ -34,6 +56,14 @@ pub struct CornerMap {
 }
 
 impl CornerMap {
+    /// The map of one side.
+    pub fn of(&self, side: Side) -> &SideMap {
+        match side {
+            Side::Minus => &self.minus,
+            Side::Plus => &self.plus,
+        }
+    }
+
     /// Both sides from one function of the side.
     pub fn try_from_sides<E>(mut side: impl FnMut(Side) -> Result<SideMap, E>) -> Result<Self, E> {
         Ok(Self { minus: side(Side::Minus)?, plus: side(Side::Plus)? })
@@ -76,4 +106,30 @@ pub enum Uncertainty {
     },
     /// Of an extrapolation: the last correction to each entry and the rounding in it.
     Extrapolation(CornerMap),
+}
+
+document!(Route as route {
+    minus: route.map.minus,
+    plus: route.map.plus,
+    C: route.map.c().as_slice(),
+    D: route.map.d(),
+    standard_error if_any: route.fit().map(|(standard, ..)| standard),
+    systematic_error if_any: route.fit().and_then(|(_, systematic, _)| systematic),
+    condition_number if_any: route.fit().map(|(.., condition_number)| condition_number),
+    extrapolation_error if_any: match route.uncertainty {
+        Some(Uncertainty::Extrapolation(correction)) => Some(correction),
+        _ => None,
+    },
+});
+
+impl Route {
+    /// Standard errors, bias and condition number, where it is a fit.
+    fn fit(&self) -> Option<(CornerMap, Option<CornerMap>, f64)> {
+        match self.uncertainty {
+            Some(Uncertainty::Fit { standard, systematic, condition_number }) => {
+                Some((standard, systematic, condition_number))
+            }
+            _ => None,
+        }
+    }
 }

@@ -59,7 +59,7 @@ impl Subject {
         let found = self.found()?;
         let at = &found.at;
         if found.outcomes.is_empty() {
-            let why = found.refusal.as_ref().map(ToString::to_string);
+            let why = found.classification.as_ref().err().map(ToString::to_string);
             return Err(why.unwrap_or_else(|| "the local map is not classified".into()));
         }
         let rays = found.outcomes.iter().flat_map(|outcome| {

@@ -9,7 +9,7 @@ use crate::figures::Effort;
 use crate::model::{Model, ModelError};
 use crate::orbit::branch::Branch;
 use crate::study::speeds::{detachment, usual_speeds};
-use crate::study::verify::{External, Findings, verify};
+use crate::study::verify::{External, Verification, verify};
 
 /// A model and what is shown of it.
 #[derive(Clone, Debug)]
@@ -21,7 +21,7 @@ pub struct Subject {
     /// Whether follower and cam are the paper's.
     pub is_paper: bool,
     /// What `verify` found for it, or why it found nothing.
-    pub findings: Result<Findings, String>,
+    pub findings: Result<Verification, String>,
     /// The speeds that are shown.
     pub shown: Shown,
     /// How fine the sweep above detachment is: [`Effort::SLOW`].
@@ -109,7 +109,7 @@ impl Subject {
     }
 
     /// A model with what `verify` found for it, or why that found nothing.
-    pub fn with(model: &Model, findings: Result<Findings, String>) -> Result<Self, ModelError> {
+    pub fn with(model: &Model, findings: Result<Verification, String>) -> Result<Self, ModelError> {
         let cam = Cam::new(model)?;
         let paper = model.is_the_papers()?;
         let [_, fastest] = usual_speeds(model);
@@ -129,7 +129,7 @@ impl Subject {
         let fast = match &findings {
             Ok(_) if paper => Ok(Shown::PAPERS.1),
             Ok(found) => {
-                let kind = found.classification.as_ref();
+                let kind = found.classification.as_ref().ok();
                 let rises = kind.is_some_and(|kind| {
                     kind.scenario == Scenario::NonsmoothFold && kind.plus.exists_for == Speeds::Slower
                 });
@@ -158,7 +158,7 @@ impl Subject {
     }
 
     /// What `verify` found, or why it found nothing.
-    pub fn found(&self) -> Result<&Findings, String> {
+    pub fn found(&self) -> Result<&Verification, String> {
         self.findings.as_ref().map_err(Clone::clone)
     }
 }

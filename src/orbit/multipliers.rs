@@ -1,9 +1,10 @@
 //! Eigenvalues of the matrix that carries a small deviation once around an orbit.
 
 use nalgebra::Matrix2;
+use serde::Serialize;
 
 /// An eigenvalue, real and imaginary part.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Eigenvalue {
     /// Real part.
     pub re: f64,

@@ -2,12 +2,13 @@
 
 use std::fmt;
 
-use crate::border_collision::validity::Compared;
+use crate::border_collision::LocalOutcome;
+use crate::border_collision::feigin::{Speeds, speeds_at};
+use crate::border_collision::validity::{Compared, Range};
 use crate::show::block::Block;
-use crate::show::page::Page;
+use crate::show::page::{Page, text};
 use crate::show::words;
-use crate::study::verify::border_collision::{EndEntry, OutcomeEntry, RangeEntry};
-use crate::study::verify::document::Verification;
+use crate::study::verify::Verification;
 
 /// Where the second column begins.
 const COLUMN: usize = 20;
@@ -20,13 +21,13 @@ fn entry(out: &mut Page, name: &str, words: &str) -> fmt::Result {
 /// The condition nearest to failing, and those that fail.
 pub(crate) fn conditions(out: &mut Page, document: &Verification) -> fmt::Result {
     let (holding, count) =
-        (document.conditions.iter().filter(|condition| condition.holds).count(), document.conditions.len());
+        (document.conditions.iter().filter(|condition| condition.holds()).count(), document.conditions.len());
     if let Some(nearest) = document.conditions.iter().min_by(|a, b| a.distance.total_cmp(&b.distance)) {
         let words =
             format!("{holding} of {count} hold; nearest to failing, by {:.1e}: {}", nearest.distance, nearest.name);
         entry(out, "conditions", &words)?;
     }
-    for failing in document.conditions.iter().filter(|condition| !condition.holds) {
+    for failing in document.conditions.iter().filter(|condition| !condition.holds()) {
         let rests = words::decides(failing.decides);
         let words = format!("{} = {:.1e}: {}; the {rests} rests on it", failing.name, failing.value, failing.meaning);
         entry(out, "fails", &words)?;
@@ -36,19 +37,19 @@ pub(crate) fn conditions(out: &mut Page, document: &Verification) -> fmt::Result
 
 /// The local map's own motions and how far it holds.
 pub(crate) fn local_map(out: &mut Page, document: &Verification) -> fmt::Result {
-    if document.local_map.is_empty() {
+    if document.outcomes.is_empty() {
         return Ok(());
     }
     out.heading("What the local map does by itself, next to the corner impact")?;
-    for outcome in &document.local_map {
+    for outcome in &document.outcomes {
         motions(out, outcome)?;
     }
-    if document.linear_range.is_empty() {
+    if document.ranges.is_empty() {
         return Ok(());
     }
     out.heading("How far it holds: within 10 % of the simulated machine")?;
     for compared in [Compared::OneRevolution, Compared::FixedPointMinus, Compared::FixedPointPlus] {
-        let ranges = document.linear_range.iter().filter(|range| range.compared == compared);
+        let ranges = document.ranges.iter().filter(|range| range.compared == compared);
         for (index, range) in ranges.enumerate() {
             let name = if index > 0 { "" } else { words::compared(compared) };
             entry(out, name, &range_words(range))?;
@@ -57,22 +58,20 @@ pub(crate) fn local_map(out: &mut Page, document: &Verification) -> fmt::Result 
     Ok(())
 }
 
-fn motions(out: &mut Page, outcome: &OutcomeEntry) -> fmt::Result {
-    let name = match outcome.speeds {
-        "at" => "at omega*".to_owned(),
-        speeds => format!("{speeds} than omega*"),
-    };
-    let ends: Vec<_> = outcome.ends.iter().map(|end| format!("{} {}", end.starts, end_words(end))).collect();
-    entry(out, &name, &format!("{} motions: {}", outcome.starts, ends.join("; ")))?;
-    if outcome.speeds == "at" {
+fn motions(out: &mut Page, outcome: &LocalOutcome) -> fmt::Result {
+    let speeds = Speeds::of(outcome.mu);
+    let ends: Vec<_> =
+        outcome.fates.iter().map(|fate| format!("{} {}", fate.starts, text(&words::end(&fate.end)))).collect();
+    entry(out, words::speeds(speeds), &format!("{} motions: {}", outcome.starts(), ends.join("; ")))?;
+    if speeds.is_none() {
         return Ok(());
     }
     let stable: Vec<_> =
-        outcome.periodic_orbits.iter().filter(|orbit| orbit.stable).map(|orbit| orbit.word.as_str()).collect();
+        outcome.orbits.iter().filter(|orbit| orbit.stable()).map(|orbit| orbit.word.to_string()).collect();
     let unstable: Vec<_> =
-        outcome.periodic_orbits.iter().filter(|orbit| !orbit.stable).map(|orbit| orbit.word.as_str()).collect();
+        outcome.orbits.iter().filter(|orbit| !orbit.stable()).map(|orbit| orbit.word.to_string()).collect();
     const SHOWN: usize = 6;
-    let listed = |words: &[&str]| match words {
+    let listed = |words: &[String]| match words {
         [] => "none".to_owned(),
         words if words.len() > SHOWN => {
             format!("{} and {} more", words[..SHOWN].join(", "), words.len() - SHOWN)
@@ -82,25 +81,11 @@ fn motions(out: &mut Page, outcome: &OutcomeEntry) -> fmt::Result {
     entry(out, "", &format!("periodic orbits: stable {}; unstable {}", listed(&stable), listed(&unstable)))
 }
 
-fn end_words(end: &EndEntry) -> String {
-    match (end.end, &end.word, end.exponent, end.standard_error) {
-        ("fixed-point", Some(word), ..) => format!("on the fixed point {word}"),
-        ("periodic", Some(word), ..) => format!("on the orbit {word}"),
-        ("chaotic", _, Some(exponent), Some(error)) => {
-            format!("chaotic, Lyapunov exponent {exponent:.4} +- {error:.4} a turn")
-        }
-        ("undecided", _, Some(exponent), Some(error)) => {
-            format!("bounded and undecided, Lyapunov exponent {exponent:.4} +- {error:.4} a turn")
-        }
-        ("corner", ..) => "to the corner impact".into(),
-        _ => format!("without bound ({})", end.basis),
-    }
-}
-
-fn range_words(range: &RangeEntry) -> String {
+fn range_words(range: &Range) -> String {
+    let speeds = speeds_at(range.sign);
     if range.difference.is_none() {
-        return format!("{}: nowhere", range.speeds);
+        return format!("{speeds}: nowhere");
     }
     let to = words::ends(range.ends);
-    format!("{}: to {:.6} rpm, dT = {:.3e} s{to}", range.speeds, range.speed_rpm, range.period_change_s)
+    format!("{speeds}: to {:.6} rpm, dT = {:.3e} s{to}", range.speed_rpm, range.period_change)
 }

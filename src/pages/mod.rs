@@ -6,7 +6,7 @@ pub mod cam;
 pub mod claims;
 pub mod curve;
 mod local_map;
-pub mod locate;
+mod locate;
 pub mod orbit;
 pub mod report;
 pub mod speeds;
@@ -14,7 +14,6 @@ mod verify;
 
 pub use basins::BasinsSummary;
 pub use cam::CamDocument;
-pub use locate::LocateDocument;
 pub use orbit::OrbitDocument;
 pub use report::Dossier;
 pub use speeds::RegimesDocument;

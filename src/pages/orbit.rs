@@ -8,7 +8,6 @@ use crate::orbit::{Course, Eigenvalue, PeriodicOrbit};
 use crate::show::block::Mark;
 use crate::show::page::{Page, WIDTH};
 use crate::simulate::Event;
-use crate::study::verify::document::EigenvalueEntry;
 
 /// The orbits of one machine.
 #[derive(Clone, Debug, Serialize)]
@@ -37,7 +36,7 @@ pub struct OrbitEntry {
     /// Position (m) and velocity (m/s) when the cam is at the section.
     pub state: [f64; 2],
     /// The eigenvalues of the matrix that carries a small deviation around it.
-    pub multipliers: [EigenvalueEntry; 2],
+    pub multipliers: [Eigenvalue; 2],
     /// Whether small deviations die out.
     pub stable: bool,
     /// `impacts`, `sticking` or `free`.
@@ -141,7 +140,7 @@ fn orbits(count: usize) -> String {
     }
 }
 
-fn multiplier(EigenvalueEntry { re, im }: EigenvalueEntry) -> String {
+fn multiplier(Eigenvalue { re, im }: Eigenvalue) -> String {
     if im == 0.0 {
         format!("{re:.10}")
     } else {
@@ -168,7 +167,7 @@ impl From<&PeriodicOrbit> for OrbitEntry {
             impacts: orbit.impacts().map(impact).collect(),
             contact: others.map(contact).collect(),
             state: [orbit.state.position, orbit.state.velocity],
-            multipliers: orbit.multipliers().map(|Eigenvalue { re, im }| EigenvalueEntry { re, im }),
+            multipliers: orbit.multipliers(),
             stable: orbit.is_stable(),
             course: match orbit.course {
                 Course::Impacts(_) => "impacts",

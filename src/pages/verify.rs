@@ -2,15 +2,20 @@
 
 use std::fmt::{self, Write};
 
-use crate::agreement::{shared_decimals, worse};
+use crate::agreement::{Agreement, shared_decimals, worse};
 use crate::border_collision::feigin::Scenario;
+use crate::cam::Side;
+use crate::corner::map::Uncertainty;
+use crate::corner::{CornerMap, SideMap};
+use crate::orbit::Eigenvalue;
 use crate::pages::local_map;
 use crate::pages::report::dossier::spoken;
+use crate::published::PrintedNumber;
 use crate::show::block::{Column, Mark, Table, Words};
 use crate::show::digits::Digits;
 use crate::show::page::{Page, WIDTH};
 use crate::show::words::{self, mark};
-use crate::study::verify::document::{AgreementEntry, EigenvalueEntry, PublishedEntry, SideEntry, Sides, Verification};
+use crate::study::verify::Verification;
 
 impl Verification {
     /// The page, as wide as where nothing says how wide, without marks.
@@ -34,37 +39,39 @@ impl Verification {
 }
 
 fn orbit(out: &mut Page, document: &Verification) -> fmt::Result {
-    let at = &document.corner_impact;
+    let at = &document.at;
+    let state = at.x_star();
+    let [before, after] = at.cam_acceleration();
     let title = format!("Corner impact of {}", document.model.name);
     out.title(&title)?;
     out.paragraph_at(2, &document.model.source)?;
     out.heading("The orbit, solved for from the model")?;
-    writeln!(out, "  period   T* = {} s   ({:.9} rpm)", Digits::Significant(14).text(at.period_s), at.speed_rpm)?;
+    writeln!(out, "  period   T* = {} s   ({:.9} rpm)", Digits::Significant(14).text(at.period), at.speed_rpm())?;
     writeln!(
         out,
         "  state    x* = ({}, {})",
-        Digits::Significant(13).text(at.state[0]),
-        Digits::Significant(13).text(at.state[1])
+        Digits::Significant(13).text(state[0]),
+        Digits::Significant(13).text(state[1])
     )?;
-    let origin = Digits::Significant(9).text(at.state_origin_m);
+    let origin = Digits::Significant(9).text(at.origin);
     writeln!(out, "           half a revolution from the impact; position is measured from q = {origin} m")?;
-    let degrees = at.cam_angle_rad.to_degrees();
+    let degrees = at.corner.angle.to_degrees();
     writeln!(
         out,
         "  impact   at cam angle {degrees:.6} deg, where c'' jumps from {:.4} to {:.4} m/s^2",
-        at.cam_acceleration_m_s2.minus, at.cam_acceleration_m_s2.plus
+        before, after
     )?;
     writeln!(
         out,
         "           q = {:.9} m, v = {:.6} before and {:.6} after, c' = {:.6} m/s",
-        at.position_m, at.velocity_before_m_s, at.velocity_after_m_s, at.cam_velocity_m_s
+        at.corner.plus.value, at.velocity_before, at.velocity_after, at.cam_velocity
     )?;
-    for other in &document.other_corner_impacts {
+    for other in &document.others {
         writeln!(
             out,
             "  also     {:.6} rpm at {:.6} deg: narrow [study] to verify that one",
-            other.speed_rpm,
-            other.cam_angle_rad.to_degrees()
+            other.speed_rpm(),
+            other.corner.angle.to_degrees()
         )?;
     }
     Ok(())
@@ -77,21 +84,23 @@ fn map(out: &mut Page, document: &Verification) -> fmt::Result {
          after it. C = h (A+ - A-), D = h (B+ - B-), h = [1 0]: the sides meet where C dx + D dT = 0.",
     )?;
     writeln!(out)?;
-    side(out, document, "minus", "impact before the corner")?;
-    side(out, document, "plus", "impact after the corner")?;
-    if let Some(closed) = document.routes.get("closed_form") {
-        let [c1, c2] = closed.map.c;
+    side(out, document, Side::Minus)?;
+    side(out, document, Side::Plus)?;
+    {
+        let closed = document.closed_form().map;
+        let c = closed.c();
         writeln!(
             out,
             "  C = ({}, {}),  D = {}\n",
-            Digits::Significant(10).text(c1),
-            Digits::Significant(10).text(c2),
-            Digits::Significant(10).text(closed.map.d)
+            Digits::Significant(10).text(c[0]),
+            Digits::Significant(10).text(c[1]),
+            Digits::Significant(10).text(closed.d())
         )?;
     }
-    for (name, route) in &document.routes {
-        if let (Some(standard), Some(systematic), Some(condition)) =
-            (&route.standard_error, &route.systematic_error, route.condition_number)
+    for route in document.routes_by_name() {
+        let name = route.name;
+        if let Some(Uncertainty::Fit { standard, systematic: Some(systematic), condition_number: condition }) =
+            &route.uncertainty
         {
             let ((a, b), (bias_a, bias_b)) = (largest(standard), largest(systematic));
             writeln!(
@@ -101,7 +110,7 @@ fn map(out: &mut Page, document: &Verification) -> fmt::Result {
             )?;
             writeln!(out, "  {:width$}  condition number {condition:.1}", "", width = name.len())?;
         }
-        if let Some(correction) = &route.extrapolation_error {
+        if let Some(Uncertainty::Extrapolation(correction)) = &route.uncertainty {
             let (a, b) = largest(correction);
             writeln!(out, "  {}: error estimate up to {a:.1e} in A, {b:.1e} in B", spoken(name))?;
         }
@@ -109,18 +118,13 @@ fn map(out: &mut Page, document: &Verification) -> fmt::Result {
     Ok(())
 }
 
-fn side(out: &mut Page, document: &Verification, name: &str, when: &str) -> fmt::Result {
-    let of = |sides: &Sides<SideEntry>| {
-        if name == "minus" { sides.minus } else { sides.plus }
+fn side(out: &mut Page, document: &Verification, side: Side) -> fmt::Result {
+    let name = if side == Side::Minus { "minus" } else { "plus" };
+    writeln!(out, "  {name}: {}", words::side(side))?;
+    let routes: Vec<_> = document.routes_by_name().map(|route| (spoken(route.name), *route.map.of(side))).collect();
+    let printed = |quantity: &str| {
+        document.published.iter().find(|entry| entry.agreement.quantity == format!("{quantity}_{name}"))
     };
-    writeln!(out, "  {name}: {when}")?;
-    let routes: Vec<_> = document
-        .routes
-        .iter()
-        .map(|(route, entry)| (spoken(route), of(&Sides { minus: entry.map.minus, plus: entry.map.plus })))
-        .collect();
-    let printed =
-        |quantity: &str| document.published.iter().find(|entry| entry.quantity == format!("{quantity}_{name}"));
     let room = out.width().saturating_sub(LABELS + if printed("A").is_some() { PRINTED } else { 0 }).max(COLUMN);
     // As few blocks as hold all columns, and as even.
     let blocks = routes.len().div_ceil(room / COLUMN).max(1);
@@ -138,8 +142,8 @@ const PRINTED: usize = 19;
 /// One block of a side's table: some routes, and what the paper prints.
 fn columns<'a>(
     out: &mut Page,
-    routes: &[(String, SideEntry)],
-    printed: impl Fn(&str) -> Option<&'a PublishedEntry>,
+    routes: &[(String, SideMap)],
+    printed: impl Fn(&str) -> Option<&'a PrintedNumber>,
 ) -> fmt::Result {
     // Two words, two lines.
     let heads: Vec<_> = routes.iter().map(|(route, _)| route.split_once(' ').unwrap_or(("", route))).collect();
@@ -153,15 +157,11 @@ fn columns<'a>(
     }
     writeln!(out, "{:LABELS$}{}", "", lines[0].trim_end())?;
     writeln!(out, "{:LABELS$}{}", "", lines[1])?;
-    let entries = |side: &SideEntry| -> [f64; 6] {
-        let SideEntry { a: [[a11, a12], [a21, a22]], b: [b1, b2] } = *side;
-        [a11, a12, a21, a22, b1, b2]
-    };
     for (index, label) in ["A11", "A12", "A21", "A22", "B1", "B2"].into_iter().enumerate() {
         write!(out, "    {label:<4}")?;
         let (quantity, entry) = if index < 4 { ("A", index) } else { ("B", index - 4) };
         for (_, side) in routes {
-            let values = entries(side);
+            let values = side.entries();
             let block = if index < 4 { &values[..4] } else { &values[4..] };
             write!(out, "{:>COLUMN$}", cell(values[index], block))?;
         }
@@ -189,9 +189,9 @@ fn places(entries: &[f64]) -> usize {
     if largest > 0.0 && largest.is_finite() { (9.0 - largest.log10().floor()).clamp(0.0, 15.0) as usize } else { 9 }
 }
 
-fn largest(sides: &Sides<SideEntry>) -> (f64, f64) {
+fn largest(sides: &CornerMap) -> (f64, f64) {
     let both = [sides.minus, sides.plus];
-    let a = both.iter().flat_map(|side| side.a.iter().flatten()).copied().fold(0.0, worse);
+    let a = both.iter().flat_map(|side| side.a.iter()).copied().fold(0.0, worse);
     let b = both.iter().flat_map(|side| side.b.iter()).copied().fold(0.0, worse);
     (a, b)
 }
@@ -208,18 +208,18 @@ fn agreement(out: &mut Page, document: &Verification) -> fmt::Result {
     ];
     let mut table = Table::new("Comparisons", columns);
     let mut quantities: Vec<&str> = Vec::new();
-    for entry in &document.agreement {
+    for entry in &document.comparisons {
         if !quantities.contains(&entry.quantity.as_str()) {
             quantities.push(&entry.quantity);
         }
     }
     for quantity in quantities {
-        let pairs: Vec<_> = document.agreement.iter().filter(|entry| entry.quantity == quantity).collect();
-        let use_of_bound = |entry: &&&AgreementEntry| entry.max_abs_diff / entry.tolerance;
+        let pairs: Vec<_> = document.comparisons.iter().filter(|entry| entry.quantity == quantity).collect();
+        let use_of_bound = |entry: &&&Agreement| entry.max_abs_diff / entry.bound.value;
         let closest = pairs.iter().max_by(|a, b| use_of_bound(a).total_cmp(&use_of_bound(b)));
         let disagreeing = pairs.iter().filter(|entry| !entry.agrees);
         for (index, entry) in closest.into_iter().filter(|entry| entry.agrees).chain(disagreeing).enumerate() {
-            let AgreementEntry { routes: [left, right], max_abs_diff, tolerance, agrees, .. } = entry;
+            let Agreement { routes: [left, right], max_abs_diff, bound, agrees, .. } = entry;
             let pair = format!("{} - {}", spoken(left), spoken(right));
             let shared = share(*max_abs_diff);
             let pair = match agrees {
@@ -228,7 +228,7 @@ fn agreement(out: &mut Page, document: &Verification) -> fmt::Result {
             };
             let (name, count) = if index == 0 { (quantity, pairs.len().to_string()) } else { ("", String::new()) };
             let [name, difference, allowed] =
-                [name.to_owned(), format!("{max_abs_diff:.1e}"), format!("{tolerance:.1e}")].map(Words::from);
+                [name.to_owned(), format!("{max_abs_diff:.1e}"), format!("{:.1e}", bound.value)].map(Words::from);
             table.row([name, Words::from(count), difference, allowed, Words::from(shared), pair]);
         }
     }
@@ -241,7 +241,7 @@ fn share(diff: f64) -> String {
 
 fn bifurcation(out: &mut Page, document: &Verification) -> fmt::Result {
     out.heading("What happens there")?;
-    let eigenvalues = |pair: &[EigenvalueEntry; 2]| {
+    let eigenvalues = |pair: &[Eigenvalue; 2]| {
         let one = |re: f64, im: f64| {
             if im == 0.0 {
                 format!("{re:.9}")
@@ -251,11 +251,11 @@ fn bifurcation(out: &mut Page, document: &Verification) -> fmt::Result {
         };
         format!("{},  {}", one(pair[0].re, pair[0].im), one(pair[1].re, pair[1].im))
     };
-    writeln!(out, "  eigenvalues of A-   {}", eigenvalues(&document.eigenvalues.minus))?;
-    writeln!(out, "  eigenvalues of A+   {}", eigenvalues(&document.eigenvalues.plus))?;
-    if let Some(form) = &document.normal_form {
-        let matrix = |m: &[[f64; 2]; 2]| {
-            let [a, b, c, d] = [m[0][0], m[0][1], m[1][0], m[1][1]].map(entry);
+    writeln!(out, "  eigenvalues of A-   {}", eigenvalues(&document.closed_form().map.minus.eigenvalues()))?;
+    writeln!(out, "  eigenvalues of A+   {}", eigenvalues(&document.closed_form().map.plus.eigenvalues()))?;
+    if let Ok(form) = &document.normal_form {
+        let matrix = |m: &nalgebra::Matrix2<f64>| {
+            let [a, b, c, d] = [m[(0, 0)], m[(0, 1)], m[(1, 0)], m[(1, 1)]].map(entry);
             format!("[[{a}, {b}], [{c}, {d}]]")
         };
         writeln!(out, "  normal form         A-bar {}", matrix(&form.a_bar_minus))?;
@@ -269,13 +269,14 @@ fn bifurcation(out: &mut Page, document: &Verification) -> fmt::Result {
             entry(form.c_bar[1])
         )?;
     }
-    if let Some(verdict) = &document.classification {
-        let above = &verdict.real_eigenvalues_above_one;
-        let below = &verdict.real_eigenvalues_below_minus_one;
+    if let Ok(verdict) = &document.classification {
         writeln!(
             out,
             "  Feigin's counts     {} + {} real eigenvalues above 1, {} + {} below -1",
-            above.minus, above.plus, below.minus, below.plus
+            verdict.minus.above_one,
+            verdict.plus.above_one,
+            verdict.minus.below_minus_one,
+            verdict.plus.below_minus_one
         )?;
         let born = if verdict.period_two_orbit && verdict.scenario != Scenario::NonsmoothFlip {
             ", and an orbit of period two"
@@ -288,20 +289,12 @@ fn bifurcation(out: &mut Page, document: &Verification) -> fmt::Result {
         let fate = |stable: bool, speeds: crate::border_collision::feigin::Speeds| {
             format!("{} one at speeds {speeds} than omega*", if stable { "a stable" } else { "an unstable" })
         };
-        writeln!(
-            out,
-            "  fixed points        minus: {}",
-            fate(verdict.stable.minus, verdict.fixed_points_exist_for.minus)
-        )?;
-        writeln!(
-            out,
-            "                      plus:  {}",
-            fate(verdict.stable.plus, verdict.fixed_points_exist_for.plus)
-        )?;
+        writeln!(out, "  fixed points        minus: {}", fate(verdict.minus.stable, verdict.minus.exists_for))?;
+        writeln!(out, "                      plus:  {}", fate(verdict.plus.stable, verdict.plus.exists_for))?;
     }
-    if let Some(refusal) = &document.refusal {
+    if let Err(refusal) = &document.classification {
         writeln!(out, "  verdict             none")?;
-        out.paragraph_at(22, refusal)?;
+        out.paragraph_at(22, &refusal.to_string())?;
     }
     local_map::conditions(out, document)
 }
@@ -312,7 +305,7 @@ fn published(out: &mut Page, document: &Verification) -> fmt::Result {
     }
     out.heading("The paper's printed numbers")?;
     for entry in &document.published {
-        let PublishedEntry { quantity, place, max_abs_diff, verdict, as_found, .. } = entry;
+        let PrintedNumber { place, agreement: Agreement { quantity, max_abs_diff, .. }, verdict, as_found, .. } = entry;
         let shared = share(*max_abs_diff);
         write!(out, "  {quantity:<20}{place:<20}differs by {max_abs_diff:>7.1e}, shares {shared:<13}")?;
         out.marked(mark(*verdict), &verdict.to_string());
@@ -326,7 +319,7 @@ fn published(out: &mut Page, document: &Verification) -> fmt::Result {
         let computed: Vec<_> = entry.computed.iter().map(|value| Digits::Significant(10).text(*value)).collect();
         let words = format!(
             "{}, printed ({}), computed ({}): {}",
-            entry.quantity,
+            entry.agreement.quantity,
             entry.printed.join(", "),
             computed.join(", "),
             entry.note
@@ -345,11 +338,11 @@ fn verdict(out: &mut Page, document: &Verification) -> fmt::Result {
         }
     }
     out.heading("Verdict")?;
-    let failed = document.agreement.iter().filter(|entry| !entry.agrees).count();
+    let failed = document.comparisons.iter().filter(|entry| !entry.agrees).count();
     let unexpected = document.published.iter().filter(|entry| !entry.as_found).count();
-    let wrong = document.published.iter().filter(|entry| entry.as_found && !entry.agrees).count();
+    let wrong = document.published.iter().filter(|entry| entry.as_found && !entry.agreement.agrees).count();
     let maps = document
-        .agreement
+        .comparisons
         .iter()
         .filter(|entry| ["A_minus", "A_plus", "B_minus", "B_plus"].contains(&entry.quantity.as_str()));
     let fewest = maps.filter_map(|entry| shared_decimals(entry.max_abs_diff)).min();
@@ -357,8 +350,8 @@ fn verdict(out: &mut Page, document: &Verification) -> fmt::Result {
     writeln!(
         out,
         "  {} of {} comparisons agree; every entry of A and B shares {shared}.",
-        document.agreement.len() - failed,
-        document.agreement.len()
+        document.comparisons.len() - failed,
+        document.comparisons.len()
     )?;
     if !document.published.is_empty() {
         let right = document.published.len() - wrong - unexpected;
@@ -370,8 +363,8 @@ fn verdict(out: &mut Page, document: &Verification) -> fmt::Result {
     }
     let missing: Vec<&str> =
         document.skipped.iter().filter(|skipped| skipped.failed).map(|skipped| skipped.route.as_str()).collect();
-    let all_agree =
-        document.agreement.iter().all(|entry| entry.agrees) && document.published.iter().all(|number| number.as_found);
+    let all_agree = document.comparisons.iter().all(|entry| entry.agrees)
+        && document.published.iter().all(|number| number.as_found);
     let (mark, word, reason) = match missing.as_slice() {
         _ if document.agrees => (Mark::Good, "AGREES", String::new()),
         [] => (Mark::Bad, "DISAGREES", ": a comparison above".to_owned()),

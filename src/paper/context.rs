@@ -8,7 +8,7 @@ use serde::Deserialize;
 use crate::cam::Cam;
 use crate::model::Model;
 use crate::published::Verdict;
-use crate::study::verify::Findings;
+use crate::study::verify::Verification;
 
 /// What computer algebra found about the printed equations; `make derive` writes it, `make derive-check` redoes it.
 const EQUATIONS: &str = include_str!("../../golden/derived/printed_equations.json");
@@ -20,7 +20,7 @@ pub struct Context<'a> {
     /// Its cam.
     pub cam: &'a Cam,
     /// What `verify` found for it, without programs outside.
-    pub findings: &'a Findings,
+    pub findings: &'a Verification,
     /// Whether follower and cam are the paper's.
     pub is_paper: bool,
     /// What computer algebra found about each printed equation, by label.
@@ -49,7 +49,7 @@ struct Equations {
 
 impl<'a> Context<'a> {
     /// The context of a verified model.
-    pub fn new(model: &'a Model, cam: &'a Cam, findings: &'a Findings) -> Result<Self, LedgerError> {
+    pub fn new(model: &'a Model, cam: &'a Cam, findings: &'a Verification) -> Result<Self, LedgerError> {
         let derived = |error: String| LedgerError::Derived(format!("golden/derived/printed_equations.json: {error}"));
         let read: Equations = serde_json::from_str(EQUATIONS).map_err(|error| derived(error.to_string()))?;
         let is_paper = model.is_the_papers().map_err(|error| LedgerError::Derived(error.to_string()))?;

@@ -193,7 +193,7 @@ pub(super) fn five_decimals(context: &Context<'_>) -> Decision {
 
 /// What decides about the local map; a degenerate one has none.
 fn classification<'a>(context: &'a Context<'_>) -> Result<&'a Classification, &'static str> {
-    context.findings.classification.as_ref().ok_or("the map is degenerate")
+    context.findings.classification.as_ref().map_err(|_| "the map is degenerate")
 }
 
 pub(super) fn odd_count(context: &Context<'_>) -> Decision {

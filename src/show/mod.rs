@@ -12,4 +12,4 @@ pub mod markdown;
 pub mod page;
 pub mod words;
 
-pub use page::Page;
+pub use page::{Page, Paged};

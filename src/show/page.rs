@@ -62,6 +62,22 @@ impl Write for Page {
     }
 }
 
+/// What has a page: laid out once as blocks, shown anywhere.
+pub trait Paged {
+    /// What the page says.
+    fn blocks(&self) -> Vec<Block>;
+
+    /// The page for a terminal of `width` columns.
+    fn page(&self, width: usize) -> Result<Page, fmt::Error> {
+        Page::of(width, &self.blocks())
+    }
+
+    /// The page as wide as where nothing says how wide, without marks.
+    fn text(&self) -> Result<String, fmt::Error> {
+        Ok(self.page(WIDTH)?.plain())
+    }
+}
+
 impl Page {
     /// An empty page of `width` columns.
     pub fn new(width: usize) -> Self {

@@ -4,13 +4,14 @@
 //! and each side ends on its own; where it is the acceleration, two matrices meet and Feigin's classification tells the rest;
 //! where it is a higher one, both sides have one matrix, and nothing happens to first order.
 
-use nalgebra::RowVector2;
+use std::collections::BTreeMap;
+
+use serde::{Serialize, Serializer};
 
 use crate::agreement::{Agreement, compare, compare_routes, worse};
 use crate::border_collision::{Classification, Degenerate, classify};
 use crate::cam::{Cam, Side};
 use crate::corner::border::border;
-use crate::corner::locate::Rejected;
 use crate::corner::map::Uncertainty;
 use crate::corner::one_sided::SampleError;
 use crate::corner::range::{FoundCornerImpacts, RangeError, find_corner_impacts};
@@ -18,14 +19,17 @@ use crate::corner::varied::Varied;
 use crate::corner::{CornerImpact, CornerMap, Route, SideMap};
 use crate::corner::{closed_form, finite_difference, least_squares, variational};
 use crate::model::{Model, ModelError, Study};
+use crate::study::ModelLabel;
 use crate::study::verify::Skipped;
 use crate::tolerance::Comparison;
 
-/// What a range of speeds holds.
+/// The corner impacts of a range of speeds: the document `corner-impact/locate/1`.
 #[derive(Clone, Debug)]
-pub struct Surveyed {
+pub struct Located {
+    /// The model that was looked at.
+    pub model: ModelLabel,
     /// Each corner impact, by rising speed.
-    pub found: Vec<Located>,
+    pub found: Vec<LocatedImpact>,
     /// What was looked at for them, and refused.
     pub looked_at: FoundCornerImpacts,
     /// The range, rpm.
@@ -36,24 +40,39 @@ pub struct Surveyed {
     pub agrees: bool,
 }
 
-impl Surveyed {
-    /// Speeds at which the equations hold and there is no orbit.
-    pub fn rejected(&self) -> &[Rejected] {
-        &self.looked_at.rejected
-    }
-}
+document!(Located as it {
+    schema: "corner-impact/locate/1",
+    model: it.model.name,
+    source: it.model.source,
+    rpm: [it.range.rpm_min, it.range.rpm_max],
+    revolutions: it.revolutions,
+    corner_impacts: it.found,
+    rejected: it.looked_at.rejected,
+    searched: Searched(&it.looked_at),
+    agrees: it.agrees,
+});
+
+/// What was looked at, without what was found there.
+struct Searched<'a>(&'a FoundCornerImpacts);
+
+document!(Searched<'_> as it {
+    corners_rad: it.0.corners.iter().map(|corner| corner.angle).collect::<Vec<_>>(),
+    speeds_rpm: it.0.searched.speeds,
+    branches: it.0.searched.branches,
+    one_impact_exhaustive: true,
+    several_impacts_exhaustive: false,
+    failed: it.0.searched.failed,
+});
 
 /// A corner impact and its map.
 #[derive(Clone, Debug)]
-pub struct Located {
+pub struct LocatedImpact {
     /// The orbit.
     pub at: CornerImpact,
     /// Its map by the product of propagators and saltation matrices; at a corner of velocity only `at.side` of it holds.
     pub map: CornerMap,
-    /// `(e, f)`: the impact comes before the corner where `e dx + f dT < 0`.
-    pub border: (RowVector2<f64>, f64),
     /// What happens there.
-    pub local: LocalMap,
+    pub local: Happens,
     /// The routes pairwise.
     pub comparisons: Vec<Agreement>,
     /// Routes that did not run.
@@ -62,9 +81,42 @@ pub struct Located {
     pub agrees: bool,
 }
 
-/// What the local map is made of.
+document!(LocatedImpact as it {
+    speed_rpm: it.at.speed_rpm(),
+    period_s: it.at.period,
+    orbit_period_s: it.at.period * it.at.cycle.revolutions as f64,
+    revolutions: it.at.cycle.revolutions,
+    impacts: it.at.cycle.contacts.len(),
+    cam_angle_rad: it.at.corner.angle,
+    jump_order: it.at.corner.jump_order,
+    side: it.side(),
+    state: [it.at.state.position, it.at.state.velocity],
+    section_angle_rad: it.at.section_angle(),
+    velocity_before_m_s: it.at.velocity_before,
+    velocity_after_m_s: it.at.velocity_after,
+    impact_angles_rad: it.at.cycle.contacts.iter().map(|contact| contact.cam_angle).collect::<Vec<_>>(),
+    map: it.sides().map(|side| (side, it.map.of(side))).collect::<BTreeMap<_, _>>(),
+    classification: it.local,
+    agreement: it.comparisons,
+    skipped: it.skipped,
+    agrees: it.agrees,
+});
+
+impl LocatedImpact {
+    /// The side whose orbit this is, where the velocity jumps.
+    pub(crate) fn side(&self) -> Option<Side> {
+        (self.at.corner.jump_order == 1).then_some(self.at.side)
+    }
+
+    /// The sides that have a map.
+    fn sides(&self) -> impl Iterator<Item = Side> {
+        [Side::Minus, Side::Plus].into_iter().filter(|side| self.side().is_none_or(|only| only == *side))
+    }
+}
+
+/// What happens at a corner impact.
 #[derive(Clone, Debug, PartialEq)]
-pub enum LocalMap {
+pub enum Happens {
     /// Velocity jumps: impacts across the corner are thrown elsewhere.
     Gap,
     /// Acceleration jumps: two matrices meet on a border; Feigin's verdict, where there is one.
@@ -73,9 +125,50 @@ pub enum LocalMap {
     Smooth,
 }
 
-/// Why a range cannot be surveyed.
+impl Happens {
+    /// Its name in documents.
+    pub(crate) fn scenario(&self) -> String {
+        match self {
+            Self::Gap => "gap".into(),
+            Self::BorderCollision(Ok(kind)) => kind.scenario.to_string(),
+            Self::BorderCollision(Err(_)) => "degenerate".into(),
+            Self::Smooth => "smooth".into(),
+        }
+    }
+
+    /// What that is, in words; of a border collision its fixed points tell more.
+    pub(crate) fn meaning(&self) -> String {
+        match self {
+            Self::BorderCollision(Ok(_)) => "two matrices meet on a border".into(),
+            Self::BorderCollision(Err(degenerate)) => format!("Feigin's classification says nothing: {degenerate}"),
+            Self::Gap => {
+                "the cam's velocity jumps, and what an impact leaves the follower with jumps with it: this side's \
+                          orbit ends here, and across the corner the map has a gap, not a second matrix"
+                    .into()
+            }
+            Self::Smooth => {
+                "only a derivative above the acceleration jumps: both sides have the same matrices, the map's \
+                             derivative is continuous, and there is no border collision to first order"
+                    .into()
+            }
+        }
+    }
+}
+
+impl Serialize for Happens {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        struct Other(String, String);
+        document!(Other as it { scenario: it.0, meaning: it.1 });
+        match self {
+            Self::BorderCollision(Ok(kind)) => kind.serialize(to),
+            other => Other(other.scenario(), other.meaning()).serialize(to),
+        }
+    }
+}
+
+/// Why a range cannot be looked through.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum SurveyError {
+pub enum LocateError {
     /// The cam.
     #[error("{0}")]
     Model(#[from] ModelError),
@@ -85,16 +178,16 @@ pub enum SurveyError {
 }
 
 /// Finds every corner impact of orbits of `revolutions` in `range`, and computes its map by every route of this program.
-pub fn survey(model: &Model, range: Study, revolutions: u64) -> Result<Surveyed, SurveyError> {
+pub fn locate(model: &Model, range: Study, revolutions: u64) -> Result<Located, LocateError> {
     let cam = Cam::new(model)?;
     let looked_at = find_corner_impacts(model, &cam, range, revolutions)?;
-    let found: Vec<Located> = looked_at.found.iter().map(|at| located(model, &cam, at)).collect();
+    let found: Vec<LocatedImpact> = looked_at.found.iter().map(|at| located(model, &cam, at)).collect();
     let agrees = found.iter().all(|located| located.agrees);
-    Ok(Surveyed { found, looked_at, range, revolutions, agrees })
+    Ok(Located { model: ModelLabel::of(model), found, looked_at, range, revolutions, agrees })
 }
 
 /// A corner impact with its map by each route that its corner has.
-pub fn located(model: &Model, cam: &Cam, at: &CornerImpact) -> Located {
+fn located(model: &Model, cam: &Cam, at: &CornerImpact) -> LocatedImpact {
     let exact = variational::route(model, cam, at);
     let (map, border) = (exact.map, border(model, cam, at));
     let (mut comparisons, mut skipped) = (Vec::new(), Vec::new());
@@ -113,7 +206,7 @@ pub fn located(model: &Model, cam: &Cam, at: &CornerImpact) -> Located {
                 };
                 compare_sides(name, &one, &other)
             }));
-            LocalMap::Gap
+            Happens::Gap
         }
         order => {
             if at.is_simple() {
@@ -132,14 +225,14 @@ pub fn located(model: &Model, cam: &Cam, at: &CornerImpact) -> Located {
                     let names = [route.name, "flight"];
                     compare(names, "border", [(c * f).as_slice(), (e * d).as_slice()], Comparison::Routes)
                 }));
-                LocalMap::BorderCollision(classify(&map, border))
+                Happens::BorderCollision(classify(&map, border))
             } else {
-                LocalMap::Smooth
+                Happens::Smooth
             }
         }
     };
     let agrees = skipped.iter().all(|skipped| !skipped.failed) && comparisons.iter().all(|item| item.agrees);
-    Located { at: at.clone(), map, border, local, comparisons, skipped, agrees }
+    LocatedImpact { at: at.clone(), map, local, comparisons, skipped, agrees }
 }
 
 /// The estimate of the side that the impact is on, in the place of both.

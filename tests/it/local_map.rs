@@ -16,8 +16,7 @@ use corner_impact::flight::State;
 use corner_impact::model::Model;
 use corner_impact::section::StroboscopicMap;
 use corner_impact::simulate::Machine;
-use corner_impact::study::verify::Verification;
-use corner_impact::study::verify::{External, Findings, verify};
+use corner_impact::study::verify::{External, Verification, verify};
 use nalgebra::{Matrix2, Vector2};
 use serde_json::json;
 
@@ -40,7 +39,7 @@ fn exponent(end: &End) -> Exponent {
     }
 }
 
-fn paper() -> Findings {
+fn paper() -> Verification {
     verify(&common::osorio(), External::LeftOut).unwrap()
 }
 
@@ -136,14 +135,14 @@ fn read(name: &str) -> Model {
 }
 
 /// The machine at a period `dt` from T*.
-fn section_at(model: &Model, found: &Findings, dt: f64) -> StroboscopicMap {
+fn section_at(model: &Model, found: &Verification, dt: f64) -> StroboscopicMap {
     let machine = Machine::new(common::cam(model), &model.follower, TAU / (found.at.period + dt));
     StroboscopicMap { machine, cam_angle: found.at.section_angle() }
 }
 
 /// The sides of the impacts of `count` revolutions after a long run from x*, at a period `dt` from T*; `?` where a revolution
 /// has another number of impacts than one.
-fn real_word(name: &str, dt: f64, count: usize) -> (String, Findings) {
+fn real_word(name: &str, dt: f64, count: usize) -> (String, Verification) {
     let model = read(name);
     let found = verify(&model, External::LeftOut).unwrap();
     let section = section_at(&model, &found, dt);
@@ -214,9 +213,9 @@ fn the_follower_leaves_the_papers_corner_impact_as_the_local_map_predicts() {
 fn sticking_is_refused_with_its_reason() {
     let plastic = common::osorio_with(&[("restitution", "0.0"), ("rpm_max", "1500.0")]);
     let found = verify(&plastic, External::LeftOut).unwrap();
-    assert!(matches!(found.refusal, Some(Refusal::Sticking { .. })), "{:?}", found.refusal);
-    assert!(found.classification.is_none() && found.outcomes.is_empty() && found.ranges.is_empty());
-    let page = Verification::new(&plastic, &found).text().unwrap();
+    assert!(matches!(found.classification, Err(Refusal::Sticking { .. })), "{:?}", found.classification);
+    assert!(found.outcomes.is_empty() && found.ranges.is_empty());
+    let page = found.text().unwrap();
     assert!(page.contains("verdict             none") && page.contains("sticking: next to the corner"), "{page}");
 }
 
@@ -247,7 +246,7 @@ fn another_motion_ends_the_range_at_once() {
 fn the_document_carries_the_local_map_unchanged() {
     let model = read("damped-heavy");
     let found = verify(&model, External::LeftOut).unwrap();
-    let document = serde_json::to_value(Verification::new(&model, &found)).unwrap();
+    let document = serde_json::to_value(&found).unwrap();
     assert!(document["refusal"].is_null());
     for (entry, condition) in document["conditions"].as_array().unwrap().iter().zip(&found.conditions) {
         assert_eq!(entry["name"], condition.name);
@@ -289,15 +288,13 @@ fn the_document_carries_the_local_map_unchanged() {
 /// A document without a verdict says why, and which condition failed.
 #[test]
 fn a_degenerate_case_has_no_verdict_but_a_reason() {
-    let model = common::osorio();
     let mut found = paper();
-    found.classification = None;
-    found.refusal = Some(Refusal::from(Degenerate::Vanishes { what: "the determinant of I - A", value: 1e-17 }));
+    found.classification = Err(Refusal::from(Degenerate::Vanishes { what: "the determinant of I - A", value: 1e-17 }));
     found.conditions[2].distance = 1e-17;
     (found.outcomes, found.ranges) = (Vec::new(), Vec::new());
-    let document = Verification::new(&model, &found);
-    assert_eq!(document.refusal.as_deref(), Some("degenerate: the determinant of I - A is 1e-17, zero to rounding"));
-    let page = document.text().unwrap();
+    let document = serde_json::to_value(&found).unwrap();
+    assert_eq!(document["refusal"].as_str(), Some("degenerate: the determinant of I - A is 1e-17, zero to rounding"));
+    let page = found.text().unwrap();
     assert!(page.contains("degenerate: the determinant of I - A is 1e-17") && page.contains("11 of 12 hold"), "{page}");
     assert!(page.contains("  fails               det(I - A-) ="), "{page}");
     assert!(!page.contains("nonsmooth-fold") && !page.contains("How far it holds"), "{page}");

@@ -6,7 +6,7 @@ use crate::common;
 use corner_impact::border_collision::feigin::Scenario;
 use corner_impact::corner::range::RangeError;
 use corner_impact::model::{Model, Study};
-use corner_impact::study::locate::{LocalMap, SurveyError, Surveyed, survey};
+use corner_impact::study::locate::{Happens, LocateError, Located};
 use serde_json::Value;
 
 const MODEL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/models/osorio-2008.toml");
@@ -25,8 +25,8 @@ fn document(model: &str, rpm: &str, revolutions: &str) -> (Option<i32>, Value) {
     (output.status.code(), serde_json::from_str(&text).unwrap_or_else(|error| panic!("{error}: {text}")))
 }
 
-fn surveyed(model: &Model, low: f64, high: f64, revolutions: u64) -> Surveyed {
-    survey(model, Study { rpm_min: low, rpm_max: high }, revolutions).unwrap()
+fn surveyed(model: &Model, low: f64, high: f64, revolutions: u64) -> Located {
+    corner_impact::study::locate::locate(model, Study { rpm_min: low, rpm_max: high }, revolutions).unwrap()
 }
 
 fn speeds(document: &Value) -> Vec<f64> {
@@ -120,9 +120,9 @@ fn routes_agree_at_every_corner_impact() {
     }
     for (order, local) in scenarios {
         match order {
-            1 => assert_eq!(local, LocalMap::Gap),
-            2 => assert!(matches!(local, LocalMap::BorderCollision(Ok(_)))),
-            _ => assert_eq!(local, LocalMap::Smooth),
+            1 => assert_eq!(local, Happens::Gap),
+            2 => assert!(matches!(local, Happens::BorderCollision(Ok(_)))),
+            _ => assert_eq!(local, Happens::Smooth),
         }
     }
 }
@@ -134,7 +134,8 @@ fn only_a_corner_of_acceleration_has_two_matrices() {
         assert!(located.at.corner.jump_order == 3 && (located.map.plus.a - located.map.minus.a).norm() < 1e-10);
     }
     for located in surveyed(&common::osorio(), 600.0, 760.0, 1).found {
-        let (c, (e, _)) = (located.map.c(), located.border);
+        let Happens::BorderCollision(Ok(kind)) = located.local else { panic!("{:?}", located.local) };
+        let (c, (e, _)) = (located.map.c(), kind.border);
         assert!((c[0] * e[1] - c[1] * e[0]).abs() < 1e-10 * c.norm() * e.norm(), "one direction");
         assert!(located.comparisons.iter().any(|item| item.quantity == "border"));
     }
@@ -148,7 +149,7 @@ fn orbits_exist_where_the_classification_says() {
     let model = common::osorio();
     let found = surveyed(&model, 730.0, 740.0, 1);
     let located = found.found.iter().find(|located| located.at.cycle.contacts.len() == 2).unwrap();
-    let LocalMap::BorderCollision(Ok(verdict)) = &located.local else { panic!("{:?}", located.local) };
+    let Happens::BorderCollision(Ok(verdict)) = &located.local else { panic!("{:?}", located.local) };
     assert_eq!(verdict.scenario, Scenario::NonsmoothFold);
     let machine = Machine::new(common::cam(&model), &model.follower, 1.0);
     let count = |rpm: f64| {
@@ -202,8 +203,8 @@ fn a_corner_that_is_only_grazed_is_refused_with_the_reason() {
     // Slack where the dwell is: the follower rests on the corner at 90 degrees at any speed.
     let model = common::osorio_with(&[("rest_position", "0.4")]);
     let found = surveyed(&model, 600.0, 760.0, 1);
-    let grazes: Vec<_> = found.rejected().iter().filter(|rejected| rejected.why.contains("graze")).collect();
-    assert!(!grazes.is_empty(), "{:?}", found.rejected());
+    let grazes: Vec<_> = found.looked_at.rejected.iter().filter(|rejected| rejected.why.contains("graze")).collect();
+    assert!(!grazes.is_empty(), "{:?}", found.looked_at.rejected);
     for graze in grazes {
         assert!(found.found.iter().all(|located| (located.at.speed_rpm() - graze.speed_rpm).abs() > 1e-9), "{graze:?}");
     }
@@ -215,11 +216,11 @@ fn an_orbit_out_of_the_other_side_is_refused_with_the_reason() {
     let found = surveyed(&common::read(law("rectified-sine").as_ref()), 4.1, 4.3, 1);
     let through = |angle: f64| {
         let near = |speed: f64| (speed - 4.207501).abs() < 1e-6;
-        found.rejected().iter().any(|at| {
+        found.looked_at.rejected.iter().any(|at| {
             near(at.speed_rpm) && (at.cam_angle - angle).abs() < 1e-9 && at.why.contains("out of the cam's other side")
         })
     };
-    assert!(through(0.0) && through(std::f64::consts::PI), "{:?}", found.rejected());
+    assert!(through(0.0) && through(std::f64::consts::PI), "{:?}", found.looked_at.rejected);
 }
 
 #[test]
@@ -235,15 +236,14 @@ fn the_page_says_what_was_looked_at() {
 
 #[test]
 fn a_disagreement_is_said_and_ends_with_1() {
-    use corner_impact::pages::LocateDocument;
+    use corner_impact::show::Paged;
     let model = common::osorio();
     let mut found = surveyed(&model, 672.0, 674.0, 1);
     let item = found.found[0].comparisons.iter_mut().find(|item| item.quantity == "A_plus").unwrap();
     item.agrees = false;
     (found.found[0].agrees, found.agrees) = (false, false);
-    let document = LocateDocument::new(&model, &found);
-    let page = document.text().unwrap();
-    assert!(!document.agrees && page.contains("DISAGREE. A_plus: "), "{page}");
+    let page = found.text().unwrap();
+    assert!(!found.agrees && page.contains("DISAGREE. A_plus: "), "{page}");
 }
 
 #[test]
@@ -260,8 +260,8 @@ fn bad_ranges_are_refused() {
     let output = locate(&[MODEL, "--rpm", "1e-9:700"]);
     let words = String::from_utf8(output.stderr).unwrap();
     assert!(output.status.code() == Some(2) && words.contains("spans too much"), "{words}");
-    let wide = survey(&common::osorio(), Study { rpm_min: 700.0, rpm_max: 600.0 }, 1);
-    assert!(matches!(wide, Err(SurveyError::Range(RangeError::NoRange { .. }))));
+    let wide = corner_impact::study::locate::locate(&common::osorio(), Study { rpm_min: 700.0, rpm_max: 600.0 }, 1);
+    assert!(matches!(wide, Err(LocateError::Range(RangeError::NoRange { .. }))));
 }
 
 #[test]

@@ -8,7 +8,6 @@ use crate::common;
 use corner_impact::border_collision::LocalOutcome;
 use corner_impact::border_collision::long_run::End;
 use corner_impact::corner::map::{Eigenvalue, SideMap};
-use corner_impact::study::verify::Verification;
 use corner_impact::study::verify::{External, verify};
 use serde_json::{Value, json};
 
@@ -94,7 +93,7 @@ fn fixed_points_matrices_eigenvalues_and_normal_forms() {
 #[test]
 fn the_verify_page() {
     let model = common::osorio();
-    let page = Verification::new(&model, &verify(&model, External::LeftOut).unwrap()).text().unwrap();
+    let page = verify(&model, External::LeftOut).unwrap().text().unwrap();
     let mut settings = settings();
     // Rounding: differences, error estimates, and how many decimals are shared beyond those asked for.
     settings.add_filter(r" +\d\.\de-?\d+(  |,|;| in | up to)", " [small]$1");

@@ -8,9 +8,9 @@ use crate::common;
 use approx::assert_relative_eq;
 use corner_impact::border_collision::feigin::{Scenario, Speeds};
 use corner_impact::corner::closed_form;
-use corner_impact::study::verify::{External, Findings, verify};
+use corner_impact::study::verify::{External, Verification, verify};
 
-fn findings() -> Findings {
+fn findings() -> Verification {
     verify(&common::osorio(), External::LeftOut).unwrap()
 }
 

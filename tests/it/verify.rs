@@ -109,14 +109,13 @@ fn scenarios_of_the_other_models() {
 /// A document whose routes disagree says so on the page and in the exit code's twin.
 #[test]
 fn disagreement_is_said_plainly() {
-    use corner_impact::study::verify::Verification;
     let model = common::osorio();
     let mut found =
         corner_impact::study::verify::verify(&model, corner_impact::study::verify::External::LeftOut).unwrap();
     found.comparisons[3].agrees = false;
     found.published[0].as_found = false;
     found.agrees = false;
-    let page = Verification::new(&model, &found).text().unwrap();
+    let page = found.text().unwrap();
     assert!(page.contains("DISAGREE") && page.contains("UNEXPECTED"));
     assert!(page.contains("54 of 55 comparisons agree") && page.contains("1 came out otherwise than found"));
     assert!(page.trim_end().ends_with("DISAGREES: a comparison above"));

@@ -187,7 +187,7 @@ pub(crate) fn fast_impacts(subject: &Subject, title: &str) -> Result {
 
 /// What the orbits of one impact do at the corner impact, in a sentence; nothing where that is not classified.
 fn at_corner_impact(subject: &Subject) -> &'static str {
-    let Some(kind) = subject.found().ok().and_then(|found| found.classification) else { return "" };
+    let Some(kind) = subject.found().ok().and_then(|found| found.classification.as_ref().ok()) else { return "" };
     match kind.scenario {
         Scenario::NonsmoothFold => " At the corner impact two lines of one impact a revolution meet and end.",
         Scenario::NonsmoothFlip => {
@@ -253,7 +253,7 @@ fn named(mut figure: Figure, place: &str) -> Figure {
 }
 
 fn is_fold(subject: &Subject) -> bool {
-    let kind = subject.found().ok().and_then(|found| found.classification);
+    let kind = subject.found().ok().and_then(|found| found.classification.as_ref().ok());
     kind.is_some_and(|kind| kind.scenario == Scenario::NonsmoothFold)
 }
 

@@ -4,8 +4,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use serde::Serialize;
 
-use crate::agreement::shared_decimals;
+use crate::agreement::{Agreement, shared_decimals};
 use crate::cam::{Cam, Jet};
+use crate::corner::CornerMap;
 use crate::figures::plates::{Plate, plates};
 use crate::figures::plots::corner_marks;
 use crate::figures::{Subject, through_corner};
@@ -18,8 +19,7 @@ use crate::paper::{Claims, Context, LedgerError};
 use crate::progress::Watch;
 use crate::show::command::command;
 use crate::study::speeds::{Care, regimes, usual_speeds};
-use crate::study::verify::document::{AgreementEntry, SideEntry, Verification};
-use crate::study::verify::{External, Findings, verify_watched};
+use crate::study::verify::{External, Verification, verify_watched};
 
 /// A report on one model; serializes to the document `corner-impact/report/1`.
 #[derive(Clone, Debug, Serialize)]
@@ -136,7 +136,7 @@ pub struct QuantitySummary {
     /// Pairs that agree.
     pub agreeing: usize,
     /// The pair that is nearest to its bound, or beyond.
-    pub closest: AgreementEntry,
+    pub closest: Agreement,
     /// Decimals that it shares; none for all digits.
     pub shared_decimals: Option<usize>,
 }
@@ -186,8 +186,8 @@ impl Dossier {
             },
             Err(error) => Err(error.to_string()),
         };
-        let verification = findings.as_ref().ok().map(|found| Verification::new(model, found));
-        let corner_deg = findings.as_ref().ok().map(|found: &Findings| found.at.corner.angle.to_degrees());
+        let verification = findings.as_ref().ok().cloned();
+        let corner_deg = findings.as_ref().ok().map(|found| found.at.corner.angle.to_degrees());
         let (findings, nothing_to_verify) = match findings {
             Ok(found) => (Ok(found), None),
             Err(error) => (Err(error.to_string()), Some(error.to_string())),
@@ -276,16 +276,16 @@ impl Headline {
     fn new(verification: Option<&Verification>, claims: Option<&Claims>) -> Self {
         let Some(found) = verification else { return Self::default() };
         let maps = found
-            .agreement
+            .comparisons
             .iter()
             .filter(|entry| ["A_minus", "A_plus", "B_minus", "B_plus"].contains(&entry.quantity.as_str()));
-        let right = found.published.iter().filter(|number| number.as_found && number.agrees).count();
+        let right = found.published.iter().filter(|number| number.as_found && number.agreement.agrees).count();
         let otherwise = found.published.iter().filter(|number| !number.as_found).count();
         Self {
-            comparisons: found.agreement.len(),
-            agreeing: found.agreement.iter().filter(|entry| entry.agrees).count(),
+            comparisons: found.comparisons.len(),
+            agreeing: found.comparisons.iter().filter(|entry| entry.agrees).count(),
             shared_decimals: maps.filter_map(|entry| shared_decimals(entry.max_abs_diff)).map(|n| n as usize).min(),
-            routes: found.routes.keys().map(|name| spoken(name)).collect(),
+            routes: found.routes_by_name().map(|route| spoken(route.name)).collect(),
             failed: found
                 .skipped
                 .iter()
@@ -303,19 +303,11 @@ impl Headline {
 
 impl MapTable {
     fn new(found: &Verification, side: &'static str) -> Self {
-        let of = |entry: &crate::study::verify::document::RouteEntry| {
-            if side == "minus" { entry.map.minus } else { entry.map.plus }
-        };
-        let sides: Vec<[f64; 6]> = found
-            .routes
-            .values()
-            .map(|entry| {
-                let SideEntry { a: [[a11, a12], [a21, a22]], b: [b1, b2] } = of(entry);
-                [a11, a12, a21, a22, b1, b2]
-            })
-            .collect();
+        let of = |map: &CornerMap| if side == "minus" { map.minus } else { map.plus };
+        let sides: Vec<[f64; 6]> = found.routes_by_name().map(|route| of(&route.map).entries()).collect();
         let printed = |quantity: &str, index: usize| {
-            let number = found.published.iter().find(|number| number.quantity == format!("{quantity}_{side}"))?;
+            let number =
+                found.published.iter().find(|number| number.agreement.quantity == format!("{quantity}_{side}"))?;
             number.printed.get(index).cloned()
         };
         let row = |(index, entry): (usize, &'static str)| {
@@ -327,14 +319,14 @@ impl MapTable {
             MapRow { entry, values, spread: most - least, printed }
         };
         let rows = ["A11", "A12", "A21", "A22", "B1", "B2"].into_iter().enumerate().map(row).collect();
-        Self { side, routes: found.routes.keys().map(|name| spoken(name)).collect(), rows }
+        Self { side, routes: found.routes_by_name().map(|route| spoken(route.name)).collect(), rows }
     }
 }
 
 impl QuantitySummary {
     fn all(found: &Verification) -> Vec<Self> {
         let mut names: Vec<&str> = Vec::new();
-        for entry in &found.agreement {
+        for entry in &found.comparisons {
             if !names.contains(&entry.quantity.as_str()) {
                 names.push(&entry.quantity);
             }
@@ -343,10 +335,10 @@ impl QuantitySummary {
     }
 
     fn of(found: &Verification, quantity: &str) -> Option<Self> {
-        let pairs: Vec<&AgreementEntry> = found.agreement.iter().filter(|entry| entry.quantity == quantity).collect();
+        let pairs: Vec<&Agreement> = found.comparisons.iter().filter(|entry| entry.quantity == quantity).collect();
         // What is not a number disagrees, and comes first.
-        let used = |entry: &AgreementEntry| {
-            let used = entry.max_abs_diff / entry.tolerance;
+        let used = |entry: &Agreement| {
+            let used = entry.max_abs_diff / entry.bound.value;
             if used.is_nan() { f64::INFINITY } else { used }
         };
         let closest = (*pairs.iter().max_by(|one, other| used(one).total_cmp(&used(other)))?).clone();

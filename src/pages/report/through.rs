@@ -10,8 +10,8 @@ use crate::draw::ticks::{ticks, unit};
 use crate::figures::ThroughCorner;
 use crate::figures::plots::CornerMark;
 use crate::figures::through_corner::{Moment, Place, Run, Shown};
+use crate::orbit::Eigenvalue;
 use crate::simulate::Event;
-use crate::study::verify::document::EigenvalueEntry;
 
 /// Why there is nothing to show.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -105,7 +105,7 @@ pub struct OrbitFrame {
     /// v+.
     pub velocity_after_m_s: f64,
     /// Both.
-    pub multipliers: [EigenvalueEntry; 2],
+    pub multipliers: [Eigenvalue; 2],
     /// The larger modulus.
     pub modulus: f64,
     /// One revolution: cam angle, deg, and position, m.
@@ -258,7 +258,7 @@ impl OrbitFrame {
             position_m: rounded(impact.position, places.position),
             velocity_before_m_s: rounded(impact.velocity_before, places.velocity),
             velocity_after_m_s: rounded(impact.velocity_after, places.velocity),
-            multipliers: multipliers.map(|multiplier| EigenvalueEntry {
+            multipliers: multipliers.map(|multiplier| Eigenvalue {
                 re: rounded(multiplier.re, MULTIPLIER),
                 im: rounded(multiplier.im, MULTIPLIER),
             }),

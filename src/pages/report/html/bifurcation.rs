@@ -2,38 +2,41 @@
 
 use maud::{Markup, html};
 
-use crate::border_collision::feigin::{Scenario, Speeds};
+use crate::border_collision::feigin::{Scenario, Speeds, speeds_at};
+use crate::border_collision::long_run::{End, Exponent};
+use crate::border_collision::outcome::Fate;
+use crate::border_collision::validity::Range;
+use crate::border_collision::{Classification, LocalOutcome, NormalForm};
+use crate::corner::map::rows;
 use crate::show::words;
 
 use crate::pages::report::dossier::Dossier;
 use crate::pages::report::html::numbers::{complex, fixed, matrix, number, size, symbol};
 use crate::pages::report::html::{Section, wide};
-use crate::study::verify::border_collision::{
-    ClassificationEntry, EndEntry, NormalFormEntry, OutcomeEntry, RangeEntry,
-};
-use crate::study::verify::document::Verification;
+use crate::study::verify::Verification;
 
 pub(crate) fn section(dossier: &Dossier) -> Option<Section> {
     let found = dossier.verification.as_ref()?;
     let body = html! {
         (eigenvalues(found))
-        @if let Some(kind) = &found.classification { (classification(kind)) }
-        @if let Some(why) = &found.refusal { p { "There is no classification: " (why) "." } }
+        @if let Ok(kind) = &found.classification { (classification(kind)) }
+        @if let Err(why) = &found.classification { p { "There is no classification: " (why) "." } }
         (conditions(found))
-        @if let Some(form) = &found.normal_form { (normal_form(form)) }
+        @if let Ok(form) = &found.normal_form { (normal_form(form)) }
     };
     Some(Section { id: "bifurcation", title: "What happens there", body })
 }
 
 fn eigenvalues(found: &Verification) -> Markup {
+    let map = &found.closed_form().map;
     wide(
         "Eigenvalues",
         &html! {
             table {
                 caption { "Eigenvalues" }
                 tbody {
-                    @for (side, pair) in [("−", &found.eigenvalues.minus), ("+", &found.eigenvalues.plus)] {
-                        tr { th scope="row" { (symbol("A", "", side)) } @for value in pair { td { (complex(*value, 10)) } } }
+                    @for (side, pair) in [("−", map.minus.eigenvalues()), ("+", map.plus.eigenvalues())] {
+                        tr { th scope="row" { (symbol("A", "", side)) } @for value in pair { td { (complex(value, 10)) } } }
                     }
                 }
             }
@@ -41,13 +44,12 @@ fn eigenvalues(found: &Verification) -> Markup {
     )
 }
 
-fn classification(kind: &ClassificationEntry) -> Markup {
+fn classification(kind: &Classification) -> Markup {
     let meaning = words::meaning(kind.scenario);
     let row = |name: &'static str, minus: Markup, plus: Markup| {
         html! { tr { th scope="row" { (name) } td { (minus) } td { (plus) } } }
     };
-    let above = &kind.real_eigenvalues_above_one;
-    let below = &kind.real_eigenvalues_below_minus_one;
+    let (minus, plus) = (&kind.minus, &kind.plus);
     let stable = |stable: bool| html! { @if stable { "stable" } @else { "unstable" } };
     let speeds = |speeds: Speeds| html! { (speeds) " than at the corner impact" };
     html! {
@@ -58,13 +60,13 @@ fn classification(kind: &ClassificationEntry) -> Markup {
                 caption { "Feigin's counts, and the fixed point of each side" }
                 thead { tr { th { "" } th scope="col" { "impact before the corner" } th scope="col" { "impact after it" } } }
                 tbody {
-                    (row("real eigenvalues above 1", html! { (above.minus) }, html! { (above.plus) }))
-                    (row("real eigenvalues below −1", html! { (below.minus) }, html! { (below.plus) }))
-                    (row("det(I − A)", number(kind.determinant_of_identity_minus_a.minus, 8), number(kind.determinant_of_identity_minus_a.plus, 8)))
-                    (row("fixed point exists at speeds", speeds(kind.fixed_points_exist_for.minus), speeds(kind.fixed_points_exist_for.plus)))
-                    (row("it is", stable(kind.stable.minus), stable(kind.stable.plus)))
-                    @let point = |[x, v]: [f64; 2]| html! { "(" (number(x, 8)) ", " (number(v, 8)) ")" };
-                    (row("its place for dT = 1 s, in m and m/s", point(kind.fixed_point_per_unit_period.minus), point(kind.fixed_point_per_unit_period.plus)))
+                    (row("real eigenvalues above 1", html! { (minus.above_one) }, html! { (plus.above_one) }))
+                    (row("real eigenvalues below −1", html! { (minus.below_minus_one) }, html! { (plus.below_minus_one) }))
+                    (row("det(I − A)", number(minus.determinant, 8), number(plus.determinant, 8)))
+                    (row("fixed point exists at speeds", speeds(minus.exists_for), speeds(plus.exists_for)))
+                    (row("it is", stable(minus.stable), stable(plus.stable)))
+                    @let point = |at: nalgebra::Vector2<f64>| html! { "(" (number(at[0], 8)) ", " (number(at[1], 8)) ")" };
+                    (row("its place for dT = 1 s, in m and m/s", point(minus.fixed_point), point(plus.fixed_point)))
                 }
             }
         }))
@@ -86,9 +88,9 @@ fn conditions(found: &Verification) -> Markup {
                 } }
                 tbody {
                     @for condition in &found.conditions {
-                        tr.disagrees[!condition.holds] {
+                        tr.disagrees[!condition.holds()] {
                             th scope="row" { (condition.name) } td.n { (number(condition.value, 6)) } td.n { (size(condition.distance)) }
-                            td { @if condition.holds { "yes" } @else { "no" } } td.words { (condition.meaning) }
+                            td { @if condition.holds() { "yes" } @else { "no" } } td.words { (condition.meaning) }
                             td { (words::decides(condition.decides)) }
                         }
                     }
@@ -98,13 +100,13 @@ fn conditions(found: &Verification) -> Markup {
     }
 }
 
-fn normal_form(form: &NormalFormEntry) -> Markup {
-    let column = |[one, two]: [f64; 2]| [[one], [two]];
+fn normal_form(form: &NormalForm) -> Markup {
+    let column = |at: nalgebra::Vector2<f64>| [[at[0]], [at[1]]];
     html! {
         h3 { "Normal form" }
         div.matrices {
-            @for (letter, side, rows) in [("A\u{304}", "−", &form.a_bar_minus), ("A\u{304}", "+", &form.a_bar_plus), ("W", "", &form.w)] {
-                div { (symbol(letter, "", side)) " = " (matrix(rows, 10)) }
+            @for (letter, side, rows) in [("A\u{304}", "−", rows(&form.a_bar_minus)), ("A\u{304}", "+", rows(&form.a_bar_plus)), ("W", "", rows(&form.w))] {
+                div { (symbol(letter, "", side)) " = " (matrix(&rows, 10)) }
             }
             div { (symbol("B\u{304}", "", "")) " = " (matrix(&column(form.b_bar), 10)) }
             div { (symbol("B\u{303}", "", "")) " = " (matrix(&column(form.b_tilde), 10)) }
@@ -115,11 +117,11 @@ fn normal_form(form: &NormalFormEntry) -> Markup {
 
 /// What the local map does by itself, and how far it holds.
 pub(crate) fn local_map(dossier: &Dossier) -> Option<Section> {
-    let found = dossier.verification.as_ref().filter(|found| !found.local_map.is_empty())?;
+    let found = dossier.verification.as_ref().filter(|found| !found.outcomes.is_empty())?;
     let body = html! {
         p { "The piecewise-linear map run by itself from many starts, on either side of the speed of the corner impact and at it." }
-        @for outcome in &found.local_map { (motions(outcome)) }
-        @if !found.linear_range.is_empty() {
+        @for outcome in &found.outcomes { (motions(outcome)) }
+        @if !found.ranges.is_empty() {
             h3 { "How far it holds" }
             p { "Up to these speeds what the map predicts is within a tenth of the simulated machine." }
             (wide("How far the local map holds", &html! {
@@ -127,7 +129,7 @@ pub(crate) fn local_map(dossier: &Dossier) -> Option<Section> {
                     thead { tr {
                         th scope="col" { "predicted" } th scope="col" { "speeds" } th.n scope="col" { "to, rpm" } th.n scope="col" { "dT, s" } th scope="col" { "ended by" }
                     } }
-                    tbody { @for range in &found.linear_range { (range_row(range)) } }
+                    tbody { @for range in &found.ranges { (range_row(range)) } }
                 }
             }))
         }
@@ -135,20 +137,18 @@ pub(crate) fn local_map(dossier: &Dossier) -> Option<Section> {
     Some(Section { id: "local-map", title: "What the local map does by itself", body })
 }
 
-fn motions(outcome: &OutcomeEntry) -> Markup {
-    let title = match outcome.speeds {
-        "at" => "At the corner impact".to_owned(),
-        speeds => format!("At {speeds} speeds"),
-    };
+fn motions(outcome: &LocalOutcome) -> Markup {
+    let speeds = Speeds::of(outcome.mu);
+    let title = speeds.map_or("At the corner impact".to_owned(), |speeds| format!("At {speeds} speeds"));
     html! {
         h3 { (title) }
-        ul { @for end in &outcome.ends { li { (end.starts) " of " (outcome.starts) " starts " (end_words(end)) } } }
-        @if outcome.speeds != "at" && !outcome.periodic_orbits.is_empty() {
+        ul { @for end in &outcome.fates { li { (end.starts) " of " (outcome.starts()) " starts " (end_words(end)) } } }
+        @if speeds.is_some() && !outcome.orbits.is_empty() {
             p {
                 "Periodic orbits, as the sides they visit (L before the corner, R after it): "
-                @for (index, orbit) in outcome.periodic_orbits.iter().enumerate() {
+                @for (index, orbit) in outcome.orbits.iter().enumerate() {
                     @if index > 0 { ", " }
-                    code { (orbit.word) } @if orbit.stable { " stable" } @else { " unstable" }
+                    code { (orbit.word.to_string()) } @if orbit.stable() { " stable" } @else { " unstable" }
                 }
                 "."
             }
@@ -156,28 +156,27 @@ fn motions(outcome: &OutcomeEntry) -> Markup {
     }
 }
 
-fn end_words(end: &EndEntry) -> Markup {
-    let growth = html! {
-        @if let (Some(exponent), Some(error)) = (end.exponent, end.standard_error) {
-            ", with a Lyapunov exponent of " (fixed(exponent, 4)) " ± " (fixed(error, 4)) " a turn"
-        }
+fn end_words(fate: &Fate) -> Markup {
+    let growth = |exponent: &Exponent| {
+        html! { ", with a Lyapunov exponent of " (fixed(exponent.value, 4)) " ± " (fixed(exponent.error, 4)) " a turn" }
     };
-    match (end.end, &end.word) {
-        ("fixed-point", Some(word)) => html! { "end on the fixed point " code { (word) } },
-        ("periodic", Some(word)) => html! { "end on the orbit " code { (word) } },
-        ("chaotic", _) => html! { "end in chaos" (growth) },
-        ("undecided", _) => html! { "stay bounded without a verdict" (growth) },
-        ("corner", _) => html! { "end on the corner impact" },
-        _ => html! { "grow without bound (" (end.basis) ")" },
+    match &fate.end {
+        end @ End::Periodic(orbit) => html! {
+            @if end.fixed_on().is_some() { "end on the fixed point " } @else { "end on the orbit " } code { (orbit.word.to_string()) }
+        },
+        End::Chaotic(exponent) => html! { "end in chaos" (growth(exponent)) },
+        End::Undecided(exponent) => html! { "stay bounded without a verdict" (growth(exponent)) },
+        End::Corner => html! { "end on the corner impact" },
+        end @ End::Escapes(_) => html! { "grow without bound (" (end.basis()) ")" },
     }
 }
 
-fn range_row(range: &RangeEntry) -> Markup {
+fn range_row(range: &Range) -> Markup {
     let what = words::compared(range.compared);
     let ends = if range.difference.is_none() { "holds nowhere" } else { words::ends(range.ends) };
     html! {
         tr {
-            th scope="row" { (what) } td { (range.speeds) } td.n { (fixed(range.speed_rpm, 6)) } td.n { (size(range.period_change_s)) }
+            th scope="row" { (what) } td { (speeds_at(range.sign)) } td.n { (fixed(range.speed_rpm, 6)) } td.n { (size(range.period_change)) }
             td { (ends) }
         }
     }

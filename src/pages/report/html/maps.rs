@@ -2,10 +2,12 @@
 
 use maud::{Markup, html};
 
+use crate::corner::CornerMap;
+use crate::corner::map::Uncertainty;
 use crate::pages::report::dossier::{Dossier, MapTable, spoken};
 use crate::pages::report::html::numbers::{entry, number, quantity, shared, signed, size};
 use crate::pages::report::html::{Section, wide};
-use crate::study::verify::document::Verification;
+use crate::study::verify::Verification;
 
 pub(crate) fn section(dossier: &Dossier) -> Option<Section> {
     let found = dossier.verification.as_ref()?;
@@ -24,7 +26,7 @@ pub(crate) fn section(dossier: &Dossier) -> Option<Section> {
         p { "Every pair of routes is compared in every quantity. Shown is the pair that is nearest to its bound." }
         (wide("Comparisons of the routes", &summary(dossier)))
         details {
-            summary { "All " (found.agreement.len()) " comparisons, with the reason of each bound" }
+            summary { "All " (found.comparisons.len()) " comparisons, with the reason of each bound" }
             (wide("All comparisons", &pairs(found)))
         }
     };
@@ -83,34 +85,36 @@ fn shown(value: f64) -> String {
 }
 
 fn jumps(found: &Verification) -> Markup {
-    let Some(closed) = found.routes.get("closed_form") else { return html! {} };
-    let [one, two] = closed.map.c;
+    let closed = found.closed_form().map;
+    let c = closed.c();
+    let (one, two) = (c[0], c[1]);
     html! {
         p {
             "The sides meet where " i { "C" } " d" i { "x" } " + " i { "D" } " d" i { "T" } " = 0, with "
-            i { "C" } " = (" (number(one, 11)) ", " (number(two, 11)) ") and " i { "D" } " = " (number(closed.map.d, 11)) "."
+            i { "C" } " = (" (number(one, 11)) ", " (number(two, 11)) ") and " i { "D" } " = " (number(closed.d(), 11)) "."
         }
     }
 }
 
 fn uncertainties(found: &Verification) -> Markup {
     html! {
-        @for (name, route) in &found.routes {
-            @if let (Some(condition), Some(error)) = (route.condition_number, &route.standard_error) {
-                details {
-                    summary { "How well " (spoken(name)) " knows its entries" }
-                    p { "Standard errors; the condition number of the fit is " (number(condition, 3)) "." }
-                    (errors(error))
-                }
-            }
-            @if let Some(error) = &route.extrapolation_error {
-                details { summary { "How well " (spoken(name)) " knows its entries" } p { "Error estimates." } (errors(error)) }
+        @for route in found.routes_by_name() {
+            @match &route.uncertainty {
+                Some(Uncertainty::Fit { standard, condition_number, .. }) => details {
+                    summary { "How well " (spoken(route.name)) " knows its entries" }
+                    p { "Standard errors; the condition number of the fit is " (number(*condition_number, 3)) "." }
+                    (errors(standard))
+                },
+                Some(Uncertainty::Extrapolation(error)) => details {
+                    summary { "How well " (spoken(route.name)) " knows its entries" } p { "Error estimates." } (errors(error))
+                },
+                None => {}
             }
         }
     }
 }
 
-fn errors(sides: &crate::study::verify::document::Sides<crate::study::verify::document::SideEntry>) -> Markup {
+fn errors(sides: &CornerMap) -> Markup {
     wide(
         "Errors of the entries",
         &html! {
@@ -121,7 +125,7 @@ fn errors(sides: &crate::study::verify::document::Sides<crate::study::verify::do
                 } }
                 tbody {
                     @for (name, side) in [("before", sides.minus), ("after", sides.plus)] {
-                        tr { th scope="row" { (name) } @for value in side.a.iter().flatten().chain(&side.b) { td.n { (size(*value)) } } }
+                        tr { th scope="row" { (name) } @for value in side.entries() { td.n { (size(value)) } } }
                     }
                 }
             }
@@ -142,7 +146,7 @@ fn summary(dossier: &Dossier) -> Markup {
                         th scope="row" { (quantity(&found.quantity)) }
                         td.n { (found.agreeing) " of " (found.pairs) }
                         td.n { (size(found.closest.max_abs_diff)) }
-                        td.n { (size(found.closest.tolerance)) }
+                        td.n { (size(found.closest.bound.value)) }
                         td { (shared(found.shared_decimals)) }
                         td { (spoken(&found.closest.routes[0])) ", " (spoken(&found.closest.routes[1])) }
                     }
@@ -160,13 +164,13 @@ fn pairs(found: &Verification) -> Markup {
                 th.n scope="col" { "allowed" } th scope="col" { "verdict" } th scope="col" { "why so much is allowed" }
             } }
             tbody {
-                @for pair in &found.agreement {
+                @for pair in &found.comparisons {
                     tr.disagrees[!pair.agrees] {
                         th scope="row" { (quantity(&pair.quantity)) }
                         td { (spoken(&pair.routes[0])) ", " (spoken(&pair.routes[1])) }
-                        td.n { (size(pair.max_abs_diff)) } td.n { (size(pair.max_rel_diff)) } td.n { (size(pair.tolerance)) }
+                        td.n { (size(pair.max_abs_diff)) } td.n { (size(pair.max_rel_diff)) } td.n { (size(pair.bound.value)) }
                         td { @if pair.agrees { "agrees" } @else { "disagrees" } }
-                        td.words { (pair.reason) }
+                        td.words { (pair.bound.reason) }
                     }
                 }
             }
@@ -191,14 +195,14 @@ pub(crate) fn printed(dossier: &Dossier) -> Option<Section> {
                         @for (index, digits) in item.printed.iter().enumerate() {
                             tr {
                                 @if index == 0 {
-                                    th scope="rowgroup" rowspan=(rows) { (quantity(&item.quantity)) }
+                                    th scope="rowgroup" rowspan=(rows) { (quantity(&item.agreement.quantity)) }
                                     td rowspan=(rows) { (item.place) }
                                 }
                                 td.n { (signed(digits)) }
                                 td.n { @if let Some(value) = item.computed.get(index) { (number(*value, 15)) } }
                                 @if index == 0 {
-                                    td.n rowspan=(rows) { (size(item.max_abs_diff)) }
-                                    td.n rowspan=(rows) { (size(item.tolerance)) }
+                                    td.n rowspan=(rows) { (size(item.agreement.max_abs_diff)) }
+                                    td.n rowspan=(rows) { (size(item.agreement.bound.value)) }
                                     td rowspan=(rows) { (crate::pages::report::html::ledger::badge(item.verdict)) @if !item.as_found { " otherwise than the ledger says" } }
                                 }
                             }
@@ -210,7 +214,7 @@ pub(crate) fn printed(dossier: &Dossier) -> Option<Section> {
         @let notes: Vec<_> = found.published.iter().filter(|item| !item.note.is_empty()).collect();
         @if !notes.is_empty() {
             h3 { "What is wrong with those that do not hold" }
-            dl { @for item in notes { dt { (quantity(&item.quantity)) ", " (item.place) } dd { (item.note) } } }
+            dl { @for item in notes { dt { (quantity(&item.agreement.quantity)) ", " (item.place) } dd { (item.note) } } }
         }
     };
     Some(Section { id: "printed", title: "The paper's digits", body })

@@ -2,7 +2,7 @@
 
 use maud::{Markup, PreEscaped, Render, html};
 
-use crate::study::verify::document::EigenvalueEntry;
+use crate::orbit::Eigenvalue;
 use crate::tolerance;
 
 /// A minus that is as wide as a plus.
@@ -70,7 +70,7 @@ fn power(value: f64, digits: usize) -> Markup {
 }
 
 /// Real and imaginary part.
-pub(crate) fn complex(EigenvalueEntry { re, im }: EigenvalueEntry, digits: usize) -> Markup {
+pub(crate) fn complex(Eigenvalue { re, im }: Eigenvalue, digits: usize) -> Markup {
     html! {
         span.number {
             (number(re, digits))

@@ -24,11 +24,11 @@ pub(crate) fn section(dossier: &Dossier) -> Section {
                     @if head.agreeing > 0 { "; every entry of A and B shares " (shared(head.shared_decimals)) " or more" } "."
                 }
                 li {
-                    "The corner impact is at " strong { (fixed(found.corner_impact.speed_rpm, 6)) " rpm" }
+                    "The corner impact is at " strong { (fixed(found.at.speed_rpm(), 6)) " rpm" }
                     @if let Some(angle) = dossier.corner_deg { ", where the cam has turned by " (fixed(angle, 4)) "°" }
                     @match &found.classification {
-                        Some(kind) => { ". It is a " strong { (spoken(&kind.scenario.to_string())) } "." }
-                        None => { ". It has no classification." }
+                        Ok(kind) => { ". It is a " strong { (spoken(&kind.scenario.to_string())) } "." }
+                        Err(_) => { ". It has no classification." }
                     }
                 }
                 @if head.printed > 0 {
@@ -62,7 +62,7 @@ pub(crate) fn section(dossier: &Dossier) -> Section {
 
 fn disagreements(dossier: &Dossier) -> Markup {
     let Some(found) = &dossier.verification else { return html! {} };
-    let pairs: Vec<_> = found.agreement.iter().filter(|entry| !entry.agrees).collect();
+    let pairs: Vec<_> = found.comparisons.iter().filter(|entry| !entry.agrees).collect();
     let numbers: Vec<_> = found.published.iter().filter(|number| !number.as_found).collect();
     let claims = dossier.claims.iter().flat_map(|ledger| &ledger.claims).filter(|claim| !claim.as_found);
     let claims: Vec<_> = claims.collect();
@@ -75,10 +75,10 @@ fn disagreements(dossier: &Dossier) -> Markup {
             @for entry in pairs {
                 li {
                     (quantity(&entry.quantity)) " by " (spoken(&entry.routes[0])) " and " (spoken(&entry.routes[1]))
-                    " differs by " (size(entry.max_abs_diff)) ", allowed is " (size(entry.tolerance))
+                    " differs by " (size(entry.max_abs_diff)) ", allowed is " (size(entry.bound.value))
                 }
             }
-            @for number in numbers { li { (quantity(&number.quantity)) " in print (" (number.place) ") came out otherwise" } }
+            @for number in numbers { li { (quantity(&number.agreement.quantity)) " in print (" (number.place) ") came out otherwise" } }
             @for claim in claims { li { "the claim " (claim.id) " came out otherwise" } }
         }
     }

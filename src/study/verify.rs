@@ -1,22 +1,21 @@
 //! One model through the whole pipeline: locate, every route, every comparison, the classification, the paper's numbers.
 
-pub mod border_collision;
-pub mod document;
-
-pub use document::Verification;
-
+use std::collections::BTreeMap;
 use std::thread::JoinHandle;
 
 use nalgebra::RowVector2;
+use serde::Serialize;
 
 use crate::agreement::{self, Agreement, NamedOrbit, compare};
 use crate::border_collision::validity::{self, Range};
 use crate::border_collision::{
-    Classification, Condition, LocalMap, LocalOutcome, NormalForm, Refusal, classify, conditions, normal_form,
+    Classification, Condition, Degenerate, LocalMap, LocalOutcome, NormalForm, Refusal, classify, conditions,
+    normal_form,
 };
 use crate::cam::{Cam, Side};
 use crate::corner::border::border;
 use crate::corner::external::{self, Outside, PROGRAMS, Program};
+use crate::corner::map::Sides;
 use crate::corner::one_sided::SampleError;
 use crate::corner::{self, CornerImpact, CornerMap, LocateError, Route};
 use crate::corner::{closed_form, finite_difference, least_squares, simulated_orbit, variational};
@@ -24,11 +23,14 @@ use crate::model::Model;
 use crate::progress::{Unwatched, Watch};
 use crate::published::{PrintedNumber, PublishedError, compare_published};
 use crate::python::PythonError;
+use crate::study::ModelLabel;
 use crate::tolerance::Comparison;
 
-/// What a verification found.
+/// What a verification found: the document `corner-impact/verify/1`.
 #[derive(Clone, Debug)]
-pub struct Findings {
+pub struct Verification {
+    /// The model that was verified.
+    pub model: ModelLabel,
     /// The orbit that was verified: the slowest in `[study]`.
     pub at: CornerImpact,
     /// Further corner impacts in `[study]`.
@@ -39,12 +41,10 @@ pub struct Findings {
     pub comparisons: Vec<Agreement>,
     /// `(e, f)`: the impact comes before the corner where `e dx + f dT < 0`.
     pub border: (RowVector2<f64>, f64),
-    /// Absent where the map is degenerate.
-    pub normal_form: Option<NormalForm>,
-    /// Absent where the map is degenerate or the follower sticks.
-    pub classification: Option<Classification>,
-    /// Why there is no classification, where there is none.
-    pub refusal: Option<Refusal>,
+    /// The map with its parameter out of the border.
+    pub normal_form: Result<NormalForm, Degenerate>,
+    /// What happens at the corner impact.
+    pub classification: Result<Classification, Refusal>,
     /// What classification, stability and normal form rest on, each with how far it is from failing.
     pub conditions: Vec<Condition>,
     /// The local map's own motions at dT = -1, 1 and 0; empty without a classification.
@@ -60,7 +60,7 @@ pub struct Findings {
 }
 
 /// Something that did not run.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Skipped {
     /// The route, or the result that it would have given.
     pub route: String,
@@ -70,7 +70,58 @@ pub struct Skipped {
     pub failed: bool,
 }
 
-impl Findings {
+document!(Verification as found {
+    schema: "corner-impact/verify/1",
+    model: found.model,
+    corner_impact: Whole(&found.at),
+    other_corner_impacts: found.others.iter().map(Place).collect::<Vec<_>>(),
+    routes: found.routes.iter().map(|route| (route.name, route)).collect::<BTreeMap<_, _>>(),
+    agreement: found.comparisons,
+    eigenvalues: Sides {
+        minus: found.closed_form().map.minus.eigenvalues(),
+        plus: found.closed_form().map.plus.eigenvalues(),
+    },
+    normal_form: found.normal_form.as_ref().ok(),
+    classification: found.classification.as_ref().ok(),
+    refusal: found.classification.as_ref().err().map(Refusal::to_string),
+    conditions: found.conditions,
+    local_map: found.outcomes,
+    linear_range: found.ranges,
+    published: found.published,
+    skipped: found.skipped,
+    agrees: found.agrees,
+});
+
+/// A corner impact with everything that is known of it.
+struct Whole<'a>(&'a CornerImpact);
+
+document!(Whole<'_> as it {
+    period_s: it.0.period,
+    period_bracket_s: it.0.bracket,
+    period_residual: it.0.residual,
+    speed_rpm: it.0.speed_rpm(),
+    cam_angle_rad: it.0.corner.angle,
+    state: it.0.x_star().as_slice(),
+    state_origin_m: it.0.origin,
+    closure: it.0.closure,
+    position_m: it.0.corner.plus.value,
+    velocity_before_m_s: it.0.velocity_before,
+    velocity_after_m_s: it.0.velocity_after,
+    cam_velocity_m_s: it.0.cam_velocity,
+    cam_acceleration_m_s2: Sides { minus: it.0.cam_acceleration()[0], plus: it.0.cam_acceleration()[1] },
+});
+
+/// A corner impact by its place alone.
+struct Place<'a>(&'a CornerImpact);
+
+document!(Place<'_> as it { speed_rpm: it.0.speed_rpm(), cam_angle_rad: it.0.corner.angle });
+
+impl Verification {
+    /// The routes in the order of their names.
+    pub fn routes_by_name(&self) -> impl Iterator<Item = &Route> {
+        self.routes.iter().map(|route| (route.name, route)).collect::<BTreeMap<_, _>>().into_values()
+    }
+
     /// The closed form's route.
     pub fn closed_form(&self) -> &Route {
         &self.routes[0]
@@ -89,12 +140,12 @@ pub enum External {
 /// Locates the corner impact of a model, computes its map by every route, and compares.
 ///
 /// Fails only where there is nothing to compare; a route that fails is listed as skipped, and then the whole disagrees.
-pub fn verify(model: &Model, external: External) -> Result<Findings, LocateError> {
+pub fn verify(model: &Model, external: External) -> Result<Verification, LocateError> {
     verify_watched(model, external, &Unwatched)
 }
 
 /// The same, told to `watch` step by step.
-pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> Result<Findings, LocateError> {
+pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> Result<Verification, LocateError> {
     watch.at("looking for the corner impact", 0, 0);
     let cam = Cam::new(model)?;
     let (at, others) = corner::locate(model, &cam)?;
@@ -142,26 +193,21 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
 
     let border = border(model, &cam, &at);
     comparisons.push(compare_borders(&map, border));
-    let normal_form = normal_form(&map).map_err(|error| log.leave_out("normal_form", error.to_string())).ok();
-    let verdict = match sticking {
+    let normal_form = normal_form(&map);
+    log.refused("normal_form", &normal_form);
+    let classification = match sticking {
         Some(side) => Err(Refusal::Sticking { side }),
         None => classify(&map, border).map_err(Refusal::from),
     };
-    let (classification, refusal) = match verdict {
-        Ok(classification) => (Some(classification), None),
-        Err(refusal) => {
-            log.leave_out("classification", refusal.to_string());
-            (None, Some(refusal))
-        }
-    };
+    log.refused("classification", &classification);
     watch.at("what the map does by itself", 0, 0);
     let local = LocalMap::new(&map, border);
     let (mut outcomes, mut ranges) = (Vec::new(), Vec::new());
-    if classification.is_some() {
+    if classification.is_ok() {
         outcomes.extend([-1.0, 1.0, 0.0].map(|mu| local.outcome(mu)));
         ranges = validity::ranges(model, &cam, &at, &local);
     }
-    let published = match compare_published(model, &at, &map, normal_form.as_ref()) {
+    let published = match compare_published(model, &at, &map, normal_form.as_ref().ok()) {
         Err(error @ PublishedError::OtherModel) => {
             log.leave_out("published", error.to_string());
             Vec::new()
@@ -171,7 +217,8 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
 
     let ran = log.skipped.iter().all(|skipped| !skipped.failed);
     let agrees = ran && comparisons.iter().all(|item| item.agrees) && published.iter().all(|number| number.as_found);
-    Ok(Findings {
+    Ok(Verification {
+        model: ModelLabel::of(model),
         at,
         others,
         routes,
@@ -179,7 +226,6 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
         border,
         normal_form,
         classification,
-        refusal,
         conditions: conditions(&local),
         outcomes,
         ranges,
@@ -227,6 +273,12 @@ struct Log {
 impl Log {
     fn leave_out(&mut self, route: &str, why: String) {
         self.skipped.push(Skipped { route: route.into(), why, failed: false });
+    }
+
+    fn refused<T, E: std::fmt::Display>(&mut self, route: &str, result: &Result<T, E>) {
+        if let Err(why) = result {
+            self.leave_out(route, why.to_string());
+        }
     }
 
     fn fail(&mut self, route: &str, why: String) {
