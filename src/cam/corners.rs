@@ -38,6 +38,18 @@ pub struct Corner {
     pub plus: Lift,
 }
 
+document!(Corner as it {
+    cam_angle_rad: it.angle,
+    angle_deg: it.angle.to_degrees(),
+    jump_order: it.jump_order,
+    jump: it.jump,
+    lift_m: it.plus.value,
+    slope_before: it.minus.slope,
+    slope_after: it.plus.slope,
+    curvature_before: it.minus.curvature,
+    curvature_after: it.plus.curvature,
+});
+
 impl Cam {
     /// The corners, in order of angle, whatever derivative jumps.
     pub fn corners(&self) -> Vec<Corner> {

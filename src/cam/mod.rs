@@ -59,6 +59,13 @@ impl Segment {
     }
 }
 
+document!(Segment as it {
+    start_deg: it.start.to_degrees(),
+    end_deg: it.end.to_degrees(),
+    law: it.law.name(),
+    lift_m: it.bounds.lift,
+});
+
 /// What is known of where segments meet before looking.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Joint {

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
 use crate::cam::{Cam, Jet};
 use crate::figures::plots::cam_figure;
-use crate::pages::CamDocument;
+use crate::show::Paged;
+use crate::study::cam::CamSheet;
 
 /// Lists the segments of a model's cam and the corners where they meet.
 #[derive(clap::Args)]
@@ -36,7 +37,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         super::commit(vec![picture::Canvas::create(path)?.draw(&cam_figure(&cam, &model.name))?])?;
     }
     drop(progress);
-    let document = CamDocument::new(&model, &cam, arguments.order);
-    session.answer(&document, arguments.json, |width| document.page(width))?;
+    let sheet = CamSheet::new(&model, &cam, arguments.order);
+    session.answer(&sheet, arguments.json, |width| sheet.page(width))?;
     Ok(Exit::Agrees)
 }

@@ -13,7 +13,6 @@ pub mod speeds;
 mod verify;
 
 pub use basins::BasinsSummary;
-pub use cam::CamDocument;
 pub use orbit::OrbitDocument;
 pub use report::Dossier;
 pub use speeds::RegimesDocument;

@@ -1,6 +1,7 @@
 //! One module per question that a user can ask.
 
 pub mod basins;
+pub mod cam;
 pub mod locate;
 pub mod speeds;
 pub mod verify;

@@ -11,13 +11,13 @@ use crate::figures::plates::{Plate, plates};
 use crate::figures::plots::corner_marks;
 use crate::figures::{Subject, through_corner};
 use crate::model::{Model, ModelError};
-use crate::pages::CamDocument;
 use crate::pages::report::quantities::{Quantity, quantities};
 use crate::pages::report::through::ThroughEntry;
 use crate::pages::speeds::RegimesDocument;
 use crate::paper::{Claims, Context, LedgerError};
 use crate::progress::Watch;
 use crate::show::command::command;
+use crate::study::cam::CamSheet;
 use crate::study::speeds::{Care, regimes, usual_speeds};
 use crate::study::verify::{External, Verification, verify_watched};
 
@@ -99,7 +99,7 @@ pub struct ModelSheet {
     /// Every number of it.
     pub quantities: Vec<Quantity>,
     /// Segments and corners.
-    pub cam: CamDocument,
+    pub cam: CamSheet,
 }
 
 /// One side's matrices by every route.
@@ -207,7 +207,7 @@ impl Dossier {
                 source: model.source.clone(),
                 file: model.file().to_owned(),
                 quantities: quantities(model),
-                cam: CamDocument::new(model, &cam, Jet::HIGHEST_JUMP),
+                cam: CamSheet::new(model, &cam, Jet::HIGHEST_JUMP),
             },
             corner_deg,
             tables: verification
