@@ -131,7 +131,7 @@ impl Page {
     pub fn until(&mut self, expression: &str) {
         let begun = Instant::now();
         while self.value(expression) != true {
-            assert!(begun.elapsed() < Duration::from_secs(30), "never came true: {expression}");
+            assert!(begun.elapsed() < Duration::from_secs(300), "never came true: {expression}");
             std::thread::sleep(Duration::from_millis(20));
         }
     }

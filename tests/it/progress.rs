@@ -1,24 +1,19 @@
 //! Does every run come to an end: with a result, or with an error that says where it was?
 //!
-//! A hang is the failure: each run has a time limit a hundred times what it needs.
+//! A hang is the failure.
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
-use std::sync::mpsc;
-use std::time::Duration;
 
+use crate::common;
 use corner_impact::cam::Cam;
 use corner_impact::flight::State;
 use corner_impact::model::Model;
 use corner_impact::simulate::{Event, EventKind, Machine, Motion, SimulateError, angular_velocity};
 
-const PATIENCE: Duration = Duration::from_secs(60);
-
 #[track_caller]
 fn in_time<T: Send + 'static>(what: &str, run: impl FnOnce() -> T + Send + 'static) -> T {
-    let (sender, receiver) = mpsc::channel();
-    std::thread::spawn(move || sender.send(run()));
-    receiver.recv_timeout(PATIENCE).unwrap_or_else(|error| panic!("{what}: no end in {PATIENCE:?}: {error}"))
+    common::ends(run).unwrap_or_else(|why| panic!("{what}: {why}"))
 }
 
 /// `[follower]` by damping, stiffness, gravity, rest position and restitution, for a mass of 1; and `[cam]`.

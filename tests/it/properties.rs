@@ -5,8 +5,6 @@
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicU32, Ordering};
-use std::sync::mpsc;
-use std::time::Duration;
 
 use corner_impact::flight::{Flight, State};
 use corner_impact::simulate::{Event, EventKind, Goal, Machine, Motion, Observer, SimulateError, Variation};
@@ -15,39 +13,11 @@ use nalgebra::{Matrix2, Vector2};
 
 use crate::random;
 use proptest::prelude::*;
-use proptest::test_runner::{Config, RngSeed, TestCaseResult, TestRunner};
-use random::{Case, cases};
+use proptest::test_runner::TestCaseResult;
+use random::{Case, check};
 
 /// Rounding of a number that a dozen operations made.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
-
-/// Asks `holds` of `count` cases, or as many as the environment says.
-#[track_caller]
-fn check(count: u32, holds: fn(&Case) -> TestCaseResult) {
-    let is_set = |name: &str| std::env::var_os(name).is_some();
-    let config = Config::default();
-    let config = Config {
-        cases: if is_set("PROPTEST_CASES") { config.cases } else { count },
-        rng_seed: if is_set("PROPTEST_RNG_SEED") { config.rng_seed } else { RngSeed::Fixed(1) },
-        failure_persistence: None,
-        max_shrink_time: 60_000,
-        ..config
-    };
-    let result = TestRunner::new(config).run(&cases(), move |case| in_time(case, holds));
-    if let Err(error) = result {
-        panic!("{error}");
-    }
-}
-
-/// A run of a few thousand events that takes this long makes no progress.
-const PATIENCE: Duration = Duration::from_secs(20);
-
-fn in_time(case: Case, holds: fn(&Case) -> TestCaseResult) -> TestCaseResult {
-    let (sender, receiver) = mpsc::channel();
-    std::thread::spawn(move || sender.send(holds(&case)));
-    let late = |error| TestCaseError::fail(format!("no end after {PATIENCE:?}, or a panic: {error}"));
-    receiver.recv_timeout(PATIENCE).unwrap_or_else(|error| Err(late(error)))
-}
 
 /// All that a run shows, up to a number of events.
 #[derive(Default)]

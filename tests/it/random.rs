@@ -13,11 +13,13 @@ use corner_impact::model::Model;
 use corner_impact::simulate::{Machine, Motion, SimulateError, angular_velocity};
 use proptest::prelude::*;
 use proptest::strategy::Union;
+use proptest::test_runner::{Config, RngSeed, TestCaseResult, TestRunner};
+
+use crate::common;
 
 /// A machine, where a run of it starts, and what it was made from.
 #[derive(Clone)]
 pub struct Case {
-    #[allow(dead_code)] // read by the tests of orbits only
     pub model: Model,
     pub machine: Machine,
     pub rpm: f64,
@@ -297,4 +299,23 @@ pub fn cases() -> impl Strategy<Value = Case> {
         };
         case
     })
+}
+
+/// Asks `holds` of `count` cases, or as many as the environment says.
+#[track_caller]
+pub fn check(count: u32, holds: fn(&Case) -> TestCaseResult) {
+    let is_set = |name: &str| std::env::var_os(name).is_some();
+    let config = Config::default();
+    let config = Config {
+        cases: if is_set("PROPTEST_CASES") { config.cases } else { count },
+        rng_seed: if is_set("PROPTEST_RNG_SEED") { config.rng_seed } else { RngSeed::Fixed(1) },
+        failure_persistence: None,
+        max_shrink_time: 60_000,
+        ..config
+    };
+    let in_time =
+        move |case: Case| common::ends(move || holds(&case)).unwrap_or_else(|why| Err(TestCaseError::fail(why)));
+    if let Err(error) = TestRunner::new(config).run(&cases(), in_time) {
+        panic!("{error}");
+    }
 }

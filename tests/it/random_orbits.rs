@@ -3,8 +3,6 @@
 //! The cases are the same in every run. `PROPTEST_CASES=2000 PROPTEST_RNG_SEED=7` looks at others.
 
 use std::sync::atomic::{AtomicU32, Ordering};
-use std::sync::mpsc;
-use std::time::Duration;
 
 use crate::random;
 use corner_impact::orbit::branch::{Branch, Following};
@@ -12,34 +10,7 @@ use corner_impact::orbit::{Course, Parameter, PeriodicOrbit, Search, search};
 use corner_impact::section::StroboscopicMap;
 use corner_impact::simulate::{Machine, angular_velocity};
 use proptest::prelude::*;
-use proptest::test_runner::{Config, RngSeed, TestCaseResult, TestRunner};
-use random::{Case, cases};
-
-#[track_caller]
-fn check(count: u32, holds: fn(&Case) -> TestCaseResult) {
-    let is_set = |name: &str| std::env::var_os(name).is_some();
-    let config = Config::default();
-    let config = Config {
-        cases: if is_set("PROPTEST_CASES") { config.cases } else { count },
-        rng_seed: if is_set("PROPTEST_RNG_SEED") { config.rng_seed } else { RngSeed::Fixed(1) },
-        failure_persistence: None,
-        max_shrink_time: 30_000,
-        ..config
-    };
-    if let Err(error) = TestRunner::new(config).run(&cases(), move |case| in_time(case, holds)) {
-        panic!("{error}");
-    }
-}
-
-/// What takes this long is no answer to somebody who waits for it.
-const PATIENCE: Duration = Duration::from_secs(60);
-
-fn in_time(case: Case, holds: fn(&Case) -> TestCaseResult) -> TestCaseResult {
-    let (sender, receiver) = mpsc::channel();
-    std::thread::spawn(move || sender.send(holds(&case)));
-    let late = |error| TestCaseError::fail(format!("no end after {PATIENCE:?}, or a panic: {error}"));
-    receiver.recv_timeout(PATIENCE).unwrap_or_else(|error| Err(late(error)))
-}
+use random::check;
 
 /// How far one simulated period misses the state, over what rounding may make of it; `None` where the simulator gives up.
 fn missed(machine: &Machine, orbit: &PeriodicOrbit) -> Option<f64> {

@@ -50,7 +50,7 @@ fn wait_until(child: &mut Child, ready: impl Fn() -> bool, line: &str) {
     let started = Instant::now();
     while !ready() {
         assert!(child.try_wait().unwrap().is_none(), "{line}: ended by itself");
-        assert!(started.elapsed() < Duration::from_secs(60), "{line}: never got there");
+        assert!(started.elapsed() < common::PATIENCE, "{line}: never got there");
         std::thread::sleep(Duration::from_millis(1));
     }
 }

@@ -137,7 +137,7 @@ mod unix {
         let mut output = create(Path::new(&path));
         output.write_all(&[b'x'; 100_000]).unwrap();
         println!("\nready");
-        std::thread::sleep(std::time::Duration::from_secs(60));
+        std::thread::sleep(crate::common::PATIENCE);
     }
 
     #[test]
@@ -145,7 +145,7 @@ mod unix {
         for signal in [2, 15] {
             let folder = TempDir::new().unwrap();
             let mut child = Command::new(std::env::current_exe().unwrap())
-                .args(["--exact", "unix::child_that_waits", "--nocapture"])
+                .args(["--exact", "whole_files::unix::child_that_waits", "--nocapture"])
                 .env("CORNER_IMPACT_TEST_FILE", folder.path().join("out.csv"))
                 .stdout(Stdio::piped())
                 .spawn()

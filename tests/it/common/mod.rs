@@ -5,6 +5,8 @@
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use std::sync::mpsc;
+use std::time::Duration;
 
 use corner_impact::cam::Cam;
 use corner_impact::model::{Model, OSORIO_2008};
@@ -31,6 +33,17 @@ pub fn corner_impact<Word: AsRef<OsStr>>(words: impl IntoIterator<Item = Word>) 
 
 pub fn text(bytes: Vec<u8>) -> String {
     String::from_utf8(bytes).unwrap()
+}
+
+/// How long the slowest machine may take over what has an end. Whether work is fast is no question of a test; what never
+/// ends must still fail.
+pub const PATIENCE: Duration = Duration::from_secs(600);
+
+/// What `run` comes to; `Err` where it panics or never ends.
+pub fn ends<T: Send + 'static>(run: impl FnOnce() -> T + Send + 'static) -> Result<T, String> {
+    let (sender, receiver) = mpsc::channel();
+    std::thread::spawn(move || sender.send(run()));
+    receiver.recv_timeout(PATIENCE).map_err(|error| format!("no end after {PATIENCE:?}, or a panic: {error}"))
 }
 
 /// Every model file that has a corner impact to verify, by name; `models/laws` has those that need none.
