@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 
 use corner_impact::cam::Cam;
 use corner_impact::draw::{Density, svg};
-use corner_impact::figures::plots::{Diagram, corner_marks, impact_diagram};
+use corner_impact::figures::{corner_marks, impact_diagram};
 use corner_impact::model::{Model, OSORIO_2008};
 use corner_impact::simulate::{Event, EventKind, Machine, Unobserved, angular_velocity};
 
@@ -34,9 +34,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             ControlFlow::Continue(())
         })?;
     }
-    let diagram =
-        Diagram { title: "Where the follower hits the cam", points, shown: None, corners: &corners, lyapunov: None };
-    std::fs::write(&file, svg::render(&impact_diagram(diagram))?)?;
+    let figure = impact_diagram("Where the follower hits the cam", points, &corners, None);
+    std::fs::write(&file, svg::render(&figure)?)?;
     println!("{impacts} impacts at 91 speeds drawn to {file}");
     Ok(())
 }

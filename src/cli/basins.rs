@@ -8,7 +8,7 @@ use super::start::{finite, range, rpm, turn};
 use super::{CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::Progress};
 use crate::cam::Cam;
 use crate::draw::Figure;
-use crate::figures::plots::{BasinsPicture, basins_figure};
+use crate::figures::basins_figure;
 use crate::flight::State;
 use crate::model::Model;
 use crate::orbit::{Course, PeriodicOrbit, Search, search};
@@ -153,12 +153,7 @@ fn draw(model: &Model, map: &StroboscopicMap, orbits: &[PeriodicOrbit], basins: 
     };
     let curves: Vec<Curve> = saddles.iter().flat_map(halves).collect();
     let title = format!("{} at {rpm} rpm: what each start ends on", model.name);
-    let picture = BasinsPicture {
-        title: &title,
-        basins,
-        stable: &endings.collect::<Vec<_>>(),
-        saddles: &saddles.iter().map(|saddle| saddle.state).collect::<Vec<_>>(),
-        curves: &curves,
-    };
-    basins_figure(&picture)
+    let stable: Vec<State> = endings.collect();
+    let saddles: Vec<State> = saddles.iter().map(|saddle| saddle.state).collect();
+    basins_figure(&title, basins, &stable, &saddles, &curves)
 }

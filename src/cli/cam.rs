@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
 use crate::cam::{Cam, Jet};
-use crate::figures::plots::cam_figure;
+use crate::figures::cam_figure;
 use crate::show::Paged;
 use crate::study::cam::CamSheet;
 

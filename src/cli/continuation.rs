@@ -9,7 +9,7 @@ use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
 use crate::cam::Cam;
 use crate::diagram::settled_impacts;
 use crate::draw::Density;
-use crate::figures::plots::{Branches, branches_figure, corner_marks};
+use crate::figures::{branches_figure, corner_marks};
 use crate::model::Model;
 use crate::orbit::branch::{Branch, Following};
 use crate::orbit::{Family, Parameter, PeriodicOrbit, Search, search};
@@ -114,13 +114,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         let settled = settled(&model, arguments, &parameter, *range)?;
         let what = if parameter == Parameter::Speed { "speed" } else { parameter.name() };
         let title = format!("{}: orbits found at {} rpm, followed in {what}", model.name, arguments.from_rpm);
-        Ok(branches_figure(Branches {
-            title: &title,
-            parameter: (parameter.name(), *range),
-            branches: &branches,
-            settled,
-            corners: &corners,
-        }))
+        Ok(branches_figure(&title, (parameter.name(), *range), &branches, settled, &corners))
     })?;
     Ok(Exit::Agrees)
 }

@@ -8,7 +8,7 @@ use super::start::{parameter, positive, rpm_range};
 use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
 use crate::border_collision::{AtCorner, ImpactCurve};
 use crate::draw::layout::widened;
-use crate::figures::plots::curve_figure;
+use crate::figures::curve_figure;
 use crate::orbit::branch::{Branch, Following, corner_impacts, find_branches};
 use crate::orbit::{Parameter, Search};
 use crate::pages::curve;

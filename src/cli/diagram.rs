@@ -11,10 +11,8 @@ use super::{CommandError, Exit, ModelArgument, Session, picture, picture::Target
 use crate::cam::Cam;
 use crate::cli::file::Output;
 use crate::diagram::{Counted, Following, Places, Section, Speeds, Sweep, Tally};
-use crate::draw::layout::widened;
-use crate::draw::{Cloud, Density, Figure};
-use crate::figures::SweepSummary;
-use crate::figures::plots::{Diagram, corner_marks, impact_diagram, shown_impacts, strobe_diagram};
+use crate::draw::{Cloud, Density};
+use crate::figures::{SweepSummary, corner_marks, impact_diagram, strobe_diagram};
 use crate::show::csv;
 use crate::simulate::{Machine, angular_velocity};
 
@@ -120,16 +118,10 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         Some(Target::Picture(canvas)) => {
             let (points, exponents, tally) = points(&sweep, threads)?;
             let title = format!("{}: {}", model.name, title(&sweep));
-            let diagram = Diagram {
-                title: &title,
-                shown: shown(&points, sweep.section),
-                points,
-                corners: &corners,
-                lyapunov: arguments.lyapunov.then_some(exponents.as_slice()),
-            };
-            let figure: Figure = match sweep.section {
-                Section::Impacts => impact_diagram(diagram),
-                Section::Strobe(_) => strobe_diagram(diagram),
+            let exponents = arguments.lyapunov.then_some(exponents.as_slice());
+            let figure = match sweep.section {
+                Section::Impacts => impact_diagram(&title, points, &corners, exponents),
+                Section::Strobe(_) => strobe_diagram(&title, points, exponents),
             };
             super::commit(vec![canvas.draw(&figure)?])?;
             tally
@@ -169,11 +161,6 @@ fn table(sweep: &Sweep, threads: usize, mut file: Output<'_>) -> Result<Tally, C
     })?;
     super::commit(vec![file])?;
     Ok(tally)
-}
-
-/// The range that the points take up, with a little room.
-fn shown(points: &Density, section: Section) -> Option<[f64; 2]> {
-    if section == Section::Impacts { shown_impacts(points) } else { Some(widened(points.extent()?, 0.02)) }
 }
 
 type Found = (Density, Vec<[f64; 2]>, Tally);

@@ -6,8 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
-use crate::figures::Subject;
-use crate::figures::plates::{Listed, Plate, listed, plate};
+use crate::figures::{Listed, Plate, Subject, listed, plate};
 use crate::model::Model;
 use crate::show::json;
 
@@ -81,12 +80,12 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
             let progress = Progress::spinner("computing the figure");
             let plate = plate(&subject, id).ok_or_else(|| CommandError::Words(format!("no figure called \"{id}\"")))?;
             drop(progress);
-            // A document says why there is none; a file cannot.
-            if let (Some(why), true) = (&plate.absent, arguments.out.is_some() || !arguments.json) {
-                return Err(CommandError::Words(format!("{}: no figure {id}: {why}", model.file())));
-            }
-            if let Some((canvas, figure)) = canvas.zip(plate.figure.as_ref()) {
-                super::commit(vec![canvas.draw(figure)?])?;
+            match (&plate.drawn, canvas) {
+                (Ok(drawn), Some(canvas)) => super::commit(vec![canvas.draw(&drawn.figure)?])?,
+                // A document says why there is none; a file cannot.
+                (Err(_), None) if arguments.json => {}
+                (Err(why), _) => return Err(CommandError::Words(format!("{}: no figure {id}: {why}", model.file()))),
+                (Ok(_), None) => {}
             }
             one(&subject, plate, arguments)?
         }
@@ -119,5 +118,6 @@ fn one(subject: &Subject, plate: Plate, arguments: &Arguments) -> Result<String,
         (place, false) => format!(" (as {place} of the paper)"),
     };
     let how = if arguments.out.is_some() { String::new() } else { format!("Draw it: {}\n", plate.command) };
-    Ok(format!("{}{of}\n{}\n{how}", plate.title, plate.caption))
+    let caption = plate.drawn.map(|drawn| drawn.caption).unwrap_or_default();
+    Ok(format!("{}{of}\n{caption}\n{how}", plate.title))
 }

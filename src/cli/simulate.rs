@@ -11,11 +11,9 @@ use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
 use crate::cam::Cam;
 use crate::cli::file::Output;
 use crate::diagram::growth_and_error;
-use crate::figures::plots::{Against, Trace, phase_plane, time_trace};
 use crate::figures::run::Exponent;
-use crate::figures::{RunSummary, run};
+use crate::figures::{self, RunSummary, phase_plane, time_trace};
 use crate::model::Model;
-use crate::section;
 use crate::show::csv;
 use crate::simulate::{Event, EventKind, Goal, Machine, Motion, angular_velocity};
 
@@ -149,7 +147,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         impacts: seen.impacts,
         sticks: seen.sticks,
         releases: seen.releases,
-        end: run::End::from(&motion),
+        end: figures::run::End::from(&motion),
         lyapunov_per_revolution: grown.map(|(mean, _)| Exponent(mean)),
         lyapunov_standard_error: grown.and_then(|(_, error)| error),
         wall_s: wall.as_secs_f64(),
@@ -280,16 +278,13 @@ fn draw(
         return Ok(files);
     }
     let revolutions = arguments.drawn.unwrap_or(DRAWN).min(arguments.revolutions);
-    let (samples, events) = section::trace(machine, motion, revolutions, run::TRACE_SAMPLES)?;
-    let (points, impacts) = run::trace_points(&samples, &events, machine.angular_velocity());
+    let run = figures::Run::new(machine, motion, revolutions)?;
     let title = format!("{} at {} rpm", model.name, arguments.rpm);
     if let Some(canvas) = trace {
-        let against = Against::Revolutions;
-        let trace = Trace { title: &title, points: &points, impacts: &impacts, against, gap: true };
-        files.push(canvas.draw(&time_trace(&trace))?);
+        files.push(canvas.draw(&time_trace(&title, &run))?);
     }
     if let Some(canvas) = plane {
-        files.push(canvas.draw(&phase_plane(&title, &points))?);
+        files.push(canvas.draw(&phase_plane(&title, &run))?);
     }
     Ok(files)
 }

@@ -2,7 +2,7 @@
 //!
 //! A [`Figure`] says what is drawn in the data's own units; [`layout`] decides where on the page, [`svg`] and [`png`] only
 //! write that down. Nothing here computes anything from the data but its extent; the figures themselves are built in
-//! [`crate::figures::plots`].
+//! [`crate::figures`].
 
 pub mod density;
 mod grid;
@@ -33,6 +33,13 @@ pub struct Figure {
     pub panels: Vec<Panel>,
     /// Stands below; empty for none.
     pub note: String,
+}
+
+impl Figure {
+    /// Panels without marks of their axis and without a note.
+    pub(crate) fn new(title: &str, x: Axis, panels: Vec<Panel>) -> Self {
+        Self { title: title.into(), x, marks: Vec::new(), panels, note: String::new() }
+    }
 }
 
 /// An axis: its name, unit and range.
@@ -85,6 +92,18 @@ pub struct Panel {
     pub marks: Vec<Mark>,
 }
 
+impl Panel {
+    /// A panel without marks.
+    pub(crate) fn new(y: Axis, height: f64, series: Vec<Series>) -> Self {
+        Self { y, height, series, marks: Vec::new() }
+    }
+
+    /// The panel with the plain line of zero.
+    pub(crate) fn with_zero(self) -> Self {
+        Self { marks: vec![Mark::zero()], ..self }
+    }
+}
+
 /// A reference line.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Mark {
@@ -93,6 +112,16 @@ pub struct Mark {
     /// What it stands for; empty for a plain thin line, such as that of zero.
     pub label: String,
 }
+
+impl Mark {
+    /// The plain line of zero.
+    pub(crate) fn zero() -> Self {
+        Self { at: 0.0, label: String::new() }
+    }
+}
+
+/// In the points of a line: where it is broken.
+pub(crate) const BREAK: [f64; 2] = [f64::NAN; 2];
 
 /// Data drawn in one way.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -103,6 +132,66 @@ pub struct Series {
     pub colour: Colour,
     /// Its values.
     pub data: Data,
+}
+
+impl Series {
+    pub(crate) fn new(label: &str, colour: Colour, data: Data) -> Self {
+        Self { label: label.into(), colour, data }
+    }
+
+    pub(crate) fn line(
+        label: &str,
+        colour: Colour,
+        stroke: Stroke,
+        points: impl IntoIterator<Item = [f64; 2]>,
+    ) -> Self {
+        Self::new(label, colour, Data::Line { points: points.into_iter().collect(), stroke })
+    }
+
+    pub(crate) fn area(
+        label: &str,
+        colour: Colour,
+        stroke: Stroke,
+        points: impl IntoIterator<Item = [f64; 2]>,
+    ) -> Self {
+        Self::new(label, colour, Data::Area { points: points.into_iter().collect(), stroke })
+    }
+
+    pub(crate) fn arrow(
+        label: &str,
+        colour: Colour,
+        stroke: Stroke,
+        points: impl IntoIterator<Item = [f64; 2]>,
+    ) -> Self {
+        Self::new(label, colour, Data::Arrow { points: points.into_iter().collect(), stroke })
+    }
+
+    pub(crate) fn points(
+        label: &str,
+        colour: Colour,
+        marker: Marker,
+        points: impl IntoIterator<Item = [f64; 2]>,
+    ) -> Self {
+        Self::new(label, colour, Data::Points { points: points.into_iter().collect(), marker })
+    }
+
+    /// Words stand in the colour of the text and in no legend.
+    pub(crate) fn words(words: impl IntoIterator<Item = Word>) -> Self {
+        Self::new("", Colour::Ink, Data::Words(words.into_iter().collect()))
+    }
+
+    /// The series, if it has anything: a legend names nothing that is not there.
+    pub(crate) fn if_any(self) -> Option<Self> {
+        let any = match &self.data {
+            Data::Line { points, .. }
+            | Data::Area { points, .. }
+            | Data::Arrow { points, .. }
+            | Data::Points { points, .. } => !points.is_empty(),
+            Data::Words(words) => !words.is_empty(),
+            Data::Density(_) | Data::Region { .. } => true,
+        };
+        any.then_some(self)
+    }
 }
 
 /// The values of a series, and how they are joined.
@@ -159,6 +248,12 @@ pub struct Word {
     pub text: String,
     /// On which side of the point it stands.
     pub beside: Beside,
+}
+
+impl Word {
+    pub(crate) fn new(at: [f64; 2], text: &str, beside: Beside) -> Self {
+        Self { at, text: text.into(), beside }
+    }
 }
 
 /// A side of a point.

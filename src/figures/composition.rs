@@ -19,11 +19,27 @@ use nalgebra::Vector2;
 
 use crate::cam::{Side, apart};
 use crate::corner::CornerImpact;
-use crate::figures::Subject;
+use crate::draw::{Axis, BREAK, Beside, Colour, Figure, Marker, Panel, Series, Stroke, Word};
+use crate::figures::{Entry, Subject, drawn};
 use crate::flight::{Flight, State};
 use crate::impact::rebound;
 use crate::section::StroboscopicMap;
 use crate::simulate::Machine;
+
+/// One revolution on either side of the corner, on the neighbour whose impact is before the corner.
+pub(crate) const COMPOSITION: Entry = Entry {
+    id: "composition",
+    place: "Figure 6",
+    title: |subject| format!("{}: the map of one revolution, composed of three", subject.model.name),
+    draw: |subject, title| {
+        drawn(
+            figure(title, &subject.composition()?),
+            "The orbit x* comes to the corner once in a period T*. A neighbour starts at x₁ on Π₁: P₁ flies it to x_d⁻ on Π_D as \
+             if there were no impact, below the cam's surface; P_D puts it to x_d⁺, where the flight after the impact has it at \
+             that time; P₂ flies it on to x₂ on Π₂. All curves are the model's own flights.",
+        )
+    },
+};
 
 /// How far from the corner the neighbours' impacts are at most, rad.
 const FARTHEST: f64 = 0.27;
@@ -202,4 +218,47 @@ fn neighbour(at: &CornerImpact, machine: &Machine, side: Side, reach: f64) -> Op
             simulated: run.state,
         }
     })
+}
+
+fn figure(title: &str, shown: &Composition) -> Figure {
+    let in_periods = |line: &[[f64; 2]]| line.iter().map(|[time, q]| [time / shown.period, *q]).collect::<Vec<_>>();
+    let near = &shown.far;
+    let [first, minus, plus, last] = near.sections.map(|state| state.position);
+    let star = shown.states[0].position;
+    let [coming, past] = [0, 1].map(|index| in_periods(&near.coming[index]));
+    let going = in_periods(&near.going[0]);
+    let top = shown.orbit.iter().map(|[_, q]| *q).fold(first.max(last).max(plus), f64::max);
+    let bottom = minus.min(shown.cam.iter().map(|[_, c]| *c).fold(f64::INFINITY, f64::min));
+    let height = top - bottom;
+    let range = [bottom - 0.1 * height, top + 0.16 * height];
+    let sections = [-0.5, 0.0, 0.5].into_iter().flat_map(|time| [[time, range[0]], [time, range[1]], BREAK]);
+    let middle = |line: &[[f64; 2]]| line.get(line.len() / 2).copied().unwrap_or(BREAK);
+    let words = [
+        Word::new([-0.5, top + 0.12 * height], "Π_1", Beside::Right),
+        Word::new([0.0, top + 0.12 * height], "Π_D", Beside::Right),
+        Word::new([0.5, top + 0.12 * height], "Π_2", Beside::Right),
+        Word::new([-0.5, star], "x^*", Beside::Above),
+        Word::new([0.5, star], "x^*", Beside::Above),
+        Word::new([-0.5, first], "x_1", Beside::Left),
+        Word::new([0.5, last], "x_2", Beside::Right),
+        Word::new([0.0, minus], "x_d^−", Beside::BelowRight),
+        Word::new([0.0, plus], "x_d^+", Beside::AboveRight),
+        Word::new(middle(&coming), "P_1", Beside::Left),
+        Word::new(middle(&going), "P_2", Beside::Right),
+        Word::new([0.0, minus + 0.3 * (plus - minus)], "P_D", Beside::Right),
+    ];
+    let (red, mapping) = (Colour::Vermilion, [[0.0, minus], [0.0, plus]]);
+    let series = vec![
+        Series::line("", Colour::Grey, Stroke::Thin, sections),
+        Series::area("cam c", Colour::Grey, Stroke::Thin, in_periods(&shown.cam)),
+        Series::line("orbit x*", Colour::Blue, Stroke::Solid, in_periods(&shown.orbit)),
+        Series::line("neighbour", red, Stroke::Solid, coming.into_iter().chain(going)),
+        Series::line("as if no impact", red, Stroke::Dashed, past),
+        Series::arrow("discontinuity mapping", Colour::Purple, Stroke::Solid, mapping),
+        Series::points("", red, Marker::Disc, [[-0.5, first], mapping[0], mapping[1], [0.5, last]]),
+        Series::points("", Colour::Blue, Marker::Disc, [[-0.5, star], [0.5, star]]),
+        Series::words(words),
+    ];
+    let x = Axis::new("time from the passage of the corner, in periods T*", "").over([-1.0, 1.0]);
+    Figure::new(title, x, vec![Panel::new(Axis::new("position", "m").over(range), 0.55, series)])
 }

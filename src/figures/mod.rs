@@ -1,32 +1,170 @@
-//! What the report's figures show, as numbers: motions, sweeps, branches, and the curves that the paper's maps are composed
-//! of. Nothing is drawn here.
+//! The figures: a file holds what one of them shows, as numbers and as a plot, its title, its caption and its row of the
+//! table. Figures that a command asks for ([`basins_figure`], [`curve_figure`], ...) are not in the table.
 //!
-//! | module | what it holds |
-//! |---|---|
-//! | [`subject`] | the model, its corner impact, and the speeds that are shown |
-//! | [`outline`] | the cam as a shape |
-//! | [`motion`] | what the follower does at one speed |
-//! | [`sweep`] | what runs settle on over a range of speeds, and the branches of orbits there |
-//! | [`composition`] | the paper's composition of its map, and the discontinuity mapping, with the model's own flow |
-//! | [`local_map`] | the orbits of the local map, and the machine's beside them |
-//! | [`mod@through_corner`] | orbits and runs at speeds on either side of the corner impact |
+//! [`mod@through_corner`] is the one that moves: the orbits and runs at speeds on either side of the corner impact.
 
-pub mod composition;
-pub mod local_map;
-pub mod motion;
-pub mod outline;
-pub mod plates;
-pub mod plots;
+mod basins;
+mod branches;
+mod cam;
+mod cam_shape;
+mod composition;
+mod curve;
+mod discontinuity_mapping;
+mod impacts;
+mod local_map;
+mod phase_plane;
 pub mod run;
-pub mod subject;
-pub mod sweep;
+mod section;
+mod subject;
 pub mod through_corner;
+mod trace;
 
-pub use composition::{Composition, Neighbour};
-pub use local_map::NextToCorner;
-pub use motion::{Run, TRANSIENT};
-pub use outline::Outline;
+use serde::ser::SerializeStruct;
+use serde::{Serialize, Serializer};
+
+use crate::draw::{Axis, Colour, Figure, Series, Stroke};
+use crate::show::command::command;
+
+pub use basins::basins_figure;
+pub use branches::branches_figure;
+pub use cam::{CornerMark, cam_figure, corner_marks};
+pub use cam_shape::{Outline, Piece};
+pub use composition::{Composition, Line, Neighbour};
+pub use curve::curve_figure;
+pub use impacts::{impact_diagram, strobe_diagram};
+pub use local_map::{NextToCorner, Ray};
+pub use phase_plane::phase_plane;
 pub use run::{RunSummary, SweepSummary};
-pub use subject::{Fast, Shown, Slow, Subject};
-pub use sweep::{Crossings, Effort};
+pub use section::Crossings;
+pub use subject::{Effort, Fast, Shown, Slow, Subject};
 pub use through_corner::{ThroughCorner, through_corner};
+pub use trace::{Run, time_trace};
+
+/// Every figure of the report, in the paper's order.
+const FIGURES: [Entry; 14] = [
+    cam_shape::CAM_SHAPE,
+    cam::CAM,
+    trace::SLOW_TRACE,
+    phase_plane::SLOW_PHASE_PLANE,
+    impacts::SLOW_IMPACTS,
+    trace::INTERRUPTED_TRACE,
+    branches::FAST_IMPACTS,
+    section::FAST_SECTION,
+    trace::CORNER_ORBIT,
+    trace::BEYOND_TRACE,
+    section::BEYOND_ATTRACTOR,
+    composition::COMPOSITION,
+    discontinuity_mapping::DISCONTINUITY_MAPPING,
+    local_map::LOCAL_MAP,
+];
+
+/// A row of the table.
+pub(crate) struct Entry {
+    /// Its name in commands.
+    id: &'static str,
+    /// Of which figure of the paper; empty for none.
+    place: &'static str,
+    title: fn(&Subject) -> String,
+    /// The figure under a title, or why there is none.
+    draw: fn(&Subject, &str) -> Result<Drawn, String>,
+}
+
+/// One figure of the report.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plate {
+    /// Its name in commands.
+    pub id: &'static str,
+    /// Of which figure of the paper; empty for none.
+    pub place: &'static str,
+    /// What it is.
+    pub title: String,
+    /// The command that makes this one.
+    pub command: String,
+    /// The figure, or why there is none.
+    pub drawn: Result<Drawn, String>,
+}
+
+/// A figure with what is to be seen in it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drawn {
+    /// The figure.
+    pub figure: Figure,
+    /// What is shown and what to see, in one to three sentences.
+    pub caption: String,
+}
+
+pub(crate) fn drawn(figure: Figure, caption: impl Into<String>) -> Result<Drawn, String> {
+    Ok(Drawn { figure, caption: caption.into() })
+}
+
+impl Serialize for Plate {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let drawn = self.drawn.as_ref();
+        let mut document = serializer.serialize_struct("Plate", 7)?;
+        document.serialize_field("id", self.id)?;
+        document.serialize_field("place", self.place)?;
+        document.serialize_field("title", &self.title)?;
+        document.serialize_field("caption", drawn.map_or("", |drawn| &drawn.caption))?;
+        document.serialize_field("command", &self.command)?;
+        document.serialize_field("figure", &drawn.ok().map(|drawn| &drawn.figure))?;
+        document.serialize_field("absent", &drawn.err())?;
+        document.end()
+    }
+}
+
+/// A figure that can be asked for.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Listed {
+    /// Its name in commands.
+    pub id: &'static str,
+    /// Of which figure of the paper; empty for none.
+    pub place: &'static str,
+    /// What it is.
+    pub title: String,
+}
+
+/// What there is to draw of a model, in order.
+pub fn listed(subject: &Subject) -> Vec<Listed> {
+    FIGURES.iter().map(|entry| Listed { id: entry.id, place: entry.place, title: (entry.title)(subject) }).collect()
+}
+
+/// Every figure; `progress` is told how many of how many are done.
+pub fn plates(subject: &Subject, progress: &mut dyn FnMut(usize, usize)) -> Vec<Plate> {
+    let plates = FIGURES.iter().enumerate().map(|(index, entry)| {
+        progress(index, FIGURES.len());
+        entry.plate(subject)
+    });
+    let plates = plates.collect();
+    progress(FIGURES.len(), FIGURES.len());
+    plates
+}
+
+/// The figure of this name; `None` where the table has none.
+pub fn plate(subject: &Subject, id: &str) -> Option<Plate> {
+    FIGURES.iter().find(|entry| entry.id == id).map(|entry| entry.plate(subject))
+}
+
+impl Entry {
+    fn plate(&self, subject: &Subject) -> Plate {
+        let title = (self.title)(subject);
+        let drawn = (self.draw)(subject, &title);
+        let command = command("figure", &subject.model, &format!("{} --out {}.svg", self.id, self.id));
+        Plate { id: self.id, place: self.place, title, command, drawn }
+    }
+}
+
+/// Name and unit of the axis of speeds.
+const SPEED: [&str; 2] = ["cam speed ω", "rpm"];
+
+/// The axis of positions at the section.
+fn position() -> Axis {
+    Axis::new("follower position q at the section", "m")
+}
+
+/// Lines of what is stable, unbroken, and of what is unstable, broken, as far as there are any.
+fn by_stability(labels: [&str; 2], points: impl Fn(bool) -> Vec<[f64; 2]>) -> impl Iterator<Item = Series> {
+    let [stable, unstable] = labels;
+    let stable = Series::line(stable, Colour::Blue, Stroke::Solid, points(true)).if_any();
+    let unstable = Series::line(unstable, Colour::Vermilion, Stroke::Dashed, points(false)).if_any();
+    stable.into_iter().chain(unstable)
+}

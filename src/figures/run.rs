@@ -5,10 +5,8 @@ use std::fmt::{self, Write};
 use serde::Serialize;
 
 use crate::diagram::Tally;
-use crate::figures::plots::{ImpactPoint, TracePoint};
-use crate::section::Sample;
 use crate::show::page::{Page, WIDTH};
-use crate::simulate::{Event, EventKind, Motion};
+use crate::simulate::Motion;
 
 /// A run's summary.
 #[derive(Clone, Debug, Serialize)]
@@ -150,31 +148,4 @@ impl SweepSummary {
 /// The time that a revolution took, where there was one.
 fn per_turn(wall_s: f64, revolutions: f64) -> String {
     if revolutions > 0.0 { format!(", {:.0} ns a revolution", wall_s / revolutions * 1e9) } else { String::new() }
-}
-
-/// Moments of each revolution in a picture: a tenth of a degree, so that short hops are curves too.
-pub const TRACE_SAMPLES: u32 = 3600;
-
-/// A trace as figures take it, from its own start on.
-pub fn trace_points(
-    samples: &[Sample],
-    events: &[Event],
-    angular_velocity: f64,
-) -> (Vec<TracePoint>, Vec<ImpactPoint>) {
-    let first = samples.first().map_or(0.0, |sample| sample.turned);
-    let point = |sample: &Sample| TracePoint {
-        turned_rad: sample.turned - first,
-        time_s: (sample.turned - first) / angular_velocity,
-        position_m: sample.state.position,
-        cam_m: sample.lift,
-        gap_m: sample.gap,
-        gap_velocity_m_s: sample.state.velocity - sample.cam_velocity,
-        contact: sample.contact,
-    };
-    let impact = |event: &Event| {
-        let turned_rad = event.turned_since(first);
-        ImpactPoint { turned_rad, time_s: turned_rad / angular_velocity, position_m: event.position }
-    };
-    let impacts = events.iter().filter(|event| event.kind == EventKind::Impact);
-    (samples.iter().map(point).collect(), impacts.map(impact).collect())
 }

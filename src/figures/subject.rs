@@ -5,9 +5,9 @@ use std::sync::OnceLock;
 use crate::border_collision::feigin::{Scenario, Speeds};
 use crate::cam::Cam;
 use crate::corner::CornerImpact;
-use crate::figures::Effort;
 use crate::model::{Model, ModelError};
 use crate::orbit::branch::Branch;
+use crate::simulate::{Machine, angular_velocity};
 use crate::study::speeds::{detachment, usual_speeds};
 use crate::study::verify::{External, Verification, verify};
 
@@ -30,6 +30,24 @@ pub struct Subject {
     pub fast_effort: Effort,
     /// The branches over the fast ones, once they have been followed: more than one figure shows them.
     pub(crate) followed: OnceLock<Result<Vec<Branch>, String>>,
+}
+
+/// How fine a sweep is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Effort {
+    /// Speeds, evenly over the range.
+    pub speeds: usize,
+    /// Revolutions at each before anything is recorded.
+    pub transient: u64,
+    /// Revolutions that are recorded.
+    pub record: u64,
+}
+
+impl Effort {
+    /// Of a report above detachment: a follower that chatters has forgotten its start once it has come to rest.
+    pub const SLOW: Self = Self { speeds: 800, transient: 40, record: 5 };
+    /// Of a report around the corner impact.
+    pub const FAST: Self = Self { speeds: 480, transient: 300, record: 150 };
 }
 
 /// The speeds that are shown, rpm, or why there are none.
@@ -160,5 +178,32 @@ impl Subject {
     /// What `verify` found, or why it found nothing.
     pub fn found(&self) -> Result<&Verification, String> {
         self.findings.as_ref().map_err(Clone::clone)
+    }
+
+    /// What happens at the corner impact, where that is classified.
+    pub(crate) fn scenario(&self) -> Option<Scenario> {
+        Some(self.found().ok()?.classification.as_ref().ok()?.scenario)
+    }
+
+    /// Whether the orbits of the corner impact are gone beyond it.
+    pub(crate) fn is_fold(&self) -> bool {
+        self.scenario() == Some(Scenario::NonsmoothFold)
+    }
+
+    /// The machine at a speed, rpm.
+    pub(crate) fn machine(&self, rpm: f64) -> Machine {
+        Machine::new(self.cam.clone(), &self.model.follower, angular_velocity(rpm))
+    }
+
+    /// A title with speeds above detachment, or without where there are none.
+    pub(crate) fn slow_title(&self, without: &str, with: impl Fn(&Slow) -> String) -> String {
+        let words = self.shown.slow.as_ref().map_or_else(|_| without.into(), with);
+        format!("{}: {words}", self.model.name)
+    }
+
+    /// A title with speeds around the corner impact, or without where there is none.
+    pub(crate) fn fast_title(&self, without: &str, with: impl Fn(&Fast) -> String) -> String {
+        let words = self.shown.fast.as_ref().map_or_else(|_| without.into(), with);
+        format!("{}: {words}", self.model.name)
     }
 }

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::cam::{Cam, Lift};
 use crate::corner::CornerImpact;
-use crate::figures::Outline;
+use crate::figures::cam_shape::Outline;
 use crate::model::Model;
 use crate::orbit::{Course, Cycle, Eigenvalue, PeriodicOrbit, Search, search};
 use crate::section::trace;

@@ -8,11 +8,13 @@ use corner_impact::draw::ticks::{Tick, ticks, unit};
 use corner_impact::draw::{
     Axis, Cloud, Colour, Data, Density, Figure, Mark, Marker, Panel, Series, Spacing, Stroke, png, svg, thin,
 };
-use corner_impact::figures::plots::{
-    Against, CornerMark, Diagram, ImpactPoint, Trace, TracePoint, cam_figure, corner_marks, impact_diagram,
-    phase_plane, strobe_diagram, time_trace,
+use corner_impact::figures::{
+    CornerMark, Run, cam_figure, corner_marks, impact_diagram, phase_plane, strobe_diagram, time_trace,
 };
+use corner_impact::flight::State;
 use corner_impact::model::{Model, OSORIO_2008};
+use corner_impact::section::Sample;
+use corner_impact::simulate::{Event, EventKind};
 use resvg::tiny_skia::Pixmap;
 use resvg::usvg::{Options, Tree, roxmltree::Document};
 
@@ -64,22 +66,26 @@ fn sweep(speeds: usize, impacts: usize, mut push: impl FnMut(f64, f64)) {
     }
 }
 
-fn motion() -> Vec<TracePoint> {
-    let point = |i: i32| {
-        let (time, contact) = (f64::from(i) * 1e-3, (i / 100) % 2 == 1);
+/// Hops and rests by turns, 0.002 revolutions a sample, with impacts after 2 and after 6 tenths of a revolution.
+fn motion() -> Run {
+    let sample = |i: i32| {
+        let (turned, contact) = (0.3 + f64::from(i) * 0.002 * TAU, (i / 100) % 2 == 1);
         let gap = if contact { 0.0 } else { (f64::from(i % 100) / 100.0 * TAU / 2.0).sin() * 0.02 };
-        let cam = 0.4 + 0.1 * (time * 20.0).sin();
-        TracePoint {
-            turned_rad: time * 20.0,
-            time_s: time,
-            position_m: cam + gap,
-            cam_m: cam,
-            gap_m: gap,
-            gap_velocity_m_s: (f64::from(i % 100) / 100.0 * TAU / 2.0).cos(),
-            contact,
-        }
+        let lift = 0.4 + 0.1 * turned.sin();
+        let velocity = (f64::from(i % 100) / 100.0 * TAU / 2.0).cos();
+        Sample { turned, state: State { position: lift + gap, velocity }, lift, cam_velocity: 0.0, gap, contact }
     };
-    (0..600).map(point).collect()
+    let impact = |turned: f64| Event {
+        kind: EventKind::Impact,
+        revolution: 0,
+        cam_angle: 0.3 + turned * TAU,
+        position: 0.45,
+        velocity_before: -1.0,
+        velocity_after: 1.0,
+        cam_velocity: 0.0,
+        segment: 0,
+    };
+    Run { rpm: 60.0, samples: (0..600).map(sample).collect(), events: [0.2, 0.6].map(impact).to_vec() }
 }
 
 #[test]
@@ -271,8 +277,8 @@ fn nothing_to_draw_is_said() {
         assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
         assert!(png::render(&figure, 300).is_ok());
     }
-    let empty = Trace { title: "", points: &[], impacts: &[], against: Against::Time, gap: true };
-    assert_eq!(drawn(&time_trace(&empty)).matches(">no data<").count(), 2);
+    let empty = Run { rpm: 60.0, samples: vec![], events: vec![] };
+    assert_eq!(drawn(&time_trace("", &empty)).matches(">no data<").count(), 2);
     let none = Figure { panels: vec![], ..parabola() };
     assert!(drawn(&none).contains("<svg") && png::render(&none, 100).is_ok());
     assert!(!drawn(&parabola()).contains("no data"));
@@ -458,8 +464,7 @@ fn a_diagram_shows_corners_and_exponents() {
     let mut grid = Density::new([660.0, 750.0], [90.0, 230.0]);
     sweep(200, 50, |rpm, phase| grid.push(rpm, phase));
     let exponents = [[660.0, 0.4], [673.0, 0.2], [674.0, -0.1], [750.0, -0.3]];
-    let diagram = |lyapunov| Diagram { title: "D", points: grid.clone(), shown: None, corners: &corners, lyapunov };
-    let with = texts(&drawn(&impact_diagram(diagram(Some(&exponents[..])))));
+    let with = texts(&drawn(&impact_diagram("D", grid.clone(), &corners, Some(&exponents[..]))));
     for text in [
         "cam angle at impact φ (deg)",
         "P 150.2°",
@@ -470,32 +475,33 @@ fn a_diagram_shows_corners_and_exponents() {
     ] {
         assert!(with.iter().any(|found| found == text), "{text}: {with:?}");
     }
-    let strobe = texts(&drawn(&strobe_diagram(diagram(None))));
+    let strobe = texts(&drawn(&strobe_diagram("D", grid, None)));
     assert!(strobe.iter().any(|found| found == "follower position q at the section (m)"), "{strobe:?}");
     assert!(!strobe.iter().any(|found| found.contains("Lyapunov") || found.contains("150.2")), "{strobe:?}");
 }
 
 #[test]
 fn a_trace_shows_contact_and_impacts() {
-    let points = motion();
-    let impacts: Vec<ImpactPoint> =
-        [0.1, 0.3].map(|time_s| ImpactPoint { turned_rad: 20.0 * time_s, time_s, position_m: 0.45 }).to_vec();
-    let trace = |against, gap| Trace { title: "M", points: &points, impacts: &impacts, against, gap };
-    let figure = time_trace(&trace(Against::Time, true));
+    let run = motion();
+    let figure = time_trace("M", &run);
     let svg = drawn(&figure);
     let found = texts(&svg);
-    for text in ["position (m)", "cam c", "follower q", "in contact", "impact", "gap q − c (m)", "time t (s)"] {
+    for text in
+        ["position (m)", "cam c", "follower q", "in contact", "impact", "gap q − c (m)", "revolutions of the cam"]
+    {
         assert_eq!(found.iter().filter(|found| *found == text).count(), 1, "{text}: {found:?}");
     }
-    let contact = figure.panels[0].series.iter().find(|series| series.label == "in contact").unwrap();
-    let Data::Line { points: riding, stroke: Stroke::Thick } = &contact.data else { panic!("{contact:?}") };
+    let series = |label: &str| &figure.panels[0].series.iter().find(|series| series.label == label).unwrap().data;
+    let Data::Line { points: riding, stroke: Stroke::Thick } = series("in contact") else { panic!("{figure:?}") };
     let shown: Vec<bool> = riding.iter().map(|point| !point[0].is_nan()).collect();
-    assert_eq!(shown, points.iter().map(|point| point.contact).collect::<Vec<_>>());
+    assert_eq!(shown, run.samples.iter().map(|sample| sample.contact).collect::<Vec<_>>());
+    let Data::Points { points: impacts, .. } = series("impact") else { panic!("{figure:?}") };
+    for ([turned, position], wanted) in impacts.iter().zip([0.2, 0.6]) {
+        assert!((turned - wanted).abs() < 1e-12 && *position == 0.45, "{impacts:?}");
+    }
     assert!(svg.contains(r#"stroke-width="4.5""#));
-    let turns = time_trace(&trace(Against::Revolutions, false));
-    assert_eq!((turns.panels.len(), turns.x.label.as_str()), (1, "revolutions of the cam"));
-    assert!((turns.x.range.unwrap()[1] - points[599].turned_rad / TAU).abs() < 1e-12);
-    let plane = texts(&drawn(&phase_plane("P", &points)));
+    assert!((figure.x.range.unwrap()[1] - 599.0 * 0.002).abs() < 1e-12);
+    let plane = texts(&drawn(&phase_plane("P", &run)));
     assert!(plane.contains(&"gap q − c (m)".to_owned()) && plane.contains(&"gap velocity q' − c' (m/s)".to_owned()));
 }
 
@@ -568,7 +574,7 @@ fn the_same_figure_is_the_same_bytes() {
     let build = || {
         let mut grid = Density::new([660.0, 750.0], [90.0, 230.0]);
         sweep(2000, 100, |rpm, phase| grid.push(rpm, phase));
-        impact_diagram(Diagram { title: "D", points: grid, shown: None, corners: &[], lyapunov: None })
+        impact_diagram("D", grid, &[], None)
     };
     assert_eq!(svg::render(&build()).unwrap(), svg::render(&build()).unwrap());
     assert_eq!(png::render(&build(), 500).unwrap(), png::render(&build(), 500).unwrap());

@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 
 use crate::common;
 use corner_impact::border_collision::feigin::Speeds;
-use corner_impact::figures::plots::corner_marks;
+use corner_impact::figures::corner_marks;
 use corner_impact::figures::through_corner::{Moment, Place, Shown, through_corner};
 use corner_impact::model::{Model, OSORIO_2008};
 use corner_impact::orbit::eigenvalues;

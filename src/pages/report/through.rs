@@ -7,9 +7,8 @@ use serde::Serialize;
 
 use crate::draw::Spacing;
 use crate::draw::ticks::{ticks, unit};
-use crate::figures::ThroughCorner;
-use crate::figures::plots::CornerMark;
 use crate::figures::through_corner::{Moment, Place, Run, Shown};
+use crate::figures::{CornerMark, ThroughCorner};
 use crate::orbit::Eigenvalue;
 use crate::simulate::Event;
 

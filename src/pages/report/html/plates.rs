@@ -3,7 +3,7 @@
 use maud::{Markup, PreEscaped, html};
 
 use crate::draw::svg;
-use crate::figures::plates::Plate;
+use crate::figures::{Drawn, Plate};
 use crate::pages::report::dossier::Dossier;
 use crate::pages::report::html::{HtmlError, Section};
 
@@ -16,13 +16,14 @@ pub(crate) fn section(dossier: &Dossier) -> Result<Option<Section>, HtmlError> {
     }
     let (mut drawn, mut before) = (Vec::new(), None);
     for plate in &dossier.plates {
-        let again = plate.absent.is_some() && plate.absent == before;
+        let absent = plate.drawn.as_ref().err();
+        let again = absent.is_some() && absent == before;
         drawn.push(match plate.id {
             CAM => elsewhere(plate, dossier),
-            _ if again => absent(plate, dossier),
+            _ if again => self::absent(plate, dossier),
             _ => self::plate(plate, dossier)?,
         });
-        before.clone_from(&plate.absent);
+        before = absent;
     }
     let body = html! { @for plate in &drawn { (plate) } };
     Ok(Some(Section { id: "figures", title: "Figures", body }))
@@ -48,18 +49,15 @@ fn place(plate: &Plate, dossier: &Dossier) -> Markup {
 
 /// A figure with its caption, the paper's figure that it redraws, and the command that makes it.
 pub(crate) fn plate(plate: &Plate, dossier: &Dossier) -> Result<Markup, HtmlError> {
-    let drawing = plate.figure.as_ref().map(svg::render).transpose()?;
-    Ok(html! {
-        figure id={ "plate-" (plate.id) } {
-            @if let Some(drawing) = &drawing {
-                div.wide.drawing role="region" aria-label=(plate.title) tabindex="0" { (PreEscaped(drawing)) }
-            }
-            figcaption {
-                (place(plate, dossier))
-                @if drawing.is_none() { strong { (plate.title) } ". " }
-                @if let Some(why) = &plate.absent { span.absent { "Not drawn: " (why) "." } } @else { (plate.caption) }
-                @if drawing.is_some() { code.command { (plate.command) } }
-            }
+    let (drawing, caption) = match &plate.drawn {
+        Ok(Drawn { figure, caption }) => {
+            let drawing = PreEscaped(svg::render(figure)?);
+            let region = html! { div.wide.drawing role="region" aria-label=(plate.title) tabindex="0" { (drawing) } };
+            (region, html! { (caption) code.command { (plate.command) } })
         }
+        Err(why) => (html! {}, html! { strong { (plate.title) } ". " span.absent { "Not drawn: " (why) "." } }),
+    };
+    Ok(html! {
+        figure id={ "plate-" (plate.id) } { (drawing) figcaption { (place(plate, dossier)) (caption) } }
     })
 }

@@ -1,0 +1,40 @@
+//! Basins on a section: what each start ends on, the orbits, and the curve that parts the basins.
+
+use crate::draw::{Axis, BREAK, Colour, Data, Density, Figure, Marker, Panel, Series, Stroke};
+use crate::figures::position;
+use crate::flight::State;
+use crate::show::words;
+use crate::study::basins::{Basins, Curve};
+
+/// Colours of the parts and how much of them, in order, so that each is a grey of its own; further ones share the last.
+const COLOURS: [(Colour, f64); 5] =
+    [(Colour::Blue, 1.0), (Colour::Vermilion, 0.6), (Colour::Green, 0.4), (Colour::Purple, 0.15), (Colour::Grey, 0.8)];
+
+/// Position across, velocity up, a colour for each ending; where stable orbits and saddles cross the section, and the stable
+/// manifolds of these.
+pub fn basins_figure(title: &str, basins: &Basins, stable: &[State], saddles: &[State], curves: &[Curve]) -> Figure {
+    let grid = &basins.grid;
+    let (x, y) = (grid.positions, grid.velocities);
+    let mut areas = vec![Density::new(x, y); basins.parts.len().min(COLOURS.len())];
+    let [columns, rows] = Density::new(x, y).cells();
+    let place = |index: usize, count: usize| (index as f64 + 0.5) / count as f64;
+    for row in 0..rows {
+        for column in 0..columns {
+            let (right, up) = (place(column, columns), place(row, rows));
+            let cell = ((up * grid.rows as f64) as usize) * grid.columns + (right * grid.columns as f64) as usize;
+            let Some(part) = basins.cells[cell] else { continue };
+            areas[part.min(COLOURS.len() - 1)].push(x[0] + right * (x[1] - x[0]), y[0] + up * (y[1] - y[0]));
+        }
+    }
+    let mut series: Vec<Series> = Vec::new();
+    for ((cells, part), (colour, strength)) in areas.into_iter().zip(&basins.parts).zip(COLOURS) {
+        series.push(Series::new(&words::ending(&part.ending), colour, Data::Region { cells, strength }));
+    }
+    let at = |state: &State| [state.position, state.velocity];
+    let pieces = curves.iter().flat_map(|curve| &curve.pieces);
+    let line = pieces.flat_map(|piece| piece.iter().map(at).chain([BREAK]));
+    series.extend(Series::line("stable manifold", Colour::Ink, Stroke::Thin, line).if_any());
+    series.extend(Series::points("stable orbit", Colour::Ink, Marker::Dot, stable.iter().map(at)).if_any());
+    series.extend(Series::points("saddle", Colour::Ink, Marker::Ring, saddles.iter().map(at)).if_any());
+    Figure::new(title, position().over(x), vec![Panel::new(Axis::new("velocity q'", "m/s").over(y), 0.66, series)])
+}

@@ -1,0 +1,126 @@
+//! Diagrams over speeds: where impacts fall on the cam, or where the follower is at the section.
+
+use crate::diagram::{Following, Placed, Places, Section, Speeds, Start, Sweep, SweepError};
+use crate::draw::layout::widened;
+use crate::draw::{Axis, Colour, Data, Density, Figure, Panel, Series, Stroke};
+use crate::figures::cam::{CornerMark, corner_marks};
+use crate::figures::{Effort, Entry, SPEED, Slow, Subject, drawn, position};
+
+/// Impacts above the speed at which the follower begins to leave the cam.
+pub(crate) const SLOW_IMPACTS: Entry = Entry {
+    id: "slow-impacts",
+    place: "Figure 5(a)",
+    title: |subject| {
+        subject.slow_title("impacts on the cam above detachment", |Slow { range: [low, high], .. }| {
+            format!("impacts on the cam, {low} to {high} rpm")
+        })
+    },
+    draw: |subject, title| {
+        let range = subject.shown.slow.clone()?.range;
+        let mut points = Density::new(range, WHOLE_CAM);
+        subject.slow_impacts(range)?.iter().for_each(|[rpm, angle]| points.push(*rpm, angle.to_degrees()));
+        let corners = corner_marks(&subject.cam);
+        let lines = match (subject.cam.corners().len(), corners.len()) {
+            (0, _) => "The cam has no corner.",
+            (all, marked) if marked < all => "Horizontal lines are the largest of the cam's corners.",
+            _ => "Horizontal lines are the cam's corners.",
+        };
+        let caption = format!(
+            "Where on the cam impacts fall, speed by speed, in {} revolutions after {}. A curve is an impact that repeats, \
+             scattered points are of motions that do not; curves crowd where impacts accumulate before the follower comes to \
+             rest. {lines}",
+            subject.slow_effort.record, subject.slow_effort.transient,
+        );
+        drawn(impact_diagram(title, points, &corners, None), caption)
+    },
+};
+
+/// Angles of the cam, degrees.
+pub(crate) const WHOLE_CAM: [f64; 2] = [0.0, 360.0];
+/// Below a diagram in which some exponent cannot be drawn.
+const FORGETS: &str = "λ = −∞, not drawn, where the follower came to stick to the cam: every deviation is lost there";
+
+/// Impact phases in degrees against speed in rpm, with the cam's corners as lines; `[rpm, Lyapunov exponent per revolution]`
+/// in a second panel.
+pub fn impact_diagram(title: &str, points: Density, corners: &[CornerMark], exponents: Option<&[[f64; 2]]>) -> Figure {
+    let shown = shown_impacts(&points);
+    let mut figure = figure(title, points, impact_angles(), shown, exponents);
+    if let Some(panel) = figure.panels.first_mut() {
+        panel.marks = corners.iter().map(CornerMark::mark).collect();
+    }
+    figure
+}
+
+/// Positions at the section, m, against speed in rpm, with exponents as in [`impact_diagram`].
+pub fn strobe_diagram(title: &str, points: Density, exponents: Option<&[[f64; 2]]>) -> Figure {
+    let shown = points.extent().map(|extent| widened(extent, 0.02));
+    figure(title, points, position(), shown, exponents)
+}
+
+/// The axis of impact phases.
+pub(crate) fn impact_angles() -> Axis {
+    Axis::degrees("cam angle at impact φ")
+}
+
+/// The range of impact phases, degrees, that points take up, with a little room; no more than the whole cam.
+pub(crate) fn shown_impacts(points: &Density) -> Option<[f64; 2]> {
+    let [low, high] = widened(points.extent()?, 0.02);
+    Some([low.max(0.0), high.min(360.0)])
+}
+
+fn figure(title: &str, points: Density, axis: Axis, shown: Option<[f64; 2]>, exponents: Option<&[[f64; 2]]>) -> Figure {
+    let [rpm, all] = points.ranges();
+    let forgets = exponents.is_some_and(|points| points.iter().any(|[_, exponent]| *exponent == f64::NEG_INFINITY));
+    let cloud = Series::new("", Colour::Blue, Data::Density(points));
+    let mut panels = vec![Panel::new(axis.over(shown.unwrap_or(all)), 0.52, vec![cloud])];
+    panels.extend(exponents.map(|points| {
+        let line = Series::line("", Colour::Vermilion, Stroke::Thin, points.iter().copied());
+        Panel::new(Axis::new("Lyapunov exponent λ", "per revolution"), 0.2, vec![line]).with_zero()
+    }));
+    let note = if forgets { FORGETS.into() } else { String::new() };
+    Figure { note, ..Figure::new(title, Axis::new(SPEED[0], SPEED[1]).over(rpm), panels) }
+}
+
+impl Subject {
+    fn sweep(
+        &self,
+        range: [f64; 2],
+        section: Section,
+        following: Following,
+        effort: Effort,
+    ) -> Result<Vec<[f64; 2]>, String> {
+        let [low, high] = range;
+        let sweep = Sweep {
+            machine: self.machine(low),
+            speeds: Speeds { low, high, count: effort.speeds },
+            start: Start { cam_angle: 0.0, follower: Placed::OnCam(0.0) },
+            following,
+            transient: effort.transient,
+            record: effort.record,
+            section,
+            lyapunov: false,
+        };
+        let mut places = Vec::new();
+        let kept = sweep.run(None, |_, found: Places| {
+            places.extend(found.places);
+            Ok::<(), SweepError>(())
+        });
+        kept.map(|_| places).map_err(|error| error.to_string())
+    }
+
+    /// Impacts above detachment: speed, rpm, and cam angle, rad.
+    pub fn slow_impacts(&self, range: [f64; 2]) -> Result<Vec<[f64; 2]>, String> {
+        self.sweep(range, Section::Impacts, Following::Nothing, self.slow_effort)
+    }
+
+    /// What runs with rising and with falling speed settle on around the corner impact: speed, rpm, and cam angle, rad, of
+    /// impacts, or position at the section of its map, m.
+    pub fn fast_runs(&self, range: [f64; 2], at_section: bool) -> Result<Vec<[f64; 2]>, String> {
+        let section = if at_section { Section::Strobe(self.found()?.at.section_angle()) } else { Section::Impacts };
+        let run = |following| self.sweep(range, section, following, self.fast_effort);
+        let (rising, falling) = rayon::join(|| run(Following::Up), || run(Following::Down));
+        let mut both = rising?;
+        both.extend(falling?);
+        Ok(both)
+    }
+}

@@ -1,0 +1,161 @@
+//! The position of the follower once a revolution against speed, with the branches of orbits over what runs settle on; and
+//! the states of one long run there.
+
+use crate::draw::layout::widened;
+use crate::draw::{Axis, BREAK, Cloud, Colour, Data, Density, Figure, Marker, Panel, Series};
+use crate::figures::trace::TRANSIENT;
+use crate::figures::{Entry, Fast, SPEED, Subject, by_stability, drawn, position};
+use crate::flight::State;
+use crate::orbit::branch::{Branch, BranchPoint};
+use crate::orbit::{Course, Cycle};
+use crate::simulate::{Machine, SimulateError, Unobserved, angular_velocity};
+
+/// The stroboscopic diagram around the corner impact.
+pub(crate) const FAST_SECTION: Entry = Entry {
+    id: "fast-section",
+    place: "Figure 5(d)",
+    title: |subject| {
+        subject.fast_title("once a revolution around the corner impact", |Fast { range: [low, high], .. }| {
+            format!("once a revolution, {low} to {high} rpm")
+        })
+    },
+    draw: |subject, title| {
+        let range = subject.shown.fast.clone()?.range;
+        let mut runs = Cloud::new(range);
+        subject.fast_runs(range, true)?.iter().for_each(|[rpm, position]| runs.push(*rpm, *position));
+        let crossings = subject.crossings(subject.branches()?)?;
+        let at = &subject.found()?.at;
+        let caption = format!(
+            "The same runs and orbits, looked at once a revolution: the position of the follower when the cam is at {:.2}°, \
+             half a turn from the corner.",
+            at.section_angle().to_degrees()
+        );
+        drawn(section_diagram(title, runs.finish(), &crossings, [at.speed_rpm(), at.state.position]), caption)
+    },
+};
+
+/// What the motion settles on where, at a fold, the orbits of the corner impact are gone.
+pub(crate) const BEYOND_ATTRACTOR: Entry = Entry {
+    id: "beyond-attractor",
+    place: "",
+    title: |subject| {
+        subject.fast_title("what the motion settles on beyond the corner impact", |fast| {
+            format!("what the motion settles on at {} rpm", fast.beyond)
+        })
+    },
+    draw: |subject, title| {
+        let rpm = subject.shown.fast.clone()?.beyond;
+        let states = subject.section_states(rpm, STATES)?;
+        let star = subject.found()?.at.state;
+        let caption = format!(
+            "The states at the section of the map, half a turn from the corner, in {STATES} revolutions of the motion at {rpm} \
+             rpm: one that repeats is a few points. The orbit of the corner impact has q = {:.4} m, q' = {:.4} m/s there.",
+            star.position, star.velocity
+        );
+        drawn(attractor(title, &states, star), caption)
+    },
+};
+
+/// States of the attractor.
+const STATES: usize = 20_000;
+
+/// A piece of a branch at the section: one crossing of the orbits along it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Crossings {
+    /// Whether the orbits are stable.
+    pub stable: bool,
+    /// Speed, rpm, and position at the section, m.
+    pub points: Vec<[f64; 2]>,
+}
+
+/// Positions at the section against speed, and the corner impact at a speed, rpm, and position, m.
+fn section_diagram(title: &str, runs: Density, branches: &[Crossings], corner: [f64; 2]) -> Figure {
+    let [rpm, all] = runs.ranges();
+    let shown = |[speed, _]: &&[f64; 2]| (rpm[0]..=rpm[1]).contains(speed);
+    let heights = branches.iter().flat_map(|line| &line.points).chain([&corner]).filter(shown).map(|[_, q]| *q);
+    let all = widened(heights.fold(all, |[low, high], q| [low.min(q), high.max(q)]), 0.03);
+    let mut series = vec![Series::new("runs", Colour::Grey, Data::Density(runs))];
+    series.extend(by_stability(["stable", "unstable"], |stable| {
+        let lines = branches.iter().filter(|line| line.stable == stable);
+        lines.flat_map(|line| line.points.iter().copied().chain([BREAK])).collect()
+    }));
+    series.push(Series::points("corner impact", Colour::Ink, Marker::Ring, [corner]));
+    let panel = Panel::new(position().over(all), 0.52, series);
+    Figure::new(title, Axis::new(SPEED[0], SPEED[1]).over(rpm), vec![panel])
+}
+
+/// The states of a long run at the section; and where an orbit that is gone was, if that is among them.
+fn attractor(title: &str, states: &[State], gone: State) -> Figure {
+    let ends = |value: fn(&State) -> f64| {
+        let all = states.iter().map(value);
+        widened(all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)]), 0.03)
+    };
+    let (x, y) = (ends(|state| state.position), ends(|state| state.velocity));
+    let mut cloud = Density::new(x, y);
+    states.iter().for_each(|state| cloud.push(state.position, state.velocity));
+    let at = [gone.position, gone.velocity];
+    let inside = (x[0]..=x[1]).contains(&at[0]) && (y[0]..=y[1]).contains(&at[1]);
+    let mut series = vec![Series::new("states, once a revolution", Colour::Blue, Data::Density(cloud))];
+    if inside {
+        series.push(Series::points("x* of the corner impact", Colour::Vermilion, Marker::Disc, [at]));
+    }
+    Figure::new(title, position().over(x), vec![Panel::new(Axis::new("velocity q'", "m/s").over(y), 0.6, series)])
+}
+
+impl Subject {
+    /// The states at the section of the corner impact's map, once a revolution, that a start at rest on the cam settles on.
+    pub fn section_states(&self, rpm: f64, revolutions: usize) -> Result<Vec<State>, String> {
+        let machine = self.machine(rpm);
+        let cam_angle = self.found()?.at.section_angle();
+        let run = || {
+            let mut motion = machine.start_on_cam(0.0, 0.0)?;
+            let goal = motion.after(TRANSIENT);
+            let _ = machine.advance(&mut motion, goal, &mut Unobserved)?;
+            let mut states = Vec::with_capacity(revolutions);
+            for _ in 0..revolutions {
+                let goal = motion.next(cam_angle);
+                let _ = machine.advance(&mut motion, goal, &mut Unobserved)?;
+                states.push(motion.state);
+            }
+            Ok::<_, SimulateError>(states)
+        };
+        run().map_err(|error| format!("at {rpm} rpm: {error}"))
+    }
+
+    /// Where the orbits of branches cross the section of the corner impact's map.
+    pub(crate) fn crossings(&self, branches: &[Branch]) -> Result<Vec<Crossings>, String> {
+        let at = &self.found()?.at;
+        let (angle, machine) = (at.section_angle(), self.machine(at.speed_rpm()));
+        let mut all = Vec::new();
+        for branch in branches {
+            let most = branch.points.iter().map(|point| point.orbit.revolutions).max().unwrap_or(1);
+            for turn in 0..most {
+                let mut open: Option<Crossings> = None;
+                for pair in branch.points.windows(2) {
+                    let [one, other] = pair else { continue };
+                    let ends = crossing(&machine, one, angle, turn).zip(crossing(&machine, other, angle, turn));
+                    // A piece takes the stability of its end that is no special point.
+                    let stable = if one.special.is_some() { other } else { one }.orbit.is_stable();
+                    let Some((from, to)) = ends else {
+                        all.extend(open.take());
+                        continue;
+                    };
+                    match &mut open {
+                        Some(line) if line.stable == stable => line.points.push(to),
+                        _ => all.extend(open.replace(Crossings { stable, points: vec![from, to] })),
+                    }
+                }
+                all.extend(open);
+            }
+        }
+        Ok(all)
+    }
+}
+
+/// Speed, rpm, and position, m, at the section in one revolution of an orbit that never sticks.
+fn crossing(machine: &Machine, point: &BranchPoint, cam_angle: f64, turn: u64) -> Option<[f64; 2]> {
+    let Course::Impacts(cycle) = &point.orbit.course else { return None };
+    let later: Cycle = if turn == 0 { cycle.clone() } else { cycle.begun_later(turn) };
+    let machine = machine.at_speed(angular_velocity(point.rpm));
+    (turn < cycle.revolutions).then(|| [point.rpm, later.at_section(&machine, cam_angle).0.position])
+}
