@@ -6,17 +6,10 @@ use std::time::Instant;
 
 use super::start::{finite, range, rpm, turn};
 use super::{CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::Progress};
-use crate::cam::Cam;
-use crate::draw::Figure;
 use crate::figures::basins_figure;
-use crate::flight::State;
-use crate::model::Model;
-use crate::orbit::{Course, PeriodicOrbit, Search, search};
-use crate::pages::BasinsSummary;
-use crate::section::StroboscopicMap;
-use crate::show::csv;
-use crate::simulate::{Machine, angular_velocity};
-use crate::study::basins::{Basins, Curve, Ending, Extent, Grid, Patience, Reversed, Saddle};
+use crate::orbit::Search;
+use crate::show::{Paged, csv};
+use crate::study::basins::{Border, Grid, Patience, Section, Summary};
 
 /// Runs a grid of starts at one speed and says what each ends on, as a table or a picture.
 #[derive(clap::Args)]
@@ -73,87 +66,28 @@ fn cells(text: &str) -> Result<[usize; 2], String> {
     }
 }
 
-/// Where an orbit of impacts crosses the section.
-fn crossing(machine: &Machine, orbit: &PeriodicOrbit, cam_angle: f64) -> Option<State> {
-    match &orbit.course {
-        Course::Impacts(cycle) => Some(cycle.at_section(machine, cam_angle).0),
-        Course::Sticking(_) | Course::Free => None,
-    }
-}
-
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let to_standard = picture::out_is_standard(arguments.out.as_ref(), arguments.summary)?;
     let model = arguments.model.read(session)?;
-    let cam = Cam::new(&model)?;
-    let machine = Machine::new(cam, &model.follower, angular_velocity(arguments.rpm));
-    let map = StroboscopicMap { machine, cam_angle: turn(arguments.strobe) };
-    let orbits = search(&map.machine, &Search { revolutions: 1, impacts: Some(1) })?;
-    let grid = grid(arguments, &map, &orbits)?;
+    let section = Section::new(&model, arguments.rpm, turn(arguments.strobe))?;
+    let grid = section.grid(arguments.grid, arguments.position, arguments.velocity)?;
     let patience = Patience { revolutions: arguments.revolutions, longest: arguments.longest };
-    let clock = Instant::now();
-    let threads = arguments.threads.map(usize::from);
-    let progress = Progress::new((grid.columns * grid.rows) as u64);
-    let basins = grid.basins_watched(&map.machine, patience, threads, &progress)?;
+    let (clock, progress) = (Instant::now(), Progress::spinner(""));
+    let basins = grid.basins_watched(&section.map.machine, patience, arguments.threads.map(usize::from), &progress)?;
     drop(progress);
     let wall_s = clock.elapsed().as_secs_f64();
     if let Some(path) = &arguments.out {
         let table = |table: &mut dyn Write| Ok(table.write_all(csv::basins(&basins).as_bytes())?);
-        let picture = || Ok(draw(&model, &map, &orbits, &basins, arguments.rpm));
+        let picture = || {
+            let Border { stable, saddles, curves } = &section.border(&basins);
+            let title = format!("{} at {} rpm: what each start ends on", model.name, arguments.rpm);
+            Ok(basins_figure(&title, &basins, stable, saddles, curves))
+        };
         Target::create(path, &mut *session.out)?.fill(table, picture)?;
     }
-    let summary = BasinsSummary::new(&model.name, arguments.rpm, &basins, wall_s);
+    let summary = Summary::new(&model, arguments.rpm, basins, wall_s);
     if !to_standard {
         session.answer(&summary, arguments.summary, |width| summary.page(width))?;
     }
     Ok(Exit::Agrees)
-}
-
-fn grid(arguments: &Arguments, map: &StroboscopicMap, orbits: &[PeriodicOrbit]) -> Result<Grid, CommandError> {
-    let lift = map.machine.cam().lift(map.cam_angle);
-    let cam_velocity = map.machine.angular_velocity() * lift.slope;
-    let crossings = orbits.iter().filter_map(|orbit| crossing(&map.machine, orbit, map.cam_angle));
-    let (mut highest, mut velocities) = (map.machine.cam().top(), [cam_velocity.min(-1.0), cam_velocity.max(1.0)]);
-    for State { position, velocity } in crossings {
-        highest = highest.max(position);
-        velocities = [velocities[0].min(velocity), velocities[1].max(velocity)];
-    }
-    let span = velocities[1] - velocities[0];
-    let grid = Grid {
-        cam_angle: map.cam_angle,
-        positions: arguments.position.unwrap_or([lift.value, lift.value + 2.0 * (highest - lift.value)]),
-        velocities: arguments.velocity.unwrap_or([velocities[0] - span, velocities[1] + span]),
-        columns: arguments.grid[0],
-        rows: arguments.grid[1],
-    };
-    let is_range = |[low, high]: [f64; 2]| low < high && (high - low).is_finite();
-    if is_range(grid.positions) && is_range(grid.velocities) {
-        return Ok(grid);
-    }
-    Err(CommandError::Words("no range to put starts in: give --position and --velocity".into()))
-}
-
-fn draw(model: &Model, map: &StroboscopicMap, orbits: &[PeriodicOrbit], basins: &Basins, rpm: f64) -> Figure {
-    let machine = &map.machine;
-    let endings = basins.parts.iter().filter_map(|part| match &part.ending {
-        Ending::Orbit(orbit) => crossing(machine, orbit, map.cam_angle),
-        _ => None,
-    });
-    let saddles: Vec<Saddle> = orbits
-        .iter()
-        .filter_map(|orbit| match &orbit.course {
-            Course::Impacts(cycle) => Saddle::new(machine, cycle, map.cam_angle),
-            _ => None,
-        })
-        .collect();
-    let [low, high] = basins.grid.positions;
-    let extent = Extent::of(high - low);
-    let reversed = Reversed::new(&model.follower, map);
-    let halves = |saddle: &Saddle| {
-        reversed.iter().flat_map(|r| [1.0, -1.0].map(|s| Curve::stable(r, saddle, s, &extent))).collect::<Vec<_>>()
-    };
-    let curves: Vec<Curve> = saddles.iter().flat_map(halves).collect();
-    let title = format!("{} at {rpm} rpm: what each start ends on", model.name);
-    let stable: Vec<State> = endings.collect();
-    let saddles: Vec<State> = saddles.iter().map(|saddle| saddle.state).collect();
-    basins_figure(&title, basins, &stable, &saddles, &curves)
 }

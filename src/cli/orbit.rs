@@ -1,13 +1,11 @@
 //! `corner-impact orbit [MODEL] --rpm R`.
 
-use super::start::{rpm, state, turn};
+use super::start::{rpm, state};
 use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
-use crate::cam::Cam;
 use crate::flight::State;
-use crate::orbit::search::near;
-use crate::orbit::{Search, search};
-use crate::pages::OrbitDocument;
-use crate::simulate::{Machine, angular_velocity};
+use crate::orbit::Search;
+use crate::show::Paged;
+use crate::study::orbit::{Wanted, orbits};
 
 /// Finds periodic orbits at one speed, stable and unstable, with their multipliers.
 #[derive(clap::Args)]
@@ -39,21 +37,13 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let model = arguments.model.read(session)?;
-    let cam = Cam::new(&model)?;
-    let machine = Machine::new(cam, &model.follower, angular_velocity(arguments.rpm));
-    let progress = Progress::spinner("looking for periodic orbits");
-    let orbits = match arguments.guess {
-        Some(state) => {
-            let found = near(&machine, turn(0.0), state, arguments.revolutions)?;
-            found.into_iter().collect()
-        }
-        None => {
-            let wanted = Search { revolutions: arguments.revolutions, impacts: arguments.impacts };
-            search(&machine, &wanted)?
-        }
+    let wanted = match arguments.guess {
+        Some(state) => Wanted::Near(state, arguments.revolutions),
+        None => Wanted::All(Search { revolutions: arguments.revolutions, impacts: arguments.impacts }),
     };
+    let progress = Progress::spinner("looking for periodic orbits");
+    let found = orbits(&model, arguments.rpm, wanted)?;
     drop(progress);
-    let document = OrbitDocument::new(&model.name, arguments.rpm, &orbits);
-    session.answer(&document, arguments.json, |width| document.page(width))?;
+    session.answer(&found, arguments.json, |width| found.page(width))?;
     Ok(Exit::Agrees)
 }

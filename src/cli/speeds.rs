@@ -1,10 +1,8 @@
 //! `corner-impact speeds [MODEL]`.
 
-use std::sync::atomic::{AtomicU64, Ordering};
-
 use super::start::rpm_range;
 use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
-use crate::pages::RegimesDocument;
+use crate::show::Paged;
 use crate::study::speeds::{Care, regimes, usual_speeds};
 
 /// Tells at which speeds the follower leaves the cam, chatters, bounces regularly, is chaotic, and where hysteresis is.
@@ -36,11 +34,9 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let model = arguments.model.read(session)?;
     let rpm = arguments.rpm.unwrap_or_else(|| usual_speeds(&model));
     let care = Care { speeds: arguments.speeds as usize, settling: arguments.settling, ..Care::default() };
-    let (progress, done) = (Progress::new(2 * u64::from(arguments.speeds)), AtomicU64::new(0));
-    let passed = || progress.set(done.fetch_add(1, Ordering::Relaxed) + 1);
-    let found = regimes(&model, rpm, care, &passed)?;
+    let progress = Progress::spinner("");
+    let found = regimes(&model, rpm, care, &progress)?;
     drop(progress);
-    let document = RegimesDocument::new(&model.name, &found);
-    session.answer(&document, arguments.json, |width| document.page(width))?;
+    session.answer(&found, arguments.json, |width| found.page(width))?;
     Ok(Exit::Agrees)
 }

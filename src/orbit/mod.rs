@@ -25,6 +25,8 @@ pub mod sticking;
 use std::f64::consts::TAU;
 
 use nalgebra::Matrix2;
+use serde::Serialize;
+use serde::ser::{SerializeStruct, Serializer};
 
 use crate::flight::State;
 use crate::simulate::{Event, EventKind, Machine, SimulateError};
@@ -51,6 +53,46 @@ pub struct PeriodicOrbit {
     pub course: Course,
 }
 
+/// Impacts apart from sticks and releases; the multipliers instead of the matrix.
+impl Serialize for PeriodicOrbit {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct Impact {
+            revolution: u64,
+            cam_angle_rad: f64,
+            velocity_before_m_s: f64,
+            velocity_after_m_s: f64,
+        }
+        #[derive(Serialize)]
+        struct Contact {
+            event: EventKind,
+            revolution: u64,
+            cam_angle_rad: f64,
+        }
+        let impact = |&Event { revolution, cam_angle, velocity_before, velocity_after, .. }: &Event| Impact {
+            revolution,
+            cam_angle_rad: cam_angle,
+            velocity_before_m_s: velocity_before,
+            velocity_after_m_s: velocity_after,
+        };
+        let contact = |&Event { kind: event, revolution, cam_angle: cam_angle_rad, .. }: &Event| Contact {
+            event,
+            revolution,
+            cam_angle_rad,
+        };
+        let mut orbit = serializer.serialize_struct("PeriodicOrbit", 8)?;
+        orbit.serialize_field("revolutions", &self.revolutions)?;
+        orbit.serialize_field("impacts", &self.impacts().map(impact).collect::<Vec<_>>())?;
+        orbit.serialize_field("contact", &self.rests().map(contact).collect::<Vec<_>>())?;
+        orbit.serialize_field("state", &[self.state.position, self.state.velocity])?;
+        orbit.serialize_field("multipliers", &self.multipliers())?;
+        orbit.serialize_field("stable", &self.is_stable())?;
+        orbit.serialize_field("course", self.course.name())?;
+        orbit.serialize_field("residual", &self.residual)?;
+        orbit.end()
+    }
+}
+
 /// The kinds of periodic motion.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Course {
@@ -60,6 +102,16 @@ pub enum Course {
     Sticking(f64),
     /// The follower never meets the cam.
     Free,
+}
+
+impl Course {
+    fn name(&self) -> &'static str {
+        match self {
+            Self::Impacts(_) => "impacts",
+            Self::Sticking(_) => "sticking",
+            Self::Free => "free",
+        }
+    }
 }
 
 impl PeriodicOrbit {
@@ -74,6 +126,11 @@ impl PeriodicOrbit {
     /// The impacts of one period.
     pub fn impacts(&self) -> impl Iterator<Item = &Event> {
         self.events.iter().filter(|event| event.kind == EventKind::Impact)
+    }
+
+    /// Where it begins to stick and where it is released.
+    pub(crate) fn rests(&self) -> impl Iterator<Item = &Event> {
+        self.events.iter().filter(|event| event.kind != EventKind::Impact)
     }
 
     /// The multipliers: eigenvalues of the matrix.
@@ -93,12 +150,7 @@ impl PeriodicOrbit {
             (Course::Sticking(_), Course::Sticking(_)) => {
                 // One motion at most goes through a state in contact.
                 let angles = |orbit: &Self| {
-                    let mut angles: Vec<f64> = orbit
-                        .events
-                        .iter()
-                        .filter(|event| event.kind != EventKind::Impact)
-                        .map(|e| e.cam_angle)
-                        .collect();
+                    let mut angles: Vec<f64> = orbit.rests().map(|event| event.cam_angle).collect();
                     angles.sort_by(f64::total_cmp);
                     angles
                 };

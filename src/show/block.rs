@@ -151,6 +151,8 @@ pub enum Block {
     Title(Words),
     /// The heading of a section or of a part of one.
     Heading(Words),
+    /// A line as it stands, with its spaces; where it does not fit a terminal, it goes on under its second column.
+    Line(Words),
     /// A paragraph, so many columns from the edge of a terminal.
     Paragraph(usize, Words),
     /// A remark to what stands before it.

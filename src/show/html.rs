@@ -15,7 +15,7 @@ fn block(block: &Block) -> Markup {
         @match block {
             Block::Title(text) => h1 { (words(text)) }
             Block::Heading(text) => h3 { (words(text)) }
-            Block::Paragraph(_, text) => @if !text.is_empty() { p { (words(text)) } }
+            Block::Line(text) | Block::Paragraph(_, text) => @if !text.is_empty() { p { (words(text)) } }
             Block::Note(text) => p.note { (words(text)) }
             Block::Entries(_, entries) => table.entries {
                 tbody { @for (name, text) in entries { tr { th scope="row" { (words(name)) } td { (words(text)) } } } }

@@ -139,6 +139,7 @@ impl Page {
         blocks.iter().try_for_each(|block| match block {
             Block::Title(words) => self.title(&text(words)),
             Block::Heading(words) => self.heading(&text(words)),
+            Block::Line(words) => writeln!(self, "{}", text(words)),
             Block::Paragraph(indent, words) => self.paragraph_at(*indent, &text(words)),
             Block::Note(words) => self.paragraph_at(2, &text(words)),
             Block::Entries(width, entries) => {

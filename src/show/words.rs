@@ -11,7 +11,7 @@ use crate::published::Verdict;
 use crate::show::block::{Mark, Symbol, Words, words};
 use crate::show::digits::Digits;
 use crate::study::basins::Ending;
-use crate::study::speeds::Regime;
+use crate::study::speeds::{Regime, Settled};
 
 /// A name with spaces for its hyphens and underscores.
 pub fn spoken(name: &str) -> String {
@@ -123,11 +123,27 @@ pub fn regime(regime: Regime) -> &'static str {
     }
 }
 
+/// So many things.
+pub fn many(count: u64, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}
+
+/// What the long run at a speed is.
+pub fn motion(settled: &Settled) -> String {
+    let turns = |n| if n == 1 { "a revolution".to_owned() } else { many(n, "revolution") };
+    let name = regime(settled.regime);
+    match (settled.regime, settled.period()) {
+        (Regime::Regular, Some((n, impacts))) => format!("{} in {}", many(impacts as u64, "impact"), turns(n)),
+        (Regime::Chaotic, _) => format!("{name}, growth {:.2}", settled.growth.unwrap_or(f64::NAN)),
+        (Regime::Unsettled, _) => format!("{name}: no period found"),
+        _ => name.into(),
+    }
+}
+
 /// What starts end on, in a legend.
 pub fn ending(ending: &Ending) -> String {
     match ending {
         Ending::Orbit(orbit) => {
-            let many = |count: u64, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
             format!("{} in {}", many(orbit.impacts().count() as u64, "impact"), many(orbit.revolutions, "revolution"))
         }
         Ending::Chaotic => "chaotic".into(),

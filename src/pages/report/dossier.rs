@@ -1,7 +1,5 @@
 //! Everything that is found about one model in one value: what the HTML page is made of.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-
 use serde::Serialize;
 
 use crate::agreement::{Agreement, shared_decimals};
@@ -11,12 +9,11 @@ use crate::figures::{Plate, Subject, corner_marks, plates, through_corner};
 use crate::model::{Model, ModelError};
 use crate::pages::report::quantities::{Quantity, quantities};
 use crate::pages::report::through::ThroughEntry;
-use crate::pages::speeds::RegimesDocument;
 use crate::paper::{Claims, Context, LedgerError};
 use crate::progress::Watch;
 use crate::show::command::command;
 use crate::study::cam::CamSheet;
-use crate::study::speeds::{Care, regimes, usual_speeds};
+use crate::study::speeds::{Care, Regimes, regimes, usual_speeds};
 use crate::study::verify::{External, Verification, verify_watched};
 
 /// A report on one model; serializes to the document `corner-impact/report/1`.
@@ -51,7 +48,7 @@ pub struct Dossier {
     /// The paper's statements, where the model is the paper's.
     pub claims: Option<Claims>,
     /// What the follower does at other speeds.
-    pub speeds: Option<RegimesDocument>,
+    pub speeds: Option<Regimes>,
     /// Why that is not known.
     pub no_speeds: Option<String>,
     /// The figures, in the paper's order.
@@ -242,15 +239,9 @@ impl Watch for Part<'_> {
 }
 
 /// What the follower does at its usual speeds, or why that is not known.
-fn speeds(model: &Model, watch: &dyn Watch) -> Result<RegimesDocument, String> {
+fn speeds(model: &Model, watch: &dyn Watch) -> Result<Regimes, String> {
     let care = Care { speeds: SPEEDS, ..Care::default() };
-    let done = AtomicUsize::new(0);
-    let passed = || {
-        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-        watch.at("other speeds", done as u64, 2 * SPEEDS as u64);
-    };
-    let found = regimes(model, usual_speeds(model), care, &passed).map_err(|error| error.to_string())?;
-    Ok(RegimesDocument::new(&model.name, &found))
+    regimes(model, usual_speeds(model), care, watch).map_err(|error| error.to_string())
 }
 
 fn commands(model: &Model, verified: bool) -> Vec<(String, &'static str)> {

@@ -3,6 +3,8 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
+use serde::Serialize;
+use serde::ser::{SerializeStruct, Serializer};
 
 use super::{Ending, Patience, ending};
 use crate::flight::State;
@@ -90,6 +92,22 @@ pub enum GridError {
     Threads(String),
 }
 
+/// A document has its fields' names, and an orbit's numbers beside the name of the ending.
+impl Serialize for Part {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut part = serializer.serialize_struct("Part", 6)?;
+        part.serialize_field("ending", self.ending.name())?;
+        if let Ending::Orbit(orbit) = &self.ending {
+            part.serialize_field("revolutions", &orbit.revolutions)?;
+            part.serialize_field("impacts", &orbit.impacts().count())?;
+        }
+        part.serialize_field("starts", &self.starts)?;
+        part.serialize_field("share", &self.share)?;
+        part.serialize_field("share_standard_error", &self.standard_error)?;
+        part.end()
+    }
+}
+
 /// The starts of a grid that end alike.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
@@ -102,6 +120,19 @@ pub struct Part {
     /// `sqrt(p (1 - p)/N)`: the standard error of the share if the N starts were drawn by chance. Those of a grid are spread
     /// better than by chance, so it errs on the large side.
     pub standard_error: f64,
+}
+
+impl Serialize for Basins {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut basins = serializer.serialize_struct("Basins", 6)?;
+        basins.serialize_field("cam_angle_rad", &self.grid.cam_angle)?;
+        basins.serialize_field("position_m", &self.grid.positions)?;
+        basins.serialize_field("velocity_m_s", &self.grid.velocities)?;
+        basins.serialize_field("cells", &[self.grid.columns, self.grid.rows])?;
+        basins.serialize_field("starts", &self.starts())?;
+        basins.serialize_field("endings", &self.parts)?;
+        basins.end()
+    }
 }
 
 /// What the starts of a grid end on.

@@ -2,6 +2,9 @@
 
 use std::cell::RefCell;
 
+use serde::Serialize;
+use serde::ser::{SerializeStruct, Serializer};
+
 use super::run::{LONGER, between, long_run, machine};
 use super::{Care, Regime, RegimeError, Settled};
 use crate::model::Model;
@@ -11,13 +14,15 @@ use crate::simulate::{Machine, Motion};
 use crate::tolerance;
 
 /// A change of the motion between two speeds.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Change {
     /// Where, rpm.
     pub rpm: f64,
     /// Between which speeds, rpm, as far as runs tell.
+    #[serde(rename = "bracket_rpm")]
     pub bracket: [f64; 2],
     /// Why.
+    #[serde(flatten)]
     pub cause: Cause,
 }
 
@@ -29,6 +34,16 @@ pub enum Cause {
     Special(Special, Option<f64>),
     /// None that the branches on either side show: a motion that does not repeat begins or ends.
     Unexplained,
+}
+
+/// The words, and whether it is located: a special point of a branch, and not a bracket of runs.
+impl Serialize for Cause {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut cause = serializer.serialize_struct("Cause", 2)?;
+        cause.serialize_field("cause", &self.words())?;
+        cause.serialize_field("located", &matches!(self, Self::Special(..)))?;
+        cause.end()
+    }
 }
 
 impl Cause {

@@ -8,10 +8,14 @@ mod change;
 mod run;
 mod walk;
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use serde::Serialize;
+use serde::ser::{SerializeStruct, Serializer};
 
 use crate::model::{Model, ModelError};
 use crate::orbit::{Course, OrbitError, PeriodicOrbit};
+use crate::progress::Watch;
 use crate::simulate::SimulateError;
 pub use change::{Cause, Change};
 pub use run::detachment;
@@ -34,6 +38,12 @@ pub enum Regime {
     Unsettled,
 }
 
+impl Regime {
+    /// As they are listed.
+    const IN_ORDER: [Self; 6] =
+        [Self::OnCam, Self::Chattering, Self::Regular, Self::Chaotic, Self::Free, Self::Unsettled];
+}
+
 /// The long run at one speed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settled {
@@ -45,6 +55,18 @@ pub struct Settled {
     pub orbit: Option<PeriodicOrbit>,
     /// Growth of a small deviation per revolution, where it does not.
     pub growth: Option<f64>,
+}
+
+impl Serialize for Settled {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let (revolutions, impacts) = self.period().unzip();
+        let mut settled = serializer.serialize_struct("Settled", 4)?;
+        settled.serialize_field("regime", &self.regime)?;
+        settled.serialize_field("revolutions", &revolutions)?;
+        settled.serialize_field("impacts", &impacts)?;
+        settled.serialize_field("lyapunov_per_revolution", &self.growth)?;
+        settled.end()
+    }
 }
 
 impl Settled {
@@ -70,25 +92,19 @@ impl Settled {
 }
 
 /// A range of speeds over which runs are of one kind.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Stretch {
     /// Lowest and highest speed, rpm.
     pub rpm: [f64; 2],
     /// The long run at its first speed, in the direction of the walk.
+    #[serde(flatten)]
     pub settled: Settled,
-}
-
-/// One walk through the speeds.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Walk {
-    /// By rising speed, whichever way they were run through.
-    pub stretches: Vec<Stretch>,
-    /// What lies between each and the next.
-    pub changes: Vec<Change>,
+    /// What lies at its lower end; nothing at the lowest speed.
+    pub begins: Option<Change>,
 }
 
 /// A range of speeds at which what is seen depends on where the speed comes from.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Hysteresis {
     /// Lowest and highest speed, rpm.
     pub rpm: [f64; 2],
@@ -98,19 +114,53 @@ pub struct Hysteresis {
     pub falling: Settled,
 }
 
-/// What a machine does over a range of speeds.
-#[derive(Clone, Debug, PartialEq)]
+/// Where one regime is seen.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Seen {
+    /// Which.
+    pub regime: Regime,
+    /// Lowest and highest speed of each range, rpm, with rising or falling speed, overlaps joined.
+    pub ranges: Vec<[f64; 2]>,
+}
+
+/// What a machine does over a range of speeds: the document of `speeds --json`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Regimes {
+    schema: &'static str,
+    /// The model's name.
+    pub model: String,
     /// The range, rpm.
     pub rpm: [f64; 2],
     /// Where the follower first leaves the cam, rpm; `None` where it never does, or even at rest would not stay on it.
-    pub detachment: Option<f64>,
-    /// With rising speed.
-    pub rising: Walk,
-    /// With falling speed.
-    pub falling: Walk,
-    /// Where the two differ.
+    pub detachment_rpm: Option<f64>,
+    /// The regimes that are seen.
+    pub regimes: Vec<Seen>,
+    /// Where rising and falling speed differ.
     pub hysteresis: Vec<Hysteresis>,
+    /// By rising speed.
+    pub rising: Vec<Stretch>,
+    /// Those of falling speed; by rising speed, too.
+    pub falling: Vec<Stretch>,
+}
+
+impl Regimes {
+    /// Where rising and falling speed show something else, joined where they meet.
+    pub fn hysteresis_ranges(&self) -> Vec<[f64; 2]> {
+        joined(self.hysteresis.iter().map(|found| found.rpm).collect())
+    }
+}
+
+/// Ranges, those that overlap or meet as one.
+fn joined(mut all: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    all.sort_by(|one, two| one[0].total_cmp(&two[0]));
+    let mut joined: Vec<[f64; 2]> = Vec::new();
+    for [low, high] in all {
+        match joined.last_mut() {
+            Some(last) if low <= last[1] => last[1] = last[1].max(high),
+            _ => joined.push([low, high]),
+        }
+    }
+    joined
 }
 
 /// How finely a range is looked at.
@@ -155,29 +205,36 @@ pub fn usual_speeds(model: &Model) -> [f64; 2] {
     [0.05 * fastest, fastest]
 }
 
-/// Walks through `rpm` upwards and downwards; `passed` is called after each speed of either walk.
-pub fn regimes(model: &Model, rpm: [f64; 2], care: Care, passed: &(dyn Fn() + Sync)) -> Result<Regimes, RegimeError> {
+/// Walks through `rpm` upwards and downwards, told to `watch` speed by speed.
+pub fn regimes(model: &Model, rpm: [f64; 2], care: Care, watch: &dyn Watch) -> Result<Regimes, RegimeError> {
     let machine = run::machine(model)?;
-    let detachment = detachment(model, rpm)?;
-    let walk = |rising| walk::walk(model, &machine, rpm, care, rising, passed);
+    let detachment_rpm = detachment(model, rpm)?;
+    let (done, total) = (AtomicU64::new(0), 2 * care.speeds as u64);
+    let passed = || watch.at("other speeds", done.fetch_add(1, Ordering::Relaxed) + 1, total);
+    let walk = |rising| walk::walk(model, &machine, rpm, care, rising, &passed);
     let (rising, falling) = rayon::join(|| walk(true), || walk(false));
     let ((rising, up), (falling, down)) = (rising?, falling?);
+    let seen = |regime: Regime| {
+        let stretches = rising.iter().chain(&falling).filter(|stretch| stretch.settled.regime == regime);
+        Seen { regime, ranges: joined(stretches.map(|stretch| stretch.rpm).collect()) }
+    };
+    let regimes = Regime::IN_ORDER.map(seen).into_iter().filter(|seen| !seen.ranges.is_empty()).collect();
     let hysteresis = hysteresis(&rising, &falling, &up, &down);
-    Ok(Regimes { rpm, detachment, rising, falling, hysteresis })
+    let (schema, model) = ("corner-impact/speeds/1", model.name.clone());
+    Ok(Regimes { schema, model, rpm, detachment_rpm, regimes, hysteresis, rising, falling })
 }
 
 /// Where the two walks differ: between the ends of their stretches, and where runs of one kind are not one motion, between
 /// the speeds that were run. `up` and `down` are those runs, both by rising speed.
-fn hysteresis(rising: &Walk, falling: &Walk, up: &[Settled], down: &[Settled]) -> Vec<Hysteresis> {
-    let mut ends: Vec<f64> =
-        [rising, falling].iter().flat_map(|walk| &walk.stretches).flat_map(|stretch| stretch.rpm).collect();
+fn hysteresis(rising: &[Stretch], falling: &[Stretch], up: &[Settled], down: &[Settled]) -> Vec<Hysteresis> {
+    let mut ends: Vec<f64> = rising.iter().chain(falling).flat_map(|stretch| stretch.rpm).collect();
     ends.sort_by(f64::total_cmp);
     ends.dedup();
     let mut found = Vec::new();
     for rpm in ends.windows(2).map(|pair| [pair[0], pair[1]]) {
-        let at = |walk: &Walk| -> Option<Settled> {
+        let at = |walk: &[Stretch]| -> Option<Settled> {
             let holds = |stretch: &&Stretch| stretch.rpm[0] <= rpm[0] && rpm[1] <= stretch.rpm[1];
-            walk.stretches.iter().find(holds).map(|stretch| stretch.settled.clone())
+            walk.iter().find(holds).map(|stretch| stretch.settled.clone())
         };
         let Some((rising, falling)) = at(rising).zip(at(falling)) else { continue };
         if of_other_kind(&rising, &falling) {

@@ -2,7 +2,7 @@
 
 use super::change::{self, Change};
 use super::run::{LONGER, long_run};
-use super::{Care, Regime, RegimeError, Settled, Stretch, Walk};
+use super::{Care, Regime, RegimeError, Settled, Stretch};
 use crate::model::Model;
 use crate::simulate::{Machine, angular_velocity};
 
@@ -14,7 +14,7 @@ pub(super) fn walk(
     care: Care,
     rising: bool,
     passed: &dyn Fn(),
-) -> Result<(Walk, Vec<Settled>), RegimeError> {
+) -> Result<(Vec<Stretch>, Vec<Settled>), RegimeError> {
     let count = care.speeds.max(2);
     let at = |index: usize| low + (high - low) * index as f64 / (count - 1) as f64;
     let mut order: Vec<usize> = (0..count).collect();
@@ -40,12 +40,12 @@ pub(super) fn walk(
                     *end = change.rpm;
                     let rpm = if rising { [change.rpm, now.rpm] } else { [now.rpm, change.rpm] };
                     changes.push(change);
-                    stretches.push(Stretch { rpm, settled });
+                    stretches.push(Stretch { rpm, settled, begins: None });
                     let Some(last) = stretches.last_mut() else { break };
                     end = &mut last.rpm[usize::from(rising)];
                 }
             }
-            _ => stretches.push(Stretch { rpm: [now.rpm, now.rpm], settled: now.clone() }),
+            _ => stretches.push(Stretch { rpm: [now.rpm, now.rpm], settled: now.clone(), begins: None }),
         }
         runs.push(now);
         passed();
@@ -55,5 +55,6 @@ pub(super) fn walk(
         stretches.reverse();
         changes.reverse();
     }
-    Ok((Walk { stretches, changes }, runs))
+    stretches.iter_mut().skip(1).zip(changes).for_each(|(stretch, change)| stretch.begins = Some(change));
+    Ok((stretches, runs))
 }

@@ -5,8 +5,8 @@ use maud::{Markup, html};
 use crate::pages::report::dossier::Dossier;
 use crate::pages::report::html::numbers::fixed;
 use crate::pages::report::html::{Section, wide};
-use crate::pages::speeds::{RegimesDocument, StretchEntry};
 use crate::show::words;
+use crate::study::speeds::{Regimes, Stretch};
 
 pub(crate) fn section(dossier: &Dossier) -> Section {
     let body = match (&dossier.speeds, &dossier.no_speeds) {
@@ -16,7 +16,7 @@ pub(crate) fn section(dossier: &Dossier) -> Section {
     Section { id: "speeds", title: "At other speeds", body }
 }
 
-fn regimes(found: &RegimesDocument) -> Markup {
+fn regimes(found: &Regimes) -> Markup {
     let [low, high] = found.rpm;
     html! {
         p {
@@ -55,15 +55,15 @@ fn ranges(ranges: &[[f64; 2]]) -> Markup {
     }
 }
 
-fn stretches(entries: &[StretchEntry]) -> Markup {
+fn stretches(entries: &[Stretch]) -> Markup {
     html! {
         table {
             thead { tr { th.n scope="col" { "from, rpm" } th.n scope="col" { "to, rpm" } th scope="col" { "motion" } th scope="col" { "why it begins" } } }
             tbody {
                 @for entry in entries {
                     tr {
-                        td.n { (fixed(entry.rpm[0], 4)) } td.n { (fixed(entry.rpm[1], 4)) } td { (entry.motion.words()) }
-                        td { @if let Some(change) = &entry.begins { (change.cause) } }
+                        td.n { (fixed(entry.rpm[0], 4)) } td.n { (fixed(entry.rpm[1], 4)) } td { (words::motion(&entry.settled)) }
+                        td { @if let Some(change) = &entry.begins { (change.cause.words()) } }
                     }
                 }
             }

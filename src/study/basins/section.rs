@@ -1,0 +1,118 @@
+//! The starts on a section of a model, the orbits that cross it, and the curves that part the basins.
+
+use serde::Serialize;
+
+use super::{Basins, Curve, Ending, Extent, Grid, Reversed, Saddle};
+use crate::cam::Cam;
+use crate::flight::State;
+use crate::model::{Follower, Model};
+use crate::orbit::{Course, PeriodicOrbit, Search, search};
+use crate::section::StroboscopicMap;
+use crate::simulate::{Machine, angular_velocity};
+use crate::study::StudyError;
+
+/// What a grid of starts came to: the document of `basins --summary`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    schema: &'static str,
+    /// The model's name.
+    pub model: String,
+    /// Speed, rpm.
+    pub rpm: f64,
+    /// The starts and what they end on.
+    #[serde(flatten)]
+    pub basins: Basins,
+    /// Seconds that the runs took.
+    pub wall_s: f64,
+}
+
+impl Summary {
+    /// Of `basins` of a model at a speed.
+    pub fn new(model: &Model, rpm: f64, basins: Basins, wall_s: f64) -> Self {
+        Self { schema: "corner-impact/basins/1", model: model.name.clone(), rpm, basins, wall_s }
+    }
+}
+
+/// The section of a model at one cam angle, with the orbits of one impact a revolution.
+#[derive(Clone, Debug)]
+pub struct Section {
+    follower: Follower,
+    /// The map of the section.
+    pub map: StroboscopicMap,
+    orbits: Vec<PeriodicOrbit>,
+}
+
+/// What there is to see on a section beside the basins.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Border {
+    /// Where the stable orbits that starts end on cross it.
+    pub stable: Vec<State>,
+    /// Where the saddles do.
+    pub saddles: Vec<State>,
+    /// Their stable manifolds, which part the basins.
+    pub curves: Vec<Curve>,
+}
+
+impl Section {
+    /// The section at `cam_angle`, rad, in `[0, 2 pi)`.
+    pub fn new(model: &Model, rpm: f64, cam_angle: f64) -> Result<Self, StudyError> {
+        let machine = Machine::new(Cam::new(model)?, &model.follower, angular_velocity(rpm));
+        let orbits = search(&machine, &Search { revolutions: 1, impacts: Some(1) })?;
+        Ok(Self { follower: model.follower, map: StroboscopicMap { machine, cam_angle }, orbits })
+    }
+
+    /// Where an orbit of impacts crosses it.
+    fn crossing(&self, orbit: &PeriodicOrbit) -> Option<State> {
+        match &orbit.course {
+            Course::Impacts(cycle) => Some(cycle.at_section(&self.map.machine, self.map.cam_angle).0),
+            Course::Sticking(_) | Course::Free => None,
+        }
+    }
+
+    /// A grid of starts; where no range is given, the positions go from the cam to twice as far from it as any of the orbits
+    /// does, and the velocities over three times the range of the orbits' and the cam's.
+    pub fn grid(
+        &self,
+        [columns, rows]: [usize; 2],
+        positions: Option<[f64; 2]>,
+        velocities: Option<[f64; 2]>,
+    ) -> Result<Grid, StudyError> {
+        let StroboscopicMap { machine, cam_angle } = &self.map;
+        let lift = machine.cam().lift(*cam_angle);
+        let cam_velocity = machine.angular_velocity() * lift.slope;
+        let (mut highest, mut range) = (machine.cam().top(), [cam_velocity.min(-1.0), cam_velocity.max(1.0)]);
+        for State { position, velocity } in self.orbits.iter().filter_map(|orbit| self.crossing(orbit)) {
+            highest = highest.max(position);
+            range = [range[0].min(velocity), range[1].max(velocity)];
+        }
+        let span = range[1] - range[0];
+        let positions = positions.unwrap_or([lift.value, lift.value + 2.0 * (highest - lift.value)]);
+        let velocities = velocities.unwrap_or([range[0] - span, range[1] + span]);
+        let is_range = |[low, high]: [f64; 2]| low < high && (high - low).is_finite();
+        let grid = Grid { cam_angle: *cam_angle, positions, velocities, columns, rows };
+        if is_range(positions) && is_range(velocities) { Ok(grid) } else { Err(StudyError::NoStarts) }
+    }
+
+    /// What parts the basins, as finely as a picture of the grid shows it.
+    pub fn border(&self, basins: &Basins) -> Border {
+        let cycles = self.orbits.iter().filter_map(|orbit| match &orbit.course {
+            Course::Impacts(cycle) => Some(cycle),
+            _ => None,
+        });
+        let saddles: Vec<Saddle> =
+            cycles.filter_map(|cycle| Saddle::new(&self.map.machine, cycle, self.map.cam_angle)).collect();
+        let [low, high] = basins.grid.positions;
+        let (extent, reversed) = (Extent::of(high - low), Reversed::new(&self.follower, &self.map));
+        let halves = saddles.iter().flat_map(|saddle| [(saddle, 1.0), (saddle, -1.0)]);
+        let curve = |(saddle, sign)| reversed.as_ref().map(|reversed| Curve::stable(reversed, saddle, sign, &extent));
+        let stable = basins.parts.iter().filter_map(|part| match &part.ending {
+            Ending::Orbit(orbit) => self.crossing(orbit),
+            _ => None,
+        });
+        Border {
+            stable: stable.collect(),
+            curves: halves.filter_map(curve).collect(),
+            saddles: saddles.iter().map(|saddle| saddle.state).collect(),
+        }
+    }
+}
