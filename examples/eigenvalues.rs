@@ -13,7 +13,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         None => Model::parse("osorio-2008.toml", OSORIO_2008)?,
     };
     let found = verify(&model, External::LeftOut)?;
-    let map = &found.closed_form().map;
+    let map = &found.map;
     println!("{}: corner impact at {:.6} rpm", model.name, found.at.speed_rpm());
     for (side, matrices) in [("before", &map.minus), ("after", &map.plus)] {
         let [first, second] = matrices.eigenvalues();

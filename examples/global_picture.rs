@@ -96,7 +96,7 @@ fn distances(model: &Model, findings: &Verification) -> Done {
 
 /// Revolutions until the motion has left x*, by the piecewise-linear map and by runs.
 fn passages(model: &Model, findings: &Verification) -> Done {
-    let local = &findings.closed_form().map;
+    let local = &findings.map;
     println!("revolutions for each factor of ten: {:?}", passage::revolutions_per_decade(local));
     for decade in 1..=9 {
         let rpm = findings.at.speed_rpm() - 10f64.powi(-decade);

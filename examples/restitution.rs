@@ -12,7 +12,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let restitution = f64::from(hundredths) / 100.0;
         let model = paper.with_number("follower.restitution", restitution)?;
         let found = verify(&model, External::LeftOut)?;
-        let map = &found.closed_form().map;
+        let map = &found.map;
         let moduli = |side: &corner_impact::corner::SideMap| {
             let [first, second] = side.eigenvalues().map(|value| value.modulus());
             format!("{first:.4}, {second:.4}")

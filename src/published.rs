@@ -5,8 +5,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::agreement::{Agreement, compare, quantities};
+use crate::agreement::{Agreement, Quantity, compare, quantities};
 use crate::border_collision::NormalForm;
+use crate::cam::Side::{Minus, Plus};
+use crate::corner::map::RouteName;
 use crate::corner::{CornerImpact, CornerMap};
 use crate::model::{Model, ModelError};
 use crate::tolerance::Comparison;
@@ -70,57 +72,57 @@ document!(PrintedNumber as number {
 
 /// What was found about one quantity, and what it is compared as.
 struct Finding {
-    quantity: &'static str,
+    quantity: Quantity,
     verdict: Verdict,
     note: &'static str,
 }
 
-const fn holds(quantity: &'static str) -> Finding {
+const fn holds(quantity: Quantity) -> Finding {
     Finding { quantity, verdict: Verdict::Holds, note: "" }
 }
 
 static FINDINGS: [Finding; 20] = [
-    holds("T_star"),
-    holds("speed_rpm"),
-    holds("x_star"),
-    holds("A_minus"),
-    holds("B_minus"),
-    holds("A_plus"),
-    holds("B_plus"),
-    holds("C"),
-    holds("D"),
-    holds("A_hat_minus"),
+    holds(Quantity::Period),
+    holds(Quantity::Speed),
+    holds(Quantity::State),
+    holds(Quantity::A(Minus)),
+    holds(Quantity::B(Minus)),
+    holds(Quantity::A(Plus)),
+    holds(Quantity::B(Plus)),
+    holds(Quantity::C),
+    holds(Quantity::D),
+    holds(Quantity::AHat(Minus)),
     Finding {
-        quantity: "B_hat_minus",
+        quantity: Quantity::BHat(Minus),
         verdict: Verdict::Refuted,
         note: "said to agree with the analytic B- to at least 5 decimals; the entries differ by more, the second by several units in the fourth",
     },
-    holds("A_hat_plus"),
+    holds(Quantity::AHat(Plus)),
     Finding {
-        quantity: "B_hat_plus",
+        quantity: Quantity::BHat(Plus),
         verdict: Verdict::Refuted,
         note: "said to agree with the analytic B+ to at least 5 decimals; the entries differ by more, the second by several units in the fourth",
     },
     Finding {
-        quantity: "B_tilde",
+        quantity: Quantity::BTilde,
         verdict: Verdict::Refuted,
         note: "the shift of coordinates was applied to the point but not to its image: B - (A - I) e1 D/c1 is right, B - A e1 D/c1 is printed",
     },
-    holds("A_bar_minus"),
-    holds("A_bar_plus"),
+    holds(Quantity::ABar(Minus)),
+    holds(Quantity::ABar(Plus)),
     Finding {
-        quantity: "B_bar",
+        quantity: Quantity::BBar,
         verdict: Verdict::Refuted,
         note: "it is -W times the wrong B tilde, so the sign went too; the right second entry is 0 because the paper's follower is undamped",
     },
-    holds("C_bar"),
+    holds(Quantity::CBar),
     Finding {
-        quantity: "eigenvalues_minus",
+        quantity: Quantity::Eigenvalues(Minus),
         verdict: Verdict::Misprint,
         note: "1.00515 rounds to 1.0051, printed 1.0052",
     },
     Finding {
-        quantity: "eigenvalues_plus",
+        quantity: Quantity::Eigenvalues(Plus),
         verdict: Verdict::Misprint,
         note: "0.41207 rounds to 0.4121, printed 0.4120",
     },
@@ -167,26 +169,29 @@ pub fn compare_published(
         return Err(PublishedError::OtherModel);
     }
     let numbers: Paper = serde_json::from_str(PRINTED).map_err(|error| PublishedError::Digits(error.to_string()))?;
-    if let Some(finding) =
-        FINDINGS.iter().find(|finding| numbers.numbers.iter().all(|number| number.quantity != finding.quantity))
+    if let Some(finding) = FINDINGS
+        .iter()
+        .find(|finding| numbers.numbers.iter().all(|number| number.quantity != finding.quantity.to_string()))
     {
-        return Err(PublishedError::Unmatched(finding.quantity.into()));
+        return Err(PublishedError::Unmatched(finding.quantity.to_string()));
     }
     let computed = computed(at, map, normal_form);
     numbers.numbers.into_iter().map(|number| hold_against(number, &computed)).collect()
 }
 
-fn hold_against(number: Number, computed: &[(&'static str, Vec<f64>)]) -> Result<PrintedNumber, PublishedError> {
+fn hold_against(number: Number, computed: &[(Quantity, Vec<f64>)]) -> Result<PrintedNumber, PublishedError> {
     let Number { quantity, place, printed } = number;
+    let unmatched = || PublishedError::Unmatched(quantity.clone());
+    let finding = FINDINGS.iter().find(|finding| finding.quantity.to_string() == quantity).ok_or_else(unmatched)?;
     // An estimate is printed for a quantity of the map, under a hat.
-    let source = quantity.replace("_hat", "");
-    let finding = FINDINGS.iter().find(|finding| finding.quantity == quantity);
-    let value = computed.iter().find(|(name, _)| *name == source);
-    let (Some(finding), Some((_, value))) = (finding, value) else {
-        return Err(PublishedError::Unmatched(quantity));
+    let source = match finding.quantity {
+        Quantity::AHat(side) => Quantity::A(side),
+        Quantity::BHat(side) => Quantity::B(side),
+        itself => itself,
     };
+    let (_, value) = computed.iter().find(|(name, _)| *name == source).ok_or_else(unmatched)?;
     let digits = printed.iter().map(|text| read_digits(text)).collect::<Result<Vec<_>, _>>()?;
-    let comparison = if source == quantity {
+    let comparison = if source == finding.quantity {
         // Entries without a decimal point stand beside ones that have it, or are meant as exact.
         let decimals = digits.iter().map(|(_, decimals)| *decimals).max().filter(|most| *most > 0);
         Comparison::Printed { decimals: decimals.unwrap_or(u32::MAX) }
@@ -194,7 +199,8 @@ fn hold_against(number: Number, computed: &[(&'static str, Vec<f64>)]) -> Result
         Comparison::PrintedEstimate
     };
     let entries: Vec<f64> = digits.iter().map(|(entry, _)| *entry).collect();
-    let agreement = compare(["closed_form", "published"], &quantity, [value, &entries], comparison);
+    let agreement =
+        compare([RouteName::ClosedForm, RouteName::Published], finding.quantity, [value, &entries], comparison);
     Ok(PrintedNumber {
         as_found: agreement.agrees == (finding.verdict == Verdict::Holds),
         place,
@@ -215,25 +221,25 @@ fn read_digits(text: &str) -> Result<(f64, u32), PublishedError> {
 }
 
 /// Every quantity that the paper prints, as computed here.
-fn computed(at: &CornerImpact, map: &CornerMap, normal_form: Option<&NormalForm>) -> Vec<(&'static str, Vec<f64>)> {
+fn computed(at: &CornerImpact, map: &CornerMap, normal_form: Option<&NormalForm>) -> Vec<(Quantity, Vec<f64>)> {
     let mut all = quantities(map);
     for (name, entries) in &mut all {
         match *name {
             // The paper prints the real pair, and one of the complex pair as real and imaginary part.
-            "eigenvalues_minus" => *entries = vec![entries[0], entries[2]],
-            "eigenvalues_plus" => *entries = vec![entries[0], entries[1]],
+            Quantity::Eigenvalues(Minus) => *entries = vec![entries[0], entries[2]],
+            Quantity::Eigenvalues(Plus) => *entries = vec![entries[0], entries[1]],
             _ => {}
         }
     }
-    all.push(("T_star", vec![at.period]));
-    all.push(("speed_rpm", vec![at.speed_rpm()]));
-    all.push(("x_star", at.x_star().as_slice().to_vec()));
+    all.push((Quantity::Period, vec![at.period]));
+    all.push((Quantity::Speed, vec![at.speed_rpm()]));
+    all.push((Quantity::State, at.x_star().as_slice().to_vec()));
     if let Some(form) = normal_form {
-        all.push(("B_tilde", form.b_tilde.as_slice().to_vec()));
-        all.push(("A_bar_minus", form.a_bar_minus.transpose().as_slice().to_vec()));
-        all.push(("A_bar_plus", form.a_bar_plus.transpose().as_slice().to_vec()));
-        all.push(("B_bar", form.b_bar.as_slice().to_vec()));
-        all.push(("C_bar", form.c_bar.as_slice().to_vec()));
+        all.push((Quantity::BTilde, form.b_tilde.as_slice().to_vec()));
+        all.push((Quantity::ABar(Minus), form.a_bar_minus.transpose().as_slice().to_vec()));
+        all.push((Quantity::ABar(Plus), form.a_bar_plus.transpose().as_slice().to_vec()));
+        all.push((Quantity::BBar, form.b_bar.as_slice().to_vec()));
+        all.push((Quantity::CBar, form.c_bar.as_slice().to_vec()));
     }
     all
 }

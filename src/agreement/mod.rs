@@ -3,18 +3,85 @@
 //! Nothing is compared with itself, nothing that did not run is compared at all, and what is not a number disagrees.
 
 use nalgebra::Vector2;
-use serde::Serialize;
+use std::fmt;
 
-use crate::corner::map::{CornerMap, Eigenvalue, Route};
+use serde::{Serialize, Serializer};
+
+use crate::cam::Side;
+use crate::corner::map::{CornerMap, Eigenvalue, Route, RouteName};
 use crate::tolerance::{Bound, Comparison, agreement_bound};
+
+/// What is compared. The letters are the paper's, and a hat is its own estimate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub enum Quantity {
+    Period,
+    State,
+    Speed,
+    A(Side),
+    B(Side),
+    C,
+    D,
+    Eigenvalues(Side),
+    Border,
+    AHat(Side),
+    BHat(Side),
+    BTilde,
+    ABar(Side),
+    BBar,
+    CBar,
+}
+
+impl Quantity {
+    /// Its letter in documents, and its side where it has one.
+    pub(crate) fn parts(self) -> (&'static str, Option<Side>) {
+        match self {
+            Self::Period => ("T_star", None),
+            Self::State => ("x_star", None),
+            Self::Speed => ("speed_rpm", None),
+            Self::A(side) => ("A", Some(side)),
+            Self::B(side) => ("B", Some(side)),
+            Self::C => ("C", None),
+            Self::D => ("D", None),
+            Self::Eigenvalues(side) => ("eigenvalues", Some(side)),
+            Self::Border => ("border", None),
+            Self::AHat(side) => ("A_hat", Some(side)),
+            Self::BHat(side) => ("B_hat", Some(side)),
+            Self::BTilde => ("B_tilde", None),
+            Self::ABar(side) => ("A_bar", Some(side)),
+            Self::BBar => ("B_bar", None),
+            Self::CBar => ("C_bar", None),
+        }
+    }
+
+    /// Whether it is A or B itself, of either side.
+    pub fn is_of_the_map(self) -> bool {
+        matches!(self, Self::A(_) | Self::B(_))
+    }
+}
+
+impl fmt::Display for Quantity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.parts() {
+            (letter, Some(side)) => write!(f, "{letter}_{side}"),
+            (letter, None) => f.write_str(letter),
+        }
+    }
+}
+
+impl Serialize for Quantity {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        to.collect_str(self)
+    }
+}
 
 /// One quantity by two routes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Agreement {
     /// The two routes.
-    pub routes: [String; 2],
+    pub routes: [RouteName; 2],
     /// What was compared.
-    pub quantity: String,
+    pub quantity: Quantity,
     /// Largest absolute difference of any entry.
     pub max_abs_diff: f64,
     /// Largest difference of any entry, over that entry.
@@ -27,7 +94,7 @@ pub struct Agreement {
 }
 
 /// Compares the entries of one quantity, on the scale of its largest entry.
-pub fn compare(routes: [&str; 2], quantity: &str, entries: [&[f64]; 2], comparison: Comparison) -> Agreement {
+pub fn compare(routes: [RouteName; 2], quantity: Quantity, entries: [&[f64]; 2], comparison: Comparison) -> Agreement {
     let scale = entries.iter().map(|entries| size(entries)).fold(0.0, f64::max);
     compare_on_scale(routes, quantity, entries, comparison, scale)
 }
@@ -42,8 +109,8 @@ fn size(entries: &[f64]) -> f64 {
 }
 
 fn compare_on_scale(
-    routes: [&str; 2],
-    quantity: &str,
+    routes: [RouteName; 2],
+    quantity: Quantity,
     [left, right]: [&[f64]; 2],
     comparison: Comparison,
     scale: f64,
@@ -59,8 +126,8 @@ fn compare_on_scale(
         max_rel_diff = worse(max_rel_diff, relative);
     }
     Agreement {
-        routes: routes.map(String::from),
-        quantity: quantity.into(),
+        routes,
+        quantity,
         max_abs_diff,
         max_rel_diff,
         agrees: max_abs_diff < bound.value || max_abs_diff == 0.0,
@@ -69,18 +136,18 @@ fn compare_on_scale(
 }
 
 /// The quantities of a map that routes are compared in: name and entries, rows first.
-pub fn quantities(map: &CornerMap) -> Vec<(&'static str, Vec<f64>)> {
+pub fn quantities(map: &CornerMap) -> Vec<(Quantity, Vec<f64>)> {
     let rows = |matrix: nalgebra::Matrix2<f64>| matrix.transpose().as_slice().to_vec();
     let flat = |pair: [Eigenvalue; 2]| pair.iter().flat_map(|value| [value.re, value.im]).collect();
     vec![
-        ("A_minus", rows(map.minus.a)),
-        ("A_plus", rows(map.plus.a)),
-        ("B_minus", map.minus.b.as_slice().to_vec()),
-        ("B_plus", map.plus.b.as_slice().to_vec()),
-        ("C", map.c().as_slice().to_vec()),
-        ("D", vec![map.d()]),
-        ("eigenvalues_minus", flat(map.minus.eigenvalues())),
-        ("eigenvalues_plus", flat(map.plus.eigenvalues())),
+        (Quantity::A(Side::Minus), rows(map.minus.a)),
+        (Quantity::A(Side::Plus), rows(map.plus.a)),
+        (Quantity::B(Side::Minus), map.minus.b.as_slice().to_vec()),
+        (Quantity::B(Side::Plus), map.plus.b.as_slice().to_vec()),
+        (Quantity::C, map.c().as_slice().to_vec()),
+        (Quantity::D, vec![map.d()]),
+        (Quantity::Eigenvalues(Side::Minus), flat(map.minus.eigenvalues())),
+        (Quantity::Eigenvalues(Side::Plus), flat(map.plus.eigenvalues())),
     ]
 }
 
@@ -98,15 +165,15 @@ pub fn compare_routes(routes: &[Route]) -> Vec<Agreement> {
             };
             let ((a, b), (other_a, other_b)) = (of(left), of(right));
             let (a, b) = (a.max(other_a), b.max(other_b));
-            let compare = move |((quantity, x), (_, y)): ((&'static str, Vec<f64>), (_, Vec<f64>))| {
+            let compare = move |((quantity, x), (_, y)): ((Quantity, Vec<f64>), (_, Vec<f64>))| {
                 let comparison = match quantity {
-                    "eigenvalues_minus" | "eigenvalues_plus" => Comparison::Eigenvalues,
+                    Quantity::Eigenvalues(_) => Comparison::Eigenvalues,
                     _ if integrated => Comparison::Integrated,
                     _ => Comparison::Routes,
                 };
                 let scale = match quantity {
-                    "C" => a,
-                    "D" => b,
+                    Quantity::C => a,
+                    Quantity::D => b,
                     _ => size(&x).max(size(&y)),
                 };
                 compare_on_scale([left.name, right.name], quantity, [&x, &y], comparison, scale)
@@ -117,22 +184,22 @@ pub fn compare_routes(routes: &[Route]) -> Vec<Agreement> {
 }
 
 /// Whether a route steps a differential equation through time, and so has an integrator's error.
-fn is_integrated(route: &str) -> bool {
-    route == "scipy"
+fn is_integrated(route: RouteName) -> bool {
+    route == RouteName::Scipy
 }
 
 /// An orbit by one route: name, x* and T*.
-pub type NamedOrbit = (&'static str, Vector2<f64>, f64);
+pub type NamedOrbit = (RouteName, Vector2<f64>, f64);
 
 /// Every pair of routes to the orbit.
 pub fn compare_orbits(orbits: &[NamedOrbit]) -> Vec<Agreement> {
     pairs(orbits)
         .flat_map(|((left, x, t), (right, y, u))| {
-            let integrated = is_integrated(left) || is_integrated(right);
+            let integrated = is_integrated(*left) || is_integrated(*right);
             let comparison = if integrated { Comparison::IntegratedOrbit } else { Comparison::Orbit };
             [
-                compare([*left, *right], "T_star", [&[*t], &[*u]], comparison),
-                compare([*left, *right], "x_star", [x.as_slice(), y.as_slice()], comparison),
+                compare([*left, *right], Quantity::Period, [&[*t], &[*u]], comparison),
+                compare([*left, *right], Quantity::State, [x.as_slice(), y.as_slice()], comparison),
             ]
         })
         .collect()
@@ -140,6 +207,44 @@ pub fn compare_orbits(orbits: &[NamedOrbit]) -> Vec<Agreement> {
 
 fn pairs<T>(items: &[T]) -> impl Iterator<Item = (&T, &T)> {
     items.iter().enumerate().flat_map(|(index, left)| items[index + 1..].iter().map(move |right| (left, right)))
+}
+
+/// The pairs of routes that one quantity was compared by.
+#[derive(Clone, Debug)]
+pub struct Pairs<'a> {
+    /// Which.
+    pub quantity: Quantity,
+    /// Every pair.
+    pub all: Vec<&'a Agreement>,
+    /// The pair that is nearest to its bound, or beyond; what is not a number disagrees, and comes first.
+    pub closest: &'a Agreement,
+}
+
+/// Comparisons by quantity, in the order in which quantities come first.
+pub fn by_quantity(comparisons: &[Agreement]) -> Vec<Pairs<'_>> {
+    let used = |entry: &Agreement| {
+        let used = entry.max_abs_diff / entry.bound.value;
+        if used.is_nan() { f64::INFINITY } else { used }
+    };
+    let mut found: Vec<Pairs<'_>> = Vec::new();
+    for entry in comparisons {
+        match found.iter_mut().find(|pairs| pairs.quantity == entry.quantity) {
+            None => found.push(Pairs { quantity: entry.quantity, all: vec![entry], closest: entry }),
+            Some(pairs) => {
+                pairs.all.push(entry);
+                if used(entry) >= used(pairs.closest) {
+                    pairs.closest = entry;
+                }
+            }
+        }
+    }
+    found
+}
+
+/// The fewest decimals that every entry of A and B shares between any two routes; `None` for all digits.
+pub fn fewest_shared_decimals(comparisons: &[Agreement]) -> Option<u32> {
+    let maps = comparisons.iter().filter(|entry| entry.quantity.is_of_the_map());
+    maps.filter_map(|entry| shared_decimals(entry.max_abs_diff)).min()
 }
 
 /// How many decimals two numbers share whose difference is `diff`: they differ by less than half a unit in that place.

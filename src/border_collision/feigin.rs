@@ -10,6 +10,7 @@ use serde::Serialize;
 use super::Degenerate;
 use super::conditions::{Condition, Decides, conditions};
 use super::local_map::LocalMap;
+use crate::cam::Side;
 use crate::corner::map::{CornerMap, Eigenvalue, SideMap, Sides};
 use crate::orbit::eigenvalues;
 use crate::tolerance;
@@ -117,8 +118,8 @@ document!(Classification as kind {
 /// `border` is `(e, f)` with the minus side where `e dx + f dT < 0`. The paper takes `(C, D)` for it, which is right only
 /// where both have the same sign.
 pub fn classify(map: &CornerMap, border: (RowVector2<f64>, f64)) -> Result<Classification, Degenerate> {
-    let minus = side_counts("minus", &map.minus, border, -1.0)?;
-    let plus = side_counts("plus", &map.plus, border, 1.0)?;
+    let minus = side_counts(Side::Minus, &map.minus, border, -1.0)?;
+    let plus = side_counts(Side::Plus, &map.plus, border, 1.0)?;
     let all = conditions(&LocalMap::new(map, border));
     let failing = all.iter().find(|condition| condition.decides == Decides::Classification && !condition.holds());
     if let Some(&Condition { name, meaning, value, distance, .. }) = failing {
@@ -131,16 +132,16 @@ pub fn classify(map: &CornerMap, border: (RowVector2<f64>, f64)) -> Result<Class
 
 /// The scenario of A- and A+, 2x2, by their eigenvalues alone.
 pub fn scenario([minus, plus]: &[Matrix2<f64>; 2]) -> Result<Scenario, Degenerate> {
-    let (minus, plus) = (counts("minus", &eigenvalues(minus))?, counts("plus", &eigenvalues(plus))?);
+    let (minus, plus) = (counts(Side::Minus, &eigenvalues(minus))?, counts(Side::Plus, &eigenvalues(plus))?);
     Ok(Scenario::of_counts(minus[0] + plus[0], minus[1] + plus[1]))
 }
 
-/// The numbers of real eigenvalues above 1 and below -1, of the side called `name`.
-fn counts(name: &'static str, eigenvalues: &[Eigenvalue; 2]) -> Result<[usize; 2], Degenerate> {
+/// The numbers of real eigenvalues above 1 and below -1, of one side.
+fn counts(side: Side, eigenvalues: &[Eigenvalue; 2]) -> Result<[usize; 2], Degenerate> {
     for Eigenvalue { re, im } in *eigenvalues {
         for boundary in [1.0, -1.0] {
             if !((re - boundary).hypot(im) > tolerance::UNIT_EIGENVALUE.value) {
-                return Err(Degenerate::EigenvalueOnBoundary { side: name, value: re, boundary });
+                return Err(Degenerate::EigenvalueOnBoundary { side, value: re, boundary });
             }
         }
     }
@@ -150,7 +151,7 @@ fn counts(name: &'static str, eigenvalues: &[Eigenvalue; 2]) -> Result<[usize; 2
 
 /// `sign` is that of `e x + f dT` on this side.
 fn side_counts(
-    name: &'static str,
+    name: Side,
     side: &SideMap,
     (e, f): (RowVector2<f64>, f64),
     sign: f64,

@@ -28,6 +28,8 @@ pub use local_map::LocalMap;
 pub use normal_form::{NormalForm, normal_form};
 pub use outcome::LocalOutcome;
 
+use crate::cam::Side;
+
 /// A map that the classification says nothing about, and why.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Degenerate {
@@ -42,8 +44,8 @@ pub enum Degenerate {
     /// An eigenvalue on a boundary that the counts divide at.
     #[error("the {side} side has an eigenvalue at {value}, too close to {boundary} to count")]
     EigenvalueOnBoundary {
-        /// `minus` or `plus`.
-        side: &'static str,
+        /// Which.
+        side: Side,
         /// The eigenvalue.
         value: f64,
         /// 1 or -1.
@@ -74,7 +76,7 @@ pub enum Refusal {
         "sticking: next to the corner, on its {side} side, a simulated revolution stays on the cam after the impact"
     )]
     Sticking {
-        /// `minus` or `plus`.
-        side: &'static str,
+        /// Which.
+        side: Side,
     },
 }

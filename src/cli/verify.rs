@@ -1,6 +1,7 @@
 //! `corner-impact verify [MODEL]`.
 
 use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
+use crate::show::Paged;
 use crate::study::verify::{External, verify_watched};
 
 /// Finds the corner impact of a model, computes its map by every route, and says whether they agree.

@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use nalgebra::{Matrix2, Vector2};
 
 use super::corner_impact::CornerImpact;
-use super::map::{CornerMap, Route, SideMap};
+use super::map::{CornerMap, Route, RouteName, SideMap};
 use crate::cam::{Lift, Side};
 use crate::model::{Follower, Model};
 use crate::tolerance;
@@ -32,7 +32,7 @@ pub fn route(model: &Model, at: &CornerImpact) -> Route {
         Ok::<_, std::convert::Infallible>(side_map(&model.follower, at.period, at.velocity_before, lift))
     };
     let Ok(map) = CornerMap::try_from_sides(side);
-    Route { name: "closed_form", map, uncertainty: None }
+    Route { name: RouteName::ClosedForm, map, uncertainty: None }
 }
 
 /// `A` and `B` for one side's lift at the corner; `v` is the velocity before the impact, m/s, and `period` T*, s.

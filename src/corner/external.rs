@@ -5,22 +5,24 @@ use nalgebra::{Matrix2, Vector2};
 use serde::Deserialize;
 use serde_json::json;
 
-use super::map::{CornerMap, Route, SideMap, Uncertainty};
+use super::map::{CornerMap, Route, RouteName, SideMap, Uncertainty};
 use crate::model::{ArcsProfile, CamProfile, Follower, Model, Study};
 use crate::python::{self, PythonError};
 
 /// A route outside this program: its name, and its script in `derivations/`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Program {
-    /// The route's name in documents.
-    pub name: &'static str,
+    /// The route.
+    pub name: RouteName,
     /// The script.
     pub script: &'static str,
 }
 
 /// Every route outside this program.
-pub const PROGRAMS: [Program; 2] =
-    [Program { name: "symbolic", script: "evaluate.py" }, Program { name: "scipy", script: "simulate_scipy.py" }];
+pub const PROGRAMS: [Program; 2] = [
+    Program { name: RouteName::Symbolic, script: "evaluate.py" },
+    Program { name: RouteName::Scipy, script: "simulate_scipy.py" },
+];
 
 /// What such a route found.
 #[derive(Clone, Debug, PartialEq)]

@@ -12,7 +12,7 @@ use nalgebra::{Matrix2, Vector2, Vector3};
 
 use super::corner_impact::CornerImpact;
 use super::extrapolation::{Powers, extrapolate};
-use super::map::{CornerMap, Route, SideMap, Uncertainty};
+use super::map::{CornerMap, Route, RouteName, SideMap, Uncertainty};
 use super::one_sided::{OneSidedMap, SampleError};
 use super::varied::Varied;
 use crate::cam::{Cam, Side};
@@ -28,7 +28,7 @@ pub fn route_by(model: &Model, cam: &Cam, at: &CornerImpact, varied: &Varied) ->
     let (minus, minus_error) = side_map(model, cam, at, Side::Minus, varied)?;
     let (plus, plus_error) = side_map(model, cam, at, Side::Plus, varied)?;
     Ok(Route {
-        name: "finite_difference",
+        name: RouteName::FiniteDifference,
         map: CornerMap { minus, plus },
         uncertainty: Some(Uncertainty::Extrapolation(CornerMap { minus: minus_error, plus: plus_error })),
     })

@@ -11,7 +11,7 @@ use faer::{Conj, Mat};
 use nalgebra::{Matrix2, Vector2, Vector3};
 
 use super::corner_impact::CornerImpact;
-use super::map::{CornerMap, Route, SideMap, Uncertainty};
+use super::map::{CornerMap, Route, RouteName, SideMap, Uncertainty};
 use super::one_sided::{OneSidedMap, SampleError};
 use super::varied::Varied;
 use crate::cam::{Cam, Side};
@@ -37,7 +37,7 @@ pub fn route_by(model: &Model, cam: &Cam, at: &CornerImpact, varied: &Varied) ->
     let minus = side_map(&OneSidedMap::by(model, cam, at, Side::Minus, varied)?)?;
     let plus = side_map(&OneSidedMap::by(model, cam, at, Side::Plus, varied)?)?;
     Ok(Route {
-        name: "least_squares",
+        name: RouteName::LeastSquares,
         map: CornerMap { minus: minus.value, plus: plus.value },
         uncertainty: Some(Uncertainty::Fit {
             standard: CornerMap { minus: minus.standard_error, plus: plus.standard_error },

@@ -81,11 +81,41 @@ impl CornerMap {
     }
 }
 
+/// A way to the orbit, to its map or to its border; in the order of the names that documents have for them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RouteName {
+    /// The formulas of the paper.
+    ClosedForm,
+    /// Differences of simulated periods.
+    FiniteDifference,
+    /// The free flight to the corner through what comes before it.
+    Flight,
+    /// The free flight from the section to the corner.
+    FreeFlight,
+    /// A polynomial fitted to simulated periods.
+    LeastSquares,
+    /// The equation for the period.
+    Located,
+    /// The digits in print.
+    Published,
+    /// An integration in Python.
+    Scipy,
+    /// One simulated period.
+    Simulation,
+    /// The derived expressions in Python, to 30 digits.
+    Symbolic,
+    /// The product of propagators and saltation matrices.
+    Variational,
+}
+
+named!(RouteName);
+
 /// A way to the map, and what it found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Route {
-    /// Its name in documents.
-    pub name: &'static str,
+    /// Which way.
+    pub name: RouteName,
     /// The map.
     pub map: CornerMap,
     /// How well each entry is known, in the map's own shape: a standard error or an error estimate.

@@ -14,7 +14,7 @@
 use nalgebra::{Matrix2, Matrix2x3, RowVector2, SMatrix, Vector2};
 
 use super::corner_impact::CornerImpact;
-use super::map::{CornerMap, Route, SideMap, Uncertainty};
+use super::map::{CornerMap, Route, RouteName, SideMap, Uncertainty};
 use super::varied::{Change, LiftChange, NoChange, Varied};
 use crate::cam::{Cam, Side};
 use crate::flight::State;
@@ -28,7 +28,7 @@ pub fn route(model: &Model, cam: &Cam, at: &CornerImpact) -> Route {
     let Ok(map) = CornerMap::try_from_sides(|side| {
         Ok::<_, std::convert::Infallible>(around.side_map(side, &Change::of_period(at.cycle.contacts.len())))
     });
-    Route { name: "variational", map, uncertainty: None }
+    Route { name: RouteName::Variational, map, uncertainty: None }
 }
 
 /// The map with B by any number; where the cam's shape depends on it, with the error of the differences that its lift was
@@ -54,7 +54,7 @@ pub fn route_by(model: &Model, cam: &Cam, at: &CornerImpact, varied: &Varied) ->
         Ok::<_, NoChange>(map)
     })?;
     let uncertainty = matches!(varied, Varied::Number(_)).then_some(Uncertainty::Extrapolation(error));
-    Ok(Route { name: "variational", map, uncertainty })
+    Ok(Route { name: RouteName::Variational, map, uncertainty })
 }
 
 /// How far the flight at the corner is from the cam when the corner passes, to first order: `e dx + f dp`, from the section

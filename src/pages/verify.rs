@@ -1,203 +1,180 @@
-//! The document of a verification as one page of text for a terminal.
+//! The page of `verify`, section by section: where the corner impact is, its map by every route, what happens there.
 
-use std::fmt::{self, Write};
-
-use crate::agreement::{Agreement, shared_decimals, worse};
-use crate::border_collision::feigin::Scenario;
+use crate::agreement::{Agreement, by_quantity, fewest_shared_decimals, shared_decimals, worse};
+use crate::border_collision::feigin::{Scenario, SideCounts};
+use crate::border_collision::{Classification, NormalForm, Refusal};
 use crate::cam::Side;
-use crate::corner::map::Uncertainty;
-use crate::corner::{CornerMap, SideMap};
-use crate::orbit::Eigenvalue;
+use crate::corner::map::{CornerMap, Route, Uncertainty};
 use crate::pages::local_map;
-use crate::pages::report::dossier::spoken;
-use crate::published::PrintedNumber;
-use crate::show::block::{Column, Mark, Table, Words};
+use crate::show::Paged;
+use crate::show::block::{Block, Column, Mark, Span, Table, Words, words};
 use crate::show::digits::Digits;
-use crate::show::page::{Page, WIDTH};
-use crate::show::words::{self, mark};
+use crate::show::words;
 use crate::study::verify::Verification;
 
-impl Verification {
-    /// The page, as wide as where nothing says how wide, without marks.
-    pub fn text(&self) -> Result<String, fmt::Error> {
-        Ok(self.page(WIDTH)?.plain().to_owned())
-    }
-
-    /// The page, in `width` columns.
-    pub fn page(&self, width: usize) -> Result<Page, fmt::Error> {
-        let mut page = Page::new(width);
-        let out = &mut page;
-        orbit(out, self)?;
-        map(out, self)?;
-        agreement(out, self)?;
-        bifurcation(out, self)?;
-        local_map::local_map(out, self)?;
-        published(out, self)?;
-        verdict(out, self)?;
-        Ok(page)
-    }
-}
-
-fn orbit(out: &mut Page, document: &Verification) -> fmt::Result {
-    let at = &document.at;
-    let state = at.x_star();
-    let [before, after] = at.cam_acceleration();
-    let title = format!("Corner impact of {}", document.model.name);
-    out.title(&title)?;
-    out.paragraph_at(2, &document.model.source)?;
-    out.heading("The orbit, solved for from the model")?;
-    writeln!(out, "  period   T* = {} s   ({:.9} rpm)", Digits::Significant(14).text(at.period), at.speed_rpm())?;
-    writeln!(
-        out,
-        "  state    x* = ({}, {})",
-        Digits::Significant(13).text(state[0]),
-        Digits::Significant(13).text(state[1])
-    )?;
-    let origin = Digits::Significant(9).text(at.origin);
-    writeln!(out, "           half a revolution from the impact; position is measured from q = {origin} m")?;
-    let degrees = at.corner.angle.to_degrees();
-    writeln!(
-        out,
-        "  impact   at cam angle {degrees:.6} deg, where c'' jumps from {:.4} to {:.4} m/s^2",
-        before, after
-    )?;
-    writeln!(
-        out,
-        "           q = {:.9} m, v = {:.6} before and {:.6} after, c' = {:.6} m/s",
-        at.corner.plus.value, at.velocity_before, at.velocity_after, at.cam_velocity
-    )?;
-    for other in &document.others {
-        writeln!(
-            out,
-            "  also     {:.6} rpm at {:.6} deg: narrow [study] to verify that one",
-            other.speed_rpm(),
-            other.corner.angle.to_degrees()
-        )?;
-    }
-    Ok(())
-}
-
-fn map(out: &mut Page, document: &Verification) -> fmt::Result {
-    out.heading("Its local map:  dx' = A dx + B dT")?;
-    out.paragraph_at(2, "dx is the deviation of the state (position in m, velocity in m/s) from x*, dT that of the period from T* (s), dx' \
-         the deviation one revolution later. minus holds where the impact comes before the corner, plus where it comes \
-         after it. C = h (A+ - A-), D = h (B+ - B-), h = [1 0]: the sides meet where C dx + D dT = 0.",
-    )?;
-    writeln!(out)?;
-    side(out, document, Side::Minus)?;
-    side(out, document, Side::Plus)?;
-    {
-        let closed = document.closed_form().map;
-        let c = closed.c();
-        writeln!(
-            out,
-            "  C = ({}, {}),  D = {}\n",
-            Digits::Significant(10).text(c[0]),
-            Digits::Significant(10).text(c[1]),
-            Digits::Significant(10).text(closed.d())
-        )?;
-    }
-    for route in document.routes_by_name() {
-        let name = route.name;
-        if let Some(Uncertainty::Fit { standard, systematic: Some(systematic), condition_number: condition }) =
-            &route.uncertainty
+impl Paged for Verification {
+    fn blocks(&self) -> Vec<Block> {
+        let title = Block::Title(format!("Corner impact of {}", self.model.name).into());
+        let mut page = vec![title, Block::paragraph(&self.model.source)];
+        for section in
+            [orbit(self), map(self), agreement(self), bifurcation(self), local_map::blocks(self), published(self)]
         {
-            let ((a, b), (bias_a, bias_b)) = (largest(standard), largest(systematic));
-            writeln!(
-                out,
-                "  {}: standard error up to {a:.1e} in A, {b:.1e} in B; bias up to {bias_a:.1e}, {bias_b:.1e};",
-                spoken(name)
-            )?;
-            writeln!(out, "  {:width$}  condition number {condition:.1}", "", width = name.len())?;
+            page.extend(section);
         }
-        if let Some(Uncertainty::Extrapolation(correction)) = &route.uncertainty {
-            let (a, b) = largest(correction);
-            writeln!(out, "  {}: error estimate up to {a:.1e} in A, {b:.1e} in B", spoken(name))?;
-        }
+        page.extend(verdict(self));
+        page
     }
-    Ok(())
 }
 
-fn side(out: &mut Page, document: &Verification, side: Side) -> fmt::Result {
-    let name = if side == Side::Minus { "minus" } else { "plus" };
-    writeln!(out, "  {name}: {}", words::side(side))?;
-    let routes: Vec<_> = document.routes_by_name().map(|route| (spoken(route.name), *route.map.of(side))).collect();
-    let printed = |quantity: &str| {
-        document.published.iter().find(|entry| entry.agreement.quantity == format!("{quantity}_{name}"))
-    };
-    let room = out.width().saturating_sub(LABELS + if printed("A").is_some() { PRINTED } else { 0 }).max(COLUMN);
-    // As few blocks as hold all columns, and as even.
-    let blocks = routes.len().div_ceil(room / COLUMN).max(1);
-    for routes in routes.chunks(routes.len().div_ceil(blocks).max(1)) {
-        columns(out, routes, printed)?;
-    }
-    Ok(())
+/// Where the corner impact is.
+pub(crate) fn orbit(found: &Verification) -> Vec<Block> {
+    let at = &found.at;
+    let (state, [before, after]) = (at.x_star(), at.cam_acceleration());
+    let significant = |value, digits| (value, Digits::Significant(digits));
+    let fixed = |value, places| (value, Digits::Fixed(places));
+    let degrees = |angle: f64| fixed(angle.to_degrees(), 6);
+    let period = words!["T* = ", significant(at.period, 14), " s   (", fixed(at.speed_rpm(), 9), " rpm)"];
+    let x_star = words![
+        "x* = (",
+        significant(state[0], 13),
+        ", ",
+        significant(state[1], 13),
+        ")",
+        Span::Break,
+        "half a revolution from the impact; position is measured from q = ",
+        significant(at.origin, 9),
+        " m",
+    ];
+    let impact = words![
+        "at cam angle ",
+        degrees(at.corner.angle),
+        " deg, where c'' jumps from ",
+        fixed(before, 4),
+        " to ",
+        fixed(after, 4),
+        " m/s^2",
+        Span::Break,
+        "q = ",
+        fixed(at.corner.plus.value, 9),
+        " m, v = ",
+        fixed(at.velocity_before, 6),
+        " before and ",
+        fixed(at.velocity_after, 6),
+        " after, c' = ",
+        fixed(at.cam_velocity, 6),
+        " m/s",
+    ];
+    let mut entries: Vec<(Words, Words)> =
+        vec![("period".into(), period), ("state".into(), x_star), ("impact".into(), impact)];
+    entries.extend(found.others.iter().map(|other| {
+        let (speed, angle) = (fixed(other.speed_rpm(), 6), degrees(other.corner.angle));
+        ("also".into(), words![speed, " rpm at ", angle, " deg: narrow [study] to verify that one"])
+    }));
+    vec![Block::Heading("The orbit, solved for from the model".into()), Block::Entries(9, entries)]
 }
 
-/// Widths of a table of maps: its labels, a route, the digits in print.
-const LABELS: usize = 8;
-const COLUMN: usize = 14;
-const PRINTED: usize = 19;
+/// The map by every route, side by side, and how well estimates know it.
+pub(crate) fn map(found: &Verification) -> Vec<Block> {
+    let mut blocks = vec![
+        Block::Heading("Its local map:  dx' = A dx + B dT".into()),
+        Block::paragraph(
+            "dx is the deviation of the state (position in m, velocity in m/s) from x*, dT that of the period from T* (s), dx' \
+             the deviation one revolution later. minus holds where the impact comes before the corner, plus where it comes \
+             after it. C = h (A+ - A-), D = h (B+ - B-), h = [1 0]: the sides meet where C dx + D dT = 0.",
+        ),
+        Block::Gap,
+    ];
+    for side in [Side::Minus, Side::Plus] {
+        blocks.push(Block::paragraph(format!("{side}: {}", words::side(side))));
+        blocks.extend([Block::Table(entries(found, side)), Block::Gap]);
+    }
+    let (c, ten) = (found.map.c(), Digits::Significant(10));
+    let border = words!["C = (", (c[0], ten), ", ", (c[1], ten), "),  D = ", (found.map.d(), ten)];
+    blocks.extend([Block::Entries(0, vec![("".into(), border)]), Block::Gap]);
+    blocks.extend(found.routes_by_name().filter_map(known_to));
+    blocks
+}
 
-/// One block of a side's table: some routes, and what the paper prints.
-fn columns<'a>(
-    out: &mut Page,
-    routes: &[(String, SideMap)],
-    printed: impl Fn(&str) -> Option<&'a PrintedNumber>,
-) -> fmt::Result {
+/// A and B of one side by every route, and as the paper prints them.
+fn entries(found: &Verification, side: Side) -> Table {
+    const NAMES: [&str; 6] = ["A11", "A12", "A21", "A22", "B1", "B2"];
+    let routes: Vec<&Route> = found.routes_by_name().collect();
+    let printed: Vec<&str> = ["A", "B"]
+        .iter()
+        .filter_map(|letter| {
+            let is_it = |name: String| name == format!("{letter}_{side}");
+            found.published.iter().find(|number| is_it(number.agreement.quantity.to_string()))
+        })
+        .flat_map(|number| number.printed.iter().map(String::as_str))
+        .collect();
+    let mut columns = vec![Column::left("", 4, 4)];
     // Two words, two lines.
-    let heads: Vec<_> = routes.iter().map(|(route, _)| route.split_once(' ').unwrap_or(("", route))).collect();
-    let mut lines = [String::new(), String::new()];
-    for (first, second) in &heads {
-        write!(lines[0], "{first:>COLUMN$}")?;
-        write!(lines[1], "{second:>COLUMN$}")?;
+    columns.extend(routes.iter().map(|route| Column::right(words::route(route.name).replacen(' ', "\n", 1), 14)));
+    columns.extend((!printed.is_empty()).then(|| Column::right("printed", 19)));
+    let mut table = Table::new(words::side(side), columns);
+    table.repeated = Some(usize::from(!printed.is_empty()));
+    for (index, name) in NAMES.into_iter().enumerate() {
+        let value = |route: &&Route| {
+            let all = route.map.of(side).entries();
+            Words::from((all[index], digits(if index < 4 { &all[..4] } else { &all[4..] })))
+        };
+        let cells = [name.into()].into_iter().chain(routes.iter().map(value));
+        table.row(cells.chain(printed.get(index).map(|digits| Words::from(*digits))).collect::<Vec<_>>());
     }
-    if printed("A").is_some() {
-        write!(lines[1], "{:>PRINTED$}", "printed")?;
-    }
-    writeln!(out, "{:LABELS$}{}", "", lines[0].trim_end())?;
-    writeln!(out, "{:LABELS$}{}", "", lines[1])?;
-    for (index, label) in ["A11", "A12", "A21", "A22", "B1", "B2"].into_iter().enumerate() {
-        write!(out, "    {label:<4}")?;
-        let (quantity, entry) = if index < 4 { ("A", index) } else { ("B", index - 4) };
-        for (_, side) in routes {
-            let values = side.entries();
-            let block = if index < 4 { &values[..4] } else { &values[4..] };
-            write!(out, "{:>COLUMN$}", cell(values[index], block))?;
-        }
-        if let Some(digits) = printed(quantity).and_then(|number| number.printed.get(entry)) {
-            write!(out, "{digits:>PRINTED$}")?;
-        }
-        writeln!(out)?;
-    }
-    writeln!(out)
+    table
 }
 
-/// An entry with ten digits of its block's largest, in at most 13 columns.
-fn cell(value: f64, block: &[f64]) -> String {
-    let largest = block.iter().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
-    if (1e-3..1e9).contains(&largest) || largest == 0.0 {
-        format!("{value:.*}", places(block))
-    } else {
-        format!("{value:.5e}")
-    }
-}
-
-/// Decimals that show ten digits of the largest entry.
-fn places(entries: &[f64]) -> usize {
+/// Ten digits of the largest of some entries, which are read against one another, in a column of a terminal.
+fn digits(entries: &[f64]) -> Digits {
     let largest = entries.iter().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
-    if largest > 0.0 && largest.is_finite() { (9.0 - largest.log10().floor()).clamp(0.0, 15.0) as usize } else { 9 }
+    match largest {
+        0.0 => Digits::Fixed(9),
+        _ if (1e-3..1e9).contains(&largest) => Digits::Fixed((9.0 - largest.log10().floor()) as usize),
+        _ => Digits::Power(6),
+    }
 }
 
-fn largest(sides: &CornerMap) -> (f64, f64) {
-    let both = [sides.minus, sides.plus];
+/// How well a route says that it knows the entries.
+fn known_to(route: &Route) -> Option<Block> {
+    let size = |value| (value, Digits::Size);
+    let (name, words) = (
+        words::route(route.name),
+        match route.uncertainty? {
+            Uncertainty::Fit { standard, systematic, condition_number } => {
+                let ((a, b), (bias_a, bias_b)) = (largest(&standard), largest(&systematic?));
+                words![
+                    "standard error up to ",
+                    size(a),
+                    " in A, ",
+                    size(b),
+                    " in B; bias up to ",
+                    size(bias_a),
+                    ", ",
+                    size(bias_b),
+                    ";",
+                    Span::Break,
+                    "condition number ",
+                    (condition_number, Digits::Fixed(1)),
+                ]
+            }
+            Uncertainty::Extrapolation(error) => {
+                let (a, b) = largest(&error);
+                words!["error estimate up to ", size(a), " in A, ", size(b), " in B"]
+            }
+        },
+    );
+    Some(Block::Entries(name.len() + 2, vec![(format!("{name}:").into(), words)]))
+}
+
+/// The largest entries of A and of B.
+fn largest(error: &CornerMap) -> (f64, f64) {
+    let both = [error.minus, error.plus];
     let a = both.iter().flat_map(|side| side.a.iter()).copied().fold(0.0, worse);
-    let b = both.iter().flat_map(|side| side.b.iter()).copied().fold(0.0, worse);
-    (a, b)
+    (a, both.iter().flat_map(|side| side.b.iter()).copied().fold(0.0, worse))
 }
 
-fn agreement(out: &mut Page, document: &Verification) -> fmt::Result {
-    out.heading("Do the routes agree? Every pair, in every quantity; shown is the pair closest to its bound")?;
+/// Of each quantity the pair of routes that is nearest to its bound, and every pair that disagrees.
+pub(crate) fn agreement(found: &Verification) -> Vec<Block> {
     let columns = [
         Column::left("quantity", 2, 19),
         Column::right("pairs", 5),
@@ -207,166 +184,153 @@ fn agreement(out: &mut Page, document: &Verification) -> fmt::Result {
         Column::left("between", 0, 0),
     ];
     let mut table = Table::new("Comparisons", columns);
-    let mut quantities: Vec<&str> = Vec::new();
-    for entry in &document.comparisons {
-        if !quantities.contains(&entry.quantity.as_str()) {
-            quantities.push(&entry.quantity);
-        }
-    }
-    for quantity in quantities {
-        let pairs: Vec<_> = document.comparisons.iter().filter(|entry| entry.quantity == quantity).collect();
-        let use_of_bound = |entry: &&&Agreement| entry.max_abs_diff / entry.bound.value;
-        let closest = pairs.iter().max_by(|a, b| use_of_bound(a).total_cmp(&use_of_bound(b)));
-        let disagreeing = pairs.iter().filter(|entry| !entry.agrees);
-        for (index, entry) in closest.into_iter().filter(|entry| entry.agrees).chain(disagreeing).enumerate() {
-            let Agreement { routes: [left, right], max_abs_diff, bound, agrees, .. } = entry;
-            let pair = format!("{} - {}", spoken(left), spoken(right));
-            let shared = share(*max_abs_diff);
-            let pair = match agrees {
-                true => Words::from(pair),
-                false => (Mark::Bad, format!("{pair}  DISAGREE").as_str()).into(),
+    for pairs in by_quantity(&found.comparisons) {
+        let disagreeing = pairs.all.iter().copied().filter(|entry| !entry.agrees);
+        let shown = [pairs.closest].into_iter().filter(|entry| entry.agrees).chain(disagreeing);
+        for (index, Agreement { routes, max_abs_diff, bound, agrees, .. }) in shown.enumerate() {
+            let between = routes.map(words::route).join(" - ");
+            let head = (index == 0).then(|| (words::quantity(pairs.quantity), Words::from(pairs.all.len())));
+            let (name, count) = head.unwrap_or_default();
+            let [differ, allowed] = [*max_abs_diff, bound.value].map(|value| Words::from((value, Digits::Size)));
+            let between = match agrees {
+                true => between.into(),
+                false => (Mark::Bad, format!("{between}  DISAGREE").as_str()).into(),
             };
-            let (name, count) = if index == 0 { (quantity, pairs.len().to_string()) } else { ("", String::new()) };
-            let [name, difference, allowed] =
-                [name.to_owned(), format!("{max_abs_diff:.1e}"), format!("{:.1e}", bound.value)].map(Words::from);
-            table.row([name, Words::from(count), difference, allowed, Words::from(shared), pair]);
+            let share = words::shared(shared_decimals(*max_abs_diff)).into();
+            table.row_bad_where(!agrees, [name, count, differ, allowed, share, between]);
         }
     }
-    out.table(&table)
+    let title = "Do the routes agree? Every pair, in every quantity; shown is the pair closest to its bound";
+    vec![Block::Heading(title.into()), Block::Table(table)]
 }
 
-fn share(diff: f64) -> String {
-    shared_decimals(diff).map_or("all digits".to_owned(), |decimals| format!("{decimals} decimals"))
-}
-
-fn bifurcation(out: &mut Page, document: &Verification) -> fmt::Result {
-    out.heading("What happens there")?;
-    let eigenvalues = |pair: &[Eigenvalue; 2]| {
-        let one = |re: f64, im: f64| {
-            if im == 0.0 {
-                format!("{re:.9}")
-            } else {
-                format!("{re:.9} {} {:.9}i", if im < 0.0 { '-' } else { '+' }, im.abs())
-            }
-        };
-        format!("{},  {}", one(pair[0].re, pair[0].im), one(pair[1].re, pair[1].im))
+/// Eigenvalues, normal form and verdict, and what that rests on.
+pub(crate) fn bifurcation(found: &Verification) -> Vec<Block> {
+    let eigenvalues = |side| {
+        let [one, two] =
+            found.map.of(side).eigenvalues().map(|value| Span::Complex([value.re, value.im], Digits::Fixed(9)));
+        words![one, ",  ", two]
     };
-    writeln!(out, "  eigenvalues of A-   {}", eigenvalues(&document.closed_form().map.minus.eigenvalues()))?;
-    writeln!(out, "  eigenvalues of A+   {}", eigenvalues(&document.closed_form().map.plus.eigenvalues()))?;
-    if let Ok(form) = &document.normal_form {
-        let matrix = |m: &nalgebra::Matrix2<f64>| {
-            let [a, b, c, d] = [m[(0, 0)], m[(0, 1)], m[(1, 0)], m[(1, 1)]].map(entry);
-            format!("[[{a}, {b}], [{c}, {d}]]")
-        };
-        writeln!(out, "  normal form         A-bar {}", matrix(&form.a_bar_minus))?;
-        writeln!(out, "                      A+bar {}", matrix(&form.a_bar_plus))?;
-        writeln!(
-            out,
-            "                      B bar ({}, {}),  C bar ({}, {})",
-            entry(form.b_bar[0]),
-            entry(form.b_bar[1]),
-            entry(form.c_bar[0]),
-            entry(form.c_bar[1])
-        )?;
+    let mut entries: Vec<(Words, Words)> = vec![
+        ("eigenvalues of A-".into(), eigenvalues(Side::Minus)),
+        ("eigenvalues of A+".into(), eigenvalues(Side::Plus)),
+    ];
+    entries.extend(found.normal_form.as_ref().ok().map(|form| ("normal form".into(), normal_form(form))));
+    match &found.classification {
+        Ok(kind) => entries.extend(classification(kind)),
+        Err(refusal) => entries.push(("verdict".into(), none(refusal))),
     }
-    if let Ok(verdict) = &document.classification {
-        writeln!(
-            out,
-            "  Feigin's counts     {} + {} real eigenvalues above 1, {} + {} below -1",
-            verdict.minus.above_one,
-            verdict.plus.above_one,
-            verdict.minus.below_minus_one,
-            verdict.plus.below_minus_one
-        )?;
-        let born = if verdict.period_two_orbit && verdict.scenario != Scenario::NonsmoothFlip {
-            ", and an orbit of period two"
-        } else {
-            ""
-        };
-        writeln!(out, "  verdict             {}{born}", verdict.scenario)?;
-        let meaning = words::meaning(verdict.scenario);
-        out.paragraph_at(22, meaning)?;
-        let fate = |stable: bool, speeds: crate::border_collision::feigin::Speeds| {
-            format!("{} one at speeds {speeds} than omega*", if stable { "a stable" } else { "an unstable" })
-        };
-        writeln!(out, "  fixed points        minus: {}", fate(verdict.minus.stable, verdict.minus.exists_for))?;
-        writeln!(out, "                      plus:  {}", fate(verdict.plus.stable, verdict.plus.exists_for))?;
-    }
-    if let Err(refusal) = &document.classification {
-        writeln!(out, "  verdict             none")?;
-        out.paragraph_at(22, &refusal.to_string())?;
-    }
-    local_map::conditions(out, document)
+    entries.extend(local_map::conditions(found));
+    vec![Block::Heading("What happens there".into()), Block::Entries(20, entries)]
 }
 
-fn published(out: &mut Page, document: &Verification) -> fmt::Result {
-    if document.published.is_empty() {
-        return Ok(());
-    }
-    out.heading("The paper's printed numbers")?;
-    for entry in &document.published {
-        let PrintedNumber { place, agreement: Agreement { quantity, max_abs_diff, .. }, verdict, as_found, .. } = entry;
-        let shared = share(*max_abs_diff);
-        write!(out, "  {quantity:<20}{place:<20}differs by {max_abs_diff:>7.1e}, shares {shared:<13}")?;
-        out.marked(mark(*verdict), &verdict.to_string());
-        if !*as_found {
-            write!(out, "   ")?;
-            out.marked(Mark::Bad, "UNEXPECTED");
-        }
-        writeln!(out)?;
-    }
-    for entry in document.published.iter().filter(|entry| !entry.note.is_empty()) {
-        let computed: Vec<_> = entry.computed.iter().map(|value| Digits::Significant(10).text(*value)).collect();
-        let words = format!(
-            "{}, printed ({}), computed ({}): {}",
-            entry.agreement.quantity,
-            entry.printed.join(", "),
-            computed.join(", "),
-            entry.note
-        );
-        writeln!(out)?;
-        out.paragraph_at(2, &words)?;
-    }
-    Ok(())
+fn normal_form(form: &NormalForm) -> Words {
+    let nine = Digits::UpTo(9);
+    let rows = |m: &nalgebra::Matrix2<f64>| {
+        Span::Matrix(m.row_iter().map(|row| row.iter().copied().collect()).collect(), nine)
+    };
+    let pair = |one, two| words!["(", (one, nine), ", ", (two, nine), ")"];
+    words![
+        "A-bar ",
+        rows(&form.a_bar_minus),
+        Span::Break,
+        "A+bar ",
+        rows(&form.a_bar_plus),
+        Span::Break,
+        "B bar ",
+        pair(form.b_bar[0], form.b_bar[1]),
+        ",  C bar ",
+        pair(form.c_bar[0], form.c_bar[1]),
+    ]
 }
 
-fn verdict(out: &mut Page, document: &Verification) -> fmt::Result {
-    if !document.skipped.is_empty() {
-        out.heading("NOT RUN")?;
-        for skipped in &document.skipped {
-            out.paragraph_at(2, &format!("{}: {}", skipped.route, skipped.why))?;
+fn classification(kind: &Classification) -> Vec<(Words, Words)> {
+    let Classification { scenario, minus, plus, .. } = kind;
+    let counts = format!(
+        "{} + {} real eigenvalues above 1, {} + {} below -1",
+        minus.above_one, plus.above_one, minus.below_minus_one, plus.below_minus_one
+    );
+    let born = kind.period_two_orbit && *scenario != Scenario::NonsmoothFlip;
+    let born = if born { ", and an orbit of period two" } else { "" };
+    let verdict = words![scenario.to_string(), born, Span::Break, words::meaning(*scenario)];
+    let fate = |side: &SideCounts| {
+        let stability = if side.stable { "a stable" } else { "an unstable" };
+        format!("{stability} one at speeds {}", words::speeds(Some(side.exists_for)))
+    };
+    let fixed = words!["minus: ", fate(minus), Span::Break, "plus:  ", fate(plus)];
+    [("Feigin's counts", counts.into()), ("verdict", verdict), ("fixed points", fixed)]
+        .map(|(name, words)| (name.into(), words))
+        .into()
+}
+
+fn none(refusal: &Refusal) -> Words {
+    words!["none", Span::Break, refusal.to_string()]
+}
+
+/// The paper's printed numbers, each in a line, and what is wrong with those that do not hold.
+fn published(found: &Verification) -> Vec<Block> {
+    if found.published.is_empty() {
+        return Vec::new();
+    }
+    let widths = [(2, 20), (0, 20), (0, 18), (0, 22), (0, 0)];
+    let mut table = Table::new("The paper's printed numbers", widths.map(|(gap, least)| Column::left("", gap, least)));
+    let mut notes = Vec::new();
+    for number in &found.published {
+        let Agreement { quantity, max_abs_diff, .. } = number.agreement;
+        let mut verdict = words::verdict(number.verdict);
+        if !number.as_found {
+            verdict.push(words!["   ", (Mark::Bad, "UNEXPECTED")]);
+        }
+        table.row([
+            words::quantity(quantity),
+            number.place.as_str().into(),
+            format!("differs by {:>7}", Digits::Size.text(max_abs_diff)).into(),
+            format!(", shares {}", words::shared(shared_decimals(max_abs_diff))).into(),
+            verdict,
+        ]);
+        if !number.note.is_empty() {
+            let computed: Vec<_> =
+                number.computed.iter().map(|value| Words::from((*value, Digits::Significant(10)))).collect();
+            let printed = format!(", printed ({}), computed (", number.printed.join(", "));
+            let note = words![words::quantity(quantity), printed, Words::joined(computed, ", "), "): ", number.note];
+            notes.extend([Block::Gap, Block::paragraph(note)]);
         }
     }
-    out.heading("Verdict")?;
-    let failed = document.comparisons.iter().filter(|entry| !entry.agrees).count();
-    let unexpected = document.published.iter().filter(|entry| !entry.as_found).count();
-    let wrong = document.published.iter().filter(|entry| entry.as_found && !entry.agreement.agrees).count();
-    let maps = document
-        .comparisons
-        .iter()
-        .filter(|entry| ["A_minus", "A_plus", "B_minus", "B_plus"].contains(&entry.quantity.as_str()));
-    let fewest = maps.filter_map(|entry| shared_decimals(entry.max_abs_diff)).min();
-    let shared = fewest.map_or("all digits".to_owned(), |decimals| format!("{decimals} decimals or more"));
-    writeln!(
-        out,
-        "  {} of {} comparisons agree; every entry of A and B shares {shared}.",
-        document.comparisons.len() - failed,
-        document.comparisons.len()
-    )?;
-    if !document.published.is_empty() {
-        let right = document.published.len() - wrong - unexpected;
-        writeln!(
-            out,
-            "  Of the paper's {} printed numbers {right} hold, {wrong} are wrong as listed, {unexpected} came out otherwise than found.",
-            document.published.len()
-        )?;
+    let heading = Block::Heading("The paper's printed numbers".into());
+    [heading, Block::Table(table)].into_iter().chain(notes).collect()
+}
+
+/// What did not run, and whether everything agrees.
+pub(crate) fn verdict(found: &Verification) -> Vec<Block> {
+    let mut blocks = Vec::new();
+    if !found.skipped.is_empty() {
+        let line = |skipped: &crate::study::compared::Skipped| format!("{}: {}", skipped.route, skipped.why).into();
+        blocks.extend([Block::Heading("NOT RUN".into()), Block::List(found.skipped.iter().map(line).collect())]);
+    }
+    blocks.push(Block::Heading("Verdict".into()));
+    let (pairs, numbers) = (&found.comparisons, &found.published);
+    let agreeing = pairs.iter().filter(|entry| entry.agrees).count();
+    let fewest = fewest_shared_decimals(pairs);
+    let more = if fewest.is_some() { " or more" } else { "" };
+    blocks.push(Block::paragraph(format!(
+        "{agreeing} of {} comparisons agree; every entry of A and B shares {}{more}.",
+        pairs.len(),
+        words::shared(fewest)
+    )));
+    if !numbers.is_empty() {
+        let unexpected = numbers.iter().filter(|number| !number.as_found).count();
+        let wrong = numbers.iter().filter(|number| number.as_found && !number.agreement.agrees).count();
+        blocks.push(Block::paragraph(format!(
+            "Of the paper's {} printed numbers {} hold, {wrong} are wrong as listed, {unexpected} came out otherwise than found.",
+            numbers.len(),
+            numbers.len() - wrong - unexpected
+        )));
     }
     let missing: Vec<&str> =
-        document.skipped.iter().filter(|skipped| skipped.failed).map(|skipped| skipped.route.as_str()).collect();
-    let all_agree = document.comparisons.iter().all(|entry| entry.agrees)
-        && document.published.iter().all(|number| number.as_found);
+        found.skipped.iter().filter(|skipped| skipped.failed).map(|skipped| skipped.route.as_str()).collect();
+    let all_agree = agreeing == pairs.len() && numbers.iter().all(|number| number.as_found);
     let (mark, word, reason) = match missing.as_slice() {
-        _ if document.agrees => (Mark::Good, "AGREES", String::new()),
+        _ if found.agrees => (Mark::Good, "AGREES", String::new()),
         [] => (Mark::Bad, "DISAGREES", ": a comparison above".to_owned()),
         [most @ .., last] => {
             let names = if most.is_empty() { (*last).to_owned() } else { format!("{} and {last}", most.join(", ")) };
@@ -375,14 +339,6 @@ fn verdict(out: &mut Page, document: &Verification) -> fmt::Result {
             (Mark::Bad, word, format!(": {names} did not run"))
         }
     };
-    write!(out, "  ")?;
-    out.marked(mark, word);
-    writeln!(out, "{reason}")
-}
-
-/// Nine decimals, without trailing zeros.
-fn entry(value: f64) -> String {
-    let text = format!("{value:.9}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" { "0".into() } else { text.into() }
+    blocks.push(Block::paragraph(words![(mark, word), reason]));
+    blocks
 }

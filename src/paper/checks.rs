@@ -153,7 +153,7 @@ fn shortened(residual: &serde_json::Value) -> String {
 }
 
 fn number(context: &Context<'_>, quantity: &str) -> Decision {
-    let number = context.findings.published.iter().find(|number| number.agreement.quantity == quantity);
+    let number = context.findings.published.iter().find(|number| number.agreement.quantity.to_string() == quantity);
     let number = number.ok_or("not compared")?;
     let (agrees, bound) = (number.agreement.agrees, number.agreement.bound.value);
     let relation = if agrees { "within" } else { "beyond" };

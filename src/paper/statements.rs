@@ -5,10 +5,12 @@ use std::fmt;
 use nalgebra::Vector2;
 
 use super::context::{Context, Decision, decide};
-use crate::agreement::worse;
+use crate::agreement::{Quantity, worse};
 use crate::border_collision::Classification;
 use crate::border_collision::feigin::{Scenario, Speeds};
+use crate::cam::Side;
 use crate::corner;
+use crate::corner::map::RouteName;
 use crate::flight::{Flight, State};
 use crate::impact::rebound;
 use crate::published::Verdict;
@@ -127,15 +129,16 @@ pub(super) fn at_rest(context: &Context<'_>) -> Decision {
 
 /// Each revolution that an estimator samples must have one impact, near the corner, or the estimator fails.
 pub(super) fn one_impact(context: &Context<'_>) -> Decision {
-    let ran: Vec<_> =
-        context.findings.routes.iter().filter(|route| route.uncertainty.is_some()).map(|route| route.name).collect();
-    let evidence =
-        format!("so has the located orbit in simulation, and each perturbed revolution of {}", ran.join(" and "));
-    decide(ran.contains(&"least_squares") && ran.contains(&"finite_difference"), Verdict::Refuted, evidence)
+    let estimates = context.findings.routes.iter().filter(|route| route.uncertainty.is_some());
+    let ran: Vec<_> = estimates.map(|route| route.name).collect();
+    let names = ran.iter().map(RouteName::to_string).collect::<Vec<_>>().join(" and ");
+    let evidence = format!("so has the located orbit in simulation, and each perturbed revolution of {names}");
+    let both = [RouteName::LeastSquares, RouteName::FiniteDifference].iter().all(|name| ran.contains(name));
+    decide(both, Verdict::Refuted, evidence)
 }
 
 pub(super) fn two_sides(context: &Context<'_>) -> Decision {
-    let map = &context.findings.closed_form().map;
+    let map = &context.findings.map;
     let jumps = [(map.plus.a - map.minus.a).abs().max(), (map.plus.b - map.minus.b).abs().max()];
     let sizes = [map.minus.a.abs().max(), map.minus.b.abs().max()];
     let evidence = format!("entries of A jump by up to {}, of B by up to {}", Shown(jumps[0]), Shown(jumps[1]));
@@ -145,7 +148,7 @@ pub(super) fn two_sides(context: &Context<'_>) -> Decision {
 
 /// Undamped, A has equal diagonal entries; the printed matrices have them, to all digits.
 pub(super) fn positive_constants(context: &Context<'_>) -> Decision {
-    let difference = |quantity: &str| {
+    let difference = |quantity: Quantity| {
         let number = context.findings.published.iter().find(|number| number.agreement.quantity == quantity)?;
         let entry = |index: usize| number.printed.get(index)?.parse::<f64>().ok();
         Some(entry(0)? - entry(3)?)
@@ -155,7 +158,7 @@ pub(super) fn positive_constants(context: &Context<'_>) -> Decision {
     let with_damping = corner::locate(&damped, context.cam)
         .map(|(at, _)| corner::closed_form::route(&damped, &at).map.plus.a)
         .map_or_else(|error| error.to_string(), |a| format!("{:.4}", a[(0, 0)] - a[(1, 1)]));
-    let differences = difference("A_minus").zip(difference("A_plus"));
+    let differences = difference(Quantity::A(Side::Minus)).zip(difference(Quantity::A(Side::Plus)));
     let (minus, plus) = differences.ok_or("the printed matrices were not compared")?;
     let evidence = format!(
         "the printed A- and A+ have equal diagonals (differences {minus} and {plus}), which needs b = 0: zeta = 1/s would \
@@ -170,8 +173,7 @@ pub(super) fn validation(context: &Context<'_>) -> Decision {
         .comparisons
         .iter()
         .filter(|entry| {
-            entry.routes == ["closed_form", "least_squares"]
-                && ["A", "B"].iter().any(|m| entry.quantity.starts_with(&format!("{m}_")))
+            entry.routes == [RouteName::ClosedForm, RouteName::LeastSquares] && entry.quantity.is_of_the_map()
         })
         .collect();
     let agree = entries.len() == 4 && entries.iter().all(|entry| entry.agrees);
@@ -182,7 +184,8 @@ pub(super) fn validation(context: &Context<'_>) -> Decision {
 }
 
 pub(super) fn five_decimals(context: &Context<'_>) -> Decision {
-    let estimates = context.findings.published.iter().filter(|number| number.agreement.quantity.contains("_hat_"));
+    let hatted = |quantity| matches!(quantity, Quantity::AHat(_) | Quantity::BHat(_));
+    let estimates = context.findings.published.iter().filter(|number| hatted(number.agreement.quantity));
     let parts: Vec<_> = estimates
         .clone()
         .map(|number| format!("{} {:.1e}", number.agreement.quantity, number.agreement.max_abs_diff))
@@ -237,7 +240,7 @@ pub(super) fn fixed_points_above(context: &Context<'_>) -> Decision {
 
 /// On the border the two sides of this model's map are one.
 pub(super) fn continuity(context: &Context<'_>) -> Decision {
-    let map = &context.findings.closed_form().map;
+    let map = &context.findings.map;
     let (c, d) = (map.c(), map.d());
     let (jump_a, jump_b) = (map.plus.a - map.minus.a, map.plus.b - map.minus.b);
     // Two directions span the border: along it in the state, and from it with dT.

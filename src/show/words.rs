@@ -2,16 +2,59 @@
 //!
 //! The names of values in JSON and in tables are what the values serialize as, and a value is written by that name.
 
+use crate::agreement::Quantity;
 use crate::border_collision::conditions::Decides;
 use crate::border_collision::feigin::{Scenario, Speeds};
 use crate::border_collision::long_run::End;
 use crate::border_collision::validity::{Compared, Ends};
 use crate::cam::Side;
+use crate::corner::map::RouteName;
 use crate::published::Verdict;
 use crate::show::block::{Mark, Symbol, Words, words};
 use crate::show::digits::Digits;
 use crate::study::basins::Ending;
 use crate::study::speeds::{Regime, Settled};
+
+/// A route's name.
+pub fn route(name: RouteName) -> String {
+    spoken(&name.to_string())
+}
+
+/// A quantity as the paper writes it; on a terminal as documents have it.
+pub fn quantity(quantity: Quantity) -> Words {
+    let (name, side) = quantity.parts();
+    let (letter, above) = match quantity {
+        Quantity::Period => ("T", "∗"),
+        Quantity::State => ("x", "∗"),
+        Quantity::Speed => ("ω", "∗"),
+        Quantity::Eigenvalues(_) => ("λ", ""),
+        Quantity::AHat(_) => ("A\u{302}", ""),
+        Quantity::BHat(_) => ("B\u{302}", ""),
+        Quantity::BTilde => ("B\u{303}", ""),
+        Quantity::ABar(_) => ("A\u{304}", ""),
+        Quantity::BBar => ("B\u{304}", ""),
+        Quantity::CBar => ("C\u{304}", ""),
+        _ => (name, ""),
+    };
+    symbol(&quantity.to_string(), letter, "", side.map_or(above, sign)).into()
+}
+
+/// A side as the paper marks it.
+pub fn sign(side: Side) -> &'static str {
+    match side {
+        Side::Minus => "\u{2212}",
+        Side::Plus => "+",
+    }
+}
+
+/// The decimals that two values share.
+pub fn shared(decimals: Option<u32>) -> String {
+    match decimals {
+        Some(1) => "1 decimal".into(),
+        Some(decimals) => format!("{decimals} decimals"),
+        None => "all digits".into(),
+    }
+}
 
 /// A name with spaces for its hyphens and underscores.
 pub fn spoken(name: &str) -> String {

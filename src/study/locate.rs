@@ -8,20 +8,16 @@ use std::collections::BTreeMap;
 
 use serde::{Serialize, Serializer};
 
-use crate::agreement::{Agreement, compare, compare_routes, worse};
+use crate::agreement::Agreement;
 use crate::border_collision::{Classification, Degenerate, classify};
 use crate::cam::{Cam, Side};
 use crate::corner::border::border;
-use crate::corner::map::Uncertainty;
-use crate::corner::one_sided::SampleError;
+use crate::corner::map::RouteName;
 use crate::corner::range::{FoundCornerImpacts, RangeError, find_corner_impacts};
-use crate::corner::varied::Varied;
-use crate::corner::{CornerImpact, CornerMap, Route, SideMap};
-use crate::corner::{closed_form, finite_difference, least_squares, variational};
+use crate::corner::{CornerImpact, CornerMap, variational};
 use crate::model::{Model, ModelError, Study};
 use crate::study::ModelLabel;
-use crate::study::verify::Skipped;
-use crate::tolerance::Comparison;
+use crate::study::compared::{self, Log, Skipped, compare_borders};
 
 /// The corner impacts of a range of speeds: the document `corner-impact/locate/1`.
 #[derive(Clone, Debug)]
@@ -188,140 +184,21 @@ pub fn locate(model: &Model, range: Study, revolutions: u64) -> Result<Located, 
 
 /// A corner impact with its map by each route that its corner has.
 fn located(model: &Model, cam: &Cam, at: &CornerImpact) -> LocatedImpact {
-    let exact = variational::route(model, cam, at);
-    let (map, border) = (exact.map, border(model, cam, at));
-    let (mut comparisons, mut skipped) = (Vec::new(), Vec::new());
-    let mut routes = vec![exact];
-    let mut keep = |name: &str, route: Result<Route, SampleError>| {
-        let fail =
-            |error: SampleError| skipped.push(Skipped { route: name.into(), why: error.to_string(), failed: true });
-        route.map_err(fail).ok()
-    };
+    let mut log = Log::default();
+    let (mut routes, _) = compared::routes(model, cam, at, &mut log);
+    // The route that knows every kind of orbit comes first: its map is told.
+    routes.sort_by_key(|route| route.name != RouteName::Variational);
+    let mut comparisons = compared::comparisons(at, &routes, &mut log);
+    let (map, border) = (variational::route(model, cam, at).map, border(model, cam, at));
     let local = match at.corner.jump_order {
-        1 => {
-            comparisons.extend(keep("finite_difference", one_side(model, cam, at)).into_iter().flat_map(|route| {
-                let (name, one, other) = match at.side {
-                    Side::Minus => ("minus", map.minus, route.map.minus),
-                    Side::Plus => ("plus", map.plus, route.map.plus),
-                };
-                compare_sides(name, &one, &other)
-            }));
-            Happens::Gap
+        1 => Happens::Gap,
+        2 => {
+            let differences = routes.iter().find(|route| route.name == RouteName::FiniteDifference);
+            comparisons.extend(differences.map(|route| compare_borders(route, RouteName::Flight, border)));
+            Happens::BorderCollision(classify(&map, border))
         }
-        order => {
-            if at.is_simple() {
-                routes.push(closed_form::route(model, at));
-            }
-            routes.extend(keep("finite_difference", finite_difference::route(model, cam, at)));
-            if order == 2 {
-                routes.extend(keep("least_squares", least_squares::route(model, cam, at)));
-            }
-            let (known, unknown) = split_by_knowledge(compare_routes(&routes), &routes);
-            comparisons.extend(known);
-            skipped.extend(unknown);
-            if order == 2 {
-                comparisons.extend(routes.iter().find(|route| route.name == "finite_difference").map(|route| {
-                    let ((e, f), c, d) = (border, route.map.c(), route.map.d());
-                    let names = [route.name, "flight"];
-                    compare(names, "border", [(c * f).as_slice(), (e * d).as_slice()], Comparison::Routes)
-                }));
-                Happens::BorderCollision(classify(&map, border))
-            } else {
-                Happens::Smooth
-            }
-        }
+        _ => Happens::Smooth,
     };
-    let agrees = skipped.iter().all(|skipped| !skipped.failed) && comparisons.iter().all(|item| item.agrees);
-    LocatedImpact { at: at.clone(), map, local, comparisons, skipped, agrees }
-}
-
-/// The estimate of the side that the impact is on, in the place of both.
-fn one_side(model: &Model, cam: &Cam, at: &CornerImpact) -> Result<Route, SampleError> {
-    let (side, _) = finite_difference::side_map(model, cam, at, at.side, &Varied::Period)?;
-    Ok(Route { name: "finite_difference", map: CornerMap { minus: side, plus: side }, uncertainty: None })
-}
-
-/// The comparisons but for those with an estimate that says itself that it knows the quantity less closely than is asked,
-/// and which those are. Over a whole period of several impacts, and next to a graze, rounding is amplified as deviations are.
-///
-/// A fit is left out wherever it says so: it would be no check. The differences add up the largest that every rounding can
-/// do, and are mostly closer than that: they are left out only where they miss by no more than they say.
-fn split_by_knowledge(mut comparisons: Vec<Agreement>, routes: &[Route]) -> (Vec<Agreement>, Vec<Skipped>) {
-    let mut skipped = Vec::new();
-    for route in routes {
-        let Some(uncertainty) = &route.uncertainty else { continue };
-        let is_unknown = |item: &Agreement| {
-            let known_to = known_to(uncertainty, &item.quantity);
-            let misses = match uncertainty {
-                Uncertainty::Fit { .. } => true,
-                Uncertainty::Extrapolation(_) => !item.agrees && item.max_abs_diff <= known_to,
-            };
-            item.routes.iter().any(|name| name == route.name) && misses && !(known_to <= item.bound.value)
-        };
-        let (unknown, known): (Vec<Agreement>, Vec<Agreement>) = comparisons.into_iter().partition(is_unknown);
-        comparisons = known;
-        skipped.extend(unknown.first().map(|item| {
-            let (quantity, known_to, asked) = (&item.quantity, known_to(uncertainty, &item.quantity), item.bound.value);
-            let why = format!("knows {quantity} to {known_to:.1e} by its own errors, and {asked:.1e} is asked for");
-            Skipped { route: route.name.into(), why, failed: false }
-        }));
-    }
-    (comparisons, skipped)
-}
-
-/// Three standard errors and the bias of a fit's worst entry of a quantity, or the error of an extrapolation's; of what
-/// derives from A and B, of both sides.
-fn known_to(uncertainty: &Uncertainty, quantity: &str) -> f64 {
-    let worst = |entries: &[f64]| entries.iter().fold(0.0, |size, entry| worse(size, entry.abs()));
-    let side = |error: &SideMap, in_b: bool| if in_b { worst(error.b.as_slice()) } else { worst(error.a.as_slice()) };
-    let both = |minus: bool, plus: bool, in_b: bool| {
-        let of = |map: &CornerMap| {
-            let sides = [(minus, &map.minus), (plus, &map.plus)];
-            sides.into_iter().filter(|(counts, _)| *counts).map(|(_, error)| side(error, in_b)).fold(0.0, worse)
-        };
-        match uncertainty {
-            Uncertainty::Fit { standard, systematic, .. } => 3.0 * of(standard) + systematic.as_ref().map_or(0.0, of),
-            Uncertainty::Extrapolation(error) => of(error),
-        }
-    };
-    match quantity {
-        "A_minus" | "eigenvalues_minus" => both(true, false, false),
-        "A_plus" | "eigenvalues_plus" => both(false, true, false),
-        "B_minus" => both(true, false, true),
-        "B_plus" => both(false, true, true),
-        "C" => both(true, true, false),
-        _ => both(true, true, true),
-    }
-}
-
-fn compare_sides(name: &str, one: &SideMap, other: &SideMap) -> [Agreement; 2] {
-    let routes = ["variational", "finite_difference"];
-    let (a, b) = (format!("A_{name}"), format!("B_{name}"));
-    [
-        compare(routes, &a, [one.a.as_slice(), other.a.as_slice()], Comparison::Routes),
-        compare(routes, &b, [one.b.as_slice(), other.b.as_slice()], Comparison::Routes),
-    ]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn sides(a: f64) -> CornerMap {
-        let side = SideMap { a: nalgebra::Matrix2::repeat(a), b: nalgebra::Vector2::repeat(1.0) };
-        CornerMap { minus: side, plus: side }
-    }
-
-    #[test]
-    fn an_estimate_that_misses_by_more_than_it_says_disagrees() {
-        let exact = Route { name: "variational", map: sides(1.0), uncertainty: None };
-        for (off, said, is_kept) in [(1e-4, 2e-4, false), (2e-4, 1e-4, true), (1e-12, 2e-4, true)] {
-            let error = Some(Uncertainty::Extrapolation(sides(said)));
-            let estimate = Route { name: "finite_difference", map: sides(1.0 + off), uncertainty: error };
-            let routes = [exact.clone(), estimate];
-            let (kept, skipped) = split_by_knowledge(compare_routes(&routes), &routes);
-            assert_eq!(kept.iter().any(|item| item.quantity == "A_minus"), is_kept, "{off} {said}");
-            assert_eq!(skipped.is_empty(), is_kept);
-        }
-    }
+    let agrees = log.is_complete() && comparisons.iter().all(|item| item.agrees);
+    LocatedImpact { at: at.clone(), map, local, comparisons, skipped: log.0, agrees }
 }

@@ -2,6 +2,7 @@
 
 pub mod basins;
 pub mod cam;
+pub mod compared;
 pub mod locate;
 pub mod orbit;
 pub mod speeds;

@@ -4,27 +4,25 @@ use std::collections::BTreeMap;
 use std::thread::JoinHandle;
 
 use nalgebra::RowVector2;
-use serde::Serialize;
 
-use crate::agreement::{self, Agreement, NamedOrbit, compare};
+use crate::agreement::{Agreement, NamedOrbit, compare_orbits};
 use crate::border_collision::validity::{self, Range};
 use crate::border_collision::{
     Classification, Condition, Degenerate, LocalMap, LocalOutcome, NormalForm, Refusal, classify, conditions,
     normal_form,
 };
-use crate::cam::{Cam, Side};
+use crate::cam::Cam;
 use crate::corner::border::border;
 use crate::corner::external::{self, Outside, PROGRAMS, Program};
-use crate::corner::map::Sides;
-use crate::corner::one_sided::SampleError;
+use crate::corner::map::{RouteName, Sides};
 use crate::corner::{self, CornerImpact, CornerMap, LocateError, Route};
-use crate::corner::{closed_form, finite_difference, least_squares, simulated_orbit, variational};
+use crate::corner::{closed_form, simulated_orbit};
 use crate::model::Model;
 use crate::progress::{Unwatched, Watch};
 use crate::published::{PrintedNumber, PublishedError, compare_published};
 use crate::python::PythonError;
 use crate::study::ModelLabel;
-use crate::tolerance::Comparison;
+use crate::study::compared::{self, Log, Skipped, compare_borders};
 
 /// What a verification found: the document `corner-impact/verify/1`.
 #[derive(Clone, Debug)]
@@ -35,7 +33,9 @@ pub struct Verification {
     pub at: CornerImpact,
     /// Further corner impacts in `[study]`.
     pub others: Vec<CornerImpact>,
-    /// The map by each route that ran, the closed form first.
+    /// The map by the closed form.
+    pub map: CornerMap,
+    /// The map by each route that ran.
     pub routes: Vec<Route>,
     /// Every comparison of two routes.
     pub comparisons: Vec<Agreement>,
@@ -59,17 +59,6 @@ pub struct Verification {
     pub agrees: bool,
 }
 
-/// Something that did not run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Skipped {
-    /// The route, or the result that it would have given.
-    pub route: String,
-    /// Why.
-    pub why: String,
-    /// Whether it should have run; then the whole disagrees.
-    pub failed: bool,
-}
-
 document!(Verification as found {
     schema: "corner-impact/verify/1",
     model: found.model,
@@ -78,8 +67,8 @@ document!(Verification as found {
     routes: found.routes.iter().map(|route| (route.name, route)).collect::<BTreeMap<_, _>>(),
     agreement: found.comparisons,
     eigenvalues: Sides {
-        minus: found.closed_form().map.minus.eigenvalues(),
-        plus: found.closed_form().map.plus.eigenvalues(),
+        minus: found.map.minus.eigenvalues(),
+        plus: found.map.plus.eigenvalues(),
     },
     normal_form: found.normal_form.as_ref().ok(),
     classification: found.classification.as_ref().ok(),
@@ -121,11 +110,6 @@ impl Verification {
     pub fn routes_by_name(&self) -> impl Iterator<Item = &Route> {
         self.routes.iter().map(|route| (route.name, route)).collect::<BTreeMap<_, _>>().into_values()
     }
-
-    /// The closed form's route.
-    pub fn closed_form(&self) -> &Route {
-        &self.routes[0]
-    }
 }
 
 /// Whether to run the routes outside this program.
@@ -156,43 +140,38 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
     watch.at("the map by the routes of this program", 0, 0);
     let closed = closed_form::route(model, &at);
     let map = closed.map;
-    let mut routes = vec![closed];
-    let differenced = finite_difference::route(model, &cam, &at);
-    let sticking = differenced.as_ref().err().and_then(sticks);
-    routes.push(variational::route(model, &cam, &at));
-    routes.extend(log.keep("finite_difference", differenced));
-    routes.extend(log.keep("least_squares", least_squares::route(model, &cam, &at)));
+    let (mut routes, sticking) = compared::routes(model, &cam, &at, &mut log);
 
-    let mut orbits: Vec<NamedOrbit> = vec![("located", at.x_star(), at.period)];
+    let mut orbits: Vec<NamedOrbit> = vec![(RouteName::Located, at.x_star(), at.period)];
     if model.follower.stiffness > 0.0 {
         let transcribed = log.keep("x_star by closed_form", closed_form::orbit(model, &at));
-        orbits.extend(transcribed.map(|(x, period)| ("closed_form", x, period)));
+        orbits.extend(transcribed.map(|(x, period)| (RouteName::ClosedForm, x, period)));
     } else {
         let why = "without stiffness there is no equilibrium to measure the paper's x from";
-        log.leave_out("x_star by closed_form", why.into());
+        log.leave_out("x_star by closed_form", why);
     }
     let simulated = log.keep("x_star by simulation", simulated_orbit::orbit(model, &cam, &at));
-    orbits.extend(simulated.map(|(x, period)| ("simulation", x, period)));
+    orbits.extend(simulated.map(|(x, period)| (RouteName::Simulation, x, period)));
 
     for (program, answer) in outside {
         watch.at(&format!("the map by {}, in Python", program.name), 0, 0);
         match answer.map(JoinHandle::join) {
-            None if external == External::Run => log.leave_out(program.name, "knows cams of arcs only".into()),
-            None => log.leave_out(program.name, "left out by --no-external".into()),
+            None if external == External::Run => log.leave_out(program.name, "knows cams of arcs only"),
+            None => log.leave_out(program.name, "left out by --no-external"),
             Some(Ok(result)) => {
                 if let Some(Outside { route, x_star, period }) = log.keep(program.name, result) {
                     routes.push(route);
                     orbits.push((program.name, x_star, period));
                 }
             }
-            Some(Err(_)) => log.fail(program.name, "its thread ended without an answer".into()),
+            Some(Err(_)) => log.fail(program.name, "its thread ended without an answer"),
         }
     }
-    let mut comparisons = agreement::compare_routes(&routes);
-    comparisons.extend(agreement::compare_orbits(&orbits));
+    let mut comparisons = compared::comparisons(&at, &routes, &mut log);
+    comparisons.extend(compare_orbits(&orbits));
 
     let border = border(model, &cam, &at);
-    comparisons.push(compare_borders(&map, border));
+    comparisons.push(compare_borders(&closed, RouteName::FreeFlight, border));
     let normal_form = normal_form(&map);
     log.refused("normal_form", &normal_form);
     let classification = match sticking {
@@ -209,18 +188,20 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
     }
     let published = match compare_published(model, &at, &map, normal_form.as_ref().ok()) {
         Err(error @ PublishedError::OtherModel) => {
-            log.leave_out("published", error.to_string());
+            log.leave_out("published", error);
             Vec::new()
         }
         result => log.keep("published", result).unwrap_or_default(),
     };
 
-    let ran = log.skipped.iter().all(|skipped| !skipped.failed);
-    let agrees = ran && comparisons.iter().all(|item| item.agrees) && published.iter().all(|number| number.as_found);
+    let agrees = log.is_complete()
+        && comparisons.iter().all(|item| item.agrees)
+        && published.iter().all(|number| number.as_found);
     Ok(Verification {
         model: ModelLabel::of(model),
         at,
         others,
+        map,
         routes,
         comparisons,
         border,
@@ -230,19 +211,9 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
         outcomes,
         ranges,
         published,
-        skipped: log.skipped,
+        skipped: log.0,
         agrees,
     })
-}
-
-/// The side on which a revolution next to the orbit has the follower stay on the cam.
-fn sticks(error: &SampleError) -> Option<&'static str> {
-    match error {
-        SampleError::OtherImpacts { side, sticks: true, .. } => {
-            Some(if *side == Side::Minus { "minus" } else { "plus" })
-        }
-        _ => None,
-    }
 }
 
 type Started = (Program, Option<JoinHandle<Result<Outside, PythonError>>>);
@@ -256,36 +227,4 @@ fn start_outside(model: &Model, external: External) -> Result<Vec<Started>, Loca
     };
     let runs = external == External::Run && external::know(model);
     Ok(PROGRAMS.map(|program| (program, runs.then(|| start(program)))).into())
-}
-
-/// The border of the maps, `C x + D dT = 0`, against that of the free flight, `e x + f dT = 0`: one line, so `f C = D e`.
-fn compare_borders(map: &CornerMap, (e, f): (RowVector2<f64>, f64)) -> Agreement {
-    let (c, d) = (map.c(), map.d());
-    compare(["closed_form", "free_flight"], "border", [(c * f).as_slice(), (e * d).as_slice()], Comparison::Routes)
-}
-
-/// What did not run: on purpose, or because it failed.
-#[derive(Default)]
-struct Log {
-    skipped: Vec<Skipped>,
-}
-
-impl Log {
-    fn leave_out(&mut self, route: &str, why: String) {
-        self.skipped.push(Skipped { route: route.into(), why, failed: false });
-    }
-
-    fn refused<T, E: std::fmt::Display>(&mut self, route: &str, result: &Result<T, E>) {
-        if let Err(why) = result {
-            self.leave_out(route, why.to_string());
-        }
-    }
-
-    fn fail(&mut self, route: &str, why: String) {
-        self.skipped.push(Skipped { route: route.into(), why, failed: true });
-    }
-
-    fn keep<T, E: std::fmt::Display>(&mut self, route: &str, result: Result<T, E>) -> Option<T> {
-        result.map_err(|error| self.fail(route, error.to_string())).ok()
-    }
 }

@@ -7,6 +7,7 @@ use crate::common;
 use corner_impact::agreement::compare_routes;
 use corner_impact::cam::{Cam, Side};
 use corner_impact::corner::border::border;
+use corner_impact::corner::map::RouteName;
 use corner_impact::corner::map::Uncertainty;
 use corner_impact::corner::one_sided::{OneSidedMap, SampleError};
 use corner_impact::corner::varied::{NoChange, Varied};
@@ -56,9 +57,10 @@ fn assert_agree(maps: &[Route], what: &str) {
     assert!(!comparisons.is_empty());
     for item in comparisons {
         // A side that a number does not shape has B = 0, and the differences are their own rounding.
-        let side = |map: &Route| if item.quantity == "B_minus" { map.map.minus.b } else { map.map.plus.b };
-        let is_nothing = |map: &Route| map.name == "variational" && side(map).norm() == 0.0;
-        let by_nothing = maps.iter().any(is_nothing) && ["B_minus", "B_plus"].contains(&item.quantity.as_str());
+        let side = |map: &Route| if item.quantity.to_string() == "B_minus" { map.map.minus.b } else { map.map.plus.b };
+        let is_nothing = |map: &Route| map.name == RouteName::Variational && side(map).norm() == 0.0;
+        let by_nothing =
+            maps.iter().any(is_nothing) && ["B_minus", "B_plus"].contains(&item.quantity.to_string().as_str());
         assert!(item.agrees || (by_nothing && item.max_abs_diff < 1e-9), "{what}: {item:?}");
     }
 }

@@ -165,7 +165,7 @@ fn basins_do_not_depend_on_threads() {
 fn the_motion_leaves_logarithmically() {
     let model = common::osorio();
     let findings = verify(&model, External::LeftOut).unwrap();
-    let local = &findings.closed_form().map;
+    let local = &findings.map;
     let decade = passage::revolutions_per_decade(local).unwrap();
     // ln 10/ln 1.00514740546535501
     assert!((decade - 448.4796).abs() < 1e-3, "{decade}");

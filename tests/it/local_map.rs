@@ -15,6 +15,7 @@ use corner_impact::diagram::growth;
 use corner_impact::flight::State;
 use corner_impact::model::Model;
 use corner_impact::section::StroboscopicMap;
+use corner_impact::show::Paged;
 use corner_impact::simulate::Machine;
 use corner_impact::study::verify::{External, Verification, verify};
 use nalgebra::{Matrix2, Vector2};
@@ -78,7 +79,7 @@ fn the_papers_local_map_has_nothing_below_its_speed() {
 fn the_local_map_is_a_tenth_off_where_its_range_ends() {
     let model = common::osorio();
     let found = paper();
-    let (at, map) = (&found.at, found.closed_form().map);
+    let (at, map) = (&found.at, found.map);
     let omega = TAU / at.period;
     let size = |x: Vector2<f64>| x[0].hypot(x[1] / omega);
     let compared: Vec<_> = found.ranges.iter().map(|range| (range.compared, range.sign)).collect();
@@ -226,7 +227,7 @@ fn another_motion_ends_the_range_at_once() {
     let model = common::osorio();
     let found = paper();
     let cam = common::cam(&model);
-    let map = LocalMap::new(&found.closed_form().map, found.border);
+    let map = LocalMap::new(&found.map, found.border);
     let lift = cam.lift(found.at.section_angle()).value;
     for position in [lift - 0.1, lift + 1e-3] {
         let mut at = found.at.clone();

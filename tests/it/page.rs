@@ -144,7 +144,7 @@ fn claims_routes_and_figures_are_all_there() {
         assert_eq!(between(page, &format!("data-verdict=\"{verdict}\""), ">").len(), expected, "{verdict}");
     }
     for route in &dossier.verification.as_ref().unwrap().routes {
-        let name = route.name.replace('_', " ");
+        let name = route.name.to_string().replace('_', " ");
         assert!(page.contains(&format!("<th class=\"n\" scope=\"col\">{name}</th>")), "{name}");
     }
     for plate in &dossier.plates {
@@ -268,7 +268,7 @@ fn orbits_on_either_side_are_those_of_the_classification() {
             assert_eq!(of(slower), expected(on_slower), "{} {place:?} slower", file.display());
             // At the corner impact the multipliers are the eigenvalues of that side's matrix.
             let at = through.moments[through.at_corner].orbits.iter().find(|orbit| orbit.place == place).unwrap();
-            let map = &findings.closed_form().map;
+            let map = &findings.map;
             let matrix = if place == Place::Before { map.minus.a } else { map.plus.a };
             for (one, other) in at.multipliers.iter().zip(eigenvalues(&matrix)) {
                 assert!((one.re - other.re).hypot(one.im - other.im) < 1e-6, "{}: {one:?} {other:?}", file.display());

@@ -2,6 +2,7 @@
 
 use approx::assert_relative_eq;
 use corner_impact::border_collision::{Degenerate, classify, normal_form};
+use corner_impact::cam::Side;
 use corner_impact::corner::map::{CornerMap, SideMap};
 use nalgebra::{Matrix2, RowVector2, Vector2};
 
@@ -133,7 +134,7 @@ fn degenerate_maps_are_refused_with_the_reason() {
             match classify(&map, (map.c(), map.d())) {
                 Err(Degenerate::EigenvalueOnBoundary { side, boundary: found, .. }) => {
                     assert_eq!(found, boundary);
-                    assert_eq!(side, if at_minus { "minus" } else { "plus" });
+                    assert_eq!(side, if at_minus { Side::Minus } else { Side::Plus });
                 }
                 other => panic!("{other:?}"),
             }

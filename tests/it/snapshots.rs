@@ -8,6 +8,7 @@ use crate::common;
 use corner_impact::border_collision::LocalOutcome;
 use corner_impact::border_collision::long_run::End;
 use corner_impact::corner::map::{Eigenvalue, SideMap};
+use corner_impact::show::Paged;
 use corner_impact::study::verify::{External, verify};
 use serde_json::{Value, json};
 
@@ -50,7 +51,7 @@ fn end(outcome: &LocalOutcome) -> String {
 fn fixed_points_matrices_eigenvalues_and_normal_forms() {
     for file in common::model_files() {
         let found = verify(&common::read(&file), External::LeftOut).unwrap();
-        let map = &found.closed_form().map;
+        let map = &found.map;
         let form = found.normal_form.unwrap();
         let verdict = found.classification.unwrap();
         let document = json!({

@@ -58,7 +58,7 @@ fn the_orbit_by_the_papers_own_equation() {
 #[test]
 fn the_map() {
     let found = findings();
-    let map = &found.closed_form().map;
+    let map = &found.map;
     let rows = |a: nalgebra::Matrix2<f64>| a.transpose().as_slice().to_vec();
     let a_minus = [0.8209349682147776064, 0.013465309156545112368, 2.520122014525261542, 0.8209349682147776064];
     let a_plus = [0.68571072072040589424, -0.073510523779642068408, 2.309884337079447908, 0.68571072072040589424];
@@ -73,7 +73,7 @@ fn the_map() {
 #[test]
 fn eigenvalues_and_normal_form() {
     let found = findings();
-    let map = &found.closed_form().map;
+    let map = &found.map;
     let [first, second] = map.minus.eigenvalues();
     meets(&[first.re, first.im, second.re, second.im], &[1.0051474054653550141, 0.0, 0.63672253096420019872, 0.0]);
     let [first, second] = map.plus.eigenvalues();

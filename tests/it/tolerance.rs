@@ -1,7 +1,10 @@
 //! Is the table of tolerances what it says: a reason for each row, and bounds that are neither empty nor out of reach?
 
-use corner_impact::agreement::{compare, shared_decimals};
+use corner_impact::agreement::{Quantity, compare, shared_decimals};
+use corner_impact::corner::map::RouteName;
 use corner_impact::tolerance::{Comparison, TABLE, agreement_bound};
+
+const ROUTES: [RouteName; 2] = [RouteName::ClosedForm, RouteName::Variational];
 
 #[test]
 fn every_row_has_its_reason() {
@@ -31,14 +34,14 @@ fn routes_are_bound_by_five_decimals_between_two_relative_bounds() {
 
 #[test]
 fn what_is_not_a_number_disagrees() {
-    let agrees = |left: &[f64], right: &[f64]| compare(["a", "b"], "q", [left, right], Comparison::Routes).agrees;
+    let agrees = |left: &[f64], right: &[f64]| compare(ROUTES, Quantity::C, [left, right], Comparison::Routes).agrees;
     assert!(agrees(&[1.0, 2.0], &[1.0, 2.0 + 1e-9]));
     assert!(!agrees(&[1.0, 2.0], &[1.0, 2.0 + 1e-7]));
     assert!(!agrees(&[f64::NAN, 2.0], &[1.0, 2.0]));
     assert!(!agrees(&[1.0, f64::NAN], &[1.0, f64::NAN]));
     assert!(!agrees(&[f64::INFINITY], &[1.0]));
     assert!(!agrees(&[1.0], &[1.0, 2.0]));
-    let relative = compare(["a", "b"], "q", [&[1e-3, 5.0], &[1.1e-3, 5.0]], Comparison::Routes);
+    let relative = compare(ROUTES, Quantity::C, [&[1e-3, 5.0], &[1.1e-3, 5.0]], Comparison::Routes);
     assert!((relative.max_rel_diff - 1.0 / 11.0).abs() < 1e-12, "{relative:?}");
     assert!((relative.max_abs_diff - 1e-4).abs() < 1e-15, "{relative:?}");
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use crate::common::{self, corner_impact};
+use corner_impact::show::Paged;
 use serde_json::Value;
 
 fn model(name: &str) -> String {
@@ -79,7 +80,7 @@ fn the_json_document_carries_the_findings_unchanged() {
     assert_eq!(document["corner_impact"]["period_s"].as_f64().unwrap(), found.at.period);
     assert_eq!(document["corner_impact"]["state"][0].as_f64().unwrap(), found.at.x_star()[0]);
     for route in &found.routes {
-        let entry = &document["routes"][route.name];
+        let entry = &document["routes"][route.name.to_string()];
         for (side, map) in [("minus", &route.map.minus), ("plus", &route.map.plus)] {
             for row in 0..2 {
                 assert_eq!(entry[side]["B"][row].as_f64().unwrap(), map.b[row]);

@@ -2,7 +2,9 @@
 
 use serde::Serialize;
 
-use crate::agreement::{Agreement, shared_decimals};
+use crate::agreement::{
+    Agreement, Pairs, Quantity as AgreementQuantity, by_quantity, fewest_shared_decimals, shared_decimals,
+};
 use crate::cam::{Cam, Jet};
 use crate::corner::CornerMap;
 use crate::figures::{Plate, Subject, corner_marks, plates, through_corner};
@@ -12,6 +14,7 @@ use crate::pages::report::through::ThroughEntry;
 use crate::paper::{Claims, Context, LedgerError};
 use crate::progress::Watch;
 use crate::show::command::command;
+use crate::show::words;
 use crate::study::cam::CamSheet;
 use crate::study::speeds::{Care, Regimes, regimes, usual_speeds};
 use crate::study::verify::{External, Verification, verify_watched};
@@ -65,7 +68,7 @@ pub struct Headline {
     /// Those that agree.
     pub agreeing: usize,
     /// Decimals that every entry of A and B shares between any two routes; none where they are the same in all digits.
-    pub shared_decimals: Option<usize>,
+    pub shared_decimals: Option<u32>,
     /// Routes that ran.
     pub routes: Vec<String>,
     /// What should have run and did not.
@@ -125,7 +128,7 @@ pub struct MapRow {
 #[derive(Clone, Debug, Serialize)]
 pub struct QuantitySummary {
     /// Which.
-    pub quantity: String,
+    pub quantity: AgreementQuantity,
     /// Pairs of routes.
     pub pairs: usize,
     /// Pairs that agree.
@@ -133,7 +136,7 @@ pub struct QuantitySummary {
     /// The pair that is nearest to its bound, or beyond.
     pub closest: Agreement,
     /// Decimals that it shares; none for all digits.
-    pub shared_decimals: Option<usize>,
+    pub shared_decimals: Option<u32>,
 }
 
 /// Why there is no report.
@@ -256,30 +259,21 @@ fn commands(model: &Model, verified: bool) -> Vec<(String, &'static str)> {
     commands
 }
 
-/// A route's name as words.
-pub fn spoken(name: &str) -> String {
-    name.replace('_', " ")
-}
-
 impl Headline {
     fn new(verification: Option<&Verification>, claims: Option<&Claims>) -> Self {
         let Some(found) = verification else { return Self::default() };
-        let maps = found
-            .comparisons
-            .iter()
-            .filter(|entry| ["A_minus", "A_plus", "B_minus", "B_plus"].contains(&entry.quantity.as_str()));
         let right = found.published.iter().filter(|number| number.as_found && number.agreement.agrees).count();
         let otherwise = found.published.iter().filter(|number| !number.as_found).count();
         Self {
             comparisons: found.comparisons.len(),
             agreeing: found.comparisons.iter().filter(|entry| entry.agrees).count(),
-            shared_decimals: maps.filter_map(|entry| shared_decimals(entry.max_abs_diff)).map(|n| n as usize).min(),
-            routes: found.routes_by_name().map(|route| spoken(route.name)).collect(),
+            shared_decimals: fewest_shared_decimals(&found.comparisons),
+            routes: found.routes_by_name().map(|route| words::route(route.name)).collect(),
             failed: found
                 .skipped
                 .iter()
                 .filter(|skipped| skipped.failed)
-                .map(|skipped| spoken(&skipped.route))
+                .map(|skipped| words::spoken(&skipped.route))
                 .collect(),
             printed: found.published.len(),
             printed_right: right,
@@ -295,8 +289,10 @@ impl MapTable {
         let of = |map: &CornerMap| if side == "minus" { map.minus } else { map.plus };
         let sides: Vec<[f64; 6]> = found.routes_by_name().map(|route| of(&route.map).entries()).collect();
         let printed = |quantity: &str, index: usize| {
-            let number =
-                found.published.iter().find(|number| number.agreement.quantity == format!("{quantity}_{side}"))?;
+            let number = found
+                .published
+                .iter()
+                .find(|number| number.agreement.quantity.to_string() == format!("{quantity}_{side}"))?;
             number.printed.get(index).cloned()
         };
         let row = |(index, entry): (usize, &'static str)| {
@@ -308,35 +304,19 @@ impl MapTable {
             MapRow { entry, values, spread: most - least, printed }
         };
         let rows = ["A11", "A12", "A21", "A22", "B1", "B2"].into_iter().enumerate().map(row).collect();
-        Self { side, routes: found.routes_by_name().map(|route| spoken(route.name)).collect(), rows }
+        Self { side, routes: found.routes_by_name().map(|route| words::route(route.name)).collect(), rows }
     }
 }
 
 impl QuantitySummary {
     fn all(found: &Verification) -> Vec<Self> {
-        let mut names: Vec<&str> = Vec::new();
-        for entry in &found.comparisons {
-            if !names.contains(&entry.quantity.as_str()) {
-                names.push(&entry.quantity);
-            }
-        }
-        names.into_iter().filter_map(|name| Self::of(found, name)).collect()
-    }
-
-    fn of(found: &Verification, quantity: &str) -> Option<Self> {
-        let pairs: Vec<&Agreement> = found.comparisons.iter().filter(|entry| entry.quantity == quantity).collect();
-        // What is not a number disagrees, and comes first.
-        let used = |entry: &Agreement| {
-            let used = entry.max_abs_diff / entry.bound.value;
-            if used.is_nan() { f64::INFINITY } else { used }
+        let of = |pairs: Pairs<'_>| Self {
+            quantity: pairs.quantity,
+            pairs: pairs.all.len(),
+            agreeing: pairs.all.iter().filter(|entry| entry.agrees).count(),
+            shared_decimals: shared_decimals(pairs.closest.max_abs_diff),
+            closest: pairs.closest.clone(),
         };
-        let closest = (*pairs.iter().max_by(|one, other| used(one).total_cmp(&used(other)))?).clone();
-        Some(Self {
-            quantity: quantity.into(),
-            pairs: pairs.len(),
-            agreeing: pairs.iter().filter(|entry| entry.agrees).count(),
-            shared_decimals: shared_decimals(closest.max_abs_diff).map(|decimals| decimals as usize),
-            closest,
-        })
+        by_quantity(&found.comparisons).into_iter().map(of).collect()
     }
 }

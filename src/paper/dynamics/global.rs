@@ -30,7 +30,7 @@ pub(in crate::paper) fn transition(context: &Context<'_>) -> Decision {
     let slower = machine.at_speed(angular_velocity(speed - BESIDE));
     let mut motion = slower.resume(&motion)?;
     let below = settles(&slower, &mut motion, 10_000)?;
-    let local = &context.findings.closed_form().map;
+    let local = &context.findings.map;
     let (mut counts, mut agree) = (Vec::new(), true);
     for below in BELOW {
         let map = map(context, speed - below);

@@ -28,7 +28,7 @@ pub(crate) fn section(dossier: &Dossier) -> Option<Section> {
 }
 
 fn eigenvalues(found: &Verification) -> Markup {
-    let map = &found.closed_form().map;
+    let map = &found.map;
     wide(
         "Eigenvalues",
         &html! {

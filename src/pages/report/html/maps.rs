@@ -2,10 +2,12 @@
 
 use maud::{Markup, html};
 
+use crate::show::{html, words};
+
 use crate::corner::CornerMap;
 use crate::corner::map::Uncertainty;
-use crate::pages::report::dossier::{Dossier, MapTable, spoken};
-use crate::pages::report::html::numbers::{entry, number, quantity, shared, signed, size};
+use crate::pages::report::dossier::{Dossier, MapTable};
+use crate::pages::report::html::numbers::{entry, number, signed, size};
 use crate::pages::report::html::{Section, wide};
 use crate::study::verify::Verification;
 
@@ -85,7 +87,7 @@ fn shown(value: f64) -> String {
 }
 
 fn jumps(found: &Verification) -> Markup {
-    let closed = found.closed_form().map;
+    let closed = found.map;
     let c = closed.c();
     let (one, two) = (c[0], c[1]);
     html! {
@@ -101,12 +103,12 @@ fn uncertainties(found: &Verification) -> Markup {
         @for route in found.routes_by_name() {
             @match &route.uncertainty {
                 Some(Uncertainty::Fit { standard, condition_number, .. }) => details {
-                    summary { "How well " (spoken(route.name)) " knows its entries" }
+                    summary { "How well " (words::route(route.name)) " knows its entries" }
                     p { "Standard errors; the condition number of the fit is " (number(*condition_number, 3)) "." }
                     (errors(standard))
                 },
                 Some(Uncertainty::Extrapolation(error)) => details {
-                    summary { "How well " (spoken(route.name)) " knows its entries" } p { "Error estimates." } (errors(error))
+                    summary { "How well " (words::route(route.name)) " knows its entries" } p { "Error estimates." } (errors(error))
                 },
                 None => {}
             }
@@ -143,12 +145,12 @@ fn summary(dossier: &Dossier) -> Markup {
             tbody {
                 @for found in &dossier.quantities {
                     tr.disagrees[!found.closest.agrees] {
-                        th scope="row" { (quantity(&found.quantity)) }
+                        th scope="row" { (html::words(&words::quantity(found.quantity))) }
                         td.n { (found.agreeing) " of " (found.pairs) }
                         td.n { (size(found.closest.max_abs_diff)) }
                         td.n { (size(found.closest.bound.value)) }
-                        td { (shared(found.shared_decimals)) }
-                        td { (spoken(&found.closest.routes[0])) ", " (spoken(&found.closest.routes[1])) }
+                        td { (words::shared(found.shared_decimals)) }
+                        td { (words::route(found.closest.routes[0])) ", " (words::route(found.closest.routes[1])) }
                     }
                 }
             }
@@ -166,8 +168,8 @@ fn pairs(found: &Verification) -> Markup {
             tbody {
                 @for pair in &found.comparisons {
                     tr.disagrees[!pair.agrees] {
-                        th scope="row" { (quantity(&pair.quantity)) }
-                        td { (spoken(&pair.routes[0])) ", " (spoken(&pair.routes[1])) }
+                        th scope="row" { (html::words(&words::quantity(pair.quantity))) }
+                        td { (words::route(pair.routes[0])) ", " (words::route(pair.routes[1])) }
                         td.n { (size(pair.max_abs_diff)) } td.n { (size(pair.max_rel_diff)) } td.n { (size(pair.bound.value)) }
                         td { @if pair.agrees { "agrees" } @else { "disagrees" } }
                         td.words { (pair.bound.reason) }
@@ -195,7 +197,7 @@ pub(crate) fn printed(dossier: &Dossier) -> Option<Section> {
                         @for (index, digits) in item.printed.iter().enumerate() {
                             tr {
                                 @if index == 0 {
-                                    th scope="rowgroup" rowspan=(rows) { (quantity(&item.agreement.quantity)) }
+                                    th scope="rowgroup" rowspan=(rows) { (html::words(&words::quantity(item.agreement.quantity))) }
                                     td rowspan=(rows) { (item.place) }
                                 }
                                 td.n { (signed(digits)) }
@@ -214,7 +216,7 @@ pub(crate) fn printed(dossier: &Dossier) -> Option<Section> {
         @let notes: Vec<_> = found.published.iter().filter(|item| !item.note.is_empty()).collect();
         @if !notes.is_empty() {
             h3 { "What is wrong with those that do not hold" }
-            dl { @for item in notes { dt { (quantity(&item.agreement.quantity)) ", " (item.place) } dd { (item.note) } } }
+            dl { @for item in notes { dt { (html::words(&words::quantity(item.agreement.quantity))) ", " (item.place) } dd { (item.note) } } }
         }
     };
     Some(Section { id: "printed", title: "The paper's digits", body })

@@ -1,6 +1,6 @@
 //! Numbers as they stand on the page: how many digits is decided here, and nothing else.
 
-use maud::{Markup, PreEscaped, Render, html};
+use maud::{Markup, Render, html};
 
 use crate::orbit::Eigenvalue;
 use crate::tolerance;
@@ -106,38 +106,6 @@ pub(crate) fn matrix<const N: usize>(rows: &[[f64; N]; 2], digits: usize) -> Mar
 pub(crate) fn symbol(letter: &str, below: &str, above: &str) -> Markup {
     html! {
         span.symbol { i { (letter) } @if !below.is_empty() { sub { (below) } } @if !above.is_empty() { sup { (above) } } }
-    }
-}
-
-/// The decimals that two values share.
-pub(crate) fn shared(decimals: Option<usize>) -> Markup {
-    match decimals {
-        Some(1) => html! { "1 decimal" },
-        Some(decimals) => html! { (decimals) " decimals" },
-        None => PreEscaped("all digits".into()),
-    }
-}
-
-/// A quantity of a verification, such as `A_minus`, as the paper writes it.
-pub(crate) fn quantity(name: &str) -> Markup {
-    let (letter, side) = match name.strip_suffix("_minus").map(|name| (name, "\u{2212}")) {
-        Some(found) => found,
-        None => name.strip_suffix("_plus").map_or((name, ""), |name| (name, "+")),
-    };
-    match letter {
-        "T_star" => symbol("T", "", "∗"),
-        "x_star" => symbol("x", "", "∗"),
-        "speed_rpm" => symbol("ω", "", "∗"),
-        "A_bar" => symbol("A\u{304}", "", side),
-        "B_bar" => symbol("B\u{304}", "", side),
-        "C_bar" => symbol("C\u{304}", "", side),
-        "A_hat" => symbol("A\u{302}", "", side),
-        "B_hat" => symbol("B\u{302}", "", side),
-        "B_tilde" => symbol("B\u{303}", "", side),
-        "eigenvalues" => html! { "eigenvalues of " (symbol("A", "", side)) },
-        "border" => html! { "border" },
-        letter if letter.len() == 1 => symbol(letter, "", side),
-        _ => html! { (name.replace('_', " ")) },
     }
 }
 

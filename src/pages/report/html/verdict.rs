@@ -2,9 +2,11 @@
 
 use maud::{Markup, html};
 
-use crate::pages::report::dossier::{Dossier, spoken};
+use crate::show::{html, words};
+
+use crate::pages::report::dossier::Dossier;
 use crate::pages::report::html::Section;
-use crate::pages::report::html::numbers::{fixed, quantity, shared, size};
+use crate::pages::report::html::numbers::{fixed, size};
 use crate::published::Verdict;
 
 pub(crate) fn section(dossier: &Dossier) -> Section {
@@ -21,13 +23,13 @@ pub(crate) fn section(dossier: &Dossier) -> Section {
                 li {
                     strong { (head.agreeing) " of " (head.comparisons) } " comparisons between "
                     (head.routes.len()) " routes to the local map agree"
-                    @if head.agreeing > 0 { "; every entry of A and B shares " (shared(head.shared_decimals)) " or more" } "."
+                    @if head.agreeing > 0 { "; every entry of A and B shares " (words::shared(head.shared_decimals)) " or more" } "."
                 }
                 li {
                     "The corner impact is at " strong { (fixed(found.at.speed_rpm(), 6)) " rpm" }
                     @if let Some(angle) = dossier.corner_deg { ", where the cam has turned by " (fixed(angle, 4)) "°" }
                     @match &found.classification {
-                        Ok(kind) => { ". It is a " strong { (spoken(&kind.scenario.to_string())) } "." }
+                        Ok(kind) => { ". It is a " strong { (words::spoken(&kind.scenario.to_string())) } "." }
                         Err(_) => { ". It has no classification." }
                     }
                 }
@@ -52,7 +54,7 @@ pub(crate) fn section(dossier: &Dossier) -> Section {
             (disagreements(dossier))
             @if !found.skipped.is_empty() {
                 h3 { "Not run" }
-                ul { @for skipped in &found.skipped { li { (spoken(&skipped.route)) ": " (skipped.why) @if skipped.failed { " It should have run." } } } }
+                ul { @for skipped in &found.skipped { li { (words::spoken(&skipped.route)) ": " (skipped.why) @if skipped.failed { " It should have run." } } } }
             }
         }
         @if let Some(why) = &dossier.nothing_to_verify { p { "In the words of the search: " } pre.why { (why) } }
@@ -74,11 +76,11 @@ fn disagreements(dossier: &Dossier) -> Markup {
         ul {
             @for entry in pairs {
                 li {
-                    (quantity(&entry.quantity)) " by " (spoken(&entry.routes[0])) " and " (spoken(&entry.routes[1]))
+                    (html::words(&words::quantity(entry.quantity))) " by " (words::route(entry.routes[0])) " and " (words::route(entry.routes[1]))
                     " differs by " (size(entry.max_abs_diff)) ", allowed is " (size(entry.bound.value))
                 }
             }
-            @for number in numbers { li { (quantity(&number.agreement.quantity)) " in print (" (number.place) ") came out otherwise" } }
+            @for number in numbers { li { (html::words(&words::quantity(number.agreement.quantity))) " in print (" (number.place) ") came out otherwise" } }
             @for claim in claims { li { "the claim " (claim.id) " came out otherwise" } }
         }
     }

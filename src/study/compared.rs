@@ -1,0 +1,174 @@
+//! The map of a corner impact by every route of this program that its corner has, and the routes against one another.
+
+use std::fmt::Display;
+
+use nalgebra::RowVector2;
+use serde::Serialize;
+
+use crate::agreement::{Agreement, Quantity, compare, compare_routes, worse};
+use crate::cam::{Cam, Side};
+use crate::corner::map::{RouteName, Uncertainty};
+use crate::corner::one_sided::SampleError;
+use crate::corner::varied::Varied;
+use crate::corner::{CornerImpact, CornerMap, Route, SideMap};
+use crate::corner::{closed_form, finite_difference, least_squares, variational};
+use crate::model::Model;
+use crate::tolerance::Comparison;
+
+/// Something that did not run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Skipped {
+    /// The route, or the result that it would have given.
+    pub route: String,
+    /// Why.
+    pub why: String,
+    /// Whether it should have run; then the whole disagrees.
+    pub failed: bool,
+}
+
+/// What did not run: on purpose, or because it failed.
+#[derive(Default)]
+pub(super) struct Log(pub Vec<Skipped>);
+
+impl Log {
+    pub(super) fn leave_out(&mut self, route: impl Display, why: impl Display) {
+        self.0.push(Skipped { route: route.to_string(), why: why.to_string(), failed: false });
+    }
+
+    pub(super) fn refused<T>(&mut self, route: &str, result: &Result<T, impl Display>) {
+        if let Err(why) = result {
+            self.leave_out(route, why);
+        }
+    }
+
+    pub(super) fn fail(&mut self, route: impl Display, why: impl Display) {
+        self.0.push(Skipped { route: route.to_string(), why: why.to_string(), failed: true });
+    }
+
+    pub(super) fn keep<T>(&mut self, route: impl Display, result: Result<T, impl Display>) -> Option<T> {
+        result.map_err(|error| self.fail(route, error)).ok()
+    }
+
+    /// Whether everything ran that should have.
+    pub(super) fn is_complete(&self) -> bool {
+        self.0.iter().all(|skipped| !skipped.failed)
+    }
+}
+
+/// The map of `at` by every route of this program that its corner has, and the side on which the follower sticks, so that
+/// there is no map to find by simulation.
+///
+/// The closed form knows the paper's orbits only; a polynomial is fitted where two matrices meet; and where the velocity jumps,
+/// the differences have the side alone that the impact is on.
+pub(super) fn routes(model: &Model, cam: &Cam, at: &CornerImpact, log: &mut Log) -> (Vec<Route>, Option<Side>) {
+    let order = at.corner.jump_order;
+    let mut routes = Vec::new();
+    if at.is_simple() {
+        routes.push(closed_form::route(model, at));
+    }
+    routes.push(variational::route(model, cam, at));
+    let differenced = match order {
+        1 => one_side(model, cam, at),
+        _ => finite_difference::route(model, cam, at),
+    };
+    let sticking = match &differenced {
+        Err(SampleError::OtherImpacts { side, sticks: true, .. }) => Some(*side),
+        _ => None,
+    };
+    routes.extend(log.keep(RouteName::FiniteDifference, differenced));
+    if order == 2 {
+        routes.extend(log.keep(RouteName::LeastSquares, least_squares::route(model, cam, at)));
+    }
+    (routes, sticking)
+}
+
+/// The estimate of the side that the impact is on, in the place of both.
+fn one_side(model: &Model, cam: &Cam, at: &CornerImpact) -> Result<Route, SampleError> {
+    let (side, _) = finite_difference::side_map(model, cam, at, at.side, &Varied::Period)?;
+    Ok(Route { name: RouteName::FiniteDifference, map: CornerMap { minus: side, plus: side }, uncertainty: None })
+}
+
+/// Every pair of routes in every quantity that both know; where the velocity jumps, of the side alone that the impact is on.
+pub(super) fn comparisons(at: &CornerImpact, routes: &[Route], log: &mut Log) -> Vec<Agreement> {
+    let mut all = compare_routes(routes);
+    if at.corner.jump_order == 1 {
+        all.retain(|item| [Quantity::A(at.side), Quantity::B(at.side)].contains(&item.quantity));
+    }
+    split_by_knowledge(all, routes, log)
+}
+
+/// The border of a route's map, `C dx + D dT = 0`, against that of the flight, `e x + f dT = 0`: one line, so `f C = D e`.
+pub(super) fn compare_borders(route: &Route, flight: RouteName, (e, f): (RowVector2<f64>, f64)) -> Agreement {
+    let (c, d) = (route.map.c(), route.map.d());
+    let entries = [c * f, e * d];
+    compare([route.name, flight], Quantity::Border, [entries[0].as_slice(), entries[1].as_slice()], Comparison::Routes)
+}
+
+/// The comparisons but for those with an estimate that says itself that it knows the quantity less closely than is asked,
+/// and which those are. Over a whole period of several impacts, and next to a graze, rounding is amplified as deviations are.
+///
+/// A fit is left out wherever it says so: it would be no check. The differences add up the largest that every rounding can
+/// do, and are mostly closer than that: they are left out only where they miss by no more than they say.
+fn split_by_knowledge(mut comparisons: Vec<Agreement>, routes: &[Route], log: &mut Log) -> Vec<Agreement> {
+    for route in routes {
+        let Some(uncertainty) = &route.uncertainty else { continue };
+        let is_unknown = |item: &Agreement| {
+            let known_to = known_to(uncertainty, item.quantity);
+            let misses = match uncertainty {
+                Uncertainty::Fit { .. } => true,
+                Uncertainty::Extrapolation(_) => !item.agrees && item.max_abs_diff <= known_to,
+            };
+            item.routes.contains(&route.name) && misses && !(known_to <= item.bound.value)
+        };
+        let (unknown, known): (Vec<Agreement>, Vec<Agreement>) = comparisons.into_iter().partition(is_unknown);
+        comparisons = known;
+        if let Some(item) = unknown.first() {
+            let (quantity, known_to, asked) = (item.quantity, known_to(uncertainty, item.quantity), item.bound.value);
+            let why = format!("knows {quantity} to {known_to:.1e} by its own errors, and {asked:.1e} is asked for");
+            log.leave_out(route.name, why);
+        }
+    }
+    comparisons
+}
+
+/// Three standard errors and the bias of a fit's worst entry of a quantity, or the error of an extrapolation's; of what
+/// derives from A and B, of both sides.
+fn known_to(uncertainty: &Uncertainty, quantity: Quantity) -> f64 {
+    let worst = |entries: &[f64]| entries.iter().fold(0.0, |size, entry| worse(size, entry.abs()));
+    let a = |side: &SideMap| worst(side.a.as_slice());
+    let b = |side: &SideMap| worst(side.b.as_slice());
+    let of = |error: &CornerMap| match quantity {
+        Quantity::A(side) | Quantity::Eigenvalues(side) => a(error.of(side)),
+        Quantity::B(side) => b(error.of(side)),
+        Quantity::C => worse(a(&error.minus), a(&error.plus)),
+        _ => worse(b(&error.minus), b(&error.plus)),
+    };
+    match uncertainty {
+        Uncertainty::Fit { standard, systematic, .. } => 3.0 * of(standard) + systematic.as_ref().map_or(0.0, of),
+        Uncertainty::Extrapolation(error) => of(error),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sides(a: f64) -> CornerMap {
+        let side = SideMap { a: nalgebra::Matrix2::repeat(a), b: nalgebra::Vector2::repeat(1.0) };
+        CornerMap { minus: side, plus: side }
+    }
+
+    #[test]
+    fn an_estimate_that_misses_by_more_than_it_says_disagrees() {
+        let exact = Route { name: RouteName::Variational, map: sides(1.0), uncertainty: None };
+        for (off, said, is_kept) in [(1e-4, 2e-4, false), (2e-4, 1e-4, true), (1e-12, 2e-4, true)] {
+            let uncertainty = Some(Uncertainty::Extrapolation(sides(said)));
+            let estimate = Route { name: RouteName::FiniteDifference, map: sides(1.0 + off), uncertainty };
+            let routes = [exact.clone(), estimate];
+            let mut log = Log::default();
+            let kept = split_by_knowledge(compare_routes(&routes), &routes, &mut log);
+            assert_eq!(kept.iter().any(|item| item.quantity == Quantity::A(Side::Minus)), is_kept, "{off} {said}");
+            assert_eq!(log.0.is_empty(), is_kept);
+        }
+    }
+}
