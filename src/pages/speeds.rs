@@ -1,7 +1,8 @@
 //! The page of `speeds`: the short answer first, then every range with rising and with falling speed.
 
 use crate::show::Paged;
-use crate::show::block::{Block, Column, Mark, Table, Words};
+use crate::show::block::{Block, Column, Mark, Table, words};
+use crate::show::digits::Digits;
 use crate::show::words;
 use crate::study::speeds::{Regime, Regimes, Stretch};
 
@@ -29,7 +30,8 @@ impl Paged for Regimes {
     }
 }
 
-fn table(title: &str, stretches: &[Stretch]) -> Table {
+/// The ranges of speeds with one kind of motion.
+pub(crate) fn table(title: &str, stretches: &[Stretch]) -> Table {
     let columns = [
         Column { gap: 2, ..Column::right("from (rpm)", 10) },
         Column { gap: 1, ..Column::right("to (rpm)", 11) },
@@ -39,8 +41,8 @@ fn table(title: &str, stretches: &[Stretch]) -> Table {
     let mut table = Table::new(title, columns);
     for Stretch { rpm: [from, to], settled, begins } in stretches {
         let why = begins.as_ref().map_or(String::new(), |change| change.cause.words());
-        let row = [format!("{from:.4}"), format!("{to:.4}"), words::motion(settled), why];
-        table.row(row.map(Words::from));
+        let [from, to] = [from, to].map(|rpm| words![(*rpm, Digits::Fixed(4))]);
+        table.row([from, to, words::motion(settled).into(), why.into()]);
     }
     table
 }

@@ -80,6 +80,30 @@ impl Words {
         self.0.extend(more.into().0);
     }
 
+    /// A sentence: each `{}` is the next of the parts, a letter of mathematics stands between two underscores with its side
+    /// behind a `^`, and what is typed between two backticks.
+    pub fn prose(sentence: &'static str, parts: impl IntoIterator<Item = Self>) -> Self {
+        let (mut prose, mut parts) = (Self::default(), parts.into_iter());
+        for (place, text) in sentence.split('`').enumerate() {
+            if place % 2 == 1 {
+                prose.push(Span::Code(text.into()));
+                continue;
+            }
+            for (place, text) in text.split('_').enumerate() {
+                if place % 2 == 1 {
+                    let (letter, above) = text.split_once('^').unwrap_or((text, ""));
+                    prose.push(Symbol { plain: format!("{letter}{above}"), letter, below: String::new(), above });
+                    continue;
+                }
+                for (place, text) in text.split("{}").enumerate() {
+                    prose.push(if place > 0 { parts.next().unwrap_or_default() } else { Self::default() });
+                    prose.push(text);
+                }
+            }
+        }
+        prose
+    }
+
     /// Words with others between each two of them.
     pub fn joined(all: impl IntoIterator<Item = Self>, between: &str) -> Self {
         let mut joined = Self::default();

@@ -199,3 +199,16 @@ pub fn ending(ending: &Ending) -> String {
 pub fn symbol(plain: &str, letter: &'static str, below: &str, above: &'static str) -> Symbol {
     Symbol { plain: plain.into(), letter, below: below.into(), above }
 }
+
+/// An entry of a map, such as `A12`, with its indices and its side.
+pub fn entry(name: &str, side: &str) -> Symbol {
+    let (letter, above) = (
+        if name.starts_with('A') { "A" } else { "B" },
+        match side {
+            "minus" => "\u{2212}",
+            "plus" => "+",
+            _ => "",
+        },
+    );
+    symbol(name, letter, name.get(1..).unwrap_or_default(), above)
+}

@@ -2,15 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use maud::{Markup, html};
+use maud::html;
 
 use crate::pages::report::dossier::Dossier;
-use crate::pages::report::html::Section;
-use crate::published::Verdict;
-
-pub(crate) fn badge(verdict: Verdict) -> Markup {
-    html! { span class={ "badge " (verdict) } { (verdict) } }
-}
+use crate::show::block::{Block, Section};
+use crate::show::html::words;
+use crate::show::words::verdict;
 
 /// The fragment that leads to a claim: letters and digits of its id.
 fn anchors<'a>(ids: impl Iterator<Item = &'a str>) -> Vec<String> {
@@ -53,7 +50,7 @@ pub(crate) fn section(dossier: &Dossier) -> Option<Section> {
         ol.ledger id="ledger-entries" {
             @for (claim, anchor) in ledger.claims.iter().zip(&anchors) {
                 li class={ "claim v-" (claim.verdict) } id=(anchor) data-verdict=(claim.verdict) {
-                    p.head { (badge(claim.verdict)) " " a href={ "#" (anchor) } { (claim.id) } " " span.place { (claim.place) } }
+                    p.head { (words(&verdict(claim.verdict))) " " a href={ "#" (anchor) } { (claim.id) } " " span.place { (claim.place) } }
                     p { (claim.statement) }
                     @if let Some(correct) = &claim.correct { p.correct { "Right: " (correct) } }
                     p.evidence { "Evidence: " (claim.evidence) }
@@ -63,5 +60,5 @@ pub(crate) fn section(dossier: &Dossier) -> Option<Section> {
         }
         }
     };
-    Some(Section { id: "claims", title: "The paper's claims", body })
+    Some(Section { id: "claims", title: "The paper's claims".into(), blocks: vec![Block::Markup(body)] })
 }

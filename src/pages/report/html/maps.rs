@@ -1,223 +1,179 @@
 //! The matrices by every route side by side, and the digits in print.
 
-use maud::{Markup, html};
-
-use crate::show::{html, words};
-
 use crate::corner::CornerMap;
 use crate::corner::map::Uncertainty;
 use crate::pages::report::dossier::{Dossier, MapTable};
-use crate::pages::report::html::numbers::{entry, number, signed, size};
-use crate::pages::report::html::{Section, wide};
+use crate::pages::report::html::{left, number, numeric};
+use crate::show::block::{Block, Section, Span, Table, Words, words};
+use crate::show::digits::Digits;
+use crate::show::words::{entry, quantity, route, shared, verdict};
 use crate::study::verify::Verification;
 
 pub(crate) fn section(dossier: &Dossier) -> Option<Section> {
     let found = dossier.verification.as_ref()?;
-    let body = html! {
-        p {
-            "One revolution from near the orbit: d" i { "x" } "′ = " i { "A" } " d" i { "x" } " + " i { "B" } " d" i { "T" }
-            ", with " i { "A" } sup { "−" } ", " i { "B" } sup { "−" } " where the impact comes before the corner and "
-            i { "A" } sup { "+" } ", " i { "B" } sup { "+" } " where it comes after it. Each column is computed on its own: "
-            "no two share a formula for A and B. Finite difference and least squares run the same simulator; symbolic and scipy run no "
-            "code of this program. Digits in which a column leaves the closed form are underlined."
-        }
-        @for table in &dossier.tables { (side(table)) }
-        (jumps(found))
-        (uncertainties(found))
-        h3 { "How far they differ, and how far they may" }
-        p { "Every pair of routes is compared in every quantity. Shown is the pair that is nearest to its bound." }
-        (wide("Comparisons of the routes", &summary(dossier)))
-        details {
-            summary { "All " (found.comparisons.len()) " comparisons, with the reason of each bound" }
-            (wide("All comparisons", &pairs(found)))
-        }
-    };
-    Some(Section { id: "maps", title: "The local map by every route", body })
+    let about = Words::prose(
+        "One revolution from near the orbit: d_x_′ = _A_ d_x_ + _B_ d_T_, with _A^−_, _B^−_ where the impact comes before the \
+         corner and _A^+_, _B^+_ where it comes after it. Each column is computed on its own: no two share a formula for A \
+         and B. Finite difference and least squares run the same simulator; symbolic and scipy run no code of this program. \
+         Digits in which a column leaves the closed form are underlined.",
+        [],
+    );
+    let map = found.map;
+    let border = Words::prose(
+        "The sides meet where _C_ d_x_ + _D_ d_T_ = 0, with _C_ = ({}, {}) and _D_ = {}.",
+        [map.c()[0], map.c()[1], map.d()].map(|entry| number(entry, 11)),
+    );
+    let mut blocks = vec![Block::paragraph(about)];
+    blocks.extend(dossier.tables.iter().map(side));
+    blocks.push(Block::paragraph(border));
+    blocks.extend(uncertainties(found));
+    let all = format!("All {} comparisons, with the reason of each bound", found.comparisons.len());
+    blocks.extend([
+        Block::Heading("How far they differ, and how far they may".into()),
+        Block::paragraph(
+            "Every pair of routes is compared in every quantity. Shown is the pair that is nearest to its bound.",
+        ),
+        Block::Table(summary(dossier)),
+        Block::Details(all.into(), vec![Block::Table(pairs(found))]),
+    ]);
+    Some(Section { id: "maps", title: "The local map by every route".into(), blocks })
 }
 
-fn side(table: &MapTable) -> Markup {
+fn size(value: f64) -> Words {
+    words![(value, Digits::Size)]
+}
+
+fn side(table: &MapTable) -> Block {
     let printed = table.rows.iter().any(|row| row.printed.is_some());
-    let caption = if table.side == "minus" { "Impact before the corner" } else { "Impact after the corner" };
-    let first = |row: &crate::pages::report::dossier::MapRow| row.values.first().copied().unwrap_or(f64::NAN);
-    wide(
-        caption,
-        &html! {
-            table.maps {
-                caption { (caption) }
-                thead { tr {
-                    th scope="col" { "entry" }
-                    @for route in &table.routes { th.n scope="col" { (route) } }
-                    th.n scope="col" { "differ by" }
-                    @if printed { th.n scope="col" { "printed" } }
-                } }
-                tbody {
-                    @for row in &table.rows {
-                        tr {
-                            th scope="row" { (entry(row.entry, table.side)) }
-                            @for value in &row.values { td.n { (against(*value, first(row))) } }
-                            td.n { (size(row.spread)) }
-                            @if printed { td.n { @if let Some(digits) = &row.printed { (signed(digits)) } } }
-                        }
-                    }
-                }
+    let label = if table.side == "minus" { "Impact before the corner" } else { "Impact after the corner" };
+    let mut columns = vec![left("entry")];
+    columns.extend(table.routes.iter().map(|route| numeric(route)));
+    columns.push(numeric("differ by"));
+    columns.extend(printed.then(|| numeric("printed")));
+    let mut shown = Table::new(label, columns);
+    for row in &table.rows {
+        let first = row.values.first().copied().unwrap_or(f64::NAN);
+        let mut cells = vec![entry(row.entry, table.side).into()];
+        cells.extend(row.values.iter().map(|value| Span::Against(*value, first, Digits::Aligned(11)).into()));
+        cells.push(size(row.spread));
+        cells.extend(printed.then(|| row.printed.as_deref().unwrap_or_default().replace('-', "−").into()));
+        shown.row(cells);
+    }
+    Block::Table(shown)
+}
+
+fn uncertainties(found: &Verification) -> Vec<Block> {
+    let told = found.routes_by_name().filter_map(|by| {
+        let (about, errors) = match by.uncertainty.as_ref()? {
+            Uncertainty::Fit { standard, condition_number, .. } => {
+                let condition = number(*condition_number, 3);
+                (words!["Standard errors; the condition number of the fit is ", condition, "."], standard)
             }
-        },
-    )
+            Uncertainty::Extrapolation(error) => ("Error estimates.".into(), error),
+        };
+        let title = format!("How well {} knows its entries", route(by.name));
+        Some(Block::Details(title.into(), vec![Block::paragraph(about), Block::Table(self::errors(errors))]))
+    });
+    told.collect()
 }
 
-/// A value in the digits of a table, those underlined that are not the reference's.
-fn against(value: f64, reference: f64) -> Markup {
-    let (text, other) = (shown(value), shown(reference));
-    let same = text.chars().zip(other.chars()).take_while(|(one, two)| one == two).count();
-    let same: usize = text.chars().take(same).map(char::len_utf8).sum();
-    let (head, tail) = text.split_at(same);
-    html! { data value=(value) { (signed(head)) @if !tail.is_empty() { u { (signed(tail)) } } } }
-}
-
-/// Eleven digits, trailing zeros among them.
-fn shown(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return format!("{value}");
+fn errors(sides: &CornerMap) -> Table {
+    let entries = ["A11", "A12", "A21", "A22", "B1", "B2"].map(|name| numeric(entry(name, "")));
+    let mut table = Table::new("Errors of the entries", [vec![left("side")], entries.to_vec()].concat());
+    for (name, side) in [("before", sides.minus), ("after", sides.plus)] {
+        table.row([vec![name.into()], side.entries().map(size).to_vec()].concat());
     }
-    let exponent = value.abs().log10().floor();
-    if !(-4.0..9.0).contains(&exponent) {
-        return format!("{value:.10e}");
-    }
-    format!("{value:.*}", (10.0 - exponent).max(0.0) as usize)
+    table
 }
 
-fn jumps(found: &Verification) -> Markup {
-    let closed = found.map;
-    let c = closed.c();
-    let (one, two) = (c[0], c[1]);
-    html! {
-        p {
-            "The sides meet where " i { "C" } " d" i { "x" } " + " i { "D" } " d" i { "T" } " = 0, with "
-            i { "C" } " = (" (number(one, 11)) ", " (number(two, 11)) ") and " i { "D" } " = " (number(closed.d(), 11)) "."
-        }
+fn summary(dossier: &Dossier) -> Table {
+    let columns = [
+        left("quantity"),
+        numeric("pairs that agree"),
+        numeric("differ by"),
+        numeric("allowed"),
+        left("share"),
+        left("between"),
+    ];
+    let mut table = Table::new("Comparisons of the routes", columns);
+    for found in &dossier.quantities {
+        let closest = &found.closest;
+        let cells = [
+            quantity(found.quantity),
+            format!("{} of {}", found.agreeing, found.pairs).into(),
+            size(closest.max_abs_diff),
+            size(closest.bound.value),
+            shared(found.shared_decimals).into(),
+            closest.routes.map(route).join(", ").into(),
+        ];
+        table.row_bad_where(!closest.agrees, cells);
     }
+    table
 }
 
-fn uncertainties(found: &Verification) -> Markup {
-    html! {
-        @for route in found.routes_by_name() {
-            @match &route.uncertainty {
-                Some(Uncertainty::Fit { standard, condition_number, .. }) => details {
-                    summary { "How well " (words::route(route.name)) " knows its entries" }
-                    p { "Standard errors; the condition number of the fit is " (number(*condition_number, 3)) "." }
-                    (errors(standard))
-                },
-                Some(Uncertainty::Extrapolation(error)) => details {
-                    summary { "How well " (words::route(route.name)) " knows its entries" } p { "Error estimates." } (errors(error))
-                },
-                None => {}
-            }
-        }
+fn pairs(found: &Verification) -> Table {
+    let columns = [
+        left("quantity"),
+        left("between"),
+        numeric("differ by"),
+        numeric("in parts"),
+        numeric("allowed"),
+        left("verdict"),
+        left("why so much is allowed"),
+    ];
+    let mut table = Table::new("All comparisons", columns);
+    for pair in &found.comparisons {
+        let cells = [
+            quantity(pair.quantity),
+            pair.routes.map(route).join(", ").into(),
+            size(pair.max_abs_diff),
+            size(pair.max_rel_diff),
+            size(pair.bound.value),
+            if pair.agrees { "agrees" } else { "disagrees" }.into(),
+            pair.bound.reason.into(),
+        ];
+        table.row_bad_where(!pair.agrees, cells);
     }
-}
-
-fn errors(sides: &CornerMap) -> Markup {
-    wide(
-        "Errors of the entries",
-        &html! {
-            table {
-                thead { tr {
-                    th scope="col" { "side" }
-                    @for name in ["A11", "A12", "A21", "A22", "B1", "B2"] { th.n scope="col" { (entry(name, "")) } }
-                } }
-                tbody {
-                    @for (name, side) in [("before", sides.minus), ("after", sides.plus)] {
-                        tr { th scope="row" { (name) } @for value in side.entries() { td.n { (size(value)) } } }
-                    }
-                }
-            }
-        },
-    )
-}
-
-fn summary(dossier: &Dossier) -> Markup {
-    html! {
-        table {
-            thead { tr {
-                th scope="col" { "quantity" } th.n scope="col" { "pairs that agree" } th.n scope="col" { "differ by" }
-                th.n scope="col" { "allowed" } th scope="col" { "share" } th scope="col" { "between" }
-            } }
-            tbody {
-                @for found in &dossier.quantities {
-                    tr.disagrees[!found.closest.agrees] {
-                        th scope="row" { (html::words(&words::quantity(found.quantity))) }
-                        td.n { (found.agreeing) " of " (found.pairs) }
-                        td.n { (size(found.closest.max_abs_diff)) }
-                        td.n { (size(found.closest.bound.value)) }
-                        td { (words::shared(found.shared_decimals)) }
-                        td { (words::route(found.closest.routes[0])) ", " (words::route(found.closest.routes[1])) }
-                    }
-                }
-            }
-        }
-    }
-}
-
-fn pairs(found: &Verification) -> Markup {
-    html! {
-        table {
-            thead { tr {
-                th scope="col" { "quantity" } th scope="col" { "between" } th.n scope="col" { "differ by" } th.n scope="col" { "in parts" }
-                th.n scope="col" { "allowed" } th scope="col" { "verdict" } th scope="col" { "why so much is allowed" }
-            } }
-            tbody {
-                @for pair in &found.comparisons {
-                    tr.disagrees[!pair.agrees] {
-                        th scope="row" { (html::words(&words::quantity(pair.quantity))) }
-                        td { (words::route(pair.routes[0])) ", " (words::route(pair.routes[1])) }
-                        td.n { (size(pair.max_abs_diff)) } td.n { (size(pair.max_rel_diff)) } td.n { (size(pair.bound.value)) }
-                        td { @if pair.agrees { "agrees" } @else { "disagrees" } }
-                        td.words { (pair.bound.reason) }
-                    }
-                }
-            }
-        }
-    }
+    table
 }
 
 /// The paper's printed digits against those computed.
 pub(crate) fn printed(dossier: &Dossier) -> Option<Section> {
     let found = dossier.verification.as_ref().filter(|found| !found.published.is_empty())?;
-    let body = html! {
-        p { "What the paper prints, digit by digit, and what comes out." }
-        (wide("The paper's printed numbers", &html! {
-            table {
-                thead { tr {
-                    th scope="col" { "quantity" } th scope="col" { "where" } th.n scope="col" { "printed" } th.n scope="col" { "computed" }
-                    th.n scope="col" { "differ by" } th.n scope="col" { "allowed" } th scope="col" { "verdict" }
-                } }
-                @for item in &found.published {
-                    @let rows = item.printed.len().max(1);
-                    tbody.disagrees[!item.as_found] {
-                        @for (index, digits) in item.printed.iter().enumerate() {
-                            tr {
-                                @if index == 0 {
-                                    th scope="rowgroup" rowspan=(rows) { (html::words(&words::quantity(item.agreement.quantity))) }
-                                    td rowspan=(rows) { (item.place) }
-                                }
-                                td.n { (signed(digits)) }
-                                td.n { @if let Some(value) = item.computed.get(index) { (number(*value, 15)) } }
-                                @if index == 0 {
-                                    td.n rowspan=(rows) { (size(item.agreement.max_abs_diff)) }
-                                    td.n rowspan=(rows) { (size(item.agreement.bound.value)) }
-                                    td rowspan=(rows) { (crate::pages::report::html::ledger::badge(item.verdict)) @if !item.as_found { " otherwise than the ledger says" } }
-                                }
-                            }
-                        }
-                    }
-                }
+    let columns = [
+        left("quantity"),
+        left("where"),
+        numeric("printed"),
+        numeric("computed"),
+        numeric("differ by"),
+        numeric("allowed"),
+        left("verdict"),
+    ];
+    let mut table = Table::new("The paper's printed numbers", columns);
+    let mut notes = Vec::new();
+    for item in &found.published {
+        let name = quantity(item.agreement.quantity);
+        for (index, digits) in item.printed.iter().enumerate() {
+            let digits = digits.replace('-', "−").into();
+            let computed = item.computed.get(index).map(|value| number(*value, 15)).unwrap_or_default();
+            let mut cells = vec![Words::default(), Words::default(), digits, computed];
+            if index == 0 {
+                cells[..2].clone_from_slice(&[name.clone(), (&item.place).into()]);
+                let otherwise = if item.as_found { "" } else { " otherwise than the ledger says" };
+                let judged = words![verdict(item.verdict), otherwise];
+                cells.extend([size(item.agreement.max_abs_diff), size(item.agreement.bound.value), judged]);
             }
-        }))
-        @let notes: Vec<_> = found.published.iter().filter(|item| !item.note.is_empty()).collect();
-        @if !notes.is_empty() {
-            h3 { "What is wrong with those that do not hold" }
-            dl { @for item in notes { dt { (html::words(&words::quantity(item.agreement.quantity))) ", " (item.place) } dd { (item.note) } } }
+            table.row_bad_where(!item.as_found, cells);
         }
-    };
-    Some(Section { id: "printed", title: "The paper's digits", body })
+        if !item.note.is_empty() {
+            notes.push((words![name, ", ", &item.place], item.note.into()));
+        }
+    }
+    let about = Block::paragraph("What the paper prints, digit by digit, and what comes out.");
+    let mut blocks = vec![about, Block::Table(table)];
+    if !notes.is_empty() {
+        let title = Block::Heading("What is wrong with those that do not hold".into());
+        blocks.extend([title, Block::Entries(0, notes)]);
+    }
+    Some(Section { id: "printed", title: "The paper's digits".into(), blocks })
 }

@@ -8,7 +8,6 @@ mod bifurcation;
 mod ledger;
 mod maps;
 mod model;
-mod numbers;
 mod orbit;
 mod plates;
 mod reproduce;
@@ -18,19 +17,15 @@ mod verdict;
 
 use std::fmt;
 
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{DOCTYPE, PreEscaped, html};
 
 use crate::pages::report::dossier::Dossier;
+use crate::show::block::{Column, Section, Table, Words, words};
+use crate::show::digits::Digits;
+use crate::show::html::{blocks, words};
 
 const STYLE: &str = include_str!("page.css");
 const SCRIPTS: [&str; 2] = [include_str!("ledger.js"), include_str!("slider.js")];
-
-/// A section of the page.
-struct Section {
-    id: &'static str,
-    title: &'static str,
-    body: Markup,
-}
 
 /// Why there is no page.
 #[derive(Debug, thiserror::Error)]
@@ -83,14 +78,14 @@ pub fn render(dossier: &Dossier) -> Result<String, HtmlError> {
                 }
                 nav aria-label="Sections" {
                     ol {
-                        @for section in &sections { li { a href={ "#" (section.id) } { (section.title) } } }
+                        @for section in &sections { li { a href={ "#" (section.id) } { (words(&section.title)) } } }
                     }
                 }
                 main id="main" {
                     @for section in &sections {
                         section id=(section.id) aria-labelledby={ (section.id) "-title" } {
-                            h2 id={ (section.id) "-title" } { (section.title) }
-                            (section.body)
+                            h2 id={ (section.id) "-title" } { (words(&section.title)) }
+                            (blocks(&section.blocks))
                         }
                     }
                 }
@@ -101,9 +96,24 @@ pub fn render(dossier: &Dossier) -> Result<String, HtmlError> {
     Ok(page.into_string())
 }
 
-/// A block that may be wider than the page, in a box that scrolls by itself.
-fn wide(label: &str, body: &Markup) -> Markup {
-    html! { div.wide role="region" aria-label=(label) tabindex="0" { (body) } }
+/// A column whose cells are words.
+fn left(head: impl Into<Words>) -> Column {
+    Column::left(head, 2, 0)
+}
+
+/// A column whose cells are numbers.
+fn numeric(head: impl Into<Words>) -> Column {
+    Column::right(head, 0)
+}
+
+/// A table whose rows say by themselves what they are of.
+fn unheaded(label: &str, columns: usize) -> Table {
+    Table::new(label, vec![left(""); columns])
+}
+
+/// A computed number in so many significant digits.
+fn number(value: f64, digits: usize) -> Words {
+    words![(value, Digits::Significant(digits))]
 }
 
 /// Text that ends a `script` element neither by a tag nor by a comment.

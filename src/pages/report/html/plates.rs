@@ -5,7 +5,8 @@ use maud::{Markup, PreEscaped, html};
 use crate::draw::svg;
 use crate::figures::{Drawn, Plate};
 use crate::pages::report::dossier::Dossier;
-use crate::pages::report::html::{HtmlError, Section};
+use crate::pages::report::html::HtmlError;
+use crate::show::block::{Block, Section};
 
 /// The figure that stands with the model.
 pub(crate) const CAM: &str = "cam";
@@ -26,7 +27,7 @@ pub(crate) fn section(dossier: &Dossier) -> Result<Option<Section>, HtmlError> {
         before = absent;
     }
     let body = html! { @for plate in &drawn { (plate) } };
-    Ok(Some(Section { id: "figures", title: "Figures", body }))
+    Ok(Some(Section { id: "figures", title: "Figures".into(), blocks: vec![Block::Markup(body)] }))
 }
 
 fn elsewhere(plate: &Plate, dossier: &Dossier) -> Markup {

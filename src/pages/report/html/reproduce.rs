@@ -1,23 +1,19 @@
 //! How to do it again.
 
-use maud::html;
-
 use crate::pages::report::dossier::Dossier;
-use crate::pages::report::html::Section;
+use crate::show::block::{Block, Section, Span, Words};
 
 pub(crate) fn section(dossier: &Dossier) -> Section {
-    let body = html! {
-        p {
-            "This page was written by corner-impact " (dossier.version) " from " code { (dossier.model.file) } ". "
-            "Its numbers are one document, which the first command prints with " code { "--json" } "; the page only lays them out."
-        }
-        table.commands {
-            tbody { @for (command, what) in &dossier.commands { tr { th scope="row" { code { (command) } } td { (what) } } } }
-        }
-        p {
-            "With the sources, " code { "make test" } " runs every check and " code { "make derive-check" }
-            " redoes the proofs by computer algebra."
-        }
-    };
-    Section { id: "reproduce", title: "How to do it again", body }
+    let code = |text: &str| Words::from(Span::Code(text.into()));
+    let commands = dossier.commands.iter().map(|(command, what)| (code(command), (*what).into()));
+    let written = "This page was written by corner-impact {} from {}. Its numbers are one document, which the first command \
+                   prints with `--json`; the page only lays them out.";
+    let sources =
+        "With the sources, `make test` runs every check and `make derive-check` redoes the proofs by computer algebra.";
+    let blocks = vec![
+        Block::paragraph(Words::prose(written, [dossier.version.into(), code(&dossier.model.file)])),
+        Block::Entries(0, commands.collect()),
+        Block::paragraph(Words::prose(sources, [])),
+    ];
+    Section { id: "reproduce", title: "How to do it again".into(), blocks }
 }

@@ -3,22 +3,38 @@
 use maud::{Markup, html};
 
 use crate::pages::report::dossier::Dossier;
-use crate::pages::report::html::numbers::{complex, fixed, number};
-use crate::pages::report::html::{HtmlError, Section, json, wide};
-use crate::pages::report::through::{OrbitFrame, ThroughEntry};
+use crate::pages::report::html::{HtmlError, json, left, numeric};
+use crate::pages::report::through::ThroughEntry;
+use crate::show::block::{Block, Section, Span, Table, Words, words};
+use crate::show::digits::Digits;
+use crate::show::html::wide;
+use crate::show::words;
 
 pub(crate) fn section(dossier: &Dossier) -> Result<Section, HtmlError> {
-    let body = match (&dossier.through, &dossier.no_through) {
-        (Some(through), _) => player(through, &serde_json::to_string(through)?),
-        _ if dossier.verification.is_none() => html! { p { "There is no corner impact to lead a motion through." } },
-        (_, why) => html! {
-            p { "There is no motion to lead through the corner impact" @if let Some(why) = why { ": " (why) } "." }
-        },
+    let blocks = match (&dossier.through, &dossier.no_through) {
+        (Some(through), _) => vec![
+            Block::Markup(player(through)),
+            Block::Details("The same as a table".into(), vec![Block::Table(table(through))]),
+            Block::Markup(data(through)?),
+        ],
+        _ if dossier.verification.is_none() => {
+            vec![Block::paragraph("There is no corner impact to lead a motion through.")]
+        }
+        (_, why) => {
+            let why = why.as_ref().map(|why| format!(": {why}")).unwrap_or_default();
+            vec![Block::paragraph(format!("There is no motion to lead through the corner impact{why}."))]
+        }
     };
-    Ok(Section { id: "through", title: "Through the corner impact", body })
+    Ok(Section { id: "through", title: "Through the corner impact".into(), blocks })
 }
 
-fn player(through: &ThroughEntry, data: &str) -> Markup {
+/// What the script reads.
+fn data(through: &ThroughEntry) -> Result<Markup, HtmlError> {
+    let data = serde_json::to_string(through)?;
+    Ok(html! { script type="application/json" id="through-data" { (json(&data)) } })
+}
+
+fn player(through: &ThroughEntry) -> Markup {
     let last = through.frames.len().saturating_sub(1);
     let panel = |id: &str, title: &str, what: Markup| {
         html! {
@@ -66,41 +82,37 @@ fn player(through: &ThroughEntry, data: &str) -> Markup {
                 }
             }))
         }
-        details {
-            summary { "The same as a table" }
-            (wide("Orbits by speed", &table(through)))
-        }
-        script type="application/json" id="through-data" { (json(data)) }
     }
 }
 
-fn table(through: &ThroughEntry) -> Markup {
-    html! {
-        table {
-            thead { tr {
-                th.n scope="col" { "rpm" } th scope="col" { "orbit" } th scope="col" { "impact" } th.n scope="col" { "at, deg" }
-                th.n scope="col" { "velocity before, m/s" } th scope="col" { "multipliers" }
-            } }
-            tbody {
-                @for frame in &through.frames {
-                    @for orbit in &frame.orbits {
-                        tr { td.n { (fixed(frame.rpm, 4)) } (row(orbit)) }
-                    }
-                    @if frame.orbits.is_empty() {
-                        tr { td.n { (fixed(frame.rpm, 4)) } td colspan="5" { "none; a run has " (frame.slowing.words) } }
-                    }
-                }
-            }
+fn table(through: &ThroughEntry) -> Table {
+    let columns = [
+        numeric("rpm"),
+        left("orbit"),
+        left("impact"),
+        numeric("at, deg"),
+        numeric("velocity before, m/s"),
+        left("multipliers"),
+    ];
+    let mut table = Table::new("Orbits by speed", columns);
+    let seven = Digits::Significant(7);
+    for frame in &through.frames {
+        let rpm = words![(frame.rpm, Digits::Fixed(4))];
+        for orbit in &frame.orbits {
+            let multipliers = orbit.multipliers.map(|value| Span::Complex([value.re, value.im], seven).into());
+            table.row([
+                rpm.clone(),
+                words::stability(orbit.stable).into(),
+                orbit.place.to_string().into(),
+                words![(orbit.angle_deg, Digits::Fixed(4))],
+                words![(orbit.velocity_before_m_s, seven)],
+                Words::joined(multipliers, ", "),
+            ]);
+        }
+        if frame.orbits.is_empty() {
+            let run = format!("a run has {}", frame.slowing.words);
+            table.row([rpm, "none".into(), Words::default(), Words::default(), Words::default(), run.into()]);
         }
     }
-}
-
-fn row(orbit: &OrbitFrame) -> Markup {
-    html! {
-        td { @if orbit.stable { "stable" } @else { "unstable" } }
-        td { (orbit.place) }
-        td.n { (fixed(orbit.angle_deg, 4)) }
-        td.n { (number(orbit.velocity_before_m_s, 7)) }
-        td { (complex(orbit.multipliers[0], 7)) ", " (complex(orbit.multipliers[1], 7)) }
-    }
+    table
 }

@@ -1,72 +1,42 @@
 //! What the follower does at other speeds.
 
-use maud::{Markup, html};
-
 use crate::pages::report::dossier::Dossier;
-use crate::pages::report::html::numbers::fixed;
-use crate::pages::report::html::{Section, wide};
-use crate::show::words;
-use crate::study::speeds::{Regimes, Stretch};
+use crate::pages::report::html::unheaded;
+use crate::pages::speeds::table;
+use crate::show::block::{Block, Section, Words, words};
+use crate::show::digits::Digits;
+use crate::show::words::regime;
+use crate::study::speeds::Regimes;
 
 pub(crate) fn section(dossier: &Dossier) -> Section {
-    let body = match (&dossier.speeds, &dossier.no_speeds) {
+    let blocks = match (&dossier.speeds, &dossier.no_speeds) {
         (Some(found), _) => regimes(found),
-        (_, why) => html! { p { "Not known: " (why.as_deref().unwrap_or("nothing was run")) "." } },
+        (_, why) => vec![Block::paragraph(format!("Not known: {}.", why.as_deref().unwrap_or("nothing was run")))],
     };
-    Section { id: "speeds", title: "At other speeds", body }
+    Section { id: "speeds", title: "At other speeds".into(), blocks }
 }
 
-fn regimes(found: &Regimes) -> Markup {
-    let [low, high] = found.rpm;
-    html! {
-        p {
-            "The speed is raised from " (fixed(low, 2)) " to " (fixed(high, 2)) " rpm, and in a second run lowered from there; at "
-            "each speed the follower has time to settle. "
-            @if let Some(rpm) = found.detachment_rpm { "It leaves the cam for the first time at " (fixed(rpm, 6)) " rpm. " }
-            "Narrow ranges between two speeds that were run may be missing; " code { "corner-impact speeds" } " looks closer."
-        }
-        (wide("What the follower does at other speeds", &html! {
-            table {
-                tbody {
-                    @for entry in &found.regimes {
-                        tr { th scope="row" { (words::regime(entry.regime)) } td { (ranges(&entry.ranges)) } }
-                    }
-                    @if !found.hysteresis.is_empty() {
-                        @let both = found.hysteresis_ranges();
-                        tr { th scope="row" { "depends on where the speed comes from" } td { (ranges(&both)) } }
-                    }
-                }
-            }
-        }))
-        details {
-            summary { "Every range by rising speed, and why it begins" }
-            (wide("Ranges by rising speed", &stretches(&found.rising)))
-        }
+fn regimes(found: &Regimes) -> Vec<Block> {
+    let [low, high] = found.rpm.map(|rpm| words![(rpm, Digits::Fixed(2))]);
+    let leaves = |rpm| words!["It leaves the cam for the first time at ", (rpm, Digits::Fixed(6)), " rpm. "];
+    let about = Words::prose(
+        "The speed is raised from {} to {} rpm, and in a second run lowered from there; at each speed the follower has time to \
+         settle. {}Narrow ranges between two speeds that were run may be missing; `corner-impact speeds` looks closer.",
+        [low, high, found.detachment_rpm.map(leaves).unwrap_or_default()],
+    );
+    let mut summary = unheaded("What the follower does at other speeds", 2);
+    for seen in &found.regimes {
+        summary.row([regime(seen.regime).into(), ranges(&seen.ranges)]);
     }
+    if !found.hysteresis.is_empty() {
+        summary.row(["depends on where the speed comes from".into(), ranges(&found.hysteresis_ranges())]);
+    }
+    let rising = Block::Table(table("Ranges by rising speed", &found.rising));
+    let all = "Every range by rising speed, and why it begins";
+    vec![Block::paragraph(about), Block::Table(summary), Block::Details(all.into(), vec![rising])]
 }
 
-fn ranges(ranges: &[[f64; 2]]) -> Markup {
-    html! {
-        @for (index, [low, high]) in ranges.iter().enumerate() {
-            @if index > 0 { ", " }
-            span.number { (fixed(*low, 2)) "–" (fixed(*high, 2)) }
-        }
-        " rpm"
-    }
-}
-
-fn stretches(entries: &[Stretch]) -> Markup {
-    html! {
-        table {
-            thead { tr { th.n scope="col" { "from, rpm" } th.n scope="col" { "to, rpm" } th scope="col" { "motion" } th scope="col" { "why it begins" } } }
-            tbody {
-                @for entry in entries {
-                    tr {
-                        td.n { (fixed(entry.rpm[0], 4)) } td.n { (fixed(entry.rpm[1], 4)) } td { (words::motion(&entry.settled)) }
-                        td { @if let Some(change) = &entry.begins { (change.cause.words()) } }
-                    }
-                }
-            }
-        }
-    }
+fn ranges(ranges: &[[f64; 2]]) -> Words {
+    let range = |[low, high]: &[f64; 2]| words![(*low, Digits::Fixed(2)), "–", (*high, Digits::Fixed(2))];
+    words![Words::joined(ranges.iter().map(range), ", "), " rpm"]
 }

@@ -1,87 +1,111 @@
 //! The headline: what agrees, to how many digits, and what does not.
 
-use maud::{Markup, html};
-
-use crate::show::{html, words};
+use maud::html;
 
 use crate::pages::report::dossier::Dossier;
-use crate::pages::report::html::Section;
-use crate::pages::report::html::numbers::{fixed, size};
 use crate::published::Verdict;
+use crate::show::block::{Block, Mark, Section, Words, words};
+use crate::show::digits::Digits;
+use crate::show::words::{quantity, route, shared, spoken};
+use crate::study::verify::Verification;
 
 pub(crate) fn section(dossier: &Dossier) -> Section {
-    let head = &dossier.headline;
-    let verdict = match (&dossier.verification, dossier.agrees) {
-        (None, _) => "There is no corner impact to verify: nothing was checked, and nothing disagrees.",
-        (Some(_), true) => "Everything that was checked agrees.",
-        (Some(_), false) => "Something that was checked does not agree.",
+    let (class, verdict) = match (&dossier.verification, dossier.agrees) {
+        (None, _) => {
+            ("verdict agrees", "There is no corner impact to verify: nothing was checked, and nothing disagrees.")
+        }
+        (Some(_), true) => ("verdict agrees", "Everything that was checked agrees."),
+        (Some(_), false) => ("verdict disagrees", "Something that was checked does not agree."),
     };
-    let body = html! {
-        p class={ "verdict " (if dossier.agrees { "agrees" } else { "disagrees" }) } { (verdict) }
-        @if let Some(found) = &dossier.verification {
-            ul.findings {
-                li {
-                    strong { (head.agreeing) " of " (head.comparisons) } " comparisons between "
-                    (head.routes.len()) " routes to the local map agree"
-                    @if head.agreeing > 0 { "; every entry of A and B shares " (words::shared(head.shared_decimals)) " or more" } "."
-                }
-                li {
-                    "The corner impact is at " strong { (fixed(found.at.speed_rpm(), 6)) " rpm" }
-                    @if let Some(angle) = dossier.corner_deg { ", where the cam has turned by " (fixed(angle, 4)) "°" }
-                    @match &found.classification {
-                        Ok(kind) => { ". It is a " strong { (words::spoken(&kind.scenario.to_string())) } "." }
-                        Err(_) => { ". It has no classification." }
-                    }
-                }
-                @if head.printed > 0 {
-                    li {
-                        "Of the paper's " (head.printed) " printed numbers " strong { (head.printed_right) " hold" } ", "
-                        (head.printed_wrong) " are wrong as the ledger says, and "
-                        (head.printed_otherwise) " came out otherwise."
-                    }
-                }
-                @if let Some(ledger) = &dossier.claims {
-                    @let count = |verdict| ledger.counts.get(&verdict).copied().unwrap_or_default();
-                    li {
-                        "Of the paper's " (ledger.claims.len()) " statements " strong { (count(Verdict::Holds)) " hold" } ", "
-                        (count(Verdict::Misprint)) " are misprints, " (count(Verdict::Refuted)) " are refuted and "
-                        (count(Verdict::Open)) " open; "
-                        @if head.claims_otherwise == 0 { "every check comes to the ledger's verdict." }
-                        @else { (head.claims_otherwise) " came out otherwise than the ledger says." }
-                    }
-                }
-            }
-            (disagreements(dossier))
-            @if !found.skipped.is_empty() {
-                h3 { "Not run" }
-                ul { @for skipped in &found.skipped { li { (words::spoken(&skipped.route)) ": " (skipped.why) @if skipped.failed { " It should have run." } } } }
+    let mut blocks = vec![Block::Markup(html! { p class=(class) { (verdict) } })];
+    if let Some(found) = &dossier.verification {
+        blocks.push(Block::List(findings(dossier, found)));
+        for (title, items) in [("What does not agree", disagreements(dossier, found)), ("Not run", not_run(found))] {
+            if !items.is_empty() {
+                blocks.extend([Block::Heading(title.into()), Block::List(items)]);
             }
         }
-        @if let Some(why) = &dossier.nothing_to_verify { p { "In the words of the search: " } pre.why { (why) } }
-    };
-    Section { id: "findings", title: "Findings", body }
+    }
+    if let Some(why) = &dossier.nothing_to_verify {
+        blocks.push(Block::Markup(html! { p { "In the words of the search: " } pre.why { (why) } }));
+    }
+    Section { id: "findings", title: "Findings".into(), blocks }
 }
 
-fn disagreements(dossier: &Dossier) -> Markup {
-    let Some(found) = &dossier.verification else { return html! {} };
-    let pairs: Vec<_> = found.comparisons.iter().filter(|entry| !entry.agrees).collect();
-    let numbers: Vec<_> = found.published.iter().filter(|number| !number.as_found).collect();
+/// Words that stand out in a sentence.
+fn strong(text: &str) -> Words {
+    (Mark::Strong, text).into()
+}
+
+fn findings(dossier: &Dossier, found: &Verification) -> Vec<Words> {
+    let head = &dossier.headline;
+    let shares = match head.agreeing {
+        0 => Words::default(),
+        _ => words!["; every entry of A and B shares ", shared(head.shared_decimals), " or more"],
+    };
+    let kind = match &found.classification {
+        Ok(kind) => words!["It is a ", strong(&spoken(&kind.scenario.to_string())), "."],
+        Err(_) => "It has no classification.".into(),
+    };
+    let angle = words![(found.at.corner.angle.to_degrees(), Digits::Fixed(4))];
+    let mut findings = vec![
+        Words::prose(
+            "{} comparisons between {} routes to the local map agree{}.",
+            [strong(&format!("{} of {}", head.agreeing, head.comparisons)), head.routes.len().into(), shares],
+        ),
+        Words::prose(
+            "The corner impact is at {} rpm, where the cam has turned by {}°. {}",
+            [words![(found.at.speed_rpm(), Digits::Fixed(6))], angle, kind],
+        ),
+    ];
+    if head.printed > 0 {
+        let hold = strong(&format!("{} hold", head.printed_right));
+        findings.push(Words::prose(
+            "Of the paper's {} printed numbers {}, {} are wrong as the ledger says, and {} came out otherwise.",
+            [head.printed.into(), hold, head.printed_wrong.into(), head.printed_otherwise.into()],
+        ));
+    }
+    if let Some(ledger) = &dossier.claims {
+        let count = |verdict| ledger.counts.get(&verdict).copied().unwrap_or_default();
+        let [misprint, refuted, open] =
+            [Verdict::Misprint, Verdict::Refuted, Verdict::Open].map(|verdict| Words::from(count(verdict)));
+        let hold = strong(&format!("{} hold", count(Verdict::Holds)));
+        let checks = match head.claims_otherwise {
+            0 => "every check comes to the ledger's verdict".into(),
+            some => words![some, " came out otherwise than the ledger says"],
+        };
+        findings.push(Words::prose(
+            "Of the paper's {} statements {}, {} are misprints, {} are refuted and {} open; {}.",
+            [ledger.claims.len().into(), hold, misprint, refuted, open, checks],
+        ));
+    }
+    findings
+}
+
+fn disagreements(dossier: &Dossier, found: &Verification) -> Vec<Words> {
+    let pairs = found.comparisons.iter().filter(|pair| !pair.agrees).map(|pair| {
+        let [one, other] = pair.routes.map(route);
+        words![
+            quantity(pair.quantity),
+            format!(" by {one} and {other} differs by "),
+            (pair.max_abs_diff, Digits::Size),
+            ", allowed is ",
+            (pair.bound.value, Digits::Size)
+        ]
+    });
+    let numbers = found.published.iter().filter(|number| !number.as_found).map(|number| {
+        let name = quantity(number.agreement.quantity);
+        words![name, format!(" in print ({}) came out otherwise", number.place)]
+    });
     let claims = dossier.claims.iter().flat_map(|ledger| &ledger.claims).filter(|claim| !claim.as_found);
-    let claims: Vec<_> = claims.collect();
-    if pairs.is_empty() && numbers.is_empty() && claims.is_empty() {
-        return html! {};
-    }
-    html! {
-        h3 { "What does not agree" }
-        ul {
-            @for entry in pairs {
-                li {
-                    (html::words(&words::quantity(entry.quantity))) " by " (words::route(entry.routes[0])) " and " (words::route(entry.routes[1]))
-                    " differs by " (size(entry.max_abs_diff)) ", allowed is " (size(entry.bound.value))
-                }
-            }
-            @for number in numbers { li { (html::words(&words::quantity(number.agreement.quantity))) " in print (" (number.place) ") came out otherwise" } }
-            @for claim in claims { li { "the claim " (claim.id) " came out otherwise" } }
-        }
-    }
+    let claims = claims.map(|claim| format!("the claim {} came out otherwise", claim.id).into());
+    pairs.chain(numbers).chain(claims).collect()
+}
+
+fn not_run(found: &Verification) -> Vec<Words> {
+    let told = found.skipped.iter().map(|skipped| {
+        let should = if skipped.failed { " It should have run." } else { "" };
+        format!("{}: {}{should}", spoken(&skipped.route.to_string()), skipped.why).into()
+    });
+    told.collect()
 }
