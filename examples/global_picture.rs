@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release --example global_picture -- exponents | endings | distance | passage`
 
-use corner_impact::border_collision::passage;
+use corner_impact::border_collision::{LocalMap, passage};
 use corner_impact::cam::Cam;
 use corner_impact::diagram::{Speeds, exponent};
 use corner_impact::model::{Model, OSORIO_2008};
@@ -44,7 +44,7 @@ fn exponents(model: &Model, findings: &Verification) -> Done {
             std::ops::ControlFlow::Continue(())
         })?;
         let found = exponent(&machine, motion, 20, 250)?;
-        println!("{rpm} {:.4} {:.4} {} {}", found.mean, found.standard_error, found.blocks, found.rests);
+        println!("{rpm} {:.4} {:.4} {} {}", found.growth.value, found.growth.error, found.blocks, found.rests);
     }
     Ok(())
 }
@@ -96,12 +96,12 @@ fn distances(model: &Model, findings: &Verification) -> Done {
 
 /// Revolutions until the motion has left x*, by the piecewise-linear map and by runs.
 fn passages(model: &Model, findings: &Verification) -> Done {
-    let local = &findings.map;
-    println!("revolutions for each factor of ten: {:?}", passage::revolutions_per_decade(local));
+    let local = LocalMap::new(&findings.map, findings.border);
+    println!("revolutions for each factor of ten: {:?}", passage::revolutions_per_decade(&local));
     for decade in 1..=9 {
         let rpm = findings.at.speed_rpm() - 10f64.powi(-decade);
         let dt = 60.0 / rpm - findings.at.period;
-        let linear = passage::linear(local, dt, 1e-3, 100_000);
+        let linear = passage::linear(&local, dt, 1e-3, 100_000);
         let run = passage::simulated(&map(model, findings, rpm)?, findings.at.state, 1e-3, 100_000)?;
         println!("1e-{decade} rpm below: map {linear:?}, run {run:?}");
     }

@@ -26,6 +26,13 @@ pub struct State {
     pub velocity: f64,
 }
 
+impl State {
+    /// How far two states are from each other, m: velocities count over `omega`, rad/s.
+    pub(crate) fn apart(self, other: Self, omega: f64) -> f64 {
+        (self.position - other.position).hypot((self.velocity - other.velocity) / omega)
+    }
+}
+
 /// The follower away from the cam.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flight {
@@ -345,7 +352,7 @@ impl Flight {
             }
             let newton = time + (level - state.position) / state.velocity;
             let better = if low < newton && newton < high { newton } else { 0.5 * (low + high) };
-            if (better - time).abs() <= f64::EPSILON * time {
+            if (better - time).abs() <= tolerance::ULP.value * time {
                 break;
             }
             time = better;

@@ -38,7 +38,8 @@
 //!
 //! Data moves down; no stage uses one below it, and a test holds the code to that. `tolerance` stands above all: every
 //! threshold is a row of its one table; so do `known`, the words for how a result is known, `progress`, by which long work
-//! tells how far it has come, and `draw`, which turns a plot into SVG or PNG and knows no mechanics.
+//! tells how far it has come, `bracket`, which finds roots, `estimate`, a number with its error, and `draw`, which turns a
+//! plot into SVG or PNG and knows no mechanics.
 //!
 //! ```
 //! use corner_impact::{model::{Model, OSORIO_2008}, verify::{External, verify}};
@@ -59,6 +60,9 @@ pub mod tolerance;
 pub mod known;
 
 pub mod progress;
+
+pub mod bracket;
+pub mod estimate;
 
 pub mod draw;
 

@@ -25,9 +25,17 @@ table! {
     /// When one-sided derivatives of the lift differ enough to be a corner.
     CAM_JUMP = 1e-9, "of the largest derivative of that order on the two segments that meet: a thousand times what rounding \
         leaves between two laws that meet smoothly, and far below any jump that a machined cam would have by design";
-    /// What rounding may make of a derivative at the end of a segment.
+    /// What one rounding may make of a number.
+    ULP = f64::EPSILON, "of the number: what rounds a difference, the least step that leads on, and what a bracket closes to";
+    /// What rounding may make of a derivative of a lift law, or of a bound on one.
     JET_ROUNDING = 64.0 * f64::EPSILON, "of the terms that it is the sum of, which may cancel far from where a polynomial \
         starts, and of the next derivative times a radian: the angle itself is known to a dozen ulps of a full turn";
+    /// What rounding may make of each term of a sum of cosines.
+    TERM_ROUNDING = 8.0 * f64::EPSILON, "of the term's largest value: cosines are turned on by one angle again and again, a \
+        handful of roundings each time";
+    /// Room that the ranges of a segment's lift and derivatives are given.
+    RANGE_ROUNDING = 16.0 * f64::EPSILON, "of the quantity, and of what a full turn moves it by: a dozen roundings of it, and \
+        the angle's";
     /// How closely a cam closes on itself: spans on 360 degrees, rises on 0, a last row on the first.
     CAM_CLOSURE = 1e-9, "of the sum of the sizes: what typing the numbers to ten digits leaves";
     /// How wide a gap between the rows of a table may be.
@@ -39,6 +47,9 @@ table! {
     /// Rounding of the gap between follower and cam.
     GAP_ROUNDING = 4.0 * f64::EPSILON, "of the follower's position and the cam's largest lift: a handful of roundings, so that \
         a dip deeper than this is an impact";
+    /// What rounding may make of the state at the end of a simulated stretch.
+    RUN_ROUNDING = 4.0 * f64::EPSILON, "of the largest position and velocity on the way: a handful of roundings, which a step \
+        to be told from them must exceed";
     /// Where the series of the follower's responses ends.
     SERIES_END = 0.25 * f64::EPSILON, "of the response s', which starts at 1: a smaller term changes no digit of the sum";
     /// Relative velocity after an impact that is none.
@@ -79,6 +90,10 @@ table! {
     /// How near 1 a multiplier is where another branch crosses.
     BRANCHING = 1e-3, "absolute: the equations are singular there, and Newton's method stops short of it; a pole of the matrix \
         has numbers above 1";
+    /// The shortest step along a branch.
+    SHORTEST_STEP = 1e-6, "of the longest: twenty halvings, after which a change in the way is one that no step gets past";
+    /// The shortest stretch that a cam is continued by past a corner, rad.
+    LEAST_REACH = 5e-4, "absolute, rad: perturbations are a part of it, and smaller ones would be lost in rounding";
     /// How closely a point is located where sticking begins or ends on a branch.
     SPECIAL_POINT = 1e-14, "of the range of the parameter: ten digits of its value are asked for, and each one more costs three \
         simulated periods";

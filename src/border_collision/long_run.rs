@@ -10,6 +10,7 @@ use super::local_map::{LocalMap, PeriodicOrbit};
 use super::word::Word;
 use crate::cam::Side;
 use crate::corner::map::Eigenvalue;
+use crate::estimate::Estimate;
 use crate::tolerance;
 
 /// Where a motion ends.
@@ -17,25 +18,14 @@ use crate::tolerance;
 pub enum End {
     /// On a stable periodic orbit; a fixed point for a word of one letter.
     Periodic(PeriodicOrbit),
-    /// In a bounded motion that parts neighbours.
-    Chaotic(Exponent),
+    /// In a bounded motion that parts neighbours, by its largest Lyapunov exponent per step, a natural logarithm.
+    Chaotic(Estimate),
     /// In a bounded motion whose exponent is not above 0 by enough: on a closed curve, or not settled yet.
-    Undecided(Exponent),
+    Undecided(Estimate),
     /// At the corner impact itself: at mu = 0 the motion shrinks to nothing.
     Corner,
     /// Nowhere: it grows without bound.
     Escapes(Escape),
-}
-
-/// The largest Lyapunov exponent per step, a natural logarithm.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Exponent {
-    /// The mean over the run after its transient.
-    pub value: f64,
-    /// The standard error of that mean, from the means over equal parts of the run.
-    pub error: f64,
-    /// Steps that the mean is over.
-    pub steps: usize,
 }
 
 /// Why a motion is taken to escape.
@@ -52,12 +42,14 @@ pub enum Escape {
     Grown,
 }
 
-/// Steps after which a motion is looked at, and that an exponent's mean is taken over.
+/// Steps after which a motion is looked at, and that each of the means is taken over that an exponent is the mean of.
 const PART: usize = 1024;
 /// Parts that are no longer looked at for a mean: the transient.
 const TRANSIENT: usize = 8;
 /// Parts of a run that repeats no word.
 const PARTS: usize = 40;
+/// Steps that an exponent's mean is taken over.
+pub(super) const MEASURED: usize = (PARTS - TRANSIENT) * PART;
 /// How often a word must have been repeated to be one.
 const REPEATED: usize = 8;
 
@@ -121,7 +113,7 @@ impl LocalMap {
                 means.push(mean);
             }
         }
-        let exponent = Exponent::of(&means);
+        let exponent = Estimate::of_parts(&means);
         let known = exponent.error <= tolerance::CHAOTIC_EXPONENT.value * exponent.value;
         if known && exponent.value > 0.0 { End::Chaotic(exponent) } else { End::Undecided(exponent) }
     }
@@ -161,16 +153,6 @@ impl LocalMap {
         let word = Word::repeated(&sides[sides.len() / 2..], 2)?;
         let multiplier = self.follows_for_ever(&word, x, mu)?;
         Some(Escape::Follows { word: word.least_rotation().0, multiplier })
-    }
-}
-
-impl Exponent {
-    /// The mean of the means over equal parts, and its standard error.
-    fn of(means: &[f64]) -> Self {
-        let count = means.len() as f64;
-        let value = means.iter().sum::<f64>() / count;
-        let variance = means.iter().map(|mean| (mean - value).powi(2)).sum::<f64>() / (count - 1.0);
-        Self { value, error: (variance / count).sqrt(), steps: means.len() * PART }
     }
 }
 

@@ -32,41 +32,22 @@ use crate::cam::Side;
 
 /// A map that the classification says nothing about, and why.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the message says what each number is")]
 pub enum Degenerate {
     /// A change of coordinates divides by this.
     #[error("{what} is {value:e}, zero to rounding")]
-    Vanishes {
-        /// The quantity.
-        what: &'static str,
-        /// Its value.
-        value: f64,
-    },
+    Vanishes { what: &'static str, value: f64 },
     /// An eigenvalue on a boundary that the counts divide at.
     #[error("the {side} side has an eigenvalue at {value}, too close to {boundary} to count")]
-    EigenvalueOnBoundary {
-        /// Which.
-        side: Side,
-        /// The eigenvalue.
-        value: f64,
-        /// 1 or -1.
-        boundary: f64,
-    },
+    EigenvalueOnBoundary { side: Side, value: f64, boundary: f64 },
     /// A condition of the classification fails.
     #[error("{name} is {value:e}, {distance:.1e} from failing: {meaning}")]
-    Fails {
-        /// The quantity.
-        name: &'static str,
-        /// Its value.
-        value: f64,
-        /// How far it is from failing, without units.
-        distance: f64,
-        /// What that means.
-        meaning: &'static str,
-    },
+    Fails { name: &'static str, value: f64, distance: f64, meaning: &'static str },
 }
 
 /// Why a corner impact is not classified.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the message says what each number is")]
 pub enum Refusal {
     /// The map is none of the generic kinds.
     #[error("degenerate: {0}")]
@@ -75,8 +56,5 @@ pub enum Refusal {
     #[error(
         "sticking: next to the corner, on its {side} side, a simulated revolution stays on the cam after the impact"
     )]
-    Sticking {
-        /// Which.
-        side: Side,
-    },
+    Sticking { side: Side },
 }

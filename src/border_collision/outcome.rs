@@ -4,9 +4,10 @@ use nalgebra::Vector2;
 
 use super::feigin::speeds_at;
 use super::local_map::{LocalMap, PeriodicOrbit};
-use super::long_run::{End, Escape, Exponent};
+use super::long_run::{End, Escape, MEASURED};
 use super::word::Word;
 use crate::cam::Side;
+use crate::estimate::Estimate;
 use crate::tolerance;
 
 /// The longest word that periodic orbits are listed for.
@@ -124,16 +125,14 @@ impl End {
                     orbit.word
                 )
             }
-            Self::Chaotic(exponent) => format!(
-                "bounded and without a repeated word over the run; its Lyapunov exponent, a mean over {} steps, is above 0 by \
+            Self::Chaotic(_) => format!(
+                "bounded and without a repeated word over the run; its Lyapunov exponent, a mean over {MEASURED} steps, is above 0 by \
                  {:.0} standard errors or more",
-                exponent.steps,
                 1.0 / tolerance::CHAOTIC_EXPONENT.value
             ),
-            Self::Undecided(exponent) => format!(
-                "bounded and without a stable word over the run; its Lyapunov exponent, a mean over {} steps, is not known to \
-                 be above 0",
-                exponent.steps
+            Self::Undecided(_) => format!(
+                "bounded and without a stable word over the run; its Lyapunov exponent, a mean over {MEASURED} steps, is not known to \
+                 be above 0"
             ),
             Self::Corner => "the motion shrinks below any size".into(),
             Self::Escapes(Escape::Follows { word, multiplier }) => {
@@ -158,7 +157,7 @@ impl End {
     }
 
     /// The exponent of a motion that repeats nothing.
-    fn exponent(&self) -> Option<&Exponent> {
+    fn exponent(&self) -> Option<&Estimate> {
         match self {
             Self::Chaotic(exponent) | Self::Undecided(exponent) => Some(exponent),
             _ => None,

@@ -12,21 +12,19 @@
 
 use nalgebra::Vector2;
 
-use crate::corner::CornerMap;
+use super::LocalMap;
+use crate::cam::Side;
 use crate::flight::State;
 use crate::section::StroboscopicMap;
-use crate::simulate::{Event, SimulateError};
+use crate::simulate::SimulateError;
 use crate::tolerance;
 
 /// Revolutions from x* until the position on the section is farther than `reach`, m, from that of x*, by the
 /// piecewise-linear map at a period `dt`, s, longer than T*; `None` where it is not within `most`.
-pub fn linear(map: &CornerMap, dt: f64, reach: f64, most: u64) -> Option<u64> {
-    let (c, d) = (map.c(), map.d());
+pub fn linear(map: &LocalMap, dt: f64, reach: f64, most: u64) -> Option<u64> {
     let mut deviation = Vector2::zeros();
     (1..=most).find(|_| {
-        // A+, B+ where C dx + D dT < 0
-        let side = if (c * deviation)[0] + d * dt < 0.0 { &map.plus } else { &map.minus };
-        deviation = side.a * deviation + side.b * dt;
+        deviation = map.apply(deviation, dt);
         deviation[0].abs() > reach
     })
 }
@@ -35,8 +33,7 @@ pub fn linear(map: &CornerMap, dt: f64, reach: f64, most: u64) -> Option<u64> {
 pub fn simulated(map: &StroboscopicMap, start: State, reach: f64, most: u64) -> Result<Option<u64>, SimulateError> {
     let mut motion = map.machine.start(map.cam_angle, start)?;
     for revolution in 1..=most {
-        let goal = motion.after(1);
-        let _ = map.machine.advance(&mut motion, goal, &mut |_: &Event| std::ops::ControlFlow::Continue(()))?;
+        map.machine.revolve(&mut motion, 1)?;
         if (motion.state.position - start.position).abs() > reach {
             return Ok(Some(revolution));
         }
@@ -46,11 +43,12 @@ pub fn simulated(map: &StroboscopicMap, start: State, reach: f64, most: u64) -> 
 
 /// Revolutions that each factor of ten less in |dT| adds: `ln 10/ln lambda`, lambda the multiplier above 1 of the side on
 /// which the deviation grows; `None` where neither side has one, or both have.
-pub fn revolutions_per_decade(map: &CornerMap) -> Option<f64> {
-    let above = |side: &crate::corner::map::SideMap| {
-        side.eigenvalues().into_iter().filter(|value| value.im == 0.0 && value.re > 1.0).map(|value| value.re).next()
+pub fn revolutions_per_decade(map: &LocalMap) -> Option<f64> {
+    let above = |side: Side| {
+        let [first, _] = map.of(side).eigenvalues();
+        (first.im == 0.0 && first.re > 1.0).then_some(first.re)
     };
-    let multiplier = match (above(&map.minus), above(&map.plus)) {
+    let multiplier = match (above(Side::Minus), above(Side::Plus)) {
         (Some(multiplier), None) | (None, Some(multiplier)) => multiplier,
         _ => return None,
     };

@@ -4,6 +4,7 @@
 //! displacement from x* is compared with the one that A and B predict; |dT| grows from almost nothing until they differ by a
 //! tenth of the prediction. Velocities count over the cam's angle, `|(q, v/omega)|`.
 
+use std::convert::Infallible;
 use std::f64::consts::TAU;
 
 use nalgebra::Vector2;
@@ -12,6 +13,7 @@ use serde::Serialize;
 use super::feigin::speeds_at;
 use super::local_map::LocalMap;
 use super::word::Word;
+use crate::bracket::{Width, halve};
 use crate::cam::Cam;
 use crate::corner::CornerImpact;
 use crate::flight::State;
@@ -153,42 +155,33 @@ impl Real<'_> {
         compare: impl Fn(f64, Option<(Vector2<f64>, f64)>) -> Difference,
     ) -> Range {
         let period = self.at.period;
-        let holds = |found: &Difference| found.is_some_and(|(_, apart)| apart <= tolerance::LINEAR_WITHIN.value);
         // The last dT that held with what was found there.
         let mut last: Option<(f64, Vector2<f64>, f64)> = None;
-        let before = |last: &Option<(f64, Vector2<f64>, f64)>| last.map(|(dt, real, _)| (real, dt));
-        let mut dt = sign * tolerance::LINEAR_FROM.value * period;
-        // Half the speed and twice the speed: T* more, or T*/2 less.
-        let most = if sign > 0.0 { period } else { 0.5 * period };
         let mut ends = Ends::Nothing;
-        while dt.abs() < most {
-            let found = compare(dt, before(&last));
+        let mut fails = |dt: f64| {
+            let found = compare(dt, last.map(|(dt, real, _)| (real, dt)));
             match found {
-                Some((real, apart)) if holds(&found) => last = Some((dt, real, apart)),
+                Some((real, apart)) if apart <= tolerance::LINEAR_WITHIN.value => last = Some((dt, real, apart)),
                 other => {
                     ends = if other.is_some() { Ends::Tenth } else { Ends::OtherMotion };
-                    break;
+                    return Ok::<_, Infallible>(true);
                 }
             }
+            Ok(false)
+        };
+        let (mut held, mut dt) = (None, sign * tolerance::LINEAR_FROM.value * period);
+        // Half the speed and twice the speed: T* more, or T*/2 less.
+        let most = if sign > 0.0 { period } else { 0.5 * period };
+        while dt.abs() < most {
+            let Ok(false) = fails(dt) else {
+                // Where nothing held there is no range to close in.
+                if let Some(held) = held {
+                    let Ok(_) = halve([held, dt], Width::Relative(tolerance::LINEAR_BRACKET.value), &mut fails);
+                }
+                break;
+            };
+            held = Some(dt);
             dt *= Self::GROWTH;
-        }
-        // Where nothing held there is no range to close in.
-        if let (Some((mut low, ..)), false) = (last, ends == Ends::Nothing) {
-            let mut high = dt;
-            while (high - low).abs() > tolerance::LINEAR_BRACKET.value * high.abs() {
-                let middle = 0.5 * (low + high);
-                let found = compare(middle, before(&last));
-                match found {
-                    Some((real, apart)) if holds(&found) => {
-                        last = Some((middle, real, apart));
-                        low = middle;
-                    }
-                    other => {
-                        ends = if other.is_some() { Ends::Tenth } else { Ends::OtherMotion };
-                        high = middle;
-                    }
-                }
-            }
         }
         let period_change = last.map_or(0.0, |(dt, ..)| dt);
         let difference = last.map(|(.., apart)| apart);

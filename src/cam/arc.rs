@@ -4,6 +4,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::jet::{Jet, square_root};
 use super::lift::Lift;
+use crate::tolerance;
 
 /// A circle whose centre lies at polar `(distance, direction)` from the cam's axis, met by the ray at angle theta:
 /// `c = kappa cos(phi) + sqrt(rho^2 - kappa^2 sin^2(phi))`, `phi = theta - direction`.
@@ -111,7 +112,7 @@ impl Arc {
         let everywhere = kappa * largest + w3;
         let from_middle = self.lift(middle).third.abs() + reach * (kappa + w4);
         // The last bits of a dozen operations and of the angle; no min, which would take a bound for one that is not a number.
-        let rounding = 64.0 * f64::EPSILON * (everywhere + kappa + w4);
+        let rounding = tolerance::JET_ROUNDING.value * (everywhere + kappa + w4);
         let third = if from_middle < everywhere { from_middle } else { everywhere };
         [third + rounding, kappa + w4 + rounding]
     }

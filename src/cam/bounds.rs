@@ -98,7 +98,7 @@ impl Bounds {
         let largest = |range: [f64; 2]| range[0].abs().max(range[1].abs());
         let sizes = [largest(self.lift), largest(self.slope), largest(self.curvature), self.third];
         let widen = |range: [f64; 2], order: usize| {
-            let room = 16.0 * f64::EPSILON * (sizes[order] + TAU * sizes[order + 1]);
+            let room = tolerance::RANGE_ROUNDING.value * (sizes[order] + TAU * sizes[order + 1]);
             [range[0] - room, range[1] + room]
         };
         Self {

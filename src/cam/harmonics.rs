@@ -3,6 +3,7 @@
 use super::jet::Jet;
 use super::lift::Lift;
 use crate::model::HarmonicProfile;
+use crate::tolerance;
 
 /// `c = offset + sum A_k cos(k theta) + B_k sin(k theta)`, k from 1.
 #[derive(Clone, Debug, PartialEq)]
@@ -79,13 +80,13 @@ impl Harmonics {
         let [third, fourth] = self.bounds;
         let from_middle = self.lift(0.5 * (start + end)).third.abs() + 0.5 * (end - start) * fourth;
         // Turning on by x again and again rounds by an ulp a time.
-        let rounding = 8.0 * f64::EPSILON * self.terms.len() as f64;
+        let rounding = tolerance::TERM_ROUNDING.value * self.terms.len() as f64;
         third.min(from_middle + rounding * fourth) * (1.0 + rounding)
     }
 
     /// A bound on `|c''''|` anywhere.
     pub fn fourth_bound(&self) -> f64 {
-        self.bounds[1] * (1.0 + 8.0 * f64::EPSILON * self.terms.len() as f64)
+        self.bounds[1] * (1.0 + tolerance::TERM_ROUNDING.value * self.terms.len() as f64)
     }
 
     /// Lift and high derivatives at `angle`, rad.

@@ -22,6 +22,19 @@ pub enum Law {
     Harmonics(Harmonics),
 }
 
+/// What a law gives: a dwell, or whichever of the others it is.
+macro_rules! of_law {
+    ($law:expr, $lift:ident => $dwell:expr, $other:ident => $given:expr) => {
+        match $law {
+            Law::Dwell($lift) => $dwell,
+            Law::Arc($other) => $given,
+            Law::Polynomial($other) => $given,
+            Law::Sinusoid($other) => $given,
+            Law::Harmonics($other) => $given,
+        }
+    };
+}
+
 impl Law {
     /// What kind of law it is, in a word.
     pub fn name(&self) -> &'static str {
@@ -37,25 +50,13 @@ impl Law {
     /// Lift and derivatives at `angle`, rad.
     #[inline]
     pub fn lift(&self, angle: f64) -> Lift {
-        match self {
-            Self::Dwell(value) => Lift { value: *value, slope: 0.0, curvature: 0.0, third: 0.0 },
-            Self::Arc(arc) => arc.lift(angle),
-            Self::Polynomial(polynomial) => polynomial.lift(angle),
-            Self::Sinusoid(sinusoid) => sinusoid.lift(angle),
-            Self::Harmonics(harmonics) => harmonics.lift(angle),
-        }
+        of_law!(self, value => Lift { value: *value, slope: 0.0, curvature: 0.0, third: 0.0 }, law => law.lift(angle))
     }
 
     /// `c(from + turn) - c(from)` without cancellation, m.
     #[inline]
     pub fn rise(&self, from: f64, turn: f64) -> f64 {
-        match self {
-            Self::Dwell(_) => 0.0,
-            Self::Arc(arc) => arc.rise(from, turn),
-            Self::Polynomial(polynomial) => polynomial.rise(from, turn),
-            Self::Sinusoid(sinusoid) => sinusoid.rise(from, turn),
-            Self::Harmonics(harmonics) => harmonics.rise(from, turn),
-        }
+        of_law!(self, _still => 0.0, law => law.rise(from, turn))
     }
 
     /// [`Law::rise`], and [`Law::lift`] where it ends, with what the two share computed once.
@@ -70,13 +71,7 @@ impl Law {
     /// A bound on `|d^3c/dtheta^3|` over `[start, end]`, m/rad^3; infinite where the law does not reach.
     #[inline]
     pub fn third_bound(&self, start: f64, end: f64) -> f64 {
-        match self {
-            Self::Dwell(_) => 0.0,
-            Self::Arc(arc) => arc.third_bound(start, end),
-            Self::Polynomial(polynomial) => polynomial.third_bound(start, end),
-            Self::Sinusoid(sinusoid) => sinusoid.third_bound(start, end),
-            Self::Harmonics(harmonics) => harmonics.third_bound(start, end),
-        }
+        of_law!(self, _still => 0.0, law => law.third_bound(start, end))
     }
 
     /// A bound on `|d^4c/dtheta^4|` over `[start, end]`, m/rad^4; infinite where the law does not reach.
@@ -92,13 +87,7 @@ impl Law {
 
     /// Lift and its derivatives up to a high order at `angle`, rad.
     pub fn jet(&self, angle: f64) -> Jet {
-        match self {
-            Self::Dwell(value) => Jet::constant(*value),
-            Self::Arc(arc) => arc.jet(angle),
-            Self::Polynomial(polynomial) => polynomial.jet(angle),
-            Self::Sinusoid(sinusoid) => sinusoid.jet(angle),
-            Self::Harmonics(harmonics) => harmonics.jet(angle),
-        }
+        of_law!(self, value => Jet::constant(*value), law => law.jet(angle))
     }
 
     /// The sizes of what the derivatives at `angle` are sums of; their own where nothing can cancel.

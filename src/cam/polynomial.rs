@@ -3,6 +3,7 @@
 use super::jet::Jet;
 use super::lift::Lift;
 use crate::model::MOST_COEFFICIENTS;
+use crate::tolerance;
 
 /// `c = sum a_k u^k`, `u = theta - start`.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,7 +84,7 @@ impl Polynomial {
         // Of what rounding may move the sum by: terms far from the start may cancel.
         let terms = largest(&derivative[..count], middle.abs() + reach);
         shift(&mut derivative[..count], middle);
-        largest(&derivative[..count], reach) + 64.0 * f64::EPSILON * terms
+        largest(&derivative[..count], reach) + tolerance::JET_ROUNDING.value * terms
     }
 
     /// Lift and high derivatives at `angle`, rad.

@@ -2,6 +2,7 @@
 
 use super::jet::Jet;
 use super::lift::Lift;
+use crate::tolerance;
 
 /// `c = value + tilt u + sine (phi - sin phi) + cosine (1 - cos phi)`, `phi = frequency u`, `u = theta - start`.
 ///
@@ -72,13 +73,13 @@ impl Sinusoid {
         let everywhere = frequency.powi(3) * self.sine.hypot(self.cosine);
         let from_middle = self.lift(0.5 * (start + end)).third.abs() + 0.5 * (end - start) * frequency * everywhere;
         // Rounding of the phase and of the sum.
-        let rounding = 64.0 * f64::EPSILON * (1.0 + frequency) * everywhere;
+        let rounding = tolerance::JET_ROUNDING.value * (1.0 + frequency) * everywhere;
         everywhere.min(from_middle) + rounding
     }
 
     /// A bound on `|c''''|` anywhere: `w^4 |(A, B)|`.
     pub fn fourth_bound(&self) -> f64 {
-        self.frequency.powi(4) * self.sine.hypot(self.cosine) * (1.0 + 64.0 * f64::EPSILON)
+        self.frequency.powi(4) * self.sine.hypot(self.cosine) * (1.0 + tolerance::JET_ROUNDING.value)
     }
 
     /// Lift and high derivatives at `angle`, rad.

@@ -10,6 +10,7 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::corner_impact::CornerImpact;
 use super::map::{CornerMap, Route, RouteName, SideMap};
+use crate::bracket::secants;
 use crate::cam::{Lift, Side};
 use crate::model::{Follower, Model};
 use crate::tolerance;
@@ -82,22 +83,12 @@ pub fn orbit(model: &Model, at: &CornerImpact) -> Result<(Vector2<f64>, f64), No
     };
     let fixed_point = |period: f64| fixed_point(period).ok_or(NoFixedPoint { period });
     // From a period that is off by a millionth and more, so that the root is found here and not taken over.
-    let mut period = at.period * (1.0 + 1e-6);
-    let mut before = (at.period * (1.0 - 2e-6), fixed_point(at.period * (1.0 - 2e-6))?.1);
+    let miss = |period: f64| Ok(fixed_point(period)?.1);
+    let [first, second] = [1.0 - 2e-6, 1.0 + 1e-6].map(|part| at.period * part);
+    let guesses = [(first, miss(first)?), (second, miss(second)?)];
     // Each secant step gains half as many digits again; rounding is reached after a handful.
-    for _ in 0..20 {
-        let (x, miss) = fixed_point(period)?;
-        if miss == 0.0 {
-            return Ok((x, period));
-        }
-        let next = period - miss * (period - before.0) / (miss - before.1);
-        if (next - period).abs() <= tolerance::ROOT_WIDTH.value * period {
-            return Ok((fixed_point(next)?.0, next));
-        }
-        before = (period, miss);
-        period = next;
-    }
-    Err(NoFixedPoint { period })
+    let ([_, (period, _)], settled) = secants(guesses, 20, tolerance::ROOT_WIDTH.value, miss)?;
+    if settled { Ok((fixed_point(period)?.0, period)) } else { Err(NoFixedPoint { period }) }
 }
 
 /// eq:gff: `phi_t = e^{-zeta t} (I cos(ws t) + A sin(ws t))`, `ws = sqrt(w0^2 - zeta^2)`, with its limits for critical and

@@ -16,6 +16,7 @@ use super::one_sided::{OneSidedMap, SampleError};
 use super::varied::Varied;
 use crate::cam::{Cam, Side};
 use crate::model::Model;
+use crate::tolerance;
 
 /// Highest total degree of the fitted monomials.
 const DEGREE: u32 = 4;
@@ -155,7 +156,7 @@ impl<'a> Solver<'a> {
         let singular = || SampleError::Singular { what: "coefficients of the fit" };
         let singular_values = design.singular_values().map_err(|_| singular())?;
         let (largest, smallest) = (singular_values[0], singular_values[columns - 1]);
-        if !(smallest > f64::EPSILON * rows as f64 * largest) || rows <= columns {
+        if !(smallest > tolerance::ULP.value * rows as f64 * largest) || rows <= columns {
             return Err(singular());
         }
         let factors = design.qr();

@@ -3,25 +3,14 @@
 use std::fmt;
 
 pub use super::corner_impact::CornerImpact;
-use super::period_equation::{PeriodEquation, Roots, Verdict};
-use crate::cam::{Cam, Corner, Side};
+use super::period_equation::{PeriodEquation, Verdict};
+use super::range::{RangeError, Rejected, one_impact};
+use crate::cam::{Cam, Corner};
 use crate::model::{Model, ModelError};
-
-/// A root of the equation for T at some corner that is no orbit, and why not.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Rejected {
-    /// Cam angle of the corner, rad.
-    pub cam_angle: f64,
-    /// Speed, rpm.
-    pub speed_rpm: f64,
-    /// What is wrong with it.
-    pub why: String,
-}
-
-document!(Rejected as it { speed_rpm: it.speed_rpm, cam_angle_rad: it.cam_angle, why: it.why });
 
 /// Why there is no corner impact to study.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the message says what each number is")]
 pub enum LocateError {
     /// The model says nothing about where to look, or something impossible.
     #[error("{0}")]
@@ -35,16 +24,7 @@ pub enum LocateError {
          there the map has no linear part, so there is no A and B to check",
         cam_angle.to_degrees()
     )]
-    Grazing {
-        /// Model file.
-        file: String,
-        /// Cam angle of the corner, rad.
-        cam_angle: f64,
-        /// Speed, rpm.
-        speed_rpm: f64,
-        /// v = c', m/s.
-        velocity: f64,
-    },
+    Grazing { file: String, cam_angle: f64, speed_rpm: f64, velocity: f64 },
 }
 
 /// The complaint that `[study]` holds no corner impact.
@@ -84,43 +64,30 @@ impl fmt::Display for NotFound {
 /// The slowest corner impact in `[study]`, and the others by rising speed.
 pub fn locate(model: &Model, cam: &Cam) -> Result<(CornerImpact, Vec<CornerImpact>), LocateError> {
     let study = model.study()?;
-    let follower = &model.follower;
     let corners: Vec<Corner> = cam.corners().into_iter().filter(|corner| corner.jump_order == 2).collect();
-    let (mut found, mut rejected, mut grazing) = (Vec::new(), Vec::new(), None);
-    for corner in &corners {
-        let equation = PeriodEquation::new(follower, corner, Side::Plus, 1);
-        let verdicts: Vec<(f64, Verdict)> = match equation.roots(study) {
-            Roots::Some(roots) => {
-                roots.into_iter().map(|root| (root.period, equation.orbit(model, cam, root))).collect()
+    let complaint = |error: RangeError| {
+        let words = match error {
+            RangeError::TooWide { radians, .. } => format!(
+                "spans too much: between it and study.rpm_max the period grows by {radians:.3e} radians of the follower's \
+                 motion, and at most {:.3e} are searched",
+                PeriodEquation::MOST_RADIANS
+            ),
+            RangeError::NotFinite { .. } => {
+                "gives periods at which the follower's motion overflows a double: check the model's magnitudes".into()
             }
-            Roots::TooMany { radians } => {
-                let words = format!(
-                    "spans too much: between it and study.rpm_max the period grows by {radians:.3e} radians of the follower's \
-                     motion, and at most {:.3e} are searched",
-                    PeriodEquation::MOST_RADIANS
-                );
-                return Err(model.reject("study.rpm_min", words).into());
-            }
-            Roots::NotFinite => {
-                let words =
-                    "gives periods at which the follower's motion overflows a double: check the model's magnitudes";
-                return Err(model.reject("study.rpm_min", words).into());
-            }
-            Roots::All { slowest } if equation.rests() => vec![(slowest, equation.graze(model, cam, slowest))],
-            Roots::All { slowest } => {
-                let why = "flights of every period start and end there, so nothing fixes a speed".into();
-                vec![(slowest, Verdict::Rejected(why))]
-            }
+            other @ RangeError::NoRange { .. } => other.to_string(),
         };
-        for (period, verdict) in verdicts {
-            let (cam_angle, speed_rpm) = (corner.angle, 60.0 / period);
-            match verdict {
-                Verdict::Orbit(orbit) => found.push(*orbit),
-                Verdict::Rejected(why) => rejected.push(Rejected { cam_angle, speed_rpm, why }),
-                Verdict::Grazing(velocity) => {
-                    let file = model.file().into();
-                    grazing.get_or_insert(LocateError::Grazing { file, cam_angle, speed_rpm, velocity });
-                }
+        model.reject("study.rpm_min", words)
+    };
+    let (mut found, mut rejected, mut grazing) = (Vec::new(), Vec::new(), None);
+    for (corner, period, verdict) in one_impact(model, cam, &corners, study, 1).map_err(complaint)? {
+        let (cam_angle, speed_rpm) = (corner.angle, 60.0 / period);
+        match verdict {
+            Verdict::Orbit(orbit) => found.push(*orbit),
+            Verdict::Rejected(why) => rejected.push(Rejected { cam_angle, speed_rpm, why }),
+            Verdict::Grazing(velocity) => {
+                let file = model.file().into();
+                grazing.get_or_insert(LocateError::Grazing { file, cam_angle, speed_rpm, velocity });
             }
         }
     }

@@ -16,60 +16,32 @@ use crate::flight::State;
 use crate::model::Model;
 use crate::orbit::{Family, Parameter};
 use crate::simulate::{Event, EventKind, Goal, Machine, SimulateError};
+use crate::tolerance;
 
 /// Why a side of the map could not be sampled.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the message says what each number is")]
 pub enum SampleError {
     /// The neighbour of the corner is too short, or the law ends too soon.
     #[error("the {side:?} law cannot be continued past the corner at {cam_angle} rad by {least} rad")]
-    NotContinued {
-        /// Which side's law.
-        side: Side,
-        /// The corner, rad.
-        cam_angle: f64,
-        /// The shortest continuation tried, rad.
-        least: f64,
-    },
-    /// A perturbed period did something else than hit the cam where the orbit does.
+    NotContinued { side: Side, cam_angle: f64, least: f64 },
+    /// A period perturbed in position (m), velocity (m/s), and period (s) or number did something else than hit the cam where
+    /// the orbit does.
     #[error(
         "{side:?} side: a period perturbed by {perturbation:?} has {impacts} impacts near the corner or elsewhere{} instead of {}",
         if *sticks { ", and sticks to the cam," } else { "" },
         if *expected == 1 { "one near it".to_owned() } else { format!("the orbit's {expected}, one near it") }
     )]
-    OtherImpacts {
-        /// Which side's law.
-        side: Side,
-        /// Change of position (m), velocity (m/s), and period (s) or number.
-        perturbation: [f64; 3],
-        /// Impacts counted.
-        impacts: usize,
-        /// Impacts of the orbit.
-        expected: usize,
-        /// Whether the follower stays on the cam for a while.
-        sticks: bool,
-    },
+    OtherImpacts { side: Side, perturbation: [f64; 3], impacts: usize, expected: usize, sticks: bool },
     /// The simulator gave up.
     #[error("{side:?} side: {error}")]
-    Simulate {
-        /// Which side's law.
-        side: Side,
-        /// Why.
-        error: SimulateError,
-    },
+    Simulate { side: Side, error: SimulateError },
     /// The number cannot be varied.
     #[error("{side:?} side: {error}")]
-    Varied {
-        /// Which side's law.
-        side: Side,
-        /// Why.
-        error: NoChange,
-    },
+    Varied { side: Side, error: NoChange },
     /// A linear system that does not determine its unknowns.
     #[error("the samples do not determine the {what}")]
-    Singular {
-        /// Which unknowns.
-        what: &'static str,
-    },
+    Singular { what: &'static str },
 }
 
 /// The smooth map of one side: deviation of state and period, or of another number, in; deviation of the state one period
@@ -169,8 +141,6 @@ pub struct Sample {
 impl<'a> OneSidedMap<'a> {
     /// Furthest continuation, rad: a few degrees, well inside any segment that a cam is made of.
     const REACH: f64 = 0.05;
-    /// Shortest continuation, rad: perturbations below it would be lost in rounding.
-    const LEAST_REACH: f64 = 5e-4;
     /// A unit perturbation over the reach: the impact moves by at most about 2 pi per unit, and stays inside with room.
     const PERTURBATION: f64 = 0.02;
     /// Halvings of the perturbations that are tried where impacts that come after one another carry them too far.
@@ -232,8 +202,9 @@ impl<'a> OneSidedMap<'a> {
                 break continued;
             }
             reach *= 0.5;
-            if reach < Self::LEAST_REACH {
-                return Err(SampleError::NotContinued { side, cam_angle: at.corner.angle, least: Self::LEAST_REACH });
+            let least = tolerance::LEAST_REACH.value;
+            if reach < least {
+                return Err(SampleError::NotContinued { side, cam_angle: at.corner.angle, least });
             }
         };
         let mut map = Self { model, at, side, cam, whole: whole.clone(), reach, varied, shrunk: 1.0, stretch };
@@ -278,9 +249,9 @@ impl<'a> OneSidedMap<'a> {
     /// How far rounding may move the end of a stretch: a few ulps of the largest position and velocity on the way.
     pub fn rounding(&self) -> Vector2<f64> {
         let CornerImpact { state, velocity_before, velocity_after, .. } = *self.at;
-        let position = state.position.abs().max(self.at.corner.plus.value);
+        let position = state.position.abs().max(self.at.corner.plus.value.abs());
         let velocity = state.velocity.abs().max(velocity_before.abs()).max(velocity_after.abs());
-        Vector2::new(position, velocity) * (4.0 * f64::EPSILON)
+        Vector2::new(position, velocity) * tolerance::RUN_ROUNDING.value
     }
 
     /// The machine of a third perturbation, with the law continued; its cam as it is, the corner on it, rad; and the

@@ -10,11 +10,13 @@
 //! v+ and v- leave the equation `-f p (1 + r s') + r f s^2 - (1 + r) c' s = 0` for T alone. Each of its roots is simulated for
 //! one period on the cam as it is: only an orbit with this one impact, on this corner, that returns to its start counts.
 
+use std::convert::Infallible;
 use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;
 
 use super::confirm::Candidate;
 use super::corner_impact::{CornerImpact, origin};
+use crate::bracket::{Width, halve};
 use crate::cam::{Cam, Corner, Lift, Side};
 use crate::flight::{Flight, State};
 use crate::model::{Follower, Model, Study};
@@ -155,12 +157,9 @@ impl<'a> PeriodEquation<'a> {
     }
 
     /// Bisection down to neighbouring doubles.
-    fn close(&self, mut bracket: [f64; 2], negative_at_low: bool) -> Root {
-        while bracket[1] - bracket[0] > tolerance::ROOT_WIDTH.value * bracket[1] {
-            let middle = 0.5 * (bracket[0] + bracket[1]);
-            let negative = self.evaluate(middle).0 < 0.0;
-            bracket[usize::from(negative != negative_at_low)] = middle;
-        }
+    fn close(&self, bracket: [f64; 2], negative_at_low: bool) -> Root {
+        let changed = |period: f64| Ok::<_, Infallible>((self.evaluate(period).0 < 0.0) != negative_at_low);
+        let Ok(bracket) = halve(bracket, Width::Relative(tolerance::ROOT_WIDTH.value), changed);
         let period = 0.5 * (bracket[0] + bracket[1]);
         let (value, size) = self.evaluate(period);
         Root { period, bracket, residual: value.abs() / size }

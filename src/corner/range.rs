@@ -3,12 +3,24 @@
 use super::candidates::{Candidates, candidates};
 use super::confirm::Candidate;
 use super::corner_impact::CornerImpact;
-use super::locate::Rejected;
 use super::period_equation::{PeriodEquation, Root, Roots, Verdict};
 use crate::cam::{Cam, Corner, Side};
 use crate::model::{Model, Study};
 use crate::simulate::angular_velocity;
 use crate::tolerance;
+
+/// A root of the equation for T at some corner that is no orbit, and why not.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rejected {
+    /// Cam angle of the corner, rad.
+    pub cam_angle: f64,
+    /// Speed, rpm.
+    pub speed_rpm: f64,
+    /// What is wrong with it.
+    pub why: String,
+}
+
+document!(Rejected as it { speed_rpm: it.speed_rpm, cam_angle_rad: it.cam_angle, why: it.why });
 
 /// What was found in a range of speeds, and what was looked at.
 #[derive(Clone, Debug)]
@@ -25,37 +37,21 @@ pub struct FoundCornerImpacts {
 
 /// Why a range of speeds cannot be looked through.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the message says what each number is")]
 pub enum RangeError {
     /// Ends that are no range.
     #[error("{low}:{high} rpm: a range goes from a speed above 0 to a higher one")]
-    NoRange {
-        /// Lower end, rpm.
-        low: f64,
-        /// Upper end, rpm.
-        high: f64,
-    },
+    NoRange { low: f64, high: f64 },
     /// Too many oscillations of the follower.
     #[error(
         "{low}:{high} rpm spans too much: from end to end the flight grows by {radians:.3e} radians of the follower's motion, \
          and at most {:.3e} are searched",
         PeriodEquation::MOST_RADIANS
     )]
-    TooWide {
-        /// Lower end, rpm.
-        low: f64,
-        /// Upper end, rpm.
-        high: f64,
-        /// How many radians.
-        radians: f64,
-    },
+    TooWide { low: f64, high: f64, radians: f64 },
     /// Overflow.
     #[error("{low}:{high} rpm: the follower's motion overflows a double: check the model's magnitudes")]
-    NotFinite {
-        /// Lower end, rpm.
-        low: f64,
-        /// Upper end, rpm.
-        high: f64,
-    },
+    NotFinite { low: f64, high: f64 },
 }
 
 /// Looks through a range of speeds for orbits that repeat after `revolutions`, with an impact on any corner.
@@ -70,37 +66,12 @@ pub fn find_corner_impacts(
         return Err(RangeError::NoRange { low, high });
     }
     let corners = cam.corners();
-    let mut all =
-        FoundCornerImpacts { found: Vec::new(), rejected: Vec::new(), corners, searched: Candidates::default() };
-    for corner in all.corners.clone() {
-        // Where the velocity jumps, each side throws its own way.
-        let sides = if corner.jump_order == 1 { &[Side::Minus, Side::Plus][..] } else { &[Side::Plus] };
-        for side in sides {
-            let equation = PeriodEquation::new(&model.follower, &corner, *side, revolutions);
-            match equation.roots(range) {
-                Roots::Some(roots) => roots.into_iter().for_each(|root| {
-                    let verdict = if corner.jump_order == 1 {
-                        one_side(model, cam, &equation, root)
-                    } else {
-                        equation.orbit(model, cam, root)
-                    };
-                    all.keep(&corner, 60.0 / root.period, verdict);
-                }),
-                Roots::TooMany { radians } => return Err(RangeError::TooWide { low, high, radians }),
-                Roots::NotFinite => return Err(RangeError::NotFinite { low, high }),
-                Roots::All { slowest } => {
-                    let verdict = if equation.rests() {
-                        equation.graze(model, cam, slowest)
-                    } else {
-                        let why = "flights of every period start and end there, so nothing fixes a speed";
-                        Verdict::Rejected(why.into())
-                    };
-                    all.keep(&corner, 60.0 / slowest, verdict);
-                }
-            }
-        }
+    let one_impact = one_impact(model, cam, &corners, range, revolutions)?;
+    let searched = candidates(model, cam, range, revolutions);
+    let mut all = FoundCornerImpacts { found: Vec::new(), rejected: Vec::new(), corners, searched };
+    for (corner, period, verdict) in one_impact {
+        all.keep(&corner, 60.0 / period, verdict);
     }
-    all.searched = candidates(model, cam, range, revolutions);
     for candidate in all.searched.list.clone() {
         let (corner, rpm) = (candidate.corner, 60.0 / candidate.period);
         if low <= rpm && rpm <= high && !all.has(&candidate) {
@@ -109,6 +80,42 @@ pub fn find_corner_impacts(
     }
     all.found.sort_by(|one, two| one.speed_rpm().total_cmp(&two.speed_rpm()));
     all.rejected.sort_by(|one, two| one.speed_rpm.total_cmp(&two.speed_rpm));
+    Ok(all)
+}
+
+/// What the roots of the equation for one impact are at each corner, each with its period, s.
+pub(super) fn one_impact(
+    model: &Model,
+    cam: &Cam,
+    corners: &[Corner],
+    range: Study,
+    revolutions: u64,
+) -> Result<Vec<(Corner, f64, Verdict)>, RangeError> {
+    let Study { rpm_min: low, rpm_max: high } = range;
+    let mut all = Vec::new();
+    for corner in corners {
+        // Where the velocity jumps, each side throws its own way.
+        let throws = corner.jump_order == 1;
+        for side in if throws { &[Side::Minus, Side::Plus][..] } else { &[Side::Plus] } {
+            let equation = PeriodEquation::new(&model.follower, corner, *side, revolutions);
+            match equation.roots(range) {
+                Roots::Some(roots) => all.extend(roots.into_iter().map(|root| {
+                    let verdict =
+                        if throws { one_side(model, cam, &equation, root) } else { equation.orbit(model, cam, root) };
+                    (*corner, root.period, verdict)
+                })),
+                Roots::TooMany { radians } => return Err(RangeError::TooWide { low, high, radians }),
+                Roots::NotFinite => return Err(RangeError::NotFinite { low, high }),
+                Roots::All { slowest } if equation.rests() => {
+                    all.push((*corner, slowest, equation.graze(model, cam, slowest)));
+                }
+                Roots::All { slowest } => {
+                    let why = "flights of every period start and end there, so nothing fixes a speed";
+                    all.push((*corner, slowest, Verdict::Rejected(why.into())));
+                }
+            }
+        }
+    }
     Ok(all)
 }
 

@@ -7,6 +7,7 @@ use super::period_equation::at_corner;
 use crate::cam::{Cam, Side};
 use crate::model::{Follower, Model};
 use crate::orbit::{Family, FamilyError, Parameter};
+use crate::tolerance;
 
 /// What B is the derivative by.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,24 +20,17 @@ pub enum Varied {
 
 /// Why a law has no derivative by a number.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the message says what each number is")]
 pub enum NoChange {
     /// The model does not allow numbers close by.
     #[error(transparent)]
     Family(#[from] FamilyError),
     /// No number of that name.
     #[error("the model has no number \"{name}\" to vary")]
-    Unknown {
-        /// The name.
-        name: String,
-    },
+    Unknown { name: String },
     /// The cam has other segments with every number close by.
     #[error("the cam has other segments as soon as {name} moves from {value}")]
-    OtherSegments {
-        /// The name.
-        name: String,
-        /// Its value.
-        value: f64,
-    },
+    OtherSegments { name: String, value: f64 },
 }
 
 /// How the lift under an impact changes, at the same angle.
@@ -170,7 +164,7 @@ fn lift_changes(
             continue;
         }
         if let Some(wider) = &wider {
-            let rounding = f64::EPSILON * here.cam().top().abs() / step;
+            let rounding = tolerance::ULP.value * here.cam().top().abs() / step;
             let off = |one: f64, other: f64| (one - other).abs() + rounding;
             let errors: Vec<LiftChange> = sums
                 .iter()

@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use nalgebra::{Matrix2, Vector2};
 
+use crate::estimate::Estimate;
 use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError, Variation};
 
 /// The mean growth of a small deviation per revolution, as a natural logarithm: the largest Lyapunov exponent in the limit
@@ -36,16 +37,14 @@ pub fn growth_and_error(
     let full = per_block > 0 && mean.is_finite();
     // What is left over is less than a block for each of them: it counts for the mean alone.
     means.of_blocks.truncate(blocks as usize);
-    Ok((mean, full.then(|| means.standard_error())))
+    Ok((mean, full.then(|| Estimate::of_parts(&means.of_blocks).error)))
 }
 
 /// A Lyapunov exponent and how well it is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exponent {
-    /// Per revolution, a natural logarithm.
-    pub mean: f64,
-    /// Of the mean: the standard deviation of the blocks' means over the root of their number.
-    pub standard_error: f64,
+    /// Per revolution, a natural logarithm; neither it nor its error is a number where there are fewer than two blocks.
+    pub growth: Estimate,
     /// Blocks that it is the mean of.
     pub blocks: usize,
     /// Whether the follower came to rest on the cam, after those blocks: what follows can only repeat, and a deviation of it
@@ -54,15 +53,14 @@ pub struct Exponent {
 }
 
 /// The growth over `blocks` of `revolutions` each, one after the other, or as many as are over before the follower sticks to
-/// the cam: their mean, and its standard error, neither of them a number where there are fewer than two blocks.
+/// the cam.
 ///
 /// Blocks are taken for independent: a chaotic motion has forgotten, after some dozen revolutions, what it was.
 pub fn exponent(machine: &Machine, motion: Motion, blocks: u32, revolutions: u64) -> Result<Exponent, SimulateError> {
     let mut means = Means::over(revolutions);
     stretches(machine, motion, u64::from(blocks) * revolutions, |stretch| means.take(stretch))?;
-    let rests = means.sum == f64::NEG_INFINITY;
-    let (mean, standard_error) = (means.mean(), means.standard_error());
-    Ok(Exponent { mean, standard_error, blocks: means.of_blocks.len(), rests })
+    let (growth, rests) = (Estimate::of_parts(&means.of_blocks), means.sum == f64::NEG_INFINITY);
+    Ok(Exponent { growth, blocks: means.of_blocks.len(), rests })
 }
 
 /// The mean growth of each block of revolutions that is over.
@@ -85,17 +83,6 @@ impl Means {
             self.of_blocks.push(self.sum / self.per_block as f64);
             (self.sum, self.seen) = (0.0, 0);
         }
-    }
-
-    fn mean(&self) -> f64 {
-        self.of_blocks.iter().sum::<f64>() / self.of_blocks.len() as f64
-    }
-
-    /// The standard deviation of the blocks' means over the root of their number.
-    fn standard_error(&self) -> f64 {
-        let (mean, count) = (self.mean(), self.of_blocks.len() as f64);
-        let variance = self.of_blocks.iter().map(|block| (block - mean).powi(2)).sum::<f64>() / (count - 1.0);
-        (variance / count).sqrt()
     }
 }
 

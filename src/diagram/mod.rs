@@ -93,7 +93,7 @@ impl Speeds {
 /// A sweep over speeds.
 #[derive(Clone, Debug)]
 pub struct Sweep {
-    /// The machine, at any speed.
+    /// The machine at the lowest speed: each has one of its own, over the same cam.
     pub machine: Machine,
     /// The speeds.
     pub speeds: Speeds,
@@ -128,14 +128,12 @@ pub struct Row {
 /// the cam at angle 0.
 pub fn settled_impacts(machine: &Machine, transient: u64, record: u64) -> Result<Vec<f64>, SimulateError> {
     let mut motion = machine.start_on_cam(0.0, 0.0)?;
-    let goal = motion.after(transient);
-    let _ = machine.advance(&mut motion, goal, &mut Unobserved)?;
-    let (goal, mut angles) = (motion.after(record), Vec::new());
-    let _ = machine.advance(&mut motion, goal, &mut |event: &Event| {
+    machine.revolve(&mut motion, transient)?;
+    let mut angles = Vec::new();
+    machine.watch(&mut motion, record, |event| {
         if event.kind == EventKind::Impact {
             angles.push(event.cam_angle);
         }
-        ControlFlow::Continue(())
     })?;
     Ok(angles)
 }
@@ -151,15 +149,11 @@ pub enum Seen {
 
 /// Why a sweep stopped.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the message says what each number is")]
 pub enum SweepError {
     /// A run could not go on.
     #[error("at {rpm} rpm: {error}")]
-    Simulate {
-        /// Speed, rpm.
-        rpm: f64,
-        /// Why.
-        error: SimulateError,
-    },
+    Simulate { rpm: f64, error: SimulateError },
     /// The threads could not be started.
     #[error("threads: {0}")]
     Threads(String),
@@ -178,8 +172,7 @@ impl Sweep {
         mut motion: Motion,
         mut keep: impl FnMut(Row) -> ControlFlow<()>,
     ) -> Result<(Motion, ControlFlow<()>), SimulateError> {
-        let goal = motion.after(self.transient);
-        let _ = machine.advance(&mut motion, goal, &mut Unobserved)?;
+        machine.revolve(&mut motion, self.transient)?;
         let lyapunov = if self.lyapunov { Some(growth(machine, motion, self.record)?) } else { None };
         let row = |revolution, seen| Row { rpm, revolution, seen, lyapunov };
         let goal = motion.after(self.record);

@@ -8,7 +8,7 @@ use crate::figures::{Entry, Fast, SPEED, Subject, by_stability, drawn, position}
 use crate::flight::State;
 use crate::orbit::branch::{Branch, BranchPoint};
 use crate::orbit::{Course, Cycle};
-use crate::simulate::{Machine, SimulateError, Unobserved, angular_velocity};
+use crate::simulate::{Machine, SimulateError, angular_velocity};
 
 /// The stroboscopic diagram around the corner impact.
 pub(crate) const FAST_SECTION: Entry = Entry {
@@ -109,12 +109,10 @@ impl Subject {
         let cam_angle = self.found()?.at.section_angle();
         let run = || {
             let mut motion = machine.start_on_cam(0.0, 0.0)?;
-            let goal = motion.after(TRANSIENT);
-            let _ = machine.advance(&mut motion, goal, &mut Unobserved)?;
+            machine.revolve(&mut motion, TRANSIENT)?;
             let mut states = Vec::with_capacity(revolutions);
             for _ in 0..revolutions {
-                let goal = motion.next(cam_angle);
-                let _ = machine.advance(&mut motion, goal, &mut Unobserved)?;
+                machine.turn_to(&mut motion, cam_angle)?;
                 states.push(motion.state);
             }
             Ok::<_, SimulateError>(states)

@@ -206,8 +206,7 @@ fn runs<'a>(machine: &Machine, speeds: impl Iterator<Item = &'a f64>) -> Result<
             None => machine.start_on_cam(0.0, 0.0)?,
             Some(motion) => machine.resume(motion)?,
         };
-        let goal = run.after(SETTLING);
-        let _ = machine.advance(&mut run, goal, &mut |_: &Event| ControlFlow::Continue(()))?;
+        machine.revolve(&mut run, SETTLING)?;
         let (goal, drawn) = (run.after(RECORDED), run);
         let mut impacts = Vec::new();
         let _ = machine.advance(&mut run, goal, &mut |event: &Event| {

@@ -6,7 +6,7 @@ use crate::draw::{Axis, Colour, Data, Figure, Marker, Panel, Series, Stroke};
 use crate::figures::cam::corner_marks;
 use crate::figures::{Drawn, Entry, Subject, drawn};
 use crate::section::{self, Sample};
-use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError, Unobserved};
+use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError};
 
 /// The paper's follower chatters at this speed.
 pub(crate) const SLOW_TRACE: Entry = Entry {
@@ -116,8 +116,7 @@ impl Subject {
         let machine = self.machine(rpm);
         let run = || {
             let mut motion = machine.start_on_cam(0.0, 0.0)?;
-            let goal = motion.after(TRANSIENT);
-            let _ = machine.advance(&mut motion, goal, &mut Unobserved)?;
+            machine.revolve(&mut motion, TRANSIENT)?;
             let mut motion = machine.resume(&motion)?;
             motion.revolution = 0;
             Run::new(&machine, motion, revolutions)

@@ -15,34 +15,20 @@ pub enum Parameter {
 
 /// Why there is no machine with these numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the message says what each number is")]
 pub enum FamilyError {
     /// The model does not allow them.
     #[error("{0}")]
     Model(#[from] ModelError),
     /// The cam would not turn.
     #[error("{rpm} rpm: the speed must be a finite number above 0")]
-    Speed {
-        /// What was asked for, rpm.
-        rpm: f64,
-    },
+    Speed { rpm: f64 },
     /// Nothing in the model has this name.
     #[error("no number called \"{name}\" to vary; there are: {there}{}", meant.as_ref().map_or(String::new(), |meant| format!("; did you mean {meant}?")))]
-    Unknown {
-        /// The name.
-        name: String,
-        /// Those that there are.
-        there: String,
-        /// The one that may be meant.
-        meant: Option<String>,
-    },
+    Unknown { name: String, there: String, meant: Option<String> },
     /// A name that more than one field has.
     #[error("\"{name}\" may be any of {fields}: write the whole path")]
-    Ambiguous {
-        /// The name.
-        name: String,
-        /// Those fields.
-        fields: String,
-    },
+    Ambiguous { name: String, fields: String },
 }
 
 impl Parameter {

@@ -7,6 +7,7 @@
 //! | `chain` | linear equations that link each impact with the next, in one pass |
 //! | [`mod@departure`] | whether a cycle is an orbit of the cam as it is, by simulation |
 //! | [`mod@search`] | orbits of one machine: exhaustively those of one impact, by many starts the others |
+//! | [`settle`] | what a run ends on: an orbit, chaos, rest |
 //! | [`family`] | machines that differ in a speed or a number of the model |
 //! | [`curve`] | pseudo-arclength steps along the solutions of one equation fewer than unknowns |
 //! | [`branch`] | branches of orbits through corners, folds, flips and grazes, with those points located |
@@ -20,6 +21,7 @@ pub mod family;
 mod multipliers;
 mod naming;
 pub mod search;
+pub mod settle;
 pub mod sticking;
 
 use std::f64::consts::TAU;

@@ -4,14 +4,13 @@
 //! angle, taken one and all; long runs settle on stable ones; and short runs from many starts on the cam give Newton's
 //! method the guesses from which it finds unstable ones.
 
+use std::convert::Infallible;
 use std::f64::consts::TAU;
-use std::ops::ControlFlow;
 
-use super::cycle::lift_size;
-use super::{Contact, Course, Cycle, PeriodicOrbit, sticking};
-use crate::flight::State;
-use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError};
-use crate::tolerance;
+use super::settle::{MOST_IMPACTS, close, period, settled};
+use super::{Contact, Course, Cycle, PeriodicOrbit};
+use crate::bracket::{Width, halve};
+use crate::simulate::{EventKind, Machine, SimulateError};
 
 /// Which orbits are looked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,8 +24,6 @@ pub struct Search {
 impl Search {
     /// The most revolutions that an orbit is looked for over.
     pub const MOST_REVOLUTIONS: u64 = 1000;
-    /// Most impacts of an orbit whose equations are solved together: beyond, a follower chatters.
-    pub const MOST_IMPACTS: usize = 64;
 }
 
 /// Cam angles that short runs start at, and velocities at each.
@@ -37,8 +34,6 @@ const LONG_RUNS: usize = 6;
 const SETTLING: u64 = 600;
 /// The same for those that come to rest on the cam.
 const SETTLING_STICKING: u64 = 6;
-/// Events of a revolution that are kept: a follower that chatters with restitution 0.99 makes thousands before it rests.
-const MOST_EVENTS: usize = 100_000;
 /// Samples of a segment in which roots are told apart.
 const SAMPLES: usize = 512;
 
@@ -126,7 +121,7 @@ impl Found<'_> {
     /// One period from the cam: its impacts are a guess.
     fn shoot(&mut self, cam_angle: f64, relative_velocity: f64) -> Result<(), SimulateError> {
         let mut motion = self.machine.start_on_cam(cam_angle, relative_velocity)?;
-        let most = self.wanted.impacts.unwrap_or(Search::MOST_IMPACTS);
+        let most = self.wanted.impacts.unwrap_or(MOST_IMPACTS);
         let events = period(self.machine, &mut motion, self.wanted.revolutions, most + 1)?;
         let count = events.iter().filter(|event| event.kind == EventKind::Impact).count();
         let sticks = events.iter().any(|event| event.kind == EventKind::Stick);
@@ -136,115 +131,6 @@ impl Found<'_> {
         self.close(&Cycle::of_events(self.wanted.revolutions, &events).in_order());
         Ok(())
     }
-}
-
-/// The orbit near the motion of `revolutions` that starts at `cam_angle`, rad, with `state`: its impacts are the guess.
-pub fn near(
-    machine: &Machine,
-    cam_angle: f64,
-    state: State,
-    revolutions: u64,
-) -> Result<Option<PeriodicOrbit>, SimulateError> {
-    let mut motion = machine.start(cam_angle, state)?;
-    let events = period(machine, &mut motion, revolutions, MOST_EVENTS)?;
-    if events.iter().any(|event| event.kind != EventKind::Impact) {
-        return settled(machine, motion, 0, revolutions);
-    }
-    if events.is_empty() {
-        return Ok(None);
-    }
-    Ok(close(machine, &Cycle::of_events(revolutions, &events).in_order()))
-}
-
-/// The orbit near a guess, by Newton's method; `None` where that leads nowhere, or to no motion of the cam as it is, or to
-/// one that repeats sooner.
-pub fn close(machine: &Machine, guess: &Cycle) -> Option<PeriodicOrbit> {
-    // An impact or so a revolution is no chattering, however many revolutions there are.
-    if guess.contacts.len() > Search::MOST_IMPACTS.max(4 * guess.revolutions as usize) {
-        return None;
-    }
-    let (cycle, residual) = guess.closed(machine).ok()?;
-    let mut corners = machine.cam().corners().into_iter().map(|corner| corner.segment).collect::<Vec<_>>();
-    corners.sort_unstable();
-    let cycle = cycle.renamed(machine, |segment| corners.binary_search(&segment).is_ok()).in_order();
-    let is_orbit = cycle.departure(machine).is_ok_and(|departure| departure.is_none()) && !cycle.repeats_sooner();
-    is_orbit.then(|| PeriodicOrbit::of_cycle(machine, cycle, residual))
-}
-
-/// What a run from `motion` settles on within `revolutions`, if that repeats after at most `longest` revolutions.
-pub fn settled(
-    machine: &Machine,
-    mut motion: Motion,
-    revolutions: u64,
-    longest: u64,
-) -> Result<Option<PeriodicOrbit>, SimulateError> {
-    let ignore = &mut |_: &Event| ControlFlow::Continue(());
-    let goal = motion.after(revolutions);
-    let _ = machine.advance(&mut motion, goal, ignore)?;
-    let goal = motion.next(0.0);
-    let _ = machine.advance(&mut motion, goal, ignore)?;
-    let first = motion;
-    let size = lift_size(machine);
-    let mut events = Vec::new();
-    for turns in 1..=longest {
-        let more = period(machine, &mut motion, 1, MOST_EVENTS)?;
-        events.extend(more.into_iter().map(|event| Event { revolution: turns - 1, ..event }));
-        let (position, velocity) =
-            (motion.state.position - first.state.position, motion.state.velocity - first.state.velocity);
-        let apart = position.hypot(velocity / machine.angular_velocity());
-        if apart > tolerance::NEARLY_REPEATS.value * size {
-            continue;
-        }
-        let sticks = events.iter().any(|event| event.kind != EventKind::Impact);
-        let impacts = events.iter().any(|event| event.kind == EventKind::Impact);
-        if !sticks && events.len() > Search::MOST_IMPACTS {
-            continue;
-        }
-        let orbit = if sticks {
-            match sticking::anchor(&events, turns) {
-                Some(anchor) => sticking::through(machine, anchor, turns)?,
-                None => None,
-            }
-        } else if motion.contact && !impacts {
-            sticking::through(machine, 0.0, turns)?
-        } else if impacts {
-            close(machine, &Cycle::of_events(turns, &events))
-        } else {
-            free(machine, motion.state)
-        };
-        // What a run settles on draws it in, or keeps it; Newton's method finds what a run only passes too.
-        let holds = |orbit: &PeriodicOrbit| {
-            orbit.multipliers().iter().all(|multiplier| multiplier.modulus() <= 1.0 + tolerance::SAME_ORBIT.value)
-        };
-        if let Some(orbit) = orbit.filter(holds) {
-            return Ok(Some(orbit));
-        }
-    }
-    Ok(None)
-}
-
-/// The follower at rest above the cam, near `state`: where no force is left on it. `None` where it falls, or meets the cam.
-fn free(machine: &Machine, state: State) -> Option<PeriodicOrbit> {
-    let (flight, force) = (machine.flight(), machine.flight().force(state.position));
-    let above = if force == 0.0 { 0.0 } else { force / flight.omega0_squared() };
-    let state = State { position: state.position + above, velocity: 0.0 };
-    let matrix = flight.propagator(TAU / machine.angular_velocity());
-    let residual = flight.acceleration(state).abs() / machine.angular_velocity().powi(2) / lift_size(machine);
-    let orbit = PeriodicOrbit { revolutions: 1, events: Vec::new(), state, matrix, residual, course: Course::Free };
-    (state.position.is_finite() && state.position > machine.cam().top()).then_some(orbit)
-}
-
-/// Runs `revolutions` and returns the events on the way.
-///
-/// It stops right after more than `most` of them.
-fn period(machine: &Machine, motion: &mut Motion, revolutions: u64, most: usize) -> Result<Vec<Event>, SimulateError> {
-    let mut events = Vec::new();
-    let goal = motion.after(revolutions);
-    let _ = machine.advance(motion, goal, &mut |event: &Event| {
-        events.push(*event);
-        if events.len() > most { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    })?;
-    Ok(events)
 }
 
 /// Guesses for every orbit of one impact in `revolutions`.
@@ -271,12 +157,9 @@ fn one_impact(machine: &Machine, revolutions: u64) -> Vec<Cycle> {
         for sample in 1..=SAMPLES {
             let after = equation(at(sample));
             if (before < 0.0) != (after < 0.0) {
-                let (mut low, mut high) = (at(sample - 1), at(sample));
                 // Newton's method goes on from here: a guess is enough.
-                for _ in 0..20 {
-                    let middle = 0.5 * (low + high);
-                    if (equation(middle) < 0.0) == (before < 0.0) { low = middle } else { high = middle }
-                }
+                let changed = |angle: f64| Ok::<_, Infallible>((equation(angle) < 0.0) != (before < 0.0));
+                let Ok([low, high]) = halve([at(sample - 1), at(sample)], Width::Halvings(20), changed);
                 let cam_angle = 0.5 * (low + high);
                 let f = machine.flight().force(segment.law.lift(cam_angle).value);
                 let velocity_before = -f * p / s * s1 + f * s;

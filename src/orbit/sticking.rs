@@ -1,7 +1,6 @@
 //! Orbits on which the follower sticks to the cam for a while: everything after follows from the cam alone.
 
 use std::f64::consts::TAU;
-use std::ops::ControlFlow;
 
 use nalgebra::Matrix2;
 
@@ -17,12 +16,8 @@ pub fn through(machine: &Machine, anchor: f64, revolutions: u64) -> Result<Optio
         return Ok(None);
     }
     let state = motion.state;
-    let goal = motion.after(revolutions);
     let mut events = Vec::new();
-    let _ = machine.advance(&mut motion, goal, &mut |event: &Event| {
-        events.push(*event);
-        ControlFlow::Continue(())
-    })?;
+    machine.watch(&mut motion, revolutions, |event| events.push(*event))?;
     if !motion.contact {
         return Ok(None);
     }
@@ -49,8 +44,7 @@ fn at_zero(machine: &Machine, anchor: f64) -> Result<State, SimulateError> {
     if anchor == 0.0 {
         return Ok(motion.state);
     }
-    let goal = motion.next(0.0);
-    let _ = machine.advance(&mut motion, goal, &mut |_: &Event| ControlFlow::Continue(()))?;
+    machine.turn_to(&mut motion, 0.0)?;
     Ok(motion.state)
 }
 

@@ -86,42 +86,32 @@ impl Observer for Unobserved {
 
 /// Why a run could not go on.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the message says what each number is")]
 pub enum SimulateError {
     /// The follower is inside the cam: it started there, or a continued cam has a step.
     #[error(
         "simulate: the follower is {depth:.3e} m below the cam at cam angle {:.4} deg of revolution {revolution}",
         cam_angle.to_degrees()
     )]
-    BelowCam {
-        /// How far, m.
-        depth: f64,
-        /// When.
-        revolution: u64,
-        /// Where, rad.
-        cam_angle: f64,
-    },
+    BelowCam { depth: f64, revolution: u64, cam_angle: f64 },
     /// More events in one revolution, or steps from one event to the next, than a run may have.
     #[error(
         "simulate: no progress: {events} events or steps in revolution {revolution}, and still at cam angle {:.6} deg",
         cam_angle.to_degrees()
     )]
-    NoProgress {
-        /// How many.
-        events: u32,
-        /// When.
-        revolution: u64,
-        /// Where, rad.
-        cam_angle: f64,
-    },
-    /// A number that is not finite entered the run, or a start outside `[0, 2 pi)`.
+    NoProgress { events: u32, revolution: u64, cam_angle: f64 },
+    /// A start outside `[0, 2 pi)`.
+    #[error("simulate: a start at cam angle {cam_angle} rad: it must be 0 or more, and below 2 pi")]
+    Start { cam_angle: f64 },
+    /// A cam that does not turn, or turns backwards.
+    #[error(
+        "simulate: the cam turns by {angular_velocity} rad a second or for {turn} rad: both must be finite, and forwards"
+    )]
+    Turn { angular_velocity: f64, turn: f64 },
+    /// A number that is not finite entered the run.
     #[error(
         "simulate: a state that is not finite near cam angle {:.4} deg of revolution {revolution}",
         cam_angle.to_degrees()
     )]
-    NotFinite {
-        /// When.
-        revolution: u64,
-        /// Where, rad.
-        cam_angle: f64,
-    },
+    NotFinite { revolution: u64, cam_angle: f64 },
 }

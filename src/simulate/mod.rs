@@ -110,8 +110,14 @@ impl Machine {
 
     /// A motion that starts at `cam_angle`, rad, in `[0, 2 pi)`, with `state`; in contact if it rests against the cam.
     pub fn start(&self, cam_angle: f64, state: State) -> Result<Motion, SimulateError> {
-        let in_range = (0.0..TAU).contains(&cam_angle);
-        if !(in_range && state.position.is_finite() && state.velocity.is_finite() && self.angular_velocity > 0.0) {
+        if !(0.0..TAU).contains(&cam_angle) {
+            return Err(SimulateError::Start { cam_angle });
+        }
+        let angular_velocity = self.angular_velocity;
+        if !(angular_velocity > 0.0 && angular_velocity.is_finite()) {
+            return Err(SimulateError::Turn { angular_velocity, turn: 0.0 });
+        }
+        if !(state.position.is_finite() && state.velocity.is_finite()) {
             return Err(SimulateError::NotFinite { revolution: 0, cam_angle });
         }
         let segment = self.cam().segment_at(cam_angle);
@@ -143,9 +149,6 @@ impl Machine {
 
     /// A motion that starts on the cam at `cam_angle`, rad, and leaves it at `relative_velocity`, m/s, zero or more.
     pub fn start_on_cam(&self, cam_angle: f64, relative_velocity: f64) -> Result<Motion, SimulateError> {
-        if !(0.0..TAU).contains(&cam_angle) {
-            return Err(SimulateError::NotFinite { revolution: 0, cam_angle });
-        }
         let lift = self.cam().lift(cam_angle);
         let velocity = self.angular_velocity * lift.slope + relative_velocity;
         self.start(cam_angle, State { position: lift.value, velocity })
@@ -154,12 +157,10 @@ impl Machine {
     /// `motion` at the same angle of this machine, which may turn at another speed: a follower that sticks still does, if
     /// the cam does not let go of it at this speed.
     pub fn resume(&self, motion: &Motion) -> Result<Motion, SimulateError> {
-        let start = if motion.contact {
-            self.start_on_cam(motion.cam_angle, 0.0)?
-        } else {
-            self.start(motion.cam_angle, motion.state)?
-        };
-        Ok(Motion { revolution: 0, ..start })
+        match motion.contact {
+            true => self.start_on_cam(motion.cam_angle, 0.0),
+            false => self.start(motion.cam_angle, motion.state),
+        }
     }
 
     /// Puts the follower on the cam, where `lift` holds, with a relative velocity, m/s: sticking where it has none and is
@@ -230,7 +231,34 @@ impl Machine {
         }
     }
 
-    /// Turns the cam by `turn`, rad, from `cam_angle`, rad, in `[0, 2 pi)`, and returns the state there.
+    /// Advances `motion` by `revolutions`, with nobody looking on.
+    pub fn revolve(&self, motion: &mut Motion, revolutions: u64) -> Result<(), SimulateError> {
+        let goal = motion.after(revolutions);
+        self.advance(motion, goal, &mut Unobserved).map(|_| ())
+    }
+
+    /// Advances `motion` to the next passage of `cam_angle`, rad, in `[0, 2 pi)`, with nobody looking on.
+    pub fn turn_to(&self, motion: &mut Motion, cam_angle: f64) -> Result<(), SimulateError> {
+        let goal = motion.next(cam_angle);
+        self.advance(motion, goal, &mut Unobserved).map(|_| ())
+    }
+
+    /// Advances `motion` by `revolutions`; `see` takes every event, and ends nothing.
+    pub fn watch(
+        &self,
+        motion: &mut Motion,
+        revolutions: u64,
+        mut see: impl FnMut(&Event),
+    ) -> Result<(), SimulateError> {
+        let goal = motion.after(revolutions);
+        let mut observer = |event: &Event| {
+            see(event);
+            ControlFlow::Continue(())
+        };
+        self.advance(motion, goal, &mut observer).map(|_| ())
+    }
+
+    /// Turns the cam by `turn`, rad, 0 or more, from `cam_angle`, rad, in `[0, 2 pi)`, and returns the state there.
     ///
     /// `observe` sees every event, and may end the run right after one.
     pub fn turn(
@@ -240,6 +268,9 @@ impl Machine {
         turn: f64,
         mut observe: impl FnMut(&Event) -> ControlFlow<()>,
     ) -> Result<State, SimulateError> {
+        if !(turn >= 0.0 && turn.is_finite()) {
+            return Err(SimulateError::Turn { angular_velocity: self.angular_velocity, turn });
+        }
         let mut motion = self.start(cam_angle, start)?;
         let (whole, angle) = ((turn / TAU).floor(), cam_angle + turn % TAU);
         let goal = Goal { revolution: whole as u64 + u64::from(angle >= TAU), cam_angle: angle % TAU };

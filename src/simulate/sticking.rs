@@ -189,7 +189,7 @@ impl Machine {
             if lifting > -rounding {
                 // Where rounding decides, look ahead, further each time: it may only touch 0, or stay there.
                 hover = if hover > 0.0 { 2.0 * hover } else { 2.0 * rounding / steepest(0.0).0 };
-                time += hover.max(f64::EPSILON * end);
+                time += hover.max(tolerance::ULP.value * end);
                 continue;
             }
             hover = 0.0;
@@ -206,7 +206,7 @@ impl Machine {
             }
             // Tried first the next time: what was free here says what may be there.
             widest = 4.0 * reach;
-            time += safe.max(f64::EPSILON * end);
+            time += safe.max(tolerance::ULP.value * end);
         }
         Err(no_progress(motion, omega * time))
     }

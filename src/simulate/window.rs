@@ -213,7 +213,7 @@ impl<'a> Window<'a> {
             } else {
                 0.5 * (low + high)
             };
-            if high_is_closed && high - low <= f64::EPSILON * high {
+            if high_is_closed && high - low <= tolerance::ULP.value * high {
                 return self.met(high, 0.0, &self.at(high));
             }
         }
@@ -233,7 +233,7 @@ impl<'a> Window<'a> {
         step.abs() <= tolerance::LAST_STEP.value * time
             && turn.abs() <= tolerance::LAST_TURN.value
             && lift.third.abs() * turn * turn <= tolerance::LAST_BEND.value * lift.slope.abs()
-            || step.abs() <= 2.0 * f64::EPSILON * time
+            || step.abs() <= 2.0 * tolerance::ULP.value * time
     }
 
     /// The contact `step` after an instant.

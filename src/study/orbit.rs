@@ -6,7 +6,7 @@ use super::StudyError;
 use crate::cam::Cam;
 use crate::flight::State;
 use crate::model::Model;
-use crate::orbit::search::near;
+use crate::orbit::settle::near;
 use crate::orbit::{PeriodicOrbit, Search, search};
 use crate::simulate::{Machine, angular_velocity};
 

@@ -6,8 +6,9 @@
 use approx::assert_relative_eq;
 use corner_impact::border_collision::LocalMap;
 use corner_impact::border_collision::local_map::PeriodicOrbit;
-use corner_impact::border_collision::long_run::{End, Escape, Exponent};
+use corner_impact::border_collision::long_run::{End, Escape};
 use corner_impact::border_collision::word::Word;
+use corner_impact::estimate::Estimate;
 use nalgebra::Vector2;
 
 /// What a motion from 0 does, in a word.
@@ -27,7 +28,7 @@ fn grid([low, high]: [f64; 2], count: u32) -> impl Iterator<Item = f64> + Clone 
     (0..count).map(move |index| low + (high - low) * f64::from(index) / f64::from(count - 1))
 }
 
-fn exponent(end: &End) -> Exponent {
+fn exponent(end: &End) -> Estimate {
     match end {
         End::Chaotic(exponent) => *exponent,
         other => panic!("{other:?}"),

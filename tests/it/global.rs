@@ -2,10 +2,12 @@
 //! motion leave a place without an orbit?
 
 use crate::common;
-use corner_impact::border_collision::passage;
+use corner_impact::border_collision::{LocalMap, passage};
+use corner_impact::corner::border::border as border_of_the_map;
+use corner_impact::corner::{range, variational};
 use corner_impact::diagram::{exponent, growth};
 use corner_impact::flight::State;
-use corner_impact::model::Model;
+use corner_impact::model::{Model, Study};
 use corner_impact::orbit::{Course, Search, search};
 use corner_impact::section::StroboscopicMap;
 use corner_impact::simulate::{Machine, angular_velocity};
@@ -165,15 +167,15 @@ fn basins_do_not_depend_on_threads() {
 fn the_motion_leaves_logarithmically() {
     let model = common::osorio();
     let findings = verify(&model, External::LeftOut).unwrap();
-    let local = &findings.map;
-    let decade = passage::revolutions_per_decade(local).unwrap();
+    let local = LocalMap::new(&findings.map, findings.border);
+    let decade = passage::revolutions_per_decade(&local).unwrap();
     // ln 10/ln 1.00514740546535501
     assert!((decade - 448.4796).abs() < 1e-3, "{decade}");
     let mut before = None;
     for below in [1e-3, 1e-5, 1e-6, 1e-7, 1e-8] {
         let rpm = findings.at.speed_rpm() - below;
         let dt = 60.0 / rpm - findings.at.period;
-        let linear = passage::linear(local, dt, 1e-3, 10_000).unwrap();
+        let linear = passage::linear(&local, dt, 1e-3, 10_000).unwrap();
         let machine = Machine::new(common::cam(&model), &model.follower, angular_velocity(rpm));
         let map = StroboscopicMap { machine, cam_angle: findings.at.section_angle() };
         let run = passage::simulated(&map, findings.at.state, 1e-3, 10_000).unwrap().unwrap();
@@ -186,7 +188,33 @@ fn the_motion_leaves_logarithmically() {
     }
     // Above it there is an orbit, and nothing leaves.
     let dt = 60.0 / (findings.at.speed_rpm() + 1e-5) - findings.at.period;
-    assert_eq!(passage::linear(local, dt, 1e-3, 10_000), None);
+    assert_eq!(passage::linear(&local, dt, 1e-3, 10_000), None);
+}
+
+/// Where the impact falls is told by the flight to it: at this corner the acceleration jumps upwards, and the impact is before
+/// the corner where `C dx + D dT` is below 0, not after it as at the paper's.
+#[test]
+fn the_motion_leaves_where_the_acceleration_jumps_upwards() {
+    let model = common::osorio();
+    let cam = common::cam(&model);
+    let range = Study { rpm_min: 276.0, rpm_max: 295.0 };
+    let found = range::find_corner_impacts(&model, &cam, range, 1).unwrap().found;
+    let at = found.iter().find(|at| (at.speed_rpm() - 277.022185).abs() < 1e-6).unwrap();
+    let corner_map = variational::route(&model, &cam, at).map;
+    let local = LocalMap::new(&corner_map, border_of_the_map(&model, &cam, at));
+    assert!((corner_map.c() * local.border.0.transpose())[0] > 0.0, "{local:?}");
+    let swapped = LocalMap { minus: local.plus, plus: local.minus, ..local };
+    let mut differs = false;
+    for off in [-1e-6, 1e-6, -1e-7, 1e-7] {
+        let rpm = at.speed_rpm() + off;
+        let machine = Machine::new(cam.clone(), &model.follower, angular_velocity(rpm));
+        let map = StroboscopicMap { machine, cam_angle: at.section_angle() };
+        let dt = 60.0 / rpm - at.period;
+        let run = passage::simulated(&map, at.state, 1e-4, 1000).unwrap();
+        assert_eq!(passage::linear(&local, dt, 1e-4, 1000), run, "{off:e}");
+        differs |= passage::linear(&swapped, dt, 1e-4, 1000) != run;
+    }
+    assert!(differs);
 }
 
 /// The mean of the blocks is the mean of all, and four times as many blocks halve the error.
@@ -195,17 +223,19 @@ fn exponents_have_errors() {
     let map = map(&common::osorio(), 672.0);
     let start = map.machine.start_on_cam(0.0, 0.0).unwrap();
     let few = exponent(&map.machine, start, 10, 200).unwrap();
-    assert!((few.mean - growth(&map.machine, start, 2000).unwrap()).abs() < 1e-12 && few.blocks == 10 && !few.rests);
+    assert!(
+        (few.growth.value - growth(&map.machine, start, 2000).unwrap()).abs() < 1e-12 && few.blocks == 10 && !few.rests
+    );
     let many = exponent(&map.machine, start, 160, 200).unwrap();
     println!("{few:?} {many:?}");
-    let sixteenth = many.standard_error / few.standard_error;
+    let sixteenth = many.growth.error / few.growth.error;
     assert!((0.1..0.6).contains(&sixteenth), "{few:?} {many:?}");
-    assert!((many.mean - few.mean).abs() < 4.0 * few.standard_error, "{few:?} {many:?}");
+    assert!((many.growth.value - few.growth.value).abs() < 4.0 * few.growth.error, "{few:?} {many:?}");
     // On the periodic orbit every block is ln r.
     let periodic = self::map(&common::osorio(), 680.0);
     let orbit = periodic.machine.start(SECTION, State { position: 4.2629536, velocity: 2.3242428 }).unwrap();
     let exact = exponent(&periodic.machine, orbit, 10, 200).unwrap();
-    assert!((exact.mean - 0.8f64.ln()).abs() < 1e-2 && exact.standard_error < 1e-2, "{exact:?}");
+    assert!((exact.growth.value - 0.8f64.ln()).abs() < 1e-2 && exact.growth.error < 1e-2, "{exact:?}");
 }
 
 #[test]

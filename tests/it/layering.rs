@@ -249,11 +249,20 @@ fn thresholds_stand_in_the_table() {
         }
         let text = std::fs::read_to_string(&file).unwrap();
         let code = text.split("#[cfg(test)]").next().unwrap();
-        for (number, line) in code.lines().enumerate().filter(|(_, line)| !line.trim_start().starts_with("//")) {
-            let compares = line.contains('<') || line.contains('>');
-            // 1e-9, but not stroke-width.
-            let small = line.match_indices("e-").any(|(at, _)| line[..at].ends_with(|c: char| c.is_ascii_digit()));
-            assert!(!(compares && small), "{}:{}: {line}", file.display(), number + 1);
+        // 1e-9, but not stroke-width.
+        let small =
+            |line: &str| line.match_indices("e-").any(|(at, _)| line[..at].ends_with(|c: char| c.is_ascii_digit()));
+        let lines = || code.lines().enumerate().filter(|(_, line)| !line.trim_start().starts_with("//"));
+        // A small number under a name of its own decides no less where the name is compared.
+        let named = lines().filter(|(_, line)| line.contains("const ") && small(line));
+        let names: Vec<&str> = named.filter_map(|(_, line)| line.split("const ").nth(1)?.split(':').next()).collect();
+        let word =
+            |line: &str, name: &str| line.split(|c: char| !(c.is_alphanumeric() || c == '_')).any(|word| word == name);
+        for (number, line) in lines() {
+            let compares = ['<', '>'].iter().any(|sign| line.contains(*sign));
+            let is_named = names.iter().any(|name| word(line, name) && !line.contains("const "));
+            let decides = compares && (small(line) || is_named) || line.contains("EPSILON");
+            assert!(!decides, "{}:{}: {line}", file.display(), number + 1);
         }
     }
 }

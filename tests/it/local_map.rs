@@ -6,12 +6,13 @@ use std::path::Path;
 use crate::common;
 use approx::assert_relative_eq;
 use corner_impact::border_collision::local_map::PeriodicOrbit;
-use corner_impact::border_collision::long_run::{End, Escape, Exponent};
+use corner_impact::border_collision::long_run::{End, Escape};
 use corner_impact::border_collision::validity::{Compared, Ends, ranges};
 use corner_impact::border_collision::word::Word;
 use corner_impact::border_collision::{Degenerate, LocalMap, Refusal};
 use corner_impact::cam::Side;
 use corner_impact::diagram::growth;
+use corner_impact::estimate::Estimate;
 use corner_impact::flight::State;
 use corner_impact::model::Model;
 use corner_impact::section::StroboscopicMap;
@@ -33,7 +34,7 @@ fn word(text: &str) -> Word {
     Word::read(text).unwrap()
 }
 
-fn exponent(end: &End) -> Exponent {
+fn exponent(end: &End) -> Estimate {
     match end {
         End::Chaotic(exponent) => *exponent,
         other => panic!("{other:?}"),

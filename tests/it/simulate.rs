@@ -236,6 +236,17 @@ fn starts_that_cannot_be_are_refused() {
     }
     let start = State { position: f64::NAN, velocity: 0.0 };
     assert!(matches!(run(&machine, 0.5, start, 1.0).0, Err(SimulateError::NotFinite { .. })));
+    let start = State { position: 0.5, velocity: 0.0 };
+    for angle in [-0.1, TAU, f64::NAN] {
+        assert!(matches!(machine.start(angle, start), Err(SimulateError::Start { .. })), "{angle}");
+        assert!(matches!(machine.start_on_cam(angle, 0.0), Err(SimulateError::Start { .. })), "{angle}");
+    }
+    for turn in [-0.1, f64::NAN, f64::INFINITY] {
+        assert!(matches!(run(&machine, 0.5, start, turn).0, Err(SimulateError::Turn { .. })), "{turn}");
+    }
+    for speed in [-1.0, 0.0, f64::NAN, f64::INFINITY] {
+        assert!(matches!(machine.at_speed(speed).start(0.5, start), Err(SimulateError::Turn { .. })), "{speed}");
+    }
 }
 
 #[test]

@@ -2,10 +2,11 @@
 
 use nalgebra::Vector3;
 
-use super::measured::{self, Estimate, Gap, MeasuredLaw, Sides};
+use super::measured::{self, Gap, MeasuredLaw, Sides};
 use super::predicted::{self, Hits, PowerLaw};
 use super::{Approach, JumpOrderError};
 use crate::cam::Cam;
+use crate::estimate::Estimate;
 use crate::model::Model;
 use crate::tolerance;
 
@@ -130,8 +131,8 @@ pub fn compare(model: &Model, cam: &Cam, approach: &Approach) -> Result<Compared
         let law = sides.along(z)?[component];
         // Per unit of the deviation, where the runs were in parts of a scale.
         let per_unit = scales[direction].powi(law.exponent.value.round() as i32);
-        let Estimate { value, error } = law.coefficient;
-        let coefficient = Estimate { value: value / per_unit, error: error / per_unit };
+        let Estimate { value, error, .. } = law.coefficient;
+        let coefficient = Estimate::extrapolated(value / per_unit, error / per_unit);
         let unit = map.at(z / scales[direction])[component];
         let predicted = PowerLaw { exponent: map.exponent, coefficient: unit };
         compared.rows.push(row(quantity, predicted, MeasuredLaw { exponent: law.exponent, coefficient }));

@@ -15,19 +15,11 @@ use crate::cam::{Cam, Side};
 use crate::corner::extrapolation::{Powers, extrapolate};
 use crate::corner::least_squares::Solver;
 use crate::corner::one_sided::SampleError;
+use crate::estimate::{ErrorIs, Estimate};
 use crate::flight::{Flight, State};
 use crate::model::{Follower, Model};
 use crate::simulate::{Event, EventKind, Machine};
 use crate::tolerance;
-
-/// A number and how well it is known.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Estimate {
-    /// The number.
-    pub value: f64,
-    /// Its standard error, of an exponent; of a coefficient its last correction and rounding.
-    pub error: f64,
-}
 
 /// `coefficient * distance^exponent`, measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -123,7 +115,7 @@ impl Passage {
     fn rounding(&self, approach: &Approach) -> Vector2<f64> {
         let position = self.start.position.abs().max(approach.corner.minus.value.abs());
         let velocity = self.start.velocity.abs().max(approach.velocity_before.abs());
-        self.back.abs() * Vector2::new(position, velocity) * (8.0 * f64::EPSILON)
+        self.back.abs() * Vector2::new(position, velocity) * (2.0 * tolerance::RUN_ROUNDING.value)
     }
 }
 
@@ -152,12 +144,12 @@ pub struct Pair {
 }
 
 impl<'a> Sides<'a> {
-    /// Furthest continuation, rad, and shortest: as far as the neighbouring segments allow.
-    const REACH: [f64; 2] = [0.1, 5e-4];
+    /// Furthest continuation, rad: less where the neighbouring segments allow no more.
+    const REACH: f64 = 0.1;
 
     /// Both sides of the map of flights near `approach`, as far around the corner as nothing else happens.
     pub fn new(model: &Model, cam: &Cam, approach: &'a Approach) -> Result<Self, JumpOrderError> {
-        let [mut reach, least] = Self::REACH;
+        let (mut reach, least) = (Self::REACH, tolerance::LEAST_REACH.value);
         let continued = |reach: f64, side: Side| {
             let cam = cam.continued(&approach.corner, side, reach)?;
             Some(Machine::new(cam, &model.follower, approach.angular_velocity))
@@ -271,7 +263,7 @@ pub fn gap(model: &Model, cam: &Cam, approach: &Approach) -> Result<Gap, JumpOrd
     let exponent = exponent(&ladder, 1, rounding[1])?;
     let difference = |part: f64| sample(part).map(|(_, difference)| difference);
     let (value, error) = extrapolate(1.0, Powers::Every, |_| rounding, difference)?;
-    let limit = [0, 1].map(|component| Estimate { value: value[component], error: error[component] });
+    let limit = [0, 1].map(|component| Estimate::extrapolated(value[component], error[component]));
     Ok(Gap { limit, exponent, impacts })
 }
 
@@ -295,7 +287,7 @@ fn laws(
     let (value, error) = extrapolate(1.0, Powers::Even, noise, mean)?;
     Ok([0, 1].map(|component| MeasuredLaw {
         exponent: exponents[component],
-        coefficient: Estimate { value: value[component], error: error[component] },
+        coefficient: Estimate::extrapolated(value[component], error[component]),
     }))
 }
 
@@ -331,5 +323,6 @@ fn exponent(ladder: &[Sample], component: usize, rounding: f64) -> Result<Estima
     });
     let response = Mat::from_fn(resolved.len(), 1, |row, _| resolved[row].1.ln());
     let fit = Solver::new(&design)?.fit(&response);
-    Ok(Estimate { value: fit.coefficients[(1, 0)], error: fit.standard_errors[(1, 0)] })
+    let (value, error) = (fit.coefficients[(1, 0)], fit.standard_errors[(1, 0)]);
+    Ok(Estimate { value, error, error_is: ErrorIs::Standard })
 }

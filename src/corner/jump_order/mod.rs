@@ -62,39 +62,21 @@ impl Approach {
 
 /// Why there is nothing to predict or to measure.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the message says what each number is")]
 pub enum JumpOrderError {
     /// The follower does not fall onto the corner.
     #[error(
         "jump order: at {angular_velocity} rad/s the follower closes on the corner at {cam_angle} rad at {closing} m/s; it must come in from above"
     )]
-    NotFromAbove {
-        /// u-, m/s.
-        closing: f64,
-        /// omega, rad/s.
-        angular_velocity: f64,
-        /// The corner, rad.
-        cam_angle: f64,
-    },
+    NotFromAbove { closing: f64, angular_velocity: f64, cam_angle: f64 },
     /// No stretch around the corner is free of other events.
     #[error(
         "jump order: within {least} rad of the corner at {cam_angle} rad a flight that hits it has impacts elsewhere, or sticks"
     )]
-    NotFree {
-        /// The corner, rad.
-        cam_angle: f64,
-        /// The shortest stretch tried, rad.
-        least: f64,
-    },
+    NotFree { cam_angle: f64, least: f64 },
     /// Too few differences stand out of rounding.
     #[error("jump order: {resolved} of {tried} differences stand out of rounding, and {needed} are needed for a fit")]
-    Unresolved {
-        /// How many do.
-        resolved: usize,
-        /// Of how many.
-        tried: usize,
-        /// How many are needed.
-        needed: usize,
-    },
+    Unresolved { resolved: usize, tried: usize, needed: usize },
     /// A side could not be sampled.
     #[error("jump order: {0}")]
     Sample(#[from] SampleError),

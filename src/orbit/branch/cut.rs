@@ -5,6 +5,7 @@ use nalgebra::DVector;
 use super::problem::{Pinned, Problem, Units};
 use super::switch::{self, Exit};
 use super::{Following, Kind, Special, gap, halved};
+use crate::bracket::{Seen, regula_falsi};
 use crate::orbit::curve::{self, CurvePoint, NoPoint};
 use crate::orbit::{Cycle, Family, FamilyError};
 use crate::simulate::Machine;
@@ -176,56 +177,29 @@ impl Stride<'_> {
 
     /// Where in `[0, step]` a cut is: by secants that keep the bracket.
     pub(super) fn locate(&self, problem: &Problem<'_>, cut: Cut, step: f64) -> Result<Located, NoPoint<FamilyError>> {
-        /// Secants that halve the weight of an end that stays twice gain digits fast; bisection would take fifty.
-        const STEPS: usize = 60;
-        let at = |step: f64| -> Result<(CurvePoint, f64), NoPoint<FamilyError>> {
-            let point = curve::step(problem, &self.from.unknowns, &self.from.tangent, step)?;
-            let measure = self.measure(problem, cut, &point)?;
-            Ok((point, measure))
+        let at = |step: f64| -> Result<Seen<CurvePoint>, NoPoint<FamilyError>> {
+            let with = curve::step(problem, &self.from.unknowns, &self.from.tangent, step)?;
+            Ok(Seen { at: step, value: self.measure(problem, cut, &with)?, with })
         };
-        let (mut low, mut high) = (0.0, step);
-        let mut at_low = self.measure(problem, cut, &self.from)?;
-        let (mut point, mut at_high) = at(high)?;
-        let mut bracket = [self.value(&self.from.unknowns), self.value(&point.unknowns)];
-        let sign = at_high < 0.0;
-        if (at_low < 0.0) == sign && at_high != 0.0 {
+        let start = Seen { at: 0.0, value: self.measure(problem, cut, &self.from)?, with: self.from.clone() };
+        let end = at(step)?;
+        if (start.value < 0.0) == (end.value < 0.0) && end.value != 0.0 {
             return Err(NoPoint::NotClosed);
         }
-        let (mut best, mut residual, mut moved_high) = (high, at_high.abs(), None);
-        for _ in 0..STEPS {
-            if residual == 0.0 || high - low <= tolerance::ROOT_WIDTH.value * step {
-                break;
-            }
-            let secant = low + (high - low) * at_low / (at_low - at_high);
-            let middle = if secant > low && secant < high { secant } else { 0.5 * (low + high) };
-            let (found, measure) = match at(middle) {
-                // As near as the singular equations let a point be found.
-                Err(_) if cut == Cut::Branching => break,
-                reached => reached?,
-            };
-            if measure.abs() < residual {
-                (best, residual, point) = (middle, measure.abs(), found.clone());
-            }
-            if (measure < 0.0) == sign {
-                (high, at_high) = (middle, measure);
-                at_low *= if moved_high == Some(true) { 0.5 } else { 1.0 };
-                moved_high = Some(true);
-                bracket[1] = self.value(&found.unknowns);
-            } else {
-                (low, at_low) = (middle, measure);
-                at_high *= if moved_high == Some(false) { 0.5 } else { 1.0 };
-                moved_high = Some(false);
-                bracket[0] = self.value(&found.unknowns);
-            }
-        }
+        let value = |step: f64| match at(step) {
+            // As near as the singular equations let a point be found.
+            Err(_) if cut == Cut::Branching => Ok(None),
+            reached => reached.map(|seen| Some((seen.value, seen.with))),
+        };
+        let (ends, best) = regula_falsi([start, end], tolerance::ROOT_WIDTH.value * step, value)?;
+        let residual = best.value.abs();
+        let mut bracket = ends.map(|end| self.value(&end.with.unknowns));
         // Met exactly, while the other end of the bracket is still far.
         if residual == 0.0 {
-            bracket = [self.value(&point.unknowns); 2];
+            bracket = [self.value(&best.with.unknowns); 2];
         }
-        if bracket[0] > bracket[1] {
-            bracket.swap(0, 1);
-        }
-        Ok(Located { step: best, cut, point, bracket, residual })
+        bracket.sort_by(f64::total_cmp);
+        Ok(Located { step: best.at, cut, point: best.with, bracket, residual })
     }
 
     pub(super) fn special(

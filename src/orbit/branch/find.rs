@@ -32,7 +32,7 @@ pub struct FoundBranches {
 ///
 /// Found by searches at a few speeds: a branch that none of these meets is missing.
 pub fn find_branches(model: &Model, range: [f64; 2], wanted: &Search) -> Result<FoundBranches, FamilyError> {
-    let machine = Machine::new(Cam::new(model)?, &model.follower, 1.0);
+    let machine = Machine::new(Cam::new(model)?, &model.follower, angular_velocity(range[0]));
     let following = Following { parameter: Parameter::Speed, range, longest_step: STEP, most_points: MOST_POINTS };
     let speed = |index: usize| range[0] + (range[1] - range[0]) * (index as f64 + 0.5) / SPEEDS as f64;
     let mut all = FoundBranches { speeds: (0..SPEEDS).map(speed).collect(), ..FoundBranches::default() };

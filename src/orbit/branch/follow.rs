@@ -13,8 +13,6 @@ use crate::tolerance;
 const MOST_IMPACTS: usize = 24;
 /// The first step, and the one after each change of the cycle, of the longest.
 const FIRST: f64 = 0.02;
-/// The shortest step, of the longest.
-const SHORTEST: f64 = 1e-6;
 /// How far the curve may turn in one step: the cosine.
 const STRAIGHT: f64 = 0.985;
 
@@ -81,7 +79,7 @@ impl Walk<'_> {
                         return Ok((self.points, End::Range));
                     }
                     self.stride.step *= 0.5;
-                    if self.stride.step < SHORTEST * self.stride.following.longest_step {
+                    if self.stride.step < tolerance::SHORTEST_STEP.value * self.stride.following.longest_step {
                         let end = match (error, self.fresh) {
                             (NoPoint::Outside(error), _) => End::Edge(error.to_string()),
                             (_, Some(Exit::Touch { .. } | Exit::Tangent { .. })) => End::Graze,

@@ -3,6 +3,7 @@
 //! There the two halves of a period become one, and the equations of the long orbit are singular. Those of the short one
 //! are not, so the flip is located on it.
 
+use crate::bracket::secants;
 use crate::orbit::{Contact, Cycle};
 use crate::simulate::Machine;
 use crate::tolerance;
@@ -54,18 +55,15 @@ pub(super) fn flip(machine_at: impl Fn(f64) -> Option<Machine>, ends: [(f64, &Cy
     };
     // The parameter turns round at the flip: it is as far from it as the halves are apart, squared.
     let span = (second - first).abs().max(tolerance::SPECIAL_POINT.value * first.abs());
-    let (mut low, mut high) = (first, first + span);
-    let (cycle, mut at_low) = at(low, &mean(one))?;
-    let (mut cycle, mut at_high) = at(high, &cycle)?;
-    for _ in 0..STEPS {
-        let next = high - at_high * (high - low) / (at_high - at_low);
-        if !next.is_finite() || next == high || at_high == 0.0 {
-            break;
-        }
-        (low, at_low) = (high, at_high);
-        high = next;
-        (cycle, at_high) = at(high, &cycle)?;
-    }
+    let mut cycle = mean(one);
+    let mut value = |parameter: f64| {
+        let (found, value) = at(parameter, &cycle).ok_or(())?;
+        cycle = found;
+        Ok::<_, ()>(value)
+    };
+    let guesses = [first, first + span].map(|guess| value(guess).map(|value| (guess, value)));
+    let [Ok(low), Ok(high)] = guesses else { return None };
+    let ([(low, _), (high, at_high)], _) = secants([low, high], STEPS, 0.0, value).ok()?;
     let halves = mean(one);
     let reach = before.abs() + after.abs();
     let near = |(found, halves): (&Contact, &Contact)| (found.cam_angle - halves.cam_angle).abs() <= reach;

@@ -2,7 +2,8 @@
 
 use std::ops::ControlFlow;
 
-use super::{Round, corners, machine, turn};
+use super::{Round, corners, machine};
+use crate::bracket::{Width, halve};
 use crate::diagram::growth;
 use crate::flight::Flight;
 use crate::paper::context::{Context, Decision, decide};
@@ -11,19 +12,8 @@ use crate::simulate::{Event, Machine, SimulateError, angular_velocity};
 use crate::tolerance;
 
 /// Halves `[low, high]`, rpm, to the rounding of its ends, around the one speed from which on `is` is true.
-fn first_speed(
-    mut low: f64,
-    mut high: f64,
-    mut is: impl FnMut(f64) -> Result<bool, SimulateError>,
-) -> Result<f64, SimulateError> {
-    while high - low > tolerance::ROOT_WIDTH.value * high {
-        let middle = 0.5 * (low + high);
-        if is(middle)? {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
+fn first_speed(low: f64, high: f64, is: impl FnMut(f64) -> Result<bool, SimulateError>) -> Result<f64, SimulateError> {
+    let [_, high] = halve([low, high], Width::Relative(tolerance::ROOT_WIDTH.value), is)?;
     Ok(high)
 }
 
@@ -76,7 +66,7 @@ fn chattering(context: &Context<'_>, rpm: f64) -> Decision {
     let ratio = ratios.last().copied().unwrap_or(f64::NAN);
     // From rest on the base circle too, and nothing is left of a deviation.
     let mut motion = machine.start_on_cam(0.0, 0.0)?;
-    turn(&machine, &mut motion, 3)?;
+    machine.revolve(&mut motion, 3)?;
     let forgets = growth(&machine, motion, 2)? == f64::NEG_INFINITY;
     let evidence = format!(
         "released at P ({:.2} deg), it has {} impacts above 1e-6 m/s, each leaving {ratio:.4} of the one before in the end; they \

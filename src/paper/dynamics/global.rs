@@ -2,8 +2,8 @@
 //! how the motion goes over to it when its orbit is gone.
 
 use super::transition::{from_x_star, is_period_one, map};
-use super::{machine, settles, turn};
-use crate::border_collision::passage;
+use super::{machine, settles};
+use crate::border_collision::{LocalMap, passage};
 use crate::diagram::growth;
 use crate::flight::State;
 use crate::orbit::{Course, Search, search};
@@ -30,17 +30,17 @@ pub(in crate::paper) fn transition(context: &Context<'_>) -> Decision {
     let slower = machine.at_speed(angular_velocity(speed - BESIDE));
     let mut motion = slower.resume(&motion)?;
     let below = settles(&slower, &mut motion, 10_000)?;
-    let local = &context.findings.map;
+    let local = LocalMap::new(&context.findings.map, context.findings.border);
     let (mut counts, mut agree) = (Vec::new(), true);
     for below in BELOW {
         let map = map(context, speed - below);
         let dt = 60.0 / (speed - below) - at.period;
-        let linear = passage::linear(local, dt, LEFT, PATIENCE);
+        let linear = passage::linear(&local, dt, LEFT, PATIENCE);
         let run = passage::simulated(&map, at.state, LEFT, PATIENCE)?;
         agree &= passage::agree(linear, run);
         counts.push(format!("{}/{}", shown(linear), shown(run)));
     }
-    let decade = passage::revolutions_per_decade(local).unwrap_or(f64::NAN);
+    let decade = passage::revolutions_per_decade(&local).unwrap_or(f64::NAN);
     let evidence = format!(
         "one impact a revolution after 3000 from x* at 1e-4 rpm above {speed:.6} rpm: {above}; with the speed then lowered to \
          1e-4 rpm below it, after 10000 more: {below}; {} rpm below it the motion has left x* by {LEFT} m after {} revolutions \
@@ -66,7 +66,7 @@ pub(in crate::paper) fn coexisting(context: &Context<'_>) -> Decision {
     for rpm in COEXISTING {
         let machine = machine(context, rpm);
         let mut motion = machine.start_on_cam(0.0, 0.0)?;
-        turn(&machine, &mut motion, 300)?;
+        machine.revolve(&mut motion, 300)?;
         both &= growth(&machine, motion, 1000)? > tolerance::CHAOTIC_GROWTH.value;
         both &= !settles(&machine, &mut motion, 10_000)? && is_period_one(context, rpm, 3000)?;
     }

@@ -12,7 +12,7 @@ use std::ops::ControlFlow;
 use super::context::Context;
 use crate::flight::State;
 use crate::section::StroboscopicMap;
-use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError, Unobserved, angular_velocity};
+use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError, angular_velocity};
 use crate::tolerance;
 pub(super) use chattering::{
     chattering_at_175, chattering_at_183, detachment, impact_diagram_of_slow_cams, period_adding, resonant_peaks,
@@ -33,24 +33,13 @@ fn corners(context: &Context<'_>) -> [f64; 6] {
     std::array::from_fn(|index| corners.get(index).map_or(f64::NAN, |corner| corner.angle))
 }
 
-/// Turns the cam `revolutions` on.
-fn turn(machine: &Machine, motion: &mut Motion, revolutions: u64) -> Result<(), SimulateError> {
-    let goal = motion.after(revolutions);
-    let _ = machine.advance(motion, goal, &mut Unobserved)?;
-    Ok(())
-}
-
 /// Whether `motion` settles, within `transient` revolutions, on one impact a revolution, in one state.
 fn settles(machine: &Machine, motion: &mut Motion, transient: u64) -> Result<bool, SimulateError> {
     const LOOKED_AT: u64 = 100;
-    turn(machine, motion, transient)?;
+    machine.revolve(motion, transient)?;
     for _ in 0..LOOKED_AT {
         let (before, mut impacts) = (motion.state, 0);
-        let goal = motion.after(1);
-        let _ = machine.advance(motion, goal, &mut |event: &Event| {
-            impacts += usize::from(event.kind == EventKind::Impact);
-            ControlFlow::Continue(())
-        })?;
+        machine.watch(motion, 1, |event| impacts += usize::from(event.kind == EventKind::Impact))?;
         let moved = (motion.state.position - before.position).abs();
         if motion.contact || impacts != 1 || moved > tolerance::SETTLED.value {
             return Ok(false);

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use super::{corners, last_impact, machine, settles, turn};
+use super::{corners, last_impact, machine, settles};
 use crate::diagram::{exponent, growth};
 use crate::paper::context::{Context, Decision, decide};
 use crate::published::Verdict;
@@ -67,7 +67,7 @@ fn of_two_revolutions(context: &Context<'_>, rpm: f64) -> Result<Option<(Periodi
     const TRANSIENT: u64 = 20_000;
     let map = map(context, rpm);
     let mut motion = from_x_star(context, &map.machine)?;
-    turn(&map.machine, &mut motion, TRANSIENT)?;
+    map.machine.revolve(&mut motion, TRANSIENT)?;
     let Some(periodic) = map.periodic(motion.state, 2)? else { return Ok(None) };
     let first = last_impact(&map, periodic.state)?;
     let second = last_impact(&map, map.apply(periodic.state)?.state)?;
@@ -124,7 +124,7 @@ pub(in crate::paper) fn chaos_below(context: &Context<'_>) -> Decision {
     let threshold = tolerance::CHAOTIC_GROWTH.value;
     let chaotic = machine(context, 670.0);
     let below = exponent(&chaotic, from_x_star(context, &chaotic)?, BLOCKS.0, BLOCKS.1)?;
-    let is_chaotic = below.mean > threshold && below.mean > SIGNIFICANT * below.standard_error;
+    let is_chaotic = below.growth.value > threshold && below.growth.value > SIGNIFICANT * below.growth.error;
     let periodic = machine(context, 680.0);
     let above = growth(&periodic, from_x_star(context, &periodic)?, 4000)?;
     let evidence = format!(
@@ -152,7 +152,7 @@ pub(in crate::paper) fn transitions_at_corners(context: &Context<'_>) -> Decisio
     }
     let machine = machine(context, high + 0.1);
     let mut motion = from_x_star(context, &machine)?;
-    turn(&machine, &mut motion, 1000)?;
+    machine.revolve(&mut motion, 1000)?;
     let chaotic = growth(&machine, motion, 4000)? > tolerance::CHAOTIC_GROWTH.value;
     let evidence = format!(
         "the line of one impact meets P ({:.2} deg) at {:.6} rpm; upwards it flips at {flip:.4} rpm to two revolutions, and the \
@@ -176,7 +176,7 @@ pub(in crate::paper) fn chaos_for_good(context: &Context<'_>) -> Decision {
     let [.., q_mirrored, _, _] = corners(context);
     let machine = machine(context, 664.0);
     let mut motion = machine.start_on_cam(0.0, 0.0)?;
-    turn(&machine, &mut motion, 1)?;
+    machine.revolve(&mut motion, 1)?;
     let (goal, mut releases) = (motion.after(REVOLUTIONS), Vec::new());
     let _ = machine.advance(&mut motion, goal, &mut |event: &Event| {
         if event.kind == EventKind::Release {
@@ -197,7 +197,7 @@ pub(in crate::paper) fn chaos_for_good(context: &Context<'_>) -> Decision {
 pub(in crate::paper) fn orbit_at_700(context: &Context<'_>) -> Decision {
     let map = map(context, 700.0);
     let mut motion = from_x_star(context, &map.machine)?;
-    turn(&map.machine, &mut motion, 1000)?;
+    map.machine.revolve(&mut motion, 1000)?;
     let (impact, corner) = (last_impact(&map, motion.state)?, context.findings.at.corner.angle);
     let evidence = format!(
         "at 700 rpm the impact is at {:.2} deg, the corner at {:.2} deg; they meet at {:.6} rpm",

@@ -1,6 +1,7 @@
 //! The border between two basins, from runs alone; and how near a saddle's unstable manifold comes back to its stable one.
 
 use super::{Curve, Ending, Patience, Saddle, ending};
+use crate::bracket::{Width, halve};
 use crate::flight::State;
 use crate::section::StroboscopicMap;
 use crate::simulate::SimulateError;
@@ -28,11 +29,8 @@ pub fn border(
     }
     // A chaotic run may come to rest by chance: an orbit, where one end has it, tells the two sides apart.
     let ends_low = |ending: &Ending| if last.is_orbit() { !ending.is_same(&last) } else { ending.is_same(&first) };
-    let (mut low, mut high) = (0.0, 1.0);
-    while high - low > tolerance::BORDER_BRACKET.value {
-        let middle = 0.5 * (low + high);
-        if ends_low(&end(middle)?) { low = middle } else { high = middle }
-    }
+    let width = Width::Absolute(tolerance::BORDER_BRACKET.value);
+    let [low, high] = halve([0.0, 1.0], width, |share| Ok(!ends_low(&end(share)?)))?;
     Ok(Some(at(0.5 * (low + high))))
 }
 

@@ -94,7 +94,7 @@ impl Reversed {
         let again = self.map.apply(before).ok()?;
         let sticks = again.events.iter().chain(&back.events).any(|event| event.kind != EventKind::Impact);
         let size = size(before, self.map.machine.angular_velocity());
-        let miss = apart(again.state, state, self.map.machine.angular_velocity());
+        let miss = again.state.apart(state, self.map.machine.angular_velocity());
         (!sticks && miss <= tolerance::ORBIT_CLOSURE.value * size).then_some(before)
     }
 }
@@ -102,11 +102,6 @@ impl Reversed {
 /// The size of a state, m: velocities count over omega.
 fn size(state: State, omega: f64) -> f64 {
     state.position.hypot(state.velocity / omega)
-}
-
-/// How far two states are apart, m.
-pub fn apart(one: State, other: State, omega: f64) -> f64 {
-    (one.position - other.position).hypot((one.velocity - other.velocity) / omega)
 }
 
 /// How far a curve is followed, and how finely.
@@ -172,7 +167,7 @@ impl Curve {
             let first =
                 State { position: saddle.position + from * along[0], velocity: saddle.velocity + from * along[1] };
             let carried = (0..s as u32).try_fold(first, |state, _| carry(state))?;
-            (apart(carried, saddle, omega) <= extent.farthest).then_some(carried)
+            (carried.apart(saddle, omega) <= extent.farthest).then_some(carried)
         };
         let mut curve = Self { pieces: vec![vec![saddle]], omega };
         let total = extent.stretches * POINTS;
@@ -184,7 +179,7 @@ impl Curve {
             let mut ahead = vec![(place(index), at(place(index)), 0)];
             while let Some((s, state, halvings)) = ahead.pop() {
                 let close = match (last.1, state) {
-                    (Some(one), Some(two)) => apart(one, two, omega) <= extent.finest,
+                    (Some(one), Some(two)) => one.apart(two, omega) <= extent.finest,
                     (None, None) => true,
                     _ => false,
                 };

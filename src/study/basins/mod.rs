@@ -2,19 +2,17 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`mod@ending`] | what one run ends on: a stable orbit, chaos, rest |
 //! | [`grid`] | a grid of starts on a section, side by side |
 //! | [`manifold`] | the curves along which a saddle is approached and left |
 //! | `section` | the starts on a section of a model, the orbits that cross it, the curves that part the basins |
 //! | [`boundary`] | points of the border between two basins, by halving; how near a manifold comes back to the saddle's other |
 
 pub mod boundary;
-pub mod ending;
 pub mod grid;
 pub mod manifold;
 mod section;
 
-pub use ending::{Ending, Patience, ending};
+pub use crate::orbit::settle::{Ending, Patience, ending};
 pub use grid::{Basins, Grid, GridError, Part};
 pub use manifold::{Curve, Extent, Reversed, Saddle};
 pub use section::{Border, Section, Summary};

@@ -212,7 +212,7 @@ impl Branches<'_> {
         {
             let angle = match special.kind {
                 Kind::Corner { segment, .. } => {
-                    machine(self.model)?.cam().segments().get(segment).map(|segment| segment.start)
+                    machine(self.model, self.range[0])?.cam().segments().get(segment).map(|segment| segment.start)
                 }
                 _ => None,
             };

@@ -6,7 +6,7 @@ use super::{Care, Regime, RegimeError, Settled};
 use crate::cam::Cam;
 use crate::diagram::growth;
 use crate::model::Model;
-use crate::orbit::search::settled;
+use crate::orbit::settle::settled;
 use crate::simulate::{Event, Machine, Motion, SimulateError, angular_velocity};
 use crate::tolerance;
 
@@ -15,9 +15,9 @@ const AVERAGED: u64 = 400;
 /// How much longer a run is at most next to a change, if it neither repeats nor is chaotic.
 pub(super) const LONGER: u64 = 4;
 
-/// The machine of a model, at a speed to be chosen.
-pub(super) fn machine(model: &Model) -> Result<Machine, RegimeError> {
-    Ok(Machine::new(Cam::new(model)?, &model.follower, 1.0))
+/// The machine of a model at a speed, rpm.
+pub(super) fn machine(model: &Model, rpm: f64) -> Result<Machine, RegimeError> {
+    Ok(Machine::new(Cam::new(model)?, &model.follower, angular_velocity(rpm)))
 }
 
 /// Where the follower first leaves the cam between two speeds, rpm; `None` where it leaves at the lower already, or at
@@ -25,7 +25,7 @@ pub(super) fn machine(model: &Model) -> Result<Machine, RegimeError> {
 pub fn detachment(model: &Model, [low, high]: [f64; 2]) -> Result<Option<f64>, RegimeError> {
     /// Speeds that are looked at before the first change is narrowed down.
     const SPEEDS: u32 = 200;
-    let machine = machine(model)?;
+    let machine = machine(model, low)?;
     if !stays(&machine, low)? {
         return Ok(None);
     }
@@ -73,8 +73,7 @@ pub(super) fn long_run(
         let machine = machine.at_speed(angular_velocity(rpm));
         let (mut motion, mut stretch) = (machine.resume(motion)?, care.settling);
         loop {
-            let goal = motion.after(stretch);
-            let _ = machine.advance(&mut motion, goal, &mut |_: &Event| ControlFlow::Continue(()))?;
+            machine.revolve(&mut motion, stretch)?;
             if let Some(orbit) = settled(&machine, motion, 0, care.longest_period)? {
                 return Ok((Settled::of_orbit(rpm, orbit), motion));
             }

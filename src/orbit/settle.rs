@@ -1,0 +1,226 @@
+//! What a run ends on: the one answer to it.
+//!
+//! [`settled`] looks for an orbit that a run is on already, or nearly; [`ending`] waits for a run until it is on one, or is told
+//! to be chaotic or at rest. Whatever names an orbit goes through [`close`]: Newton's method from a guess, and a simulated
+//! period that confirms it.
+
+use std::f64::consts::TAU;
+use std::ops::ControlFlow;
+
+use super::cycle::lift_size;
+use super::{Course, Cycle, PeriodicOrbit, sticking};
+use crate::diagram::growth;
+use crate::flight::State;
+use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError};
+use crate::tolerance;
+
+/// Most impacts of an orbit whose equations are solved together: beyond, a follower chatters.
+pub(super) const MOST_IMPACTS: usize = 64;
+/// Events of a revolution that are kept: a follower that chatters with restitution 0.99 makes thousands before it rests.
+const MOST_EVENTS: usize = 100_000;
+
+/// How long a run is waited for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Patience {
+    /// Revolutions within which it must have settled on an orbit, or else is none.
+    pub revolutions: u64,
+    /// The longest period looked for, revolutions.
+    pub longest: u64,
+}
+
+impl Default for Patience {
+    fn default() -> Self {
+        Self { revolutions: 1600, longest: 8 }
+    }
+}
+
+/// What a run ends on.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Ending {
+    /// A stable periodic orbit.
+    Orbit(PeriodicOrbit),
+    /// No orbit as short as was looked for, and small deviations grow.
+    Chaotic,
+    /// No orbit as short as was looked for, but the follower comes to rest on the cam: what follows can only repeat.
+    Resting,
+    /// None of these.
+    Undecided,
+}
+
+impl Ending {
+    /// The name of an ending in tables.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Orbit(_) => "orbit",
+            Self::Chaotic => "chaotic",
+            Self::Resting => "resting",
+            Self::Undecided => "undecided",
+        }
+    }
+
+    /// Whether two runs end alike: on the same orbit, or on none of the same kind.
+    pub fn is_same(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Orbit(one), Self::Orbit(two)) => one.is_same(two),
+            _ => std::mem::discriminant(self) == std::mem::discriminant(other),
+        }
+    }
+
+    /// Whether this is an orbit.
+    pub fn is_orbit(&self) -> bool {
+        matches!(self, Self::Orbit(_))
+    }
+}
+
+/// What the run from `motion` ends on.
+///
+/// An orbit counts where the run repeats nearly, Newton's method leads from there to a stable one, and the run has come to
+/// that: a chaotic run now and then passes by a stable orbit outside of its basin.
+pub fn ending(machine: &Machine, mut motion: Motion, patience: Patience) -> Result<Ending, SimulateError> {
+    /// Revolutions before the first look: what most starts near a stable orbit need.
+    const FIRST: u64 = 50;
+    /// Revolutions over which growth is averaged.
+    const RECORD: u64 = 400;
+    let (mut run, mut stretch) = (0, FIRST.min(patience.revolutions));
+    while stretch > 0 {
+        machine.revolve(&mut motion, stretch)?;
+        run += stretch;
+        if let Some(orbit) = settled(machine, motion, 0, patience.longest)?.filter(PeriodicOrbit::is_stable)
+            && arrived(machine, motion, &orbit)?
+        {
+            return Ok(Ending::Orbit(orbit));
+        }
+        stretch = run.min(patience.revolutions - run);
+    }
+    let exponent = growth(machine, motion, RECORD)?;
+    Ok(if exponent > tolerance::CHAOTIC_GROWTH.value {
+        Ending::Chaotic
+    } else if exponent == f64::NEG_INFINITY {
+        Ending::Resting
+    } else {
+        Ending::Undecided
+    })
+}
+
+/// Whether `motion` is on `orbit` to within what is left of a start that comes to it: for one period, each time that the cam
+/// passes angle 0, it is held against the orbit's state there.
+fn arrived(machine: &Machine, mut motion: Motion, orbit: &PeriodicOrbit) -> Result<bool, SimulateError> {
+    let size = lift_size(machine);
+    for _ in 0..orbit.revolutions {
+        machine.turn_to(&mut motion, 0.0)?;
+        let apart = motion.state.apart(orbit.state, machine.angular_velocity());
+        if apart <= tolerance::ARRIVED.value * size {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
+/// The orbit near the motion of `revolutions` that starts at `cam_angle`, rad, with `state`: its impacts are the guess.
+pub fn near(
+    machine: &Machine,
+    cam_angle: f64,
+    state: State,
+    revolutions: u64,
+) -> Result<Option<PeriodicOrbit>, SimulateError> {
+    let mut motion = machine.start(cam_angle, state)?;
+    let events = period(machine, &mut motion, revolutions, MOST_EVENTS)?;
+    if events.iter().any(|event| event.kind != EventKind::Impact) {
+        return settled(machine, motion, 0, revolutions);
+    }
+    if events.is_empty() {
+        return Ok(None);
+    }
+    Ok(close(machine, &Cycle::of_events(revolutions, &events).in_order()))
+}
+
+/// The orbit near a guess, by Newton's method; `None` where that leads nowhere, or to no motion of the cam as it is, or to
+/// one that repeats sooner.
+pub fn close(machine: &Machine, guess: &Cycle) -> Option<PeriodicOrbit> {
+    // An impact or so a revolution is no chattering, however many revolutions there are.
+    if guess.contacts.len() > MOST_IMPACTS.max(4 * guess.revolutions as usize) {
+        return None;
+    }
+    let (cycle, residual) = guess.closed(machine).ok()?;
+    let mut corners = machine.cam().corners().into_iter().map(|corner| corner.segment).collect::<Vec<_>>();
+    corners.sort_unstable();
+    let cycle = cycle.renamed(machine, |segment| corners.binary_search(&segment).is_ok()).in_order();
+    let is_orbit = cycle.departure(machine).is_ok_and(|departure| departure.is_none()) && !cycle.repeats_sooner();
+    is_orbit.then(|| PeriodicOrbit::of_cycle(machine, cycle, residual))
+}
+
+/// What a run from `motion` settles on within `revolutions`, if that repeats after at most `longest` revolutions.
+pub fn settled(
+    machine: &Machine,
+    mut motion: Motion,
+    revolutions: u64,
+    longest: u64,
+) -> Result<Option<PeriodicOrbit>, SimulateError> {
+    machine.revolve(&mut motion, revolutions)?;
+    machine.turn_to(&mut motion, 0.0)?;
+    let first = motion;
+    let size = lift_size(machine);
+    let mut events = Vec::new();
+    for turns in 1..=longest {
+        let more = period(machine, &mut motion, 1, MOST_EVENTS)?;
+        events.extend(more.into_iter().map(|event| Event { revolution: turns - 1, ..event }));
+        let apart = motion.state.apart(first.state, machine.angular_velocity());
+        if apart > tolerance::NEARLY_REPEATS.value * size {
+            continue;
+        }
+        let sticks = events.iter().any(|event| event.kind != EventKind::Impact);
+        let impacts = events.iter().any(|event| event.kind == EventKind::Impact);
+        if !sticks && events.len() > MOST_IMPACTS {
+            continue;
+        }
+        let orbit = if sticks {
+            match sticking::anchor(&events, turns) {
+                Some(anchor) => sticking::through(machine, anchor, turns)?,
+                None => None,
+            }
+        } else if motion.contact && !impacts {
+            sticking::through(machine, 0.0, turns)?
+        } else if impacts {
+            close(machine, &Cycle::of_events(turns, &events))
+        } else {
+            free(machine, motion.state)
+        };
+        // What a run settles on draws it in, or keeps it; Newton's method finds what a run only passes too.
+        let holds = |orbit: &PeriodicOrbit| {
+            orbit.multipliers().iter().all(|multiplier| multiplier.modulus() <= 1.0 + tolerance::SAME_ORBIT.value)
+        };
+        if let Some(orbit) = orbit.filter(holds) {
+            return Ok(Some(orbit));
+        }
+    }
+    Ok(None)
+}
+
+/// The follower at rest above the cam, near `state`: where no force is left on it. `None` where it falls, or meets the cam.
+fn free(machine: &Machine, state: State) -> Option<PeriodicOrbit> {
+    let (flight, force) = (machine.flight(), machine.flight().force(state.position));
+    let above = if force == 0.0 { 0.0 } else { force / flight.omega0_squared() };
+    let state = State { position: state.position + above, velocity: 0.0 };
+    let matrix = flight.propagator(TAU / machine.angular_velocity());
+    let residual = flight.acceleration(state).abs() / machine.angular_velocity().powi(2) / lift_size(machine);
+    let orbit = PeriodicOrbit { revolutions: 1, events: Vec::new(), state, matrix, residual, course: Course::Free };
+    (state.position.is_finite() && state.position > machine.cam().top()).then_some(orbit)
+}
+
+/// Runs `revolutions` and returns the events on the way.
+///
+/// It stops right after more than `most` of them.
+pub(super) fn period(
+    machine: &Machine,
+    motion: &mut Motion,
+    revolutions: u64,
+    most: usize,
+) -> Result<Vec<Event>, SimulateError> {
+    let mut events = Vec::new();
+    let goal = motion.after(revolutions);
+    let _ = machine.advance(motion, goal, &mut |event: &Event| {
+        events.push(*event);
+        if events.len() > most { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    })?;
+    Ok(events)
+}
