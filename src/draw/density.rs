@@ -72,18 +72,6 @@ impl Density {
         }
     }
 
-    /// Adds the counts of a grid over the same ranges; a grid over others is refused (`false`).
-    pub fn add(&mut self, other: &Self) -> bool {
-        let same = self.x == other.x && self.y == other.y && self.counts.len() == other.counts.len();
-        if same {
-            for (count, more) in self.counts.iter_mut().zip(&other.counts) {
-                *count = count.saturating_add(*more);
-            }
-            self.outside += other.outside;
-        }
-        same
-    }
-
     /// The ranges that it covers, across and up.
     pub fn ranges(&self) -> [[f64; 2]; 2] {
         [self.x, self.y]

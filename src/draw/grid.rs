@@ -8,7 +8,7 @@ use resvg::tiny_skia::{FillRule, Mask, Paint, Path, PathBuilder, Pixmap, Rect, T
 
 use super::Colour;
 use super::density::SHADES;
-use super::svg::{number, stroke};
+use super::element::{number, stroke};
 
 /// What is drawn of a grid; lengths in the page's units, from the upper left corner of its frame.
 pub(super) enum Grid {

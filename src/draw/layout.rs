@@ -223,13 +223,37 @@ fn lines(text: &str, size: f64, room: f64) -> Vec<String> {
     lines
 }
 
+fn is_inside(mark: &Mark, range: [f64; 2]) -> bool {
+    (0.0..=1.0).contains(&share(mark.at, range))
+}
+
+/// Marks with a label within the axis, by rising `place`.
+fn labelled(marks: &[Mark], range: [f64; 2], place: impl Fn(&Mark) -> f64) -> Vec<usize> {
+    let has_label = |index: &usize| is_inside(&marks[*index], range) && !marks[*index].label.is_empty();
+    let mut order: Vec<usize> = (0..marks.len()).filter(has_label).collect();
+    order.sort_by(|one, other| place(&marks[*one]).total_cmp(&place(&marks[*other])));
+    order
+}
+
+/// Each mark at its `place`, with its label where that has one.
+fn mark_lines(
+    marks: &[Mark],
+    range: [f64; 2],
+    place: impl Fn(&Mark) -> f64,
+    label: impl Fn(usize) -> Option<[f64; 2]>,
+) -> Vec<MarkLine> {
+    let line = |(index, mark): (usize, &Mark)| MarkLine {
+        at: place(mark),
+        inside: is_inside(mark, range),
+        label: label(index).map(|at| Text { at, text: mark.label.clone() }),
+    };
+    marks.iter().enumerate().map(line).collect()
+}
+
 /// Labels of horizontal lines beside the frame, pushed apart where lines are close.
 fn beside(marks: &[Mark], range: [f64; 2], frame: &Frame) -> Vec<MarkLine> {
     let at = |mark: &Mark| frame.bottom() - frame.height * share(mark.at, range);
-    let inside = |mark: &Mark| (0.0..=1.0).contains(&share(mark.at, range));
-    let mut order: Vec<usize> =
-        (0..marks.len()).filter(|index| inside(&marks[*index]) && !marks[*index].label.is_empty()).collect();
-    order.sort_by(|one, other| at(&marks[*one]).total_cmp(&at(&marks[*other])));
+    let order = labelled(marks, range, at);
     let mut middles: Vec<f64> = order.iter().map(|index| at(&marks[*index])).collect();
     for index in 1..middles.len() {
         middles[index] = middles[index].max(middles[index - 1] + LINE);
@@ -240,37 +264,28 @@ fn beside(marks: &[Mark], range: [f64; 2], frame: &Frame) -> Vec<MarkLine> {
         *middle = middle.min(limit);
         limit = *middle - LINE;
     }
-    let label = |index: usize| {
+    mark_lines(marks, range, at, |index| {
         let place = order.iter().position(|ordered| *ordered == index)?;
-        let text = marks[index].label.clone();
-        Some(Text { at: [frame.right() + LEADER, middles[place] + 0.35 * TEXT], text })
-    };
-    let line = |(index, mark)| MarkLine { at: at(mark), inside: inside(mark), label: label(index) };
-    marks.iter().enumerate().map(line).collect()
+        Some([frame.right() + LEADER, middles[place] + 0.35 * TEXT])
+    })
 }
 
 /// Labels of vertical lines above the frame, right of their lines, in rows so that no line runs through a label.
 fn above(marks: &[Mark], range: [f64; 2], frame: &Frame) -> (Vec<MarkLine>, usize) {
     let at = |mark: &Mark| frame.left + frame.width * share(mark.at, range);
-    let inside = |mark: &Mark| (0.0..=1.0).contains(&share(mark.at, range));
-    let mut order: Vec<usize> =
-        (0..marks.len()).filter(|index| inside(&marks[*index]) && !marks[*index].label.is_empty()).collect();
-    order.sort_by(|one, other| at(&marks[*other]).total_cmp(&at(&marks[*one])));
     let mut rows: Vec<(f64, usize, usize)> = Vec::new();
-    for index in order {
+    for index in labelled(marks, range, |mark| -at(mark)) {
         let (left, right) = (at(&marks[index]), at(&marks[index]) + GAP + width(&marks[index].label, TEXT));
         // A line to the right rises to its own label's row: this label stands above all of those that it spans.
         let row = rows.iter().filter(|(other, _, _)| *other <= right).map(|(_, row, _)| row + 1).max().unwrap_or(0);
         rows.push((left, row, index));
     }
     let count = rows.iter().map(|(_, row, _)| row + 1).max().unwrap_or(0);
-    let label = |index: usize| {
+    let lines = mark_lines(marks, range, at, |index| {
         let (left, row, _) = rows.iter().find(|(_, _, other)| *other == index)?;
-        let text = marks[index].label.clone();
-        Some(Text { at: [left + 3.0, frame.top - 5.0 - *row as f64 * LINE], text })
-    };
-    let line = |(index, mark)| MarkLine { at: at(mark), inside: inside(mark), label: label(index) };
-    (marks.iter().enumerate().map(line).collect(), count)
+        Some([left + 3.0, frame.top - 5.0 - *row as f64 * LINE])
+    });
+    (lines, count)
 }
 
 /// The legend beside the axis's name where both fit, else in rows below it: entries at `[x, row]`, and how many rows.

@@ -5,6 +5,7 @@
 //! [`crate::figures`].
 
 pub mod density;
+mod element;
 mod grid;
 pub mod layout;
 pub mod png;
@@ -259,22 +260,15 @@ impl Word {
 /// A side of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
+#[expect(missing_docs, reason = "a side is what its name says")]
 pub enum Beside {
-    /// Right of it.
     Right,
-    /// Left of it.
     Left,
-    /// Above it.
     Above,
-    /// Below it.
     Below,
-    /// Above it and to the right.
     AboveRight,
-    /// Above it and to the left.
     AboveLeft,
-    /// Below it and to the right.
     BelowRight,
-    /// Below it and to the left.
     BelowLeft,
 }
 
@@ -313,18 +307,13 @@ pub enum Marker {
 /// Colours that stay apart for the colour-blind (Okabe and Ito), and in grey by what they are drawn with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
+#[expect(missing_docs, reason = "a colour is what its name says; ink is that of the text")]
 pub enum Colour {
-    /// That of the text.
     Ink,
-    /// Between text and paper.
     Grey,
-    /// First choice.
     Blue,
-    /// Second.
     Vermilion,
-    /// Third.
     Green,
-    /// Fourth.
     Purple,
 }
 

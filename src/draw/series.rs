@@ -3,10 +3,10 @@
 use std::fmt::{self, Write};
 
 use super::density::{Density, SHADES};
+use super::element::{FAR, fill, markers, number, stroked};
 use super::grid::Grid;
 use super::layout::share;
 use super::sheet::Sheet;
-use super::svg::{FAR, fill, markers, number, stroked};
 use super::{Colour, Data, Marker, Series, Stroke, thin, words};
 
 /// More points of a line than this are counted on a grid instead.

@@ -38,7 +38,7 @@ impl Sheet {
 
     /// Opens a frame: left, top, width and height.
     pub(super) fn open_frame(&mut self, frame: [f64; 4]) {
-        let [left, top, width, height] = frame.map(super::svg::number);
+        let [left, top, width, height] = frame.map(super::element::number);
         let tag = format!("<svg x=\"{left}\" y=\"{top}\" width=\"{width}\" height=\"{height}\">\n");
         self.text.push_str(&tag);
         self.frame = (tag, frame);

@@ -2,8 +2,8 @@
 
 use std::fmt::{self, Write};
 
+use super::element::{escaped, fill, number};
 use super::layout::TEXT;
-use super::svg::{escaped, fill, number};
 use super::{Beside, Colour, Word};
 
 /// From a point to the word beside it.
