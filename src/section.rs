@@ -89,13 +89,6 @@ pub struct Periodic {
     pub matrix: Matrix2<f64>,
 }
 
-impl Periodic {
-    /// det(I + A): 0 where a multiplier is -1, and the motion flips to one of twice the period.
-    pub fn flip(&self) -> f64 {
-        1.0 + self.matrix.trace() + self.matrix.determinant()
-    }
-}
-
 /// Follower and cam at one moment of a trace.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {

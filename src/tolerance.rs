@@ -156,8 +156,6 @@ table! {
     JUMP_COEFFICIENT = 1e-6, "of the formula's: six digits, of which a jump of the fourth derivative leaves seven above rounding";
     /// How closely an identity between computed matrices is met.
     IDENTITY = 1e-12, "of the terms: a few hundred roundings";
-    /// How little a settled motion may move from one revolution to the next, m.
-    SETTLED = 1e-9, "absolute: far below any amplitude, far above the rounding of a thousand revolutions";
     /// From which span an axis of a figure shows its values apart.
     DRAWN_SPAN = 1e-9, "of the values: labels of ticks that differ in the tenth digit cannot be read, and rounding would draw \
         itself";

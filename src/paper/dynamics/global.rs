@@ -26,10 +26,10 @@ pub(in crate::paper) fn transition(context: &Context<'_>) -> Decision {
     let speed = at.speed_rpm();
     let machine = machine(context, speed + BESIDE);
     let mut motion = from_x_star(context, &machine)?;
-    let above = settles(&machine, &mut motion, 3000)?;
+    machine.revolve(&mut motion, 3000)?;
+    let above = settles(&machine, motion, 0)?;
     let slower = machine.at_speed(angular_velocity(speed - BESIDE));
-    let mut motion = slower.resume(&motion)?;
-    let below = settles(&slower, &mut motion, 10_000)?;
+    let below = settles(&slower, slower.resume(&motion)?, 10_000)?;
     let local = LocalMap::new(&context.findings.map, context.findings.border);
     let (mut counts, mut agree) = (Vec::new(), true);
     for below in BELOW {
@@ -68,11 +68,11 @@ pub(in crate::paper) fn coexisting(context: &Context<'_>) -> Decision {
         let mut motion = machine.start_on_cam(0.0, 0.0)?;
         machine.revolve(&mut motion, 300)?;
         both &= growth(&machine, motion, 1000)? > tolerance::CHAOTIC_GROWTH.value;
-        both &= !settles(&machine, &mut motion, 10_000)? && is_period_one(context, rpm, 3000)?;
+        both &= !settles(&machine, motion, 10_000)? && is_period_one(context, rpm, 3000)?;
     }
     // Above it the chaotic motion is left within some hundred revolutions.
     let machine = machine(context, 683.0);
-    let alone = settles(&machine, &mut machine.start_on_cam(0.0, 0.0)?, 20_000)?;
+    let alone = settles(&machine, machine.start_on_cam(0.0, 0.0)?, 20_000)?;
     let (lines, farthest) = borders(context, 678.0)?;
     let parted = lines > 0 && farthest <= tolerance::BORDER_ON_MANIFOLD.value;
     let lost = lost(context)?;

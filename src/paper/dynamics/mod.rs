@@ -1,7 +1,8 @@
 //! Statements about runs: what the follower does at a speed, decided by the simulator.
 //!
 //! `chattering` is about slow cams, where the follower comes to rest on the cam once a revolution; `transition` about
-//! fast ones, around the corner impact; `global` about what coexists there and how the motion goes over. Evidence must not depend on the machine: of a chaotic run it says only what any run shows.
+//! fast ones, around the corner impact; `global` about what coexists there and how the motion goes over. Evidence must not
+//! depend on the computer: of a chaotic run it says only what any run shows.
 
 mod chattering;
 mod global;
@@ -10,8 +11,7 @@ mod transition;
 use std::ops::ControlFlow;
 
 use super::context::Context;
-use crate::flight::State;
-use crate::section::StroboscopicMap;
+use crate::orbit::search::settled;
 use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError, angular_velocity};
 use crate::tolerance;
 pub(super) use chattering::{
@@ -34,23 +34,8 @@ fn corners(context: &Context<'_>) -> [f64; 6] {
 }
 
 /// Whether `motion` settles, within `transient` revolutions, on one impact a revolution, in one state.
-fn settles(machine: &Machine, motion: &mut Motion, transient: u64) -> Result<bool, SimulateError> {
-    const LOOKED_AT: u64 = 100;
-    machine.revolve(motion, transient)?;
-    for _ in 0..LOOKED_AT {
-        let (before, mut impacts) = (motion.state, 0);
-        machine.watch(motion, 1, |event| impacts += usize::from(event.kind == EventKind::Impact))?;
-        let moved = (motion.state.position - before.position).abs();
-        if motion.contact || impacts != 1 || moved > tolerance::SETTLED.value {
-            return Ok(false);
-        }
-    }
-    Ok(true)
-}
-
-/// Where the last impact of the revolution from `state` on is, rad.
-fn last_impact(map: &StroboscopicMap, state: State) -> Result<f64, SimulateError> {
-    Ok(map.apply(state)?.impacts().last().map_or(f64::NAN, |impact| impact.cam_angle))
+fn settles(machine: &Machine, motion: Motion, transient: u64) -> Result<bool, SimulateError> {
+    Ok(settled(machine, motion, transient, 1)?.is_some_and(|orbit| orbit.impacts().count() == 1))
 }
 
 /// What follows the release at P of a follower that came up the flank on the cam: the speed alone decides it.

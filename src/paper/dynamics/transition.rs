@@ -1,12 +1,16 @@
 //! Fast cams, 660 to 750 rpm: the motion of one impact a revolution, how it is lost on either side, what is beside it.
 
+use std::error::Error;
 use std::ops::ControlFlow;
 
-use super::{corners, last_impact, machine, settles};
+use super::{corners, machine, settles};
 use crate::diagram::{exponent, growth};
+use crate::orbit::branch::{Branch, BranchPoint, Following, Kind};
+use crate::orbit::search::settled;
+use crate::orbit::{Parameter, Search, search};
 use crate::paper::context::{Context, Decision, decide};
 use crate::published::Verdict;
-use crate::section::{Periodic, StroboscopicMap};
+use crate::section::StroboscopicMap;
 use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError};
 use crate::tolerance;
 
@@ -21,57 +25,34 @@ pub(super) fn from_x_star(context: &Context<'_>, machine: &Machine) -> Result<Mo
 /// Whether `revolutions` from x* at `rpm` end on one impact a revolution.
 pub(super) fn is_period_one(context: &Context<'_>, rpm: f64, revolutions: u64) -> Result<bool, SimulateError> {
     let machine = machine(context, rpm);
-    settles(&machine, &mut from_x_star(context, &machine)?, revolutions)
-}
-
-/// The motion of one impact a revolution at `rpm`, stable or not, followed from omega* in steps of 1 rpm or less.
-fn followed(context: &Context<'_>, rpm: f64) -> Result<Option<Periodic>, SimulateError> {
-    let (from, mut guess) = (context.findings.at.speed_rpm(), context.findings.at.state);
-    let steps = (rpm - from).abs().ceil().max(1.0) as u32;
-    let mut found = None;
-    for step in 1..=steps {
-        let map = map(context, from + (rpm - from) * f64::from(step) / f64::from(steps));
-        found = map.periodic(guess, 1)?;
-        let Some(periodic) = found else { return Ok(None) };
-        guess = periodic.state;
-    }
-    Ok(found)
+    settles(&machine, from_x_star(context, &machine)?, revolutions)
 }
 
 pub(super) fn map(context: &Context<'_>, rpm: f64) -> StroboscopicMap {
     StroboscopicMap { machine: machine(context, rpm), cam_angle: context.findings.at.section_angle() }
 }
 
-/// The speed where a multiplier of the motion of one impact a revolution passes -1, rpm; NaN where none does.
-fn flip(context: &Context<'_>) -> Result<f64, SimulateError> {
-    let (mut low, mut high) = (735.0, 745.0);
-    let Some(start) = followed(context, low)? else { return Ok(f64::NAN) };
-    // det(I + A) falls through 0: Newton's method from the motion at the bracket's lower end, half a bracket away at most.
-    let mut guess = start.state;
-    while high - low > tolerance::ROOT_WIDTH.value * high {
-        let middle = 0.5 * (low + high);
-        let Some(periodic) = map(context, middle).periodic(guess, 1)? else { return Ok(f64::NAN) };
-        if periodic.flip() > 0.0 {
-            (low, guess) = (middle, periodic.state);
-        } else {
-            high = middle;
-        }
-    }
-    Ok(high)
+/// The stable orbit at `rpm` of `revolutions` with one impact in each, followed over `range`, rpm, to the special point that
+/// `is` looked for.
+fn special(
+    context: &Context<'_>,
+    rpm: f64,
+    revolutions: u64,
+    range: [f64; 2],
+    is: impl Fn(Kind) -> bool,
+) -> Result<BranchPoint, Box<dyn Error>> {
+    let wanted = Search { revolutions, impacts: Some(revolutions as usize) };
+    let orbits = search(&machine(context, rpm), &wanted)?;
+    let stable = orbits.iter().find(|orbit| orbit.is_stable()).ok_or("no such stable orbit to follow")?;
+    let following = Following { parameter: Parameter::Speed, range, longest_step: 0.05, most_points: 400 };
+    let mut points = Branch::through(context.model, rpm, stable, &following)?.points.into_iter();
+    let found = points.find(|point| point.special.is_some_and(|special| is(special.kind)));
+    found.ok_or_else(|| "no such point on the branch".into())
 }
 
-/// The motion of two revolutions that the flip leaves at `rpm`, by running from x* and Newton's method; and the angles of
-/// its two impacts, rad, the larger last.
-fn of_two_revolutions(context: &Context<'_>, rpm: f64) -> Result<Option<(Periodic, [f64; 2])>, SimulateError> {
-    /// Enough for a start that is left by a multiplier as near to 1 as here.
-    const TRANSIENT: u64 = 20_000;
-    let map = map(context, rpm);
-    let mut motion = from_x_star(context, &map.machine)?;
-    map.machine.revolve(&mut motion, TRANSIENT)?;
-    let Some(periodic) = map.periodic(motion.state, 2)? else { return Ok(None) };
-    let first = last_impact(&map, periodic.state)?;
-    let second = last_impact(&map, map.apply(periodic.state)?.state)?;
-    Ok(Some((periodic, [first.min(second), first.max(second)])))
+/// The speed where a multiplier of the motion of one impact a revolution passes -1, rpm.
+fn flip(context: &Context<'_>) -> Result<f64, Box<dyn Error>> {
+    Ok(special(context, 700.0, 1, [690.0, 745.0], |kind| kind == Kind::Flip)?.rpm)
 }
 
 fn listed(numbers: &[f64]) -> String {
@@ -96,17 +77,12 @@ pub(in crate::paper) fn period_one_above(context: &Context<'_>) -> Decision {
 
 /// One impact line from 673.23 up, many impacts below; and what the diagram's upper end does.
 pub(in crate::paper) fn impact_diagram(context: &Context<'_>) -> Decision {
-    let (mut one_line, mut scattered) = (true, true);
-    for rpm in ABOVE {
-        one_line &= is_period_one(context, rpm, 3000)?;
-    }
-    for rpm in [661.0, 665.0, 670.0, 673.0] {
-        scattered &= !is_period_one(context, rpm, 3000)?;
-    }
-    let mut beyond = true;
-    for rpm in [740.0, 745.0, 750.0] {
-        beyond &= !is_period_one(context, rpm, 3000)?;
-    }
+    let of_one_impact = |speeds: &[f64]| -> Result<Vec<bool>, SimulateError> {
+        speeds.iter().map(|rpm| is_period_one(context, *rpm, 3000)).collect()
+    };
+    let one_line = !of_one_impact(&ABOVE)?.contains(&false);
+    let scattered = !of_one_impact(&[661.0, 665.0, 670.0, 673.0])?.contains(&true);
+    let beyond = !of_one_impact(&[740.0, 745.0, 750.0])?.contains(&true);
     let evidence = format!(
         "one impact, in one place, at all of {} rpm: {one_line}; none such at 661, 665, 670, 673 rpm: {scattered}; nor at \
          740, 745, 750 rpm: {beyond}",
@@ -140,28 +116,22 @@ pub(in crate::paper) fn transitions_at_corners(context: &Context<'_>) -> Decisio
     let [_, p, q, ..] = corners(context);
     let at = &context.findings.at;
     let flip = flip(context)?;
-    let (mut low, mut high) = (flip + 0.01, 739.5);
     // The line of the later impact meets Q where the motion of two revolutions ends.
-    let mut reached = f64::NAN;
-    while high - low > tolerance::SPEED_BRACKETED.value {
-        let middle = 0.5 * (low + high);
-        match of_two_revolutions(context, middle)? {
-            Some((_, [_, later])) if later < q => (low, reached) = (middle, later),
-            _ => high = middle,
-        }
-    }
-    let machine = machine(context, high + 0.1);
+    let end = special(context, flip + 0.01, 2, [flip, 739.5], |kind| matches!(kind, Kind::Corner { .. }))?;
+    let reached = end.orbit.impacts().map(|impact| impact.cam_angle).fold(f64::NAN, f64::max);
+    let machine = machine(context, end.rpm + 0.1);
     let mut motion = from_x_star(context, &machine)?;
     machine.revolve(&mut motion, 1000)?;
     let chaotic = growth(&machine, motion, 4000)? > tolerance::CHAOTIC_GROWTH.value;
     let evidence = format!(
         "the line of one impact meets P ({:.2} deg) at {:.6} rpm; upwards it flips at {flip:.4} rpm to two revolutions, and the \
-         later of their impacts, at {:.1} deg, meets Q ({:.1} deg) at {high:.3} rpm; 0.1 rpm further the Lyapunov exponent is \
+         later of their impacts, at {:.1} deg, meets Q ({:.1} deg) at {:.3} rpm; 0.1 rpm further the Lyapunov exponent is \
          above {} a revolution: {chaotic}",
         p.to_degrees(),
         at.speed_rpm(),
         reached.to_degrees(),
         q.to_degrees(),
+        end.rpm,
         tolerance::CHAOTIC_GROWTH.value
     );
     let at_corners = (at.corner.angle - p).abs() <= tolerance::CORNER_ANGLE.value
@@ -195,10 +165,10 @@ pub(in crate::paper) fn chaos_for_good(context: &Context<'_>) -> Decision {
 }
 
 pub(in crate::paper) fn orbit_at_700(context: &Context<'_>) -> Decision {
-    let map = map(context, 700.0);
-    let mut motion = from_x_star(context, &map.machine)?;
-    map.machine.revolve(&mut motion, 1000)?;
-    let (impact, corner) = (last_impact(&map, motion.state)?, context.findings.at.corner.angle);
+    let machine = machine(context, 700.0);
+    let orbit = settled(&machine, from_x_star(context, &machine)?, 1000, 1)?.ok_or("no motion is settled on")?;
+    let impact = orbit.impacts().last().map_or(f64::NAN, |impact| impact.cam_angle);
+    let corner = context.findings.at.corner.angle;
     let evidence = format!(
         "at 700 rpm the impact is at {:.2} deg, the corner at {:.2} deg; they meet at {:.6} rpm",
         impact.to_degrees(),
