@@ -129,8 +129,6 @@ table! {
     DISPLAYED_ZERO = 1e-12, "absolute, in the model's units: a thousand times the rounding of an orbit of size one";
     /// How closely a difference quotient meets the derivative it stands for.
     DIFFERENCED = 1e-5, "of the larger: a central difference over 1e-4 s of motions that take hundredths of a second";
-    /// How far a drawing's circles may miss one another.
-    DRAWING = 0.01, "cm, absolute: less than the width of its lines";
     /// How far a speed said to be "about" a whole number of rpm may be from it.
     ABOUT_RPM = 1.0, "rpm, absolute: the last digit that is given";
     /// From which growth of a small deviation per revolution a motion counts as chaotic.

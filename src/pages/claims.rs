@@ -22,7 +22,7 @@ pub fn terminal(found: &Claims) -> Vec<Block> {
             }
             blocks.extend([Block::Gap, Block::Paragraph(2, head), Block::Paragraph(4, (&claim.statement).into())]);
             blocks.extend(claim.correct.iter().map(|correct| Block::Paragraph(4, words!["Right: ", correct])));
-            blocks.push(Block::Paragraph(4, words!["Evidence: ", &claim.evidence]));
+            blocks.push(Block::Paragraph(4, words![format!("Evidence, {}: ", claim.known), &claim.evidence]));
         }
     }
     let agreement = if found.agrees {
@@ -46,17 +46,27 @@ pub fn document(found: &Claims) -> (Vec<Block>, Vec<Section>) {
         term("refuted"),
         ": what is said is wrong; ",
         term("open"),
-        ": not decided here yet."
+        ": not decided here yet. How a verdict is known: ",
+        term("proved"),
+        " by computer algebra, ",
+        term("computed"),
+        " in rounded numbers, ",
+        term("sampled"),
+        " at some cases out of many, or only ",
+        term("read"),
+        "."
     ];
     let counts: Vec<String> = found.groups().map(|(verdict, held)| format!("{} {verdict}", held.len())).collect();
     let counts = format!("{} statements: {}.", found.claims.len(), counts.join(", "));
     let title = Block::Title("What the paper states, and what was found".into());
     let sections = found.groups().map(|(verdict, held)| {
-        let columns = ["id", "where", "statement", "right instead", "evidence"].map(|head| Column::left(head, 0, 0));
+        let columns =
+            ["id", "where", "statement", "right instead", "known", "evidence"].map(|head| Column::left(head, 0, 0));
         let mut table = Table::new("", columns);
         for claim in held.iter() {
             let correct = claim.correct.as_deref().unwrap_or_default();
-            table.row([&claim.id, &claim.place, &claim.statement, correct, claim.evidence.as_str()].map(Words::from));
+            let known = claim.known.to_string();
+            table.row([&claim.id, &claim.place, &claim.statement, correct, &known, &claim.evidence].map(Words::from));
         }
         let title = words![capitalized(&verdict.to_string()), format!(" ({})", held.len())];
         Section { id: "", title, blocks: vec![Block::Table(table)] }

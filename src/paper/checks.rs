@@ -6,10 +6,19 @@ use super::context::{Context, Decision, Found, Residuals, decide};
 use super::dynamics::*;
 use super::jump_order::order_of_the_jump;
 use super::statements::*;
+use crate::known::Known::{self, Computed, Sampled};
 use crate::published::Verdict;
 
 /// Why some figures have nothing to decide.
 const DRAWING: &str = "a drawing: it states nothing that a computation could contradict";
+
+const DRAWN: &str = "the circles, by the coordinates that they are drawn with, miss touching by at most 0.005 of a base radius of \
+    2; in panel (b) the nose arcs run 3.8 deg past P; and the drawing is of another cam (flank from 70 deg, radii 2, 3.53, 0.745) \
+    than the one computed with";
+
+const NO_APPENDIX: &str = "the paper ends with Appendix A; eq:gff is proved without it";
+
+const WORDING: &str = "the formulas around it mean what is right";
 
 /// What decides a statement.
 #[derive(Clone, Copy)]
@@ -19,66 +28,66 @@ pub enum Check<'a> {
     /// A printed number, by its quantity.
     Number(&'a str),
     /// A computation on any model.
-    Any(fn(&Context<'_>) -> Decision),
+    Any(Known, fn(&Context<'_>) -> Decision),
     /// A computation on the paper's model.
-    Paper(fn(&Context<'_>) -> Decision),
-    /// Nothing yet, and why.
-    Open(&'a str),
+    Paper(Known, fn(&Context<'_>) -> Decision),
+    /// Somebody who read it: what was found, and why.
+    Read(Verdict, &'a str),
 }
 
 /// The checks that the ids of their statements do not name.
 pub static CHECKS: &[(&str, Check<'_>)] = &[
-    ("equation: eq:fb1", Check::Any(equation_of_motion)),
-    ("equation: eq:i1", Check::Any(restitution_law)),
-    ("cam: acceleration jumps", Check::Paper(acceleration_jumps)),
-    ("figure: camprofileeq", Check::Any(drawn_circles)),
-    ("appendix B", Check::Any(appendix_b)),
-    ("detachment", Check::Paper(detachment)),
-    ("chattering at 183 rpm", Check::Paper(chattering_at_183)),
-    ("chattering at 175 rpm", Check::Paper(chattering_at_175)),
-    ("impact diagram 115 to 200 rpm", Check::Paper(impact_diagram_of_slow_cams)),
-    ("resonant peaks", Check::Paper(resonant_peaks)),
-    ("period adding", Check::Paper(period_adding)),
-    ("period one above 673.23 rpm", Check::Paper(period_one_above)),
-    ("chaos at 670 rpm", Check::Paper(chaos_below)),
-    ("transition at the corner", Check::Paper(transition)),
-    ("transitions at the corners", Check::Paper(transitions_at_corners)),
-    ("coexisting attractor", Check::Paper(coexisting)),
-    ("chaotic for good", Check::Paper(chaos_for_good)),
-    ("figure: orbit at 700 rpm", Check::Paper(orbit_at_700)),
-    ("x* at rest", Check::Paper(at_rest)),
-    ("one impact", Check::Paper(one_impact)),
-    ("map is piecewise linear", Check::Paper(two_sides)),
-    ("validation", Check::Any(validation)),
-    ("five decimals", Check::Paper(five_decimals)),
-    ("odd count", Check::Paper(odd_count)),
-    ("nonsmooth fold", Check::Paper(nonsmooth_fold)),
-    ("figure: local map", Check::Paper(figure_of_the_local_map)),
-    ("fixed points above, none below", Check::Paper(fixed_points_above)),
-    ("order of the jump", Check::Any(order_of_the_jump)),
-    ("conclusions", Check::Any(continuity)),
+    ("equation: eq:fb1", Check::Any(Sampled, equation_of_motion)),
+    ("equation: eq:i1", Check::Any(Sampled, restitution_law)),
+    ("cam: acceleration jumps", Check::Paper(Computed, acceleration_jumps)),
+    ("figure: camprofileeq", Check::Read(Verdict::Misprint, DRAWN)),
+    ("appendix B", Check::Read(Verdict::Misprint, NO_APPENDIX)),
+    ("detachment", Check::Paper(Sampled, detachment)),
+    ("chattering at 183 rpm", Check::Paper(Computed, chattering_at_183)),
+    ("chattering at 175 rpm", Check::Paper(Computed, chattering_at_175)),
+    ("impact diagram 115 to 200 rpm", Check::Paper(Sampled, impact_diagram_of_slow_cams)),
+    ("resonant peaks", Check::Paper(Sampled, resonant_peaks)),
+    ("period adding", Check::Paper(Sampled, period_adding)),
+    ("period one above 673.23 rpm", Check::Paper(Sampled, period_one_above)),
+    ("chaos at 670 rpm", Check::Paper(Sampled, chaos_below)),
+    ("transition at the corner", Check::Paper(Sampled, transition)),
+    ("transitions at the corners", Check::Paper(Sampled, transitions_at_corners)),
+    ("coexisting attractor", Check::Paper(Sampled, coexisting)),
+    ("chaotic for good", Check::Paper(Computed, chaos_for_good)),
+    ("figure: orbit at 700 rpm", Check::Paper(Computed, orbit_at_700)),
+    ("x* at rest", Check::Paper(Computed, at_rest)),
+    ("one impact", Check::Paper(Sampled, one_impact)),
+    ("map is piecewise linear", Check::Paper(Computed, two_sides)),
+    ("validation", Check::Any(Computed, validation)),
+    ("five decimals", Check::Paper(Computed, five_decimals)),
+    ("odd count", Check::Paper(Computed, odd_count)),
+    ("nonsmooth fold", Check::Paper(Computed, nonsmooth_fold)),
+    ("figure: local map", Check::Paper(Computed, figure_of_the_local_map)),
+    ("fixed points above, none below", Check::Paper(Computed, fixed_points_above)),
+    ("order of the jump", Check::Any(Sampled, order_of_the_jump)),
+    ("conclusions", Check::Any(Computed, continuity)),
     ("equation: eq:lmaptheta_1", Check::Equation("eq:gff")),
     ("equation: eq:impactdynamics_1", Check::Equation("eq:lmapd")),
     ("equation: eq:impactdynamics_3", Check::Equation("eq:lmapd")),
     ("equation: eq:lmap_g", Check::Equation("eq:lmap")),
-    ("figure: pushroadvalve", Check::Open(DRAWING)),
-    ("figure: cam-shaft", Check::Open(DRAWING)),
+    ("figure: pushroadvalve", Check::Read(Verdict::Open, DRAWING)),
+    ("figure: cam-shaft", Check::Read(Verdict::Open, DRAWING)),
     ("figure: globalmap_2b", Check::Equation("eq:lmap")),
     ("figure: ZDM5", Check::Equation("eq:H")),
-    ("figure: bif_time (c)", Check::Paper(impact_diagram)),
-    ("figure: bif_time (d)", Check::Paper(period_one_above)),
+    ("figure: bif_time (c)", Check::Paper(Sampled, impact_diagram)),
+    ("figure: bif_time (d)", Check::Paper(Sampled, period_one_above)),
     ("equation: composition", Check::Equation("eq:lmap")),
     ("equation: implicit derivative in x", Check::Equation("Eq:dti_dxn")),
     ("equation: implicit derivative in T", Check::Equation("Eq:dti_dT")),
     ("equation: one-sided derivatives", Check::Equation("eq:linearmap")),
-    ("equation: least squares", Check::Any(validation)),
+    ("equation: least squares", Check::Any(Computed, validation)),
     ("equation: shifted map, region", Check::Equation("eq:pwlf, region")),
     ("equation: O, T and the characteristic polynomial", Check::Equation("A bar")),
     ("equation: pieces of the lift", Check::Equation("appendix A, laws")),
-    ("positive constants", Check::Paper(positive_constants)),
-    ("caption: discontinuous profile", Check::Paper(profile_is_continuous)),
-    ("wording: derivative of the acceleration", Check::Any(wording)),
-    ("wording: mu", Check::Any(wording)),
+    ("positive constants", Check::Paper(Computed, positive_constants)),
+    ("caption: discontinuous profile", Check::Paper(Computed, profile_is_continuous)),
+    ("wording: derivative of the acceleration", Check::Read(Verdict::Misprint, WORDING)),
+    ("wording: mu", Check::Read(Verdict::Misprint, WORDING)),
 ];
 
 /// The check of a statement: that of the table, or else the proof or the number that its id names.
@@ -92,21 +101,24 @@ pub fn find(id: &str) -> Option<Check<'_>> {
 impl Check<'_> {
     /// Whether another model than the paper's leaves it open.
     pub fn is_about_the_papers_model(self) -> bool {
-        matches!(self, Self::Number(_) | Self::Paper(_))
+        matches!(self, Self::Number(_) | Self::Paper(..))
     }
 
-    /// Decides the statement.
+    /// Decides the statement. What no check comes to is known by reading alone.
     pub fn run(self, context: &Context<'_>) -> Found {
-        let decision = match self {
+        let (known, decision) = match self {
             _ if self.is_about_the_papers_model() && !context.is_paper => {
-                Err("about the paper's follower and cam; this model has others".into())
+                (Known::Read, Err("about the paper's follower and cam; this model has others".into()))
             }
-            Self::Open(why) => Err(why.into()),
-            Self::Equation(label) => equation(context, label),
-            Self::Number(quantity) => number(context, quantity),
-            Self::Any(check) | Self::Paper(check) => check(context),
+            Self::Read(verdict, why) => (Known::Read, Ok((verdict, why.into()))),
+            Self::Equation(label) => (Known::Proved, equation(context, label)),
+            Self::Number(quantity) => (Computed, number(context, quantity)),
+            Self::Any(known, check) | Self::Paper(known, check) => (known, check(context)),
         };
-        decision.unwrap_or_else(|why| Found { verdict: Verdict::Open, evidence: why.to_string() })
+        match decision {
+            Ok((verdict, evidence)) => Found { verdict, known, evidence },
+            Err(why) => Found { verdict: Verdict::Open, known: Known::Read, evidence: why.to_string() },
+        }
     }
 }
 

@@ -6,6 +6,7 @@ use std::error::Error;
 use serde::Deserialize;
 
 use crate::cam::Cam;
+use crate::known::Known;
 use crate::model::Model;
 use crate::published::Verdict;
 use crate::study::verify::Verification;
@@ -63,16 +64,18 @@ impl<'a> Context<'a> {
 pub struct Found {
     /// Its verdict.
     pub verdict: Verdict,
+    /// How that is known.
+    pub known: Known,
     /// The numbers that it rests on.
     pub evidence: String,
 }
 
-/// What a check comes to; an error says why the statement stays open.
-pub(super) type Decision = Result<Found, Box<dyn Error>>;
+/// The verdict that a check comes to, with its evidence; an error says why the statement stays open.
+pub(super) type Decision = Result<(Verdict, String), Box<dyn Error>>;
 
 /// `holds` or `otherwise`, with the numbers.
 pub(super) fn decide(holds: bool, otherwise: Verdict, evidence: String) -> Decision {
-    Ok(Found { verdict: if holds { Verdict::Holds } else { otherwise }, evidence })
+    Ok((if holds { Verdict::Holds } else { otherwise }, evidence))
 }
 
 /// Why the ledger cannot be held against anything.

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::checks;
 use super::context::{Context, Found, LedgerError};
+use crate::known::Known;
 use crate::progress::Watch;
 use crate::published::Verdict;
 
@@ -44,6 +45,8 @@ pub struct Held {
     /// What the ledger says.
     #[serde(skip)]
     pub listed: Verdict,
+    /// How the verdict is known.
+    pub known: Known,
     /// The numbers that the verdict rests on.
     pub evidence: String,
     /// What is right instead, where the check finds it wrong.
@@ -87,13 +90,13 @@ impl Claims {
         let one = |(done, claim): (usize, Claim)| {
             watch.at(&claim.id, done as u64, total);
             let check = checks::find(&claim.id).ok_or_else(|| LedgerError::Unchecked(claim.id.clone()))?;
-            let Found { verdict, evidence } = check.run(context);
+            let Found { verdict, known, evidence } = check.run(context);
             let elsewhere = !context.is_paper && check.is_about_the_papers_model() && verdict == Verdict::Open;
             let as_found = verdict == claim.verdict || elsewhere;
             let correct = claim.correct.filter(|_| matches!(verdict, Verdict::Misprint | Verdict::Refuted));
             *counts.entry(verdict).or_default() += 1;
             let Claim { id, place, statement, verdict: listed, .. } = claim;
-            Ok(Held { id, place, statement, verdict, listed, evidence, correct, as_found })
+            Ok(Held { id, place, statement, verdict, listed, known, evidence, correct, as_found })
         };
         let claims = claims.into_iter().enumerate().map(one).collect::<Result<Vec<_>, LedgerError>>()?;
         let agrees = claims.iter().all(|held| held.as_found);

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use crate::common;
+use corner_impact::known::Known;
 use corner_impact::model::Model;
 use corner_impact::pages;
 use corner_impact::paper::checks::{CHECKS, Check, find};
@@ -66,12 +67,46 @@ fn every_check_comes_to_the_ledgers_verdict() {
     }
 }
 
+/// What somebody read is known by reading, the others by what was proved, computed or sampled; and every word occurs.
+#[test]
+fn every_verdict_says_how_it_is_known() {
+    let claims = held(&common::osorio()).claims;
+    for held in &claims {
+        let check = find(&held.id).unwrap();
+        assert_eq!(matches!(check, Check::Read(..)), held.known == Known::Read, "{held:#?}");
+        assert_eq!(matches!(check, Check::Equation(_)), held.known == Known::Proved, "{held:#?}");
+    }
+    let words: BTreeSet<Known> = claims.iter().map(|held| held.known).collect();
+    assert_eq!(words.len(), 4, "{words:?}");
+}
+
+/// The numbers that were read off the paper's drawing of its cam: what the ledger says of them follows.
+#[test]
+fn the_drawn_cam_is_as_the_ledger_says() {
+    let apart = |one: [f64; 2], other: [f64; 2]| (one[0] - other[0]).hypot(one[1] - other[1]);
+    let (axis, base, flank, flank_radius) = ([3.25, 4.0], 2.0, [1.8114, 3.4764], 3.5310);
+    let (nose, nose_radius, top) = ([4.0440, 1.8184], 0.745, 3.0716);
+    let gaps = [
+        apart(flank, axis) - (flank_radius - base),
+        apart(flank, nose) - (flank_radius - nose_radius),
+        apart(nose, axis) + nose_radius - top,
+    ];
+    let largest = gaps.iter().fold(0.0_f64, |largest, gap| largest.max(gap.abs()));
+    // In panel (b), deg: where the flank's arcs end, and where the nose's do.
+    let past = (147.1976_f64 - 143.4024).max(36.5976 - 32.8367);
+    let claims = held(&common::osorio()).claims;
+    let evidence = &claims.iter().find(|held| held.id == "figure: camprofileeq").unwrap().evidence;
+    for part in [format!("at most {largest:.3} of"), format!("{past:.1} deg past P")] {
+        assert!(evidence.contains(&part), "{part} in {evidence}");
+    }
+}
+
 /// A statement found open is one that no check decides, and the other way round.
 #[test]
 fn open_is_what_no_check_decides() {
     for held in held(&common::osorio()).claims {
         let check = find(&held.id).unwrap();
-        assert_eq!(matches!(check, Check::Open(_)), held.listed == Verdict::Open, "{held:#?}");
+        assert_eq!(matches!(check, Check::Read(Verdict::Open, _)), held.listed == Verdict::Open, "{held:#?}");
     }
 }
 
@@ -132,7 +167,7 @@ fn the_json_document_has_the_fields_of_the_contract() {
     let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(document["schema"], "corner-impact/claims/1");
     for claim in document["claims"].as_array().unwrap() {
-        for field in ["id", "where", "statement", "verdict", "evidence"] {
+        for field in ["id", "where", "statement", "verdict", "known", "evidence"] {
             assert!(claim[field].is_string(), "{claim}");
         }
         let verdict = claim["verdict"].as_str().unwrap();

@@ -53,7 +53,7 @@ pub(crate) fn section(dossier: &Dossier) -> Option<Section> {
                     p.head { (words(&verdict(claim.verdict))) " " a href={ "#" (anchor) } { (claim.id) } " " span.place { (claim.place) } }
                     p { (claim.statement) }
                     @if let Some(correct) = &claim.correct { p.correct { "Right: " (correct) } }
-                    p.evidence { "Evidence: " (claim.evidence) }
+                    p.evidence { "Evidence, " (claim.known) ": " (claim.evidence) }
                     @if !claim.as_found { p.disagrees { "This is otherwise than the ledger says." } }
                 }
             }
