@@ -1,13 +1,14 @@
 //! The paper's conjecture that the order of the derivative that jumps decides the local map: one corner after another.
 
+use std::error::Error;
 use std::f64::consts::TAU;
 
 use super::context::{Context, Decision, decide};
 use crate::cam::{Cam, Corner};
+use crate::corner::jump_order::Approach;
 use crate::corner::jump_order::compared::{Compared, compare};
 use crate::corner::jump_order::predicted::Hits;
-use crate::corner::jump_order::{Approach, JumpOrderError};
-use crate::model::{CamProfile, Model, ModelError, OSORIO_2008};
+use crate::model::{CamProfile, Model, OSORIO_2008};
 use crate::published::Verdict;
 
 /// A flight onto a corner of a model that is built in.
@@ -66,37 +67,17 @@ pub static EXAMPLES: [Example; 11] = [
     Example { name: "program, 4-5-6-7 polynomial to dwell", corner: 0, closing_velocity: 5.0, ..PROGRAM },
 ];
 
-/// Why an example could not be compared.
-#[derive(Debug, thiserror::Error)]
-pub enum ExampleError {
-    /// Its model does not read.
-    #[error("{0}")]
-    Model(#[from] ModelError),
-    /// Its cam has no such corner.
-    #[error("{name}: the cam has {count} corners, none with index {index}")]
-    NoCorner {
-        /// The example.
-        name: &'static str,
-        /// Which was asked for.
-        index: usize,
-        /// How many there are.
-        count: usize,
-    },
-    /// Prediction or measurement failed.
-    #[error(transparent)]
-    JumpOrder(#[from] JumpOrderError),
-}
-
 impl Example {
     /// Model, cam and flight.
-    pub fn build(&self) -> Result<(Model, Cam, Approach), ExampleError> {
+    pub fn build(&self) -> Result<(Model, Cam, Approach), Box<dyn Error>> {
         let mut model = Model::parse(self.file, self.text)?;
         if let CamProfile::RectifiedSine(profile) = &mut model.cam {
             profile.amplitude *= if self.upside_down { -1.0 } else { 1.0 };
         }
         let cam = Cam::new(&model)?;
         let corners = cam.corners();
-        let no_corner = || ExampleError::NoCorner { name: self.name, index: self.corner, count: corners.len() };
+        let no_corner =
+            || format!("{}: the cam has {} corners, none with index {}", self.name, corners.len(), self.corner);
         let corner: Corner = *corners.get(self.corner).ok_or_else(no_corner)?;
         let omega = crate::simulate::angular_velocity(self.rpm);
         let approach = Approach::new(corner, omega, omega * corner.minus.slope - self.closing_velocity)?;
@@ -104,7 +85,7 @@ impl Example {
     }
 
     /// What is predicted and what is measured there.
-    pub fn compare(&self) -> Result<Compared, ExampleError> {
+    pub fn compare(&self) -> Result<Compared, Box<dyn Error>> {
         let (model, cam, approach) = self.build()?;
         Ok(compare(&model, &cam, &approach)?)
     }

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use super::{Round, corners, machine};
+use super::{Round, corners, listed, machine};
 use crate::bracket::{Width, halve};
 use crate::diagram::growth;
 use crate::flight::Flight;
@@ -15,10 +15,6 @@ use crate::tolerance;
 fn first_speed(low: f64, high: f64, is: impl FnMut(f64) -> Result<bool, SimulateError>) -> Result<f64, SimulateError> {
     let [_, high] = halve([low, high], Width::Relative(tolerance::ROOT_WIDTH.value), is)?;
     Ok(high)
-}
-
-fn listed(numbers: &[f64], places: usize) -> String {
-    numbers.iter().map(|number| format!("{number:.places$}")).collect::<Vec<_>>().join(", ")
 }
 
 /// The lowest speed with a release, by simulation; and where the nose would first have to pull, right after P:
@@ -150,8 +146,8 @@ pub(in crate::paper) fn resonant_peaks(context: &Context<'_>) -> Decision {
         "impacts 2 to 6 after the release cross Q' (200 deg) at {} rpm: at each the angle where impacts accumulate has a cusp \
          upwards; impacts 1 to 6 cross Q (160 deg) at {} rpm: at each a cusp downwards: {cusps}. The crossing impact's own \
          line is smooth, those after it have the cusp",
-        listed(&highest, 3),
-        listed(&lowest, 3)
+        listed(highest.iter().map(|rpm| format!("{rpm:.3}"))),
+        listed(lowest.iter().map(|rpm| format!("{rpm:.3}")))
     );
     decide(cusps, Verdict::Refuted, evidence)
 }
@@ -169,7 +165,6 @@ pub(in crate::paper) fn period_adding(context: &Context<'_>) -> Decision {
     let period = |rpm: f64| Ok::<_, SimulateError>(Round::new(&machine.at_speed(angular_velocity(rpm)), p)?.period);
     let ones = ADDING_ONE.iter().map(|rpm| period(*rpm)).collect::<Result<Vec<_>, _>>()?;
     let twos = ADDING_TWO.iter().map(|rpm| period(*rpm)).collect::<Result<Vec<_>, _>>()?;
-    let shown = |periods: &[u64]| periods.iter().map(u64::to_string).collect::<Vec<_>>().join(", ");
     let gaps: Vec<f64> = ADDING_ONE.windows(2).map(|two| two[1] - two[0]).collect();
     let shrinks = gaps.windows(2).all(|two| two[1] < two[0]);
     let steps = |periods: &[u64], step: u64| periods.windows(2).all(|two| two[1] == two[0] + step);
@@ -178,10 +173,10 @@ pub(in crate::paper) fn period_adding(context: &Context<'_>) -> Decision {
         "stable motions of {} revolutions at {} rpm: each has one more revolution of three impacts, and the windows \
          accumulate, five times closer each time; of {} revolutions at {} rpm; windows of other periods lie in between, and \
          there are none up to 198.56 rpm, where all is period one",
-        shown(&ones),
-        listed(&ADDING_ONE, 3),
-        shown(&twos),
-        listed(&ADDING_TWO, 3)
+        listed(&ones),
+        listed(ADDING_ONE.iter().map(|rpm| format!("{rpm:.3}"))),
+        listed(&twos),
+        listed(ADDING_TWO.iter().map(|rpm| format!("{rpm:.3}")))
     );
     decide(holds, Verdict::Refuted, evidence)
 }

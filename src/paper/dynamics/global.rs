@@ -2,7 +2,7 @@
 //! how the motion goes over to it when its orbit is gone.
 
 use super::transition::{from_x_star, is_period_one, map};
-use super::{machine, settles};
+use super::{listed, machine, settles};
 use crate::border_collision::{LocalMap, passage};
 use crate::diagram::growth;
 use crate::flight::State;
@@ -45,8 +45,8 @@ pub(in crate::paper) fn transition(context: &Context<'_>) -> Decision {
         "one impact a revolution after 3000 from x* at 1e-4 rpm above {speed:.6} rpm: {above}; with the speed then lowered to \
          1e-4 rpm below it, after 10000 more: {below}; {} rpm below it the motion has left x* by {LEFT} m after {} revolutions \
          (piecewise-linear map/runs), {decade:.1} more for each factor of ten",
-        BELOW.map(|below| format!("{below:e}")).join(", "),
-        counts.join(", "),
+        listed(BELOW.map(|below| format!("{below:e}"))),
+        listed(counts),
     );
     decide(above && !below && agree, Verdict::Refuted, evidence)
 }
@@ -82,7 +82,7 @@ pub(in crate::paper) fn coexisting(context: &Context<'_>) -> Decision {
          {lines} lines, is the stable manifold of the unstable orbit of one impact, by runs backwards, within {:e} m: \
          {parted}; that orbit's unstable manifold, which the chaotic motion fills, meets it at {lost:.2} rpm; at 683 rpm both \
          starts settle: {alone}",
-        COEXISTING.map(|rpm| rpm.to_string()).join(", "),
+        listed(COEXISTING),
         tolerance::CHAOTIC_GROWTH.value,
         tolerance::BORDER_ON_MANIFOLD.value,
     );

@@ -22,6 +22,10 @@ pub(super) use transition::{
     chaos_below, chaos_for_good, impact_diagram, orbit_at_700, period_one_above, transitions_at_corners,
 };
 
+fn listed(numbers: impl IntoIterator<Item = impl ToString>) -> String {
+    numbers.into_iter().map(|number| number.to_string()).collect::<Vec<_>>().join(", ")
+}
+
 /// The paper's machine at a speed.
 fn machine(context: &Context<'_>, rpm: f64) -> Machine {
     Machine::new(context.cam.clone(), &context.model.follower, angular_velocity(rpm))

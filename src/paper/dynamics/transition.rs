@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::ops::ControlFlow;
 
-use super::{corners, machine, settles};
+use super::{corners, listed, machine, settles};
 use crate::diagram::{exponent, growth};
 use crate::orbit::branch::{Branch, BranchPoint, Following, Kind};
 use crate::orbit::search::settled;
@@ -53,10 +53,6 @@ fn special(
 /// The speed where a multiplier of the motion of one impact a revolution passes -1, rpm.
 fn flip(context: &Context<'_>) -> Result<f64, Box<dyn Error>> {
     Ok(special(context, 700.0, 1, [690.0, 745.0], |kind| kind == Kind::Flip)?.rpm)
-}
-
-fn listed(numbers: &[f64]) -> String {
-    numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(", ")
 }
 
 pub(in crate::paper) fn period_one_above(context: &Context<'_>) -> Decision {
