@@ -115,6 +115,7 @@ impl Flight {
     /// `q''` in free flight, m/s^2.
     #[inline]
     pub fn acceleration(&self, state: State) -> f64 {
+        // eq:fb1   q'' = -2 zeta q' - w0^2 (q - rest) - g; the paper measures q from where the spring is slack, rest = 0
         self.force(state.position) - 2.0 * self.zeta * state.velocity
     }
 

@@ -7,7 +7,7 @@ use nalgebra::Matrix2;
 /// `incoming` is the follower's velocity before, `surface` the cam's velocity `c'`, both m/s; `restitution` is r.
 #[inline]
 pub fn rebound(restitution: f64, incoming: f64, surface: f64) -> f64 {
-    // As c' + r (c' - v-): the relative velocity is reversed and scaled, with no cancellation as it dies out.
+    // eq:i1   v+ = (1 + r) c' - r v-, as c' + r (c' - v-): the relative velocity is reversed and scaled, with no cancellation as it dies out.
     surface + relative_rebound(restitution, incoming, surface)
 }
 
@@ -45,6 +45,8 @@ impl ImpactRates {
     ///
     /// Not finite at a graze, `v- = c'`.
     pub fn saltation(&self) -> Matrix2<f64> {
+        // eq:ftaylormapcornerX, what stands between the two flights, with the sign of its bracket repaired:
+        // I + R - (R phi_0' x - phi_0' R x + phi_0' R y - R y') h/(h (phi_0' x - y')), x = (q, v-) and y = (c, c')
         let r = self.restitution;
         let turn = self.acceleration_after + r * self.acceleration_before - (1.0 + r) * self.cam_acceleration;
         Matrix2::new(-r, 0.0, turn / (self.velocity_before - self.cam_velocity), -r)

@@ -35,7 +35,7 @@ impl Return {
 }
 
 impl StroboscopicMap {
-    /// One revolution from `state`.
+    /// One revolution from `state`: eq:lmap_g.
     pub fn apply(&self, state: State) -> Result<Return, SimulateError> {
         let mut events = Vec::new();
         let state = self.machine.turn(self.cam_angle, state, TAU, |event| {
@@ -87,6 +87,13 @@ pub struct Periodic {
     pub state: State,
     /// How one period carries a small deviation: its eigenvalues are the multipliers.
     pub matrix: Matrix2<f64>,
+}
+
+impl Periodic {
+    /// det(I + A): 0 where a multiplier is -1, and the motion flips to one of twice the period.
+    pub fn flip(&self) -> f64 {
+        1.0 + self.matrix.trace() + self.matrix.determinant()
+    }
 }
 
 /// Follower and cam at one moment of a trace.

@@ -19,6 +19,7 @@ pub fn border(model: &Model, cam: &Cam, at: &CornerImpact) -> (RowVector2<f64>, 
     }
     let response = Flight::new(&model.follower).response(0.5 * at.period);
     let omega0_squared = model.follower.stiffness / model.follower.mass;
-    // dq/dq0 = 1 - w0^2 p,  dq/dv0 = s
+    // Eq:dti_dxn   e = dH/dx = h phi_{T/2}: dq/dq0 = 1 - w0^2 p,  dq/dv0 = s
+    // Eq:dti_dT    f = dH/dT = h phi_{T/2}' x/2 = v/2, both at t_i = 0
     (RowVector2::new(1.0 - omega0_squared * response.step, response.impulse), 0.5 * at.velocity_before)
 }

@@ -46,6 +46,7 @@ pub fn side_map(follower: &Follower, period: f64, v: f64, lift: &Lift) -> SideMa
     // a(q, v) = -2 zeta v - w0^2 (q - rest) - g, at the corner's position
     let spring = omega0_squared * (lift.value - follower.rest_position) + follower.gravity;
     let acceleration = |v: f64| -2.0 * zeta * v - spring;
+    // eq:lmaptheta_1   F = phi_{T/2}: the flight to the corner, and from there
     let f = propagator(zeta, omega0_squared, 0.5 * period);
     // S = 2 zeta c' + c'' + w0^2 q, the cam's acceleration less the follower's own at the cam's velocity
     let s = c2 - acceleration(c1);
@@ -73,12 +74,14 @@ pub fn orbit(model: &Model, at: &CornerImpact) -> Result<(Vector2<f64>, f64), No
     let zeta = follower.damping / (2.0 * follower.mass);
     let omega0_squared = follower.stiffness / follower.mass;
     let equilibrium = follower.rest_position - follower.gravity / omega0_squared;
+    // eq:impactdynamics_2   x+ = x + R (x - y)
     let restitution = Matrix2::new(0.0, 0.0, 0.0, -(1.0 + follower.restitution));
     let fixed_point = |period: f64| {
         let f = propagator(zeta, omega0_squared, 0.5 * period);
         let y0 = Vector2::new(at.corner.minus.value - equilibrium, TAU / period * at.corner.minus.slope);
         let whole = Matrix2::identity() - propagator(zeta, omega0_squared, period) - f * restitution * f;
         let x = -(whole.try_inverse()? * (f * (restitution * y0)));
+        // eq:H at t_i = 0   h (F x - y_0) = 0
         Some((x, (f * x - y0)[0]))
     };
     let fixed_point = |period: f64| fixed_point(period).ok_or(NoFixedPoint { period });
@@ -91,7 +94,7 @@ pub fn orbit(model: &Model, at: &CornerImpact) -> Result<(Vector2<f64>, f64), No
     if settled { Ok((fixed_point(period)?.0, period)) } else { Err(NoFixedPoint { period }) }
 }
 
-/// eq:gff: `phi_t = e^{-zeta t} (I cos(ws t) + A sin(ws t))`, `ws = sqrt(w0^2 - zeta^2)`, with its limits for critical and
+/// eq:fbsol1, eq:gff: `phi_t = e^{-zeta t} (I cos(ws t) + A sin(ws t))`, `ws = sqrt(w0^2 - zeta^2)`, with its limits for critical and
 /// over-damping, where the cosine and sine become hyperbolic.
 pub(super) fn propagator(zeta: f64, omega0_squared: f64, t: f64) -> Matrix2<f64> {
     let square = omega0_squared - zeta * zeta;

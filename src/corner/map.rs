@@ -7,7 +7,7 @@ use crate::cam::Side;
 pub use crate::orbit::Eigenvalue;
 use crate::orbit::eigenvalues;
 
-/// One side of the map: `dx' = A dx + B dT`.
+/// One side of the map, eq:linearmap: `dx' = A dx + B dT`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SideMap {
     /// A, 2x2; rows and columns are position (m) and velocity (m/s).
@@ -46,7 +46,7 @@ pub(crate) struct Sides<T> {
     pub plus: T,
 }
 
-/// Both sides of the map. `minus` holds for impacts before the corner, `plus` for impacts after it.
+/// Both sides of the map, eq:pwlf. `minus` holds for impacts before the corner, `plus` for impacts after it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct CornerMap {
     /// With c'' before the corner.

@@ -146,6 +146,7 @@ impl<'a> Around<'a> {
         let mut gap = deviation;
         gap[(0, 2)] -= value;
         let mut after = rates.saltation() * gap;
+        // eq:ftaylormapcornerT, what the impact adds where T varies: -R dy/dT, dy/dT = (0, -c'/T) at the corner
         let faster = omega * slope - velocity * change.period / self.at.period;
         after[(0, 2)] += value;
         after[(1, 2)] += (1.0 + r) * faster + change.restitution * (velocity - v);

@@ -195,12 +195,16 @@ fn neighbour(at: &CornerImpact, machine: &Machine, side: Side, reach: f64) -> Op
     let share = 1.0 - SLOWER * (turn.abs() / FARTHEST);
     let velocity = cam_velocity + share * (at.velocity_before - at.cam_velocity);
     let before = State { position: lift.value, velocity };
+    // eq:impactdynamics_2, at time -t_i
     let velocity = rebound(machine.restitution(), before.velocity, cam_velocity);
     let after = State { position: lift.value, velocity };
     let half = 0.5 * at.period;
+    // eq:lmap   x_1 to x_2
     let (first, coming) = flown(flight, before, time, -half)?;
     let (last, going) = flown(flight, after, time, half)?;
+    // eq:lmapd   x_d^- to x_d^+, by eq:impactdynamics_1: the state before the impact is phi_{-t_i} x_d^-
     let (from, past) = flown(flight, before, time, 0.0)?;
+    // eq:impactdynamics_3   x_d^+ = phi_{t_i} of the state after it
     let (to, returned) = flown(flight, after, time, 0.0)?;
     let map = StroboscopicMap { machine: machine.clone(), cam_angle: at.section_angle() };
     let run = map.apply(first).ok()?;

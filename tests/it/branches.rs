@@ -71,8 +71,7 @@ fn the_papers_branch_has_its_corner_and_its_flip() {
 fn flip(model: &Model, rpm: f64) -> f64 {
     let map = StroboscopicMap { machine: machine(model, rpm), cam_angle: 0.0 };
     let stable = orbits(model, 738.0, 1).into_iter().find(|orbit| orbit.is_stable()).unwrap();
-    let matrix = map.periodic(stable.state, 1).unwrap().unwrap().matrix;
-    1.0 + matrix.trace() + matrix.determinant()
+    map.periodic(stable.state, 1).unwrap().unwrap().flip()
 }
 
 /// Where `holds` turns from true at the lower end to false.

@@ -22,6 +22,7 @@ mod figures;
 mod gallery;
 mod global;
 mod jump_order;
+mod labels;
 mod layering;
 mod ledger;
 mod local_map;
