@@ -1,7 +1,7 @@
 //! The numbers that the paper prints, each with what was found about it.
 //!
-//! The digits stand in `golden/published`, as printed; the findings stand here. A number found wrong must stay wrong: if it
-//! ever agrees, that is as much of a surprise as a right one that does not, and both fail the verification.
+//! The digits stand in `golden/published`, as printed; the findings stand here. A printed number that was found wrong must
+//! stay wrong: if a computed number ever agrees with it, the verification fails, as it does where a right one disagrees.
 
 use serde::{Deserialize, Serialize};
 

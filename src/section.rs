@@ -1,4 +1,4 @@
-//! The stroboscopic map: the follower's state each time the cam passes one angle; and traces, many angles a turn.
+//! The stroboscopic map, from the follower's state at a cam angle to its state a revolution later; and traces of a motion.
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;

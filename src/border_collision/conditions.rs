@@ -1,8 +1,8 @@
 //! The conditions under which a border collision is one of the generic kinds, each with how far it is from failing.
 //!
-//! A distance is without units and the same in any units of position, velocity and time: a quantity over the sum of the sizes
-//! of its terms, or how far an eigenvalue's modulus is from 1. It is 0 where the condition fails. Continuity alone must be met
-//! and not missed: its distance is the part of what rounding is allowed that is left, 1 or less.
+//! A distance has no unit: it is a quantity divided by the sum of the sizes of its terms, or how far the modulus of an
+//! eigenvalue is from 1. The distance is 0 where the condition fails. Continuity is the one condition that an equation has
+//! to meet: its distance is the share of the allowance for rounding that is not used up, at most 1.
 
 use nalgebra::{Matrix2, RowVector2};
 use serde::Serialize;

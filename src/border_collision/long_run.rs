@@ -1,8 +1,8 @@
 //! Where motions of the local map end: on a periodic orbit, in chaos, or nowhere.
 //!
-//! Periodic orbits and escapes are not guessed from sizes. Once the sides repeat a word, the rest of the motion is known:
-//! it tends to the word's orbit where that is stable and on its own sides, and follows the word for ever where a sufficient
-//! condition says so. What repeats no word is measured: the largest Lyapunov exponent and how well its mean is known.
+//! Whether a motion ends on an orbit or escapes is not guessed from its size. Once the sides that it visits repeat a word,
+//! the rest is known: it tends to the orbit of that word where this orbit is stable and visits those sides, and it escapes
+//! where a sufficient condition holds. For a motion that repeats no word the largest Lyapunov exponent is measured.
 
 use nalgebra::{Matrix2, Vector2};
 

@@ -1,4 +1,4 @@
-//! Derivatives of a lift law beyond the third, by power series: what tells at which order two laws part.
+//! Derivatives of a lift law of any order, by power series: they tell which derivative jumps where two laws meet.
 
 /// Lift and its derivatives at an angle, order 0 first.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,8 +1,8 @@
 //! A limit for step to 0 from a few steps (Richardson), with an estimate of its error.
 //!
-//! Where a quantity errs by known powers of the step, halving the step k times eliminates a power each time, until rounding,
-//! which grows as the step shrinks, takes over. Each entry of the table is known to its last correction and to its rounding;
-//! the one for which their sum is smallest is taken, and that sum is its error estimate.
+//! Where the error of a quantity is a series of known powers of the step, each halving of the step removes one power,
+//! until rounding, which grows as the step shrinks, takes over. The error of a table entry is estimated by the last
+//! correction that was made to it plus its rounding. The entry with the smallest estimate is the limit.
 
 use nalgebra::Vector2;
 

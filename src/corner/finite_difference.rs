@@ -1,12 +1,12 @@
 //! A and B by central differences of simulated periods, extrapolated to step 0.
 //!
-//! A central difference errs by even powers of the step; its rounding is that of the period over the step.
+//! The error of a central difference is a series of even powers of the step; its rounding grows as the step shrinks.
 //!
-//! Over a period of several impacts rounding is amplified as deviations are. Such an orbit is differenced from the middle of
-//! each flight to that of the next as well, and the parts multiplied.
+//! Over a period of several impacts rounding grows as deviations do. Such an orbit is also differenced from the middle of
+//! each flight to the middle of the next, and the parts multiplied; each entry is taken from the better way.
 //!
-//! Near a graze an impact amplifies the rounding of the gap by the inverse of its relative velocity. The error that is told
-//! counts that at every impact, and the steps begin as wide as the impacts remain the orbit's.
+//! Near a graze an impact amplifies rounding by the inverse of its relative velocity. The error estimate counts this at
+//! every impact, and the first steps are as wide as they can be without changing which impacts there are.
 
 use nalgebra::{Matrix2, Vector2, Vector3};
 

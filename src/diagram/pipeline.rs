@@ -1,9 +1,9 @@
 //! Speeds side by side, their rows in order, in bounded memory.
 //!
-//! Each worker turns rows into blocks, whatever those are, and sends them to the thread that called, which takes the blocks
-//! of one speed after those of the speed before. A worker runs a few neighbouring speeds in a row and sends what is short
-//! together: each time the thread that called wakes, a worker stands still where cores are few. Queues are short: a worker
-//! that is ahead waits, and the worker of the lowest open speed never does.
+//! Each worker turns rows into blocks and sends the blocks to the calling thread, which takes them speed by speed. Where
+//! cores are few, a worker stands still whenever the calling thread wakes. So a worker runs a few neighbouring speeds in a
+//! row and sends short blocks together. Queues are short: a worker that is ahead has to wait, but never the worker of the
+//! lowest speed that is not finished.
 
 use std::ops::{ControlFlow, Range};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};

@@ -1,5 +1,5 @@
-//! One machine at speeds on either side of its corner impact: every orbit of one impact a revolution, and what runs settle
-//! on with the speed falling and rising.
+//! One machine at speeds on either side of its corner impact: the orbits of one impact a revolution, stable or not, and
+//! what runs settle on while the speed falls and while it rises.
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;

@@ -6,9 +6,9 @@
 //! L_i x_i + N_i x_{i+1} = r_i        the last is followed by the first
 //! ```
 //!
-//! Going around, what the flights so far leave is two equations `F x_0 + G x_i = h`. With the next flight's they are four, of
-//! which a QR factorization of the columns of `x_i` leaves two free of `x_i`: orthogonal, so that nothing grows over an
-//! unstable orbit. Work rises with the number of impacts, not with its cube.
+//! The pass around the cycle keeps two equations `F x_0 + G x_i = h`. Together with the equations of the next flight these
+//! are four, and a QR factorization of the columns of `x_i` leaves two without `x_i`. It is orthogonal, so that no number
+//! grows over an unstable orbit. The work is proportional to the number of impacts.
 
 use nalgebra::{DVector, Matrix2, Matrix4x2, SMatrix, Vector2};
 

@@ -1,7 +1,7 @@
 //! Curves of solutions: n - 1 equations in n unknowns, followed by pseudo-arclength (Keller 1977).
 //!
-//! From a point u with unit tangent t, the next one solves the equations together with `t (u' - u) = h`, which has one
-//! solution nearby even where the curve folds over in the parameter.
+//! From a point u with unit tangent t, the next point u' solves the equations together with `t (u' - u) = h`. There is one
+//! solution nearby even where the curve turns round in the parameter.
 
 use nalgebra::{DMatrix, DVector};
 

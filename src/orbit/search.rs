@@ -1,8 +1,8 @@
 //! Orbits of one machine, stable or not.
 //!
-//! Three ways, each of which finds what the others may miss: one-impact orbits are the roots of one function of the impact's
-//! angle, taken one and all; long runs settle on stable ones; and short runs from many starts on the cam give Newton's
-//! method the guesses from which it finds unstable ones.
+//! Three ways, each of which finds what the others may miss. Orbits of one impact are roots of one function of the
+//! impact's angle, looked for between samples. Long runs settle on stable orbits. Short runs from many starts on the cam
+//! give Newton's method the guesses from which it finds unstable orbits.
 
 use std::convert::Infallible;
 use std::f64::consts::TAU;

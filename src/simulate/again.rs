@@ -1,7 +1,7 @@
 //! A settled motion's next impact: one turn later, at the same place but for the last digits.
 //!
-//! The flight over one turn is the same linear map each time, and the cam is where it was: position and velocity one turn
-//! on cost a few products. What the general way finds by searching is here only checked.
+//! A flight of one turn is the same linear map each time, and the cam is back where it was, so that position and velocity
+//! one turn later cost a few products. The next impact is found by checking that guess, without the general search.
 
 use std::f64::consts::{PI, TAU};
 

@@ -1,10 +1,10 @@
 //! A stretch of flight over one segment of the cam: does it meet the cam, and where first?
 //!
-//! Four shapes of the gap need no search. Two have at most one contact, so that any way of finding it is certain: a gap that
-//! only shrinks (`g' < 0`), and one that is bent downwards (`g'' < 0`). One has at most one where it still shrinks, which is
-//! the first: a gap that is bent upwards (`g'' > 0`). One has none: a gap that grows at first, and whose cubic minorant is
-//! still open at the end. Which shape a window has follows from bounds of the flight's jerk and of the segment, and from the
-//! gap at the start. All others go to [`super::contact`], which marches.
+//! Four shapes of the gap g need no search. A gap that only shrinks (`g' < 0`) or is bent downwards (`g'' < 0`) meets the
+//! cam once at most, so that any root is the first. A gap that is bent upwards (`g'' > 0`) meets the cam once at most
+//! while it shrinks, and that root is the first. A gap that grows at first and has a cubic lower bound that stays positive
+//! meets nothing. Which shape a window has follows from the gap at its start and from bounds of the flight's jerk and of
+//! the segment. Windows of any other shape go to [`super::contact`], which marches.
 
 use super::contact::{self, Gap, Outcome};
 use super::{Machine, Motion};

@@ -1,4 +1,4 @@
-//! What cuts a step along a branch short, or is passed within it: told, measured and located.
+//! Events within one step along a branch, such as a corner, a fold or a flip: noticed, measured and located.
 
 use nalgebra::DVector;
 

@@ -1,9 +1,9 @@
 //! Branches: periodic orbits followed in one number of the model, round folds and through corners, with the points located
 //! where something changes.
 //!
-//! An orbit that hits a corner goes over to the law behind it; one whose flight touches the cam gains the impact, one whose
-//! impact becomes a touch loses it. Beyond either the equations are those of another cycle, and the branch goes on with
-//! these: a branch is continuous, its direction is not.
+//! Where an impact passes a corner, the orbits beyond obey the law of the next segment. Where a flight touches the cam,
+//! the orbits beyond have one more impact, and where an impact becomes a touch, one less. Either way the branch goes on
+//! with the equations of another cycle: it is continuous, but its direction may jump.
 //!
 //! | module | what it holds |
 //! |---|---|

@@ -11,7 +11,7 @@ mod transition;
 use std::ops::ControlFlow;
 
 use super::context::Context;
-use crate::orbit::search::settled;
+use crate::orbit::settle::settled;
 use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError, angular_velocity};
 use crate::tolerance;
 pub(super) use chattering::{

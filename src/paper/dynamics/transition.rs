@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use super::{corners, listed, machine, settles};
 use crate::diagram::{exponent, growth};
 use crate::orbit::branch::{Branch, BranchPoint, Following, Kind};
-use crate::orbit::search::settled;
+use crate::orbit::settle::settled;
 use crate::orbit::{Parameter, Search, search};
 use crate::paper::context::{Context, Decision, decide};
 use crate::published::Verdict;

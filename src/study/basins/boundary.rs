@@ -1,4 +1,4 @@
-//! The border between two basins, from runs alone; and how near a saddle's unstable manifold comes back to its stable one.
+//! The border between two basins, from runs alone; and how near a saddle's unstable manifold comes to its stable manifold.
 
 use super::{Curve, Ending, Patience, Saddle, ending};
 use crate::bracket::{Width, halve};

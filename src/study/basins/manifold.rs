@@ -1,9 +1,9 @@
 //! The curves along which a saddle orbit is approached and left: its stable and its unstable manifold on a section.
 //!
-//! Next to the saddle they are straight, along the eigenvectors of its matrix. A stretch of the unstable one from a point to
-//! its image is carried on by the map, over and over; the stable one the same way by the inverse of the map. The inverse is a
-//! run backwards in time: flights go back, and an impact turns the relative velocity after it into the one before, `-1/r`
-//! times as large.
+//! Next to the saddle both curves are straight, along the eigenvectors of its matrix. A stretch of the unstable manifold,
+//! from a point to the point's image, is carried on by the map over and over; a stretch of the stable manifold by the
+//! inverse of the map. The inverse is a run backwards in time, in which an impact multiplies the relative velocity by
+//! `-1/r`.
 
 use std::f64::consts::TAU;
 

@@ -1,8 +1,9 @@
 //! What a machine does over a range of speeds: on the cam, chattering, bouncing regularly, chaotic; and where that changes.
 //!
-//! Speeds are run through upwards and downwards, each from where the last one ended, so that hysteresis shows. A change
-//! between two speeds is narrowed down by halving, and then explained: by the special point of the branch of orbits that
-//! begins or ends there, if there is one. Two changes between two speeds that are run are told apart where each is explained.
+//! The speeds are run through once upwards and once downwards, each run from where the one before ended, so that
+//! hysteresis shows. A change between two speeds is bracketed by halving, and explained by the special point of a branch
+//! of orbits if one begins or ends there. Two changes between neighbouring speeds are told apart only if each is
+//! explained.
 
 mod change;
 mod run;
