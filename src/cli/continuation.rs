@@ -7,15 +7,11 @@ use super::picture::{Target, picture_or_table};
 use super::start::{parameter, positive, rpm};
 use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
 use crate::cam::Cam;
-use crate::diagram::settled_impacts;
-use crate::draw::Density;
 use crate::figures::{branches_figure, corner_marks};
-use crate::model::Model;
-use crate::orbit::branch::{Branch, Following};
-use crate::orbit::{Family, Parameter, PeriodicOrbit, Search, search};
+use crate::orbit::branch::Following;
+use crate::orbit::{Parameter, Search};
 use crate::pages::branch;
-use crate::progress::Watch;
-use crate::simulate::{Machine, angular_velocity};
+use crate::study::branches::branches;
 
 /// Follows the orbits of one speed through a parameter, round folds and through corners.
 #[derive(clap::Args)]
@@ -59,108 +55,28 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let model = arguments.model.read(session)?;
-    let cam = Cam::new(&model)?;
-    let corners = corner_marks(&cam);
+    let corners = corner_marks(&Cam::new(&model)?);
     let (name, range) = &arguments.parameter;
-    let parameter = Parameter::named(&model, name)?;
-    let value = parameter.value(&model, arguments.from_rpm).unwrap_or(f64::NAN);
-    if !(range[0] <= value && value <= range[1]) {
-        let words = format!(
-            "{}: orbits are looked for at {} = {value}, which is outside of {}:{}",
-            model.file(),
-            parameter.name(),
-            range[0],
-            range[1]
-        );
-        return Err(CommandError::Words(words));
-    }
-    let machine = Machine::new(cam, &model.follower, angular_velocity(arguments.from_rpm));
-    let wanted = Search { revolutions: arguments.revolutions, impacts: arguments.impacts };
-    let progress = Progress::spinner("looking for periodic orbits");
-    let orbits = search(&machine, &wanted)?;
-    drop(progress);
-    if orbits.is_empty() {
-        let words = format!(
-            "{}: no periodic orbit of {} revolution(s) found at {} rpm to follow",
-            model.file(),
-            arguments.revolutions,
-            arguments.from_rpm
-        );
-        return Err(CommandError::Words(words));
-    }
     let following = Following {
-        parameter: parameter.clone(),
+        parameter: Parameter::named(&model, name)?,
         range: *range,
         longest_step: arguments.step,
         most_points: arguments.points as usize,
     };
     let target = Target::create(&arguments.out, &mut *session.out)?;
-    let branches = follow(&model, arguments.from_rpm, value, &orbits, &following)?;
-    for (index, found) in branches.iter().enumerate() {
-        let account = branch::account(found, parameter.name(), index + 1)?;
+    let wanted = Search { revolutions: arguments.revolutions, impacts: arguments.impacts };
+    let progress = Progress::spinner("");
+    let found = branches(&model, arguments.from_rpm, &wanted, following, &progress)?;
+    drop(progress);
+    let name = found.following.parameter.name();
+    for (index, branch) in found.branches.iter().enumerate() {
         // Nobody is left to tell where standard error is closed.
-        let _ = session.err.write_all(account.as_bytes());
+        let _ = session.err.write_all(branch::account(branch, name, index + 1)?.as_bytes());
     }
-    let table = |table: &mut dyn Write| {
-        table.write_all(branch::COLUMNS.as_bytes())?;
-        for (index, found) in branches.iter().enumerate() {
-            let mut lines = String::new();
-            found.points.iter().for_each(|point| branch::line(&mut lines, parameter.name(), index + 1, point));
-            table.write_all(lines.as_bytes())?;
-        }
-        Ok(())
-    };
+    let table = |table: &mut dyn Write| Ok(table.write_all(branch::table(name, &found.branches).as_bytes())?);
     target.fill(table, || {
-        let settled = settled(&model, arguments, &parameter, *range)?;
-        let what = if parameter == Parameter::Speed { "speed" } else { parameter.name() };
-        let title = format!("{}: orbits found at {} rpm, followed in {what}", model.name, arguments.from_rpm);
-        Ok(branches_figure(&title, (parameter.name(), *range), &branches, settled, &corners))
+        let settled = found.settled(arguments.runs, &Progress::spinner(""))?;
+        Ok(branches_figure(&found.title(), (name, *range), &found.branches, settled, &corners))
     })?;
     Ok(Exit::Agrees)
-}
-
-/// The branches through `orbits`, each once.
-fn follow(
-    model: &Model,
-    rpm: f64,
-    value: f64,
-    orbits: &[PeriodicOrbit],
-    following: &Following,
-) -> Result<Vec<Branch>, CommandError> {
-    let mut branches: Vec<Branch> = Vec::new();
-    let progress = Progress::new(orbits.len() as u64);
-    for (index, orbit) in orbits.iter().enumerate() {
-        progress.at("following the orbits found", index as u64, orbits.len() as u64);
-        if !branches.iter().any(|branch| branch.holds(value, orbit)) {
-            branches.push(Branch::through(model, rpm, orbit, following)?);
-        }
-    }
-    Ok(branches)
-}
-
-/// What runs settle on, value by value of the parameter: phases of impacts in degrees.
-fn settled(
-    model: &Model,
-    arguments: &Arguments,
-    parameter: &Parameter,
-    [low, high]: [f64; 2],
-) -> Result<Option<Density>, CommandError> {
-    const TRANSIENT: u64 = 300;
-    const RECORD: u64 = 100;
-    if arguments.runs == 0 {
-        return Ok(None);
-    }
-    let family = Family::new(model, arguments.from_rpm, vec![parameter.clone()])?;
-    let mut density = Density::new([low, high], [0.0, 360.0]);
-    let progress = Progress::new(u64::from(arguments.runs));
-    for index in 0..arguments.runs {
-        progress.at("what runs settle on", u64::from(index), u64::from(arguments.runs));
-        let value = low + (high - low) * (f64::from(index) + 0.5) / f64::from(arguments.runs);
-        // The edge of what the model allows has been told already.
-        let Ok((machine, _)) = family.machine(&[value]) else { continue };
-        for angle in settled_impacts(&machine, TRANSIENT, RECORD)? {
-            density.push(value, angle.to_degrees());
-        }
-    }
-    Ok(Some(density))
 }

@@ -6,13 +6,12 @@ use std::path::PathBuf;
 use super::picture::{Target, picture_or_table};
 use super::start::{parameter, positive, rpm_range};
 use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
-use crate::border_collision::{AtCorner, ImpactCurve};
 use crate::draw::layout::widened;
 use crate::figures::curve_figure;
-use crate::orbit::branch::{Branch, Following, corner_impacts, find_branches};
+use crate::orbit::branch::Following;
 use crate::orbit::{Parameter, Search};
 use crate::pages::curve;
-use crate::progress::Watch;
+use crate::study::curve::{Curves, curves};
 
 /// Follows corner impacts through a number of the model: their speed, and where their type changes.
 #[derive(clap::Args)]
@@ -52,64 +51,32 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let model = arguments.model.read(session)?;
     let (name, range) = &arguments.parameter;
     let parameter = Parameter::named(&model, name)?;
-    if parameter == Parameter::Speed {
-        let words = "--parameter must be a number of the model: the speed is what the corner impacts are at";
-        return Err(CommandError::Words(words.into()));
-    }
-    let value = parameter.value(&model, arguments.rpm[0]).unwrap_or(f64::NAN);
-    if !(range[0] <= value && value <= range[1]) {
-        let words = format!("the model's {} = {value} is outside of {}:{}", parameter.name(), range[0], range[1]);
-        return Err(CommandError::Words(words));
-    }
     let target = Target::create(&arguments.out, &mut *session.out)?;
     let wanted = Search { revolutions: arguments.revolutions, impacts: arguments.impacts };
-    let progress = Progress::spinner("looking for corner impacts of the model");
-    let found = find_branches(&model, arguments.rpm, &wanted)?;
+    let following = Following { parameter, range: *range, longest_step: arguments.step, most_points: MOST_POINTS };
+    let progress = Progress::spinner("");
+    let Curves { own, curves } = curves(&model, arguments.rpm, &wanted, &following, &progress)?;
     drop(progress);
-    let corners = corner_impacts(&found.branches);
-    let following = Following {
-        parameter: parameter.clone(),
-        range: *range,
-        longest_step: arguments.step,
-        most_points: MOST_POINTS,
-    };
-    let mut curves = Vec::new();
-    let progress = Progress::new(corners.len() as u64);
-    for (index, corner) in corners.iter().enumerate() {
-        progress.at("following the corner impacts found", index as u64, corners.len() as u64);
-        let Some(at) = AtCorner::of(corner) else { continue };
-        let found = Branch::of_corner_impacts(&model, corner, arguments.rpm, &following);
-        curves.push(ImpactCurve::new(&found?, at));
+    let (name, [low, high]) = (following.parameter.name(), arguments.rpm);
+    let mut accounts: Vec<String> = Vec::new();
+    for (index, found) in curves.iter().enumerate() {
+        accounts.push(curve::account(found, name, index + 1)?);
     }
-    let mut say = |words: &str| {
-        // Nobody is left to tell where standard error is closed.
-        let _ = session.err.write_all(words.as_bytes());
-    };
     if curves.is_empty() {
-        let [low, high] = arguments.rpm;
-        say(&format!(
-            "no corner impact of an orbit of {} revolution(s) found between {low} and {high} rpm\n",
-            wanted.revolutions
+        let turns = wanted.revolutions;
+        accounts.push(format!(
+            "no corner impact of an orbit of {turns} revolution(s) found between {low} and {high} rpm\n"
         ));
     }
-    for (index, found) in curves.iter().enumerate() {
-        say(&curve::account(found, parameter.name(), index + 1)?);
-    }
-    let table = |table: &mut dyn Write| {
-        table.write_all(curve::COLUMNS.as_bytes())?;
-        for (index, found) in curves.iter().enumerate() {
-            let mut lines = String::new();
-            curve::lines(&mut lines, parameter.name(), index + 1, found);
-            table.write_all(lines.as_bytes())?;
-        }
-        Ok(())
-    };
+    // Nobody is left to tell where standard error is closed.
+    let _ = session.err.write_all(accounts.concat().as_bytes());
+    let table = |table: &mut dyn Write| Ok(table.write_all(curve::table(name, &curves).as_bytes())?);
     target.fill(table, || {
-        let title = format!("{}: corner impacts against {}", model.name, parameter.name());
+        let title = format!("{}: corner impacts against {name}", model.name);
         let speeds = curves.iter().flat_map(|found| &found.impacts).map(|impact| impact.rpm);
         let extent = speeds.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], rpm| [low.min(rpm), high.max(rpm)]);
         let shown = if extent[0] < extent[1] { widened(extent, 0.04) } else { arguments.rpm };
-        Ok(curve_figure(&title, (parameter.name(), *range, value), shown, &curves))
+        Ok(curve_figure(&title, (name, *range, own), shown, &curves))
     })?;
     Ok(Exit::Agrees)
 }

@@ -2,19 +2,17 @@
 
 use std::io::Write;
 use std::path::PathBuf;
-use std::time::Instant;
 
 use clap::ValueEnum;
 
 use super::start::{StartArguments, count, finite, speeds, turn};
 use super::{CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::Progress};
 use crate::cam::Cam;
-use crate::cli::file::Output;
-use crate::diagram::{Counted, Following, Places, Section, Speeds, Sweep, Tally};
-use crate::draw::{Cloud, Density};
-use crate::figures::{SweepSummary, corner_marks, impact_diagram, strobe_diagram};
-use crate::show::csv;
+use crate::diagram::{Counted, Following, Places, Section, Speeds, Sweep};
+use crate::figures::{corner_marks, impact_diagram, strobe_diagram};
+use crate::show::{Paged, csv};
 use crate::simulate::{Machine, angular_velocity};
+use crate::study::diagram::{Shown, Swept};
 
 /// Sweeps over speeds: what the motion settles on, as a table or a picture.
 #[derive(clap::Args)]
@@ -99,42 +97,43 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         },
         lyapunov: arguments.lyapunov,
     };
-    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-    let threads = match sweep.following {
-        Following::Nothing => arguments.threads.map_or_else(cores, usize::from).min(sweep.speeds.count),
-        Following::Up | Following::Down => 1,
-    };
-    let clock = Instant::now();
-    let target = arguments.out.as_deref();
-    let tally = match target.map(|path| Target::create(path, &mut *session.out)).transpose()? {
-        None => {
-            let progress = Progress::new(sweep.speeds.count as u64);
-            sweep.run(Some(threads), |index, _: Counted| {
-                progress.set(index as u64);
-                Ok::<(), CommandError>(())
-            })?
+    let (progress, threads) = (Progress::spinner(""), arguments.threads.map(usize::from));
+    let (name, target) = (model.name.as_str(), arguments.out.as_deref());
+    let swept = match target.map(|path| Target::create(path, &mut *session.out)).transpose()? {
+        None => Swept::new(name, &sweep, threads, &progress, |_: Counted| Ok::<(), CommandError>(()))?,
+        Some(Target::Table(mut file)) => {
+            let columns = match sweep.section {
+                Section::Impacts => csv::IMPACT_DIAGRAM,
+                Section::Strobe(_) => csv::STROBE_DIAGRAM,
+            };
+            writeln!(file, "{columns}{}", if sweep.lyapunov { csv::LYAPUNOV } else { "" })?;
+            let take = |lines: csv::Lines| Ok::<(), CommandError>(file.write_all(lines.0.as_bytes())?);
+            let swept = Swept::new(name, &sweep, threads, &progress, take)?;
+            super::commit(vec![file])?;
+            swept
         }
-        Some(Target::Table(file)) => table(&sweep, threads, file)?,
         Some(Target::Picture(canvas)) => {
-            let (points, exponents, tally) = points(&sweep, threads)?;
-            let title = format!("{}: {}", model.name, title(&sweep));
-            let exponents = arguments.lyapunov.then_some(exponents.as_slice());
+            let mut shown = Shown::new(&sweep);
+            let take = |found: Places| Ok::<(), CommandError>(shown.take(&found));
+            let swept = Swept::new(name, &sweep, threads, &progress, take)?;
+            let (places, exponents) = shown.places();
+            let (title, exponents) = (title(name, &sweep), arguments.lyapunov.then_some(exponents.as_slice()));
             let figure = match sweep.section {
-                Section::Impacts => impact_diagram(&title, points, &corners, exponents),
-                Section::Strobe(_) => strobe_diagram(&title, points, exponents),
+                Section::Impacts => impact_diagram(&title, places, &corners, exponents),
+                Section::Strobe(_) => strobe_diagram(&title, places, exponents),
             };
             super::commit(vec![canvas.draw(&figure)?])?;
-            tally
+            swept
         }
     };
-    let summary = SweepSummary::new(&model.name, tally, threads, clock.elapsed().as_secs_f64());
+    drop(progress);
     if !to_standard {
-        session.answer(&summary, arguments.summary, |width| summary.page(width))?;
+        session.answer(&swept, arguments.summary, |width| swept.page(width))?;
     }
     Ok(Exit::Agrees)
 }
 
-fn title(sweep: &Sweep) -> String {
+fn title(model: &str, sweep: &Sweep) -> String {
     let what = match sweep.section {
         Section::Impacts => "impacts".to_owned(),
         Section::Strobe(angle) => format!("states at {:.4}°", angle.to_degrees()),
@@ -144,41 +143,5 @@ fn title(sweep: &Sweep) -> String {
         Following::Up => "speed going up",
         Following::Down => "speed going down",
     };
-    format!("{what} of {} revolutions after {}, {how}", sweep.record, sweep.transient)
-}
-
-fn table(sweep: &Sweep, threads: usize, mut file: Output<'_>) -> Result<Tally, CommandError> {
-    let columns = match sweep.section {
-        Section::Impacts => csv::IMPACT_DIAGRAM,
-        Section::Strobe(_) => csv::STROBE_DIAGRAM,
-    };
-    let lyapunov = if sweep.lyapunov { csv::LYAPUNOV } else { "" };
-    writeln!(file, "{columns}{lyapunov}")?;
-    let progress = Progress::new(sweep.speeds.count as u64);
-    let tally = sweep.run(Some(threads), |index, lines: csv::Lines| {
-        progress.set(index as u64);
-        Ok::<(), CommandError>(file.write_all(lines.0.as_bytes())?)
-    })?;
-    super::commit(vec![file])?;
-    Ok(tally)
-}
-
-type Found = (Density, Vec<[f64; 2]>, Tally);
-
-fn points(sweep: &Sweep, threads: usize) -> Result<Found, CommandError> {
-    let Speeds { low, high, .. } = sweep.speeds;
-    let mut cloud = Cloud::new(if high > low { [low, high] } else { [0.99 * low, 1.01 * low] });
-    let mut exponents: Vec<[f64; 2]> = Vec::new();
-    let progress = Progress::new(sweep.speeds.count as u64);
-    // Angles are shown in degrees.
-    let shown = |place: f64| if sweep.section == Section::Impacts { place.to_degrees() } else { place };
-    let tally = sweep.run(Some(threads), |index, points: Places| {
-        progress.set(index as u64);
-        points.places.iter().for_each(|[rpm, place]| cloud.push(*rpm, shown(*place)));
-        if let Some(exponent) = points.exponent.filter(|new| exponents.last().is_none_or(|last| last[0] != new[0])) {
-            exponents.push(exponent);
-        }
-        Ok::<(), CommandError>(())
-    })?;
-    Ok((cloud.finish(), exponents, tally))
+    format!("{model}: {what} of {} revolutions after {}, {how}", sweep.record, sweep.transient)
 }

@@ -28,19 +28,10 @@ impl Progress {
     const BAR: &'static str = "{bar:30} {percent:>3} %  {elapsed} of about {duration}  {wide_msg}";
     const SPINNER: &'static str = "{spinner} {elapsed}  {wide_msg}";
 
-    /// None of `total` steps done.
-    pub(super) fn new(total: u64) -> Self {
-        Self::begun("", total)
-    }
-
-    /// At something that takes as long as it takes.
+    /// At something that takes as long as it takes, until it says more.
     pub(super) fn spinner(what: &str) -> Self {
-        Self::begun(what, 0)
-    }
-
-    fn begun(what: &str, total: u64) -> Self {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
-        look(&bar, total);
+        look(&bar, 0);
         bar.set_message(what.to_owned());
         // Appears by itself: what is watched may have nothing to tell for longer than patience lasts.
         let shows = std::io::stderr().is_terminal().then(|| {
@@ -54,12 +45,7 @@ impl Progress {
             });
             (ended, thread)
         });
-        Self { bar, total: Mutex::new(total), shows }
-    }
-
-    /// `done` steps of the total are done.
-    pub(super) fn set(&self, done: u64) {
-        self.bar.set_position(done);
+        Self { bar, total: Mutex::new(0), shows }
     }
 }
 

@@ -8,6 +8,8 @@
 use std::ops::{ControlFlow, Range};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
+use serde::Serialize;
+
 use super::{Following, Row, Seen, Sweep, SweepError};
 use crate::simulate::EventKind;
 
@@ -33,7 +35,7 @@ impl Block for Counted {
 }
 
 /// What a sweep came to.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Tally {
     /// Rows recorded.
     pub points: u64,

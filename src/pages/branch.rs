@@ -4,13 +4,21 @@ use std::fmt::{self, Write};
 
 use crate::orbit::branch::{Branch, BranchPoint, Kind, Special};
 
-/// The columns of a table of branches.
-pub const COLUMNS: &str = "rpm,parameter,value,revolutions,impacts,cam_angle_rad,position_m,velocity_m_s,multiplier_1_re,\
+const COLUMNS: &str = "rpm,parameter,value,revolutions,impacts,cam_angle_rad,position_m,velocity_m_s,multiplier_1_re,\
     multiplier_1_im,multiplier_2_re,multiplier_2_im,stable,special,branch,jump_order,bracket_low,bracket_high,special_residual\n";
+
+/// Every orbit of every branch.
+pub fn table(parameter: &str, branches: &[Branch]) -> String {
+    let mut lines = COLUMNS.to_owned();
+    for (index, branch) in branches.iter().enumerate() {
+        branch.points.iter().for_each(|point| line(&mut lines, parameter, index + 1, point));
+    }
+    lines
+}
 
 /// Appends one orbit of a branch: of its impacts the first, where the state is that right after it; of an orbit without
 /// any, the state at angle 0.
-pub fn line(lines: &mut String, parameter: &str, index: usize, point: &BranchPoint) {
+fn line(lines: &mut String, parameter: &str, index: usize, point: &BranchPoint) {
     let BranchPoint { rpm, value, orbit, special, .. } = point;
     let impacts = orbit.impacts().count();
     let (angle, position, velocity) =

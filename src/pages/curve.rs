@@ -6,13 +6,19 @@ use crate::border_collision::ImpactCurve;
 use crate::border_collision::impact_curve::CurveImpact;
 use crate::orbit::branch::{Kind, Special};
 
-/// The columns of a table of curves.
-pub const COLUMNS: &str = "rpm,parameter,value,revolutions,impacts,cam_angle_rad,jump_order,scenario,multiplier_minus_1_re,\
+const COLUMNS: &str = "rpm,parameter,value,revolutions,impacts,cam_angle_rad,jump_order,scenario,multiplier_minus_1_re,\
     multiplier_minus_1_im,multiplier_minus_2_re,multiplier_minus_2_im,multiplier_plus_1_re,multiplier_plus_1_im,\
     multiplier_plus_2_re,multiplier_plus_2_im,special,curve\n";
 
+/// Every corner impact of every curve.
+pub fn table(parameter: &str, curves: &[ImpactCurve]) -> String {
+    let mut table = COLUMNS.to_owned();
+    curves.iter().enumerate().for_each(|(index, curve)| lines(&mut table, parameter, index + 1, curve));
+    table
+}
+
 /// Appends the corner impacts of a curve.
-pub fn lines(lines: &mut String, parameter: &str, index: usize, curve: &ImpactCurve) {
+fn lines(lines: &mut String, parameter: &str, index: usize, curve: &ImpactCurve) {
     let order = curve.at.jump_order;
     for impact in &curve.impacts {
         let CurveImpact { rpm, value, cam_angle, revolutions, impacts, happening, multipliers, special } = impact;

@@ -9,6 +9,7 @@ mod local_map;
 mod locate;
 mod orbit;
 pub mod report;
+mod simulate;
 mod speeds;
 mod verify;
 

@@ -1,17 +1,22 @@
 //! One module per question that a user can ask.
 
 pub mod basins;
+pub mod branches;
 pub mod cam;
 pub mod compared;
+pub mod curve;
+pub mod diagram;
 pub mod locate;
 pub mod orbit;
+pub mod simulate;
 pub mod speeds;
 pub mod verify;
 
 use serde::Serialize;
 
 use crate::model::{Model, ModelError};
-use crate::orbit::OrbitError;
+use crate::orbit::branch::Following;
+use crate::orbit::{FamilyError, OrbitError};
 use crate::simulate::SimulateError;
 
 /// Which model a finding is about.
@@ -41,7 +46,61 @@ pub enum StudyError {
     /// An orbit could not be found or followed.
     #[error("{0}")]
     Orbit(#[from] OrbitError),
+    /// A number of the model cannot be changed.
+    #[error("{0}")]
+    Family(#[from] FamilyError),
+    /// What changes is not within its range where a search begins.
+    #[error("{file}: {name} = {value}, where orbits are looked for, is outside of {}:{}", range[0], range[1])]
+    Outside {
+        /// The model's file.
+        file: String,
+        /// What changes.
+        name: String,
+        /// Its value.
+        value: f64,
+        /// From where to where.
+        range: [f64; 2],
+    },
+    /// A search found no orbit.
+    #[error("{file}: no periodic orbit of {revolutions} revolution(s) found at {rpm} rpm to follow")]
+    NothingToFollow {
+        /// The model's file.
+        file: String,
+        /// Turns of the cam in one period.
+        revolutions: u64,
+        /// Speed, rpm.
+        rpm: f64,
+    },
+    /// A curve of corner impacts tells their speed.
+    #[error("--parameter must be a number of the model: the speed is what the corner impacts are at")]
+    SpeedFollowed,
+    /// A run up to a number of impacts has no more of them.
+    #[error(
+        "simulate: no impact in {waited} revolutions after impact {impacts}; the cam is at {:.4} deg of revolution {revolution}",
+        cam_angle.to_degrees()
+    )]
+    NoImpact {
+        /// Revolutions.
+        waited: u64,
+        /// How many there were.
+        impacts: u64,
+        /// rad.
+        cam_angle: f64,
+        /// Of the run.
+        revolution: u64,
+    },
     /// No starts were named, and the machine has none of its own.
     #[error("no range to put starts in: give --position and --velocity")]
     NoStarts,
+}
+
+/// The value of what is followed where it is looked for, which must be within its range.
+fn inside(model: &Model, rpm: f64, following: &Following) -> Result<f64, StudyError> {
+    let Following { parameter, range, .. } = following;
+    let value = parameter.value(model, rpm).unwrap_or(f64::NAN);
+    if range[0] <= value && value <= range[1] {
+        return Ok(value);
+    }
+    let (file, name) = (model.file().to_string(), parameter.name().to_owned());
+    Err(StudyError::Outside { file, name, value, range: *range })
 }

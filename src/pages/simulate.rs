@@ -1,0 +1,49 @@
+//! The pages of `simulate` and `diagram`: what a run and a sweep came to.
+
+use crate::show::block::Block;
+use crate::show::digits::Digits;
+use crate::show::{Paged, words};
+use crate::study::diagram::Swept;
+use crate::study::simulate::{End, Run};
+
+impl Paged for Run {
+    fn blocks(&self) -> Vec<Block> {
+        let Self { model, rpm, revolutions, impacts, sticks, releases, wall_s, .. } = self;
+        let End { cam_angle_rad, position_m, velocity_m_s, contact } = self.end;
+        let nine = |value| Digits::Fixed(9).text(value);
+        let (degrees, q, v) = (cam_angle_rad.to_degrees(), nine(position_m), nine(velocity_m_s));
+        let place = if contact { ", on the cam" } else { "" };
+        let mut lines = vec![
+            format!("{model} at {rpm} rpm, {revolutions} revolutions"),
+            format!("  impacts {impacts}, sticks {sticks}, releases {releases}"),
+            format!("  ends at {degrees:.4} deg with q = {q} m, v = {v} m/s{place}"),
+        ];
+        if let Some(exponent) = self.lyapunov_per_revolution {
+            let stuck = exponent == f64::NEG_INFINITY;
+            let why = if stuck { ": it stuck to the cam, where every deviation is lost" } else { "" };
+            let error = self.lyapunov_standard_error.map_or(String::new(), |error| format!(" ± {error:.4}"));
+            lines.push(format!("  Lyapunov exponent {exponent:.4}{error} per revolution{why}"));
+        }
+        lines.push(format!("  {wall_s:.3} s{}", per_turn(*wall_s, *revolutions)));
+        lines.into_iter().map(|line| Block::Line(line.into())).collect()
+    }
+}
+
+impl Paged for Swept {
+    fn blocks(&self) -> Vec<Block> {
+        let Self { model, tally, wall_s, .. } = self;
+        let (turns, threads) = (tally.revolutions, words::many(self.threads as u64, "thread"));
+        let each = per_turn(*wall_s, turns as f64);
+        vec![
+            Block::Line(
+                format!("{model}: {turns} revolutions, {} rows, {} impacts", tally.points, tally.impacts).into(),
+            ),
+            Block::Line(format!("  {wall_s:.3} s on {threads}{each}").into()),
+        ]
+    }
+}
+
+/// The time that a revolution took, where there was one.
+fn per_turn(wall_s: f64, revolutions: f64) -> String {
+    if revolutions > 0.0 { format!(", {:.0} ns a revolution", wall_s / revolutions * 1e9) } else { String::new() }
+}

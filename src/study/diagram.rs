@@ -1,0 +1,80 @@
+//! What the motion settles on, speed by speed.
+
+use std::time::Instant;
+
+use serde::Serialize;
+
+use crate::diagram::{Block, Following, Places, Section, Sweep, SweepError, Tally};
+use crate::draw::{Cloud, Density};
+use crate::progress::Watch;
+
+/// What a sweep came to: the document of `diagram --summary`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Swept {
+    schema: &'static str,
+    /// The model's name.
+    pub model: String,
+    /// Rows recorded, impacts among them, revolutions run.
+    #[serde(flatten)]
+    pub tally: Tally,
+    /// Threads used.
+    pub threads: usize,
+    /// Seconds that the sweep took, with writing what it found.
+    pub wall_s: f64,
+}
+
+impl Swept {
+    /// Sweeps on `threads` threads, for `None` on one for each core; `take` gets what is found, in order.
+    pub fn new<B: Block, E: From<SweepError>>(
+        model: &str,
+        sweep: &Sweep,
+        threads: Option<usize>,
+        watch: &dyn Watch,
+        mut take: impl FnMut(B) -> Result<(), E>,
+    ) -> Result<Self, E> {
+        let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+        let threads = match sweep.following {
+            Following::Nothing => threads.unwrap_or_else(cores).min(sweep.speeds.count),
+            Following::Up | Following::Down => 1,
+        };
+        let clock = Instant::now();
+        let tally = sweep.run(Some(threads), |index, block| {
+            watch.at("", index as u64, sweep.speeds.count as u64);
+            take(block)
+        })?;
+        let (schema, wall_s) = ("corner-impact/diagram/1", clock.elapsed().as_secs_f64());
+        Ok(Self { schema, model: model.into(), tally, threads, wall_s })
+    }
+}
+
+/// What a picture shows of a sweep: where impacts are, in degrees, or positions at the section, m, and exponents.
+#[derive(Clone, Debug)]
+pub struct Shown {
+    in_degrees: bool,
+    cloud: Cloud,
+    /// Speed, rpm, and Lyapunov exponent per revolution, of each speed that has one.
+    pub exponents: Vec<[f64; 2]>,
+}
+
+impl Shown {
+    /// Nothing of a sweep yet.
+    pub fn new(sweep: &Sweep) -> Self {
+        let (low, high) = (sweep.speeds.low, sweep.speeds.high);
+        let cloud = Cloud::new(if high > low { [low, high] } else { [0.99 * low, 1.01 * low] });
+        Self { in_degrees: sweep.section == Section::Impacts, cloud, exponents: Vec::new() }
+    }
+
+    /// Adds what was found.
+    pub fn take(&mut self, found: &Places) {
+        for [rpm, place] in &found.places {
+            self.cloud.push(*rpm, if self.in_degrees { place.to_degrees() } else { *place });
+        }
+        let is_new = |new: &[f64; 2]| self.exponents.last().is_none_or(|last| last[0] != new[0]);
+        self.exponents.extend(found.exponent.filter(is_new));
+    }
+
+    /// The places.
+    pub fn places(self) -> (Density, Vec<[f64; 2]>) {
+        (self.cloud.finish(), self.exponents)
+    }
+}

@@ -1,0 +1,211 @@
+//! What one motion does: its events and states in order, and what it came to.
+
+use std::f64::consts::TAU;
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
+
+use serde::Serialize;
+
+use super::StudyError;
+use crate::cam::Cam;
+use crate::diagram::{Start, growth_and_error};
+use crate::model::Model;
+use crate::progress::Watch;
+use crate::simulate::{Event, EventKind, Goal, Machine, Motion, angular_velocity};
+
+/// A machine at a speed, and the motion that begins there.
+#[derive(Clone, Debug)]
+pub struct Simulation {
+    model: String,
+    rpm: f64,
+    /// The machine.
+    pub machine: Machine,
+    /// The beginning.
+    pub first: Motion,
+}
+
+/// How far a run goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Until {
+    /// Turns of the cam.
+    Revolutions(u64),
+    /// Impacts.
+    Impacts(u64),
+}
+
+/// What is asked of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wanted {
+    /// Its end.
+    pub until: Until,
+    /// Whether its events are shown.
+    pub events: bool,
+    /// A cam angle, rad, in `[0, 2 pi)`, at which the states are shown.
+    pub strobe: Option<f64>,
+    /// How many of its last revolutions are drawn.
+    pub drawn: u64,
+    /// Whether it is told how fast a small deviation grows.
+    pub lyapunov: bool,
+}
+
+/// What a run shows on its way.
+#[derive(Clone, Copy, Debug)]
+pub enum Sight<'a> {
+    /// Some events, in order.
+    Events(&'a [Event]),
+    /// The motion at the angle that was asked for.
+    State(&'a Motion),
+}
+
+/// What a run came to: the document of `simulate --summary`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Run {
+    schema: &'static str,
+    /// The model's name.
+    pub model: String,
+    /// Speed, rpm.
+    pub rpm: f64,
+    /// Turns of the cam.
+    pub revolutions: f64,
+    /// Impacts.
+    pub impacts: u64,
+    /// How often the follower began to stay on the cam.
+    pub sticks: u64,
+    /// How often the cam let go of it.
+    pub releases: u64,
+    /// Where it ended.
+    #[serde(rename = "final")]
+    pub end: End,
+    /// Growth of a small deviation per revolution, as a natural logarithm, if asked for; minus infinity, which JSON has as
+    /// null, where the follower came to stick to the cam.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lyapunov_per_revolution: Option<f64>,
+    /// Its standard error, where there is one: that of the mean of twenty blocks, taken for independent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lyapunov_standard_error: Option<f64>,
+    /// Seconds that the simulation took, without reading, writing and drawing.
+    pub wall_s: f64,
+    /// Where the revolutions that are drawn begin.
+    #[serde(skip)]
+    pub before_drawn: Motion,
+}
+
+/// The end of a run.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct End {
+    /// rad, in [0, 2 pi).
+    pub cam_angle_rad: f64,
+    /// m, in the cam's coordinates.
+    pub position_m: f64,
+    /// m/s.
+    pub velocity_m_s: f64,
+    /// Whether it sticks to the cam.
+    pub contact: bool,
+}
+
+/// Events that are kept before they are shown.
+const KEPT: usize = 4096;
+/// Revolutions between two looks at the progress.
+const STRIDE: u64 = 4096;
+/// Blocks of revolutions whose exponents tell the error of their mean.
+const BLOCKS: u32 = 20;
+/// Revolutions without an impact after which none is waited for.
+const PATIENCE: u64 = 100_000;
+
+impl Simulation {
+    /// The motion of a model at a speed from a start.
+    pub fn new(model: &Model, rpm: f64, start: Start) -> Result<Self, StudyError> {
+        let machine = Machine::new(Cam::new(model)?, &model.follower, angular_velocity(rpm));
+        let first = start.motion(&machine)?;
+        Ok(Self { model: model.name.clone(), rpm, machine, first })
+    }
+
+    /// Runs it; `see` is shown what is asked for as it comes.
+    pub fn run<E: From<StudyError>>(
+        &self,
+        wanted: Wanted,
+        watch: &dyn Watch,
+        mut see: impl FnMut(Sight<'_>) -> Result<(), E>,
+    ) -> Result<Run, E> {
+        let Self { machine, first, .. } = self;
+        let (revolutions, most, total) = match wanted.until {
+            Until::Revolutions(count) => (count, u64::MAX, count),
+            Until::Impacts(count) => (u64::MAX, count, count),
+        };
+        let (end, drawn) = (first.after(revolutions), first.after(revolutions.saturating_sub(wanted.drawn)));
+        let (mut motion, mut before_drawn, mut wall, mut last_impact) = (*first, *first, Duration::ZERO, 0);
+        let ([mut impacts, mut sticks, mut releases], mut kept) = ([0; 3], Vec::new());
+        while impacts < most {
+            let mut goal = earlier(end, motion.after(STRIDE));
+            goal = wanted.strobe.map_or(goal, |angle| earlier(goal, motion.next(angle)));
+            if (motion.revolution, motion.cam_angle) < (drawn.revolution, drawn.cam_angle) {
+                goal = earlier(goal, drawn);
+            }
+            let (before, clock) = (impacts, Instant::now());
+            let flow = machine.advance(&mut motion, goal, &mut |event: &Event| {
+                match event.kind {
+                    EventKind::Impact => impacts += 1,
+                    EventKind::Stick => sticks += 1,
+                    EventKind::Release => releases += 1,
+                }
+                if wanted.events {
+                    kept.push(*event);
+                }
+                if kept.len() >= KEPT || impacts >= most { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            });
+            wall += clock.elapsed();
+            see(Sight::Events(&kept))?;
+            kept.clear();
+            let flow = flow.map_err(StudyError::from)?;
+            if impacts > before {
+                last_impact = motion.revolution;
+            } else if revolutions == u64::MAX && motion.revolution - last_impact > PATIENCE {
+                let (cam_angle, revolution) = (motion.cam_angle, motion.revolution);
+                Err(StudyError::NoImpact { waited: PATIENCE, impacts, cam_angle, revolution })?;
+            }
+            if flow.is_break() {
+                continue;
+            }
+            if goal == drawn {
+                before_drawn = motion;
+            }
+            if wanted.strobe == Some(goal.cam_angle) {
+                see(Sight::State(&motion))?;
+            }
+            watch.at("", if revolutions == u64::MAX { impacts } else { motion.revolution }, total);
+            if goal == end {
+                break;
+            }
+        }
+        let grown = if wanted.lyapunov {
+            watch.at("how fast a small deviation grows", 0, 0);
+            // A run of its own: it begins where the follower leaves the cam, and stops after each revolution.
+            Some(growth_and_error(machine, *first, revolutions, BLOCKS).map_err(StudyError::from)?)
+        } else {
+            None
+        };
+        Ok(Run {
+            schema: "corner-impact/simulate/1",
+            model: self.model.clone(),
+            rpm: self.rpm,
+            revolutions: (motion.revolution as f64) + (motion.cam_angle - first.cam_angle) / TAU,
+            impacts,
+            sticks,
+            releases,
+            end: End {
+                cam_angle_rad: motion.cam_angle,
+                position_m: motion.state.position,
+                velocity_m_s: motion.state.velocity,
+                contact: motion.contact,
+            },
+            lyapunov_per_revolution: grown.map(|(mean, _)| mean),
+            lyapunov_standard_error: grown.and_then(|(_, error)| error),
+            wall_s: wall.as_secs_f64(),
+            before_drawn,
+        })
+    }
+}
+
+fn earlier(one: Goal, other: Goal) -> Goal {
+    if one <= other { one } else { other }
+}
