@@ -2,7 +2,7 @@
 
 MODEL ?= models/osorio-2008.toml
 CARGO ?= cargo
-# One profile for the binary and its tests, so that the dependencies are compiled once.
+# One profile for the binary, its tests and the lints, so that what is compiled for one serves the others.
 RELEASE := --release --locked
 
 .DEFAULT_GOAL := help
@@ -33,8 +33,8 @@ test: $(VENV) ## run every test
 
 check: ## formatting, lints and documentation, warnings denied
 	$(CARGO) fmt --check
-	$(CARGO) clippy --all-targets --locked -- -D warnings
-	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --no-deps --locked
+	$(CARGO) clippy --all-targets $(RELEASE) -- -D warnings
+	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --no-deps $(RELEASE)
 
 derive: $(VENV) ## redo the derivations by computer algebra and write golden/derived
 	.venv/bin/python derivations/derive.py

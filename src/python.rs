@@ -144,6 +144,6 @@ fn interpreter() -> PathBuf {
         0 | 1 => path,
         _ => std::path::absolute(&path).unwrap_or(path),
     });
-    let of_the_build = || Some(OF_THE_BUILD).map(PathBuf::from).filter(|path| path.is_file());
+    let of_the_build = || Some(PathBuf::from(OF_THE_BUILD)).filter(|path| path.is_file());
     chosen.or_else(of_the_build).unwrap_or_else(|| "python3".into())
 }

@@ -59,13 +59,32 @@ impl Event {
     }
 }
 
+/// What finding contacts has taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Evaluations of the gap between follower and cam.
+    pub gaps: u64,
+    /// Steps of Newton's or Halley's method.
+    pub steps: u64,
+    /// Windows that were marched over, since their gap has no shape that makes a contact certain.
+    pub marches: u64,
+    /// Impacts of a settled motion, found one turn on without a search.
+    pub repeats: u64,
+}
+
 /// Who looks on. A closure that takes each event is one.
 pub trait Observer {
+    /// Whether `work` is called: a constant, so that a run whose work nobody asks for spends nothing on counting it.
+    const COUNTS: bool = false;
+
     /// Sees an event; may end the run right after it.
     fn event(&mut self, event: &Event) -> ControlFlow<()>;
 
     /// Sees a stretch of free flight that has just been flown: from which state, for how long, s.
     fn flight(&mut self, _flight: &Flight, _from: State, _time: f64) {}
+
+    /// Is told what one more look for a contact took.
+    fn work(&mut self, _work: Work) {}
 }
 
 impl<F: FnMut(&Event) -> ControlFlow<()>> Observer for F {

@@ -24,6 +24,7 @@ mod terrain;
 mod variation;
 mod window;
 
+use std::cell::Cell;
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -34,7 +35,7 @@ use crate::impact::relative_rebound;
 use crate::model::Follower;
 use crate::tolerance;
 use again::Turn;
-pub use event::{Event, EventKind, Observer, SimulateError, Unobserved};
+pub use event::{Event, EventKind, Observer, SimulateError, Unobserved, Work};
 use motion::Known;
 pub use motion::{Goal, Motion};
 pub use sticking::accumulation;
@@ -280,7 +281,7 @@ impl Machine {
 
     /// One stretch of flight: over the top of the cam, or up to a contact or the end of a segment.
     #[inline(always)]
-    fn fly(&self, motion: &mut Motion, left: f64, observer: &mut impl Observer) -> Result<Step, SimulateError> {
+    fn fly<O: Observer>(&self, motion: &mut Motion, left: f64, observer: &mut O) -> Result<Step, SimulateError> {
         let omega = self.angular_velocity;
         let top = self.terrain.top;
         let start = motion.state;
@@ -291,6 +292,9 @@ impl Machine {
         {
             let left = left - omega * again.time;
             if left > 0.0 {
+                if O::COUNTS {
+                    observer.work(Work { repeats: 1, ..Work::default() });
+                }
                 observer.flight(&self.flight, start, again.time);
                 motion.revolution += 1;
                 motion.cam_angle = again.cam_angle;
@@ -317,9 +321,16 @@ impl Machine {
         let segment = &self.cam().segments()[motion.segment];
         let within = segment.end - motion.cam_angle;
         let (last, span) = if left < within { (true, left) } else { (false, within) };
-        let window = Window::new(self, motion);
         let expected = motion.expected.map(|angle| (angle - motion.cam_angle) / omega);
-        match window.pass(span / omega, expected) {
+        let passage = if O::COUNTS {
+            let work = Cell::default();
+            let passage = Window::new(self, motion, &work).pass(span / omega, expected);
+            observer.work(work.get());
+            passage
+        } else {
+            Window::new(self, motion, ()).pass(span / omega, expected)
+        };
+        match passage {
             Passage::Free { state, gap } => {
                 observer.flight(&self.flight, start, span / omega);
                 (motion.state, motion.gap, motion.lift) = (state, gap, None);

@@ -6,14 +6,35 @@
 //! meets nothing. Which shape a window has follows from the gap at its start and from bounds of the flight's jerk and of
 //! the segment. Windows of any other shape go to [`super::contact`], which marches.
 
+use std::cell::Cell;
+
 use super::contact::{self, Gap, Outcome};
-use super::{Machine, Motion};
+use super::{Machine, Motion, Work};
 use crate::cam::{Lift, Segment};
 use crate::flight::{Flight, State};
 use crate::tolerance;
 
+/// Who counts the work of a window: a cell, or nobody.
+pub(super) trait Tally: Copy {
+    fn add(self, gaps: u64, steps: u64, marches: u64);
+}
+
+impl Tally for () {
+    #[inline(always)]
+    fn add(self, _gaps: u64, _steps: u64, _marches: u64) {}
+}
+
+impl Tally for &Cell<Work> {
+    fn add(self, gaps: u64, steps: u64, marches: u64) {
+        let work = self.get();
+        let (gaps, steps, marches) = (work.gaps + gaps, work.steps + steps, work.marches + marches);
+        self.set(Work { gaps, steps, marches, ..work });
+    }
+}
+
 /// A flight over a segment, from the angle where it is now.
-pub(super) struct Window<'a> {
+pub(super) struct Window<'a, T> {
+    tally: T,
     machine: &'a Machine,
     flight: &'a Flight,
     segment: &'a Segment,
@@ -53,9 +74,10 @@ struct Seen {
     lift: Lift,
 }
 
-impl<'a> Window<'a> {
-    pub fn new(machine: &'a Machine, motion: &Motion) -> Self {
+impl<'a, T: Tally> Window<'a, T> {
+    pub fn new(machine: &'a Machine, motion: &Motion, tally: T) -> Self {
         Self {
+            tally,
             machine,
             flight: &machine.flight,
             segment: &machine.cam().segments()[motion.segment],
@@ -127,6 +149,7 @@ impl<'a> Window<'a> {
             if depth > self.machine.gap_rounding(now.state.position) {
                 return self.free(end);
             }
+            self.tally.add(0, 1, 0);
             let newton = -now.value / now.rate;
             let bend = 0.5 * newton * now.curvature / now.rate;
             // Far from touching, where -g g''/(2 g'^2) is -1/4.
@@ -181,6 +204,7 @@ impl<'a> Window<'a> {
                 return Passage::NotFinite;
             }
             // Halley: t = -g/g' / (1 - g g''/(2 g'^2))
+            self.tally.add(0, 1, 0);
             let newton = -now.value / now.rate;
             let bend = 0.5 * newton * now.curvature / now.rate;
             // Where the gap hardly changes, Halley's step is short however far the contact is.
@@ -279,6 +303,7 @@ impl<'a> Window<'a> {
 
     #[inline]
     fn seen(&self, value: f64, state: State, lift: Lift) -> Seen {
+        self.tally.add(1, 0, 0);
         let omega = self.omega;
         Seen {
             value,
@@ -292,6 +317,7 @@ impl<'a> Window<'a> {
     /// Any shape of gap.
     #[cold]
     fn march(&self, end: f64) -> Passage {
+        self.tally.add(0, 0, 1);
         let omega = self.omega;
         let gap_at = |time: f64| {
             let now = if time == 0.0 { self.at_start() } else { self.at(time) };

@@ -52,3 +52,4 @@ mod targets;
 mod tolerance;
 mod verify;
 mod whole_files;
+mod work;

@@ -1,0 +1,56 @@
+//! Does finding contacts take what it took? How often the gap is evaluated, how many steps of Newton's and Halley's methods
+//! are taken and how many windows are marched over, at a speed of each kind: counts, so that a change that makes the
+//! simulator slower is seen whatever the machine is doing.
+
+use std::ops::ControlFlow;
+
+use corner_impact::simulate::{Event, Machine, Observer, Work, angular_velocity};
+use serde_json::json;
+
+use crate::common;
+
+#[derive(Default)]
+struct Counted {
+    work: Work,
+    events: u64,
+}
+
+impl Observer for Counted {
+    const COUNTS: bool = true;
+
+    fn event(&mut self, _event: &Event) -> ControlFlow<()> {
+        self.events += 1;
+        ControlFlow::Continue(())
+    }
+
+    fn work(&mut self, Work { gaps, steps, marches, repeats }: Work) {
+        self.work.gaps += gaps;
+        self.work.steps += steps;
+        self.work.marches += marches;
+        self.work.repeats += repeats;
+    }
+}
+
+/// At 700 rpm the motion settles on an orbit of one impact, at 670 rpm it is chaotic, at 183 rpm it chatters and sticks. Of
+/// chaos only as many revolutions as the last digits of a machine's sine need to make a difference.
+#[test]
+fn finding_contacts_takes_what_it_took() {
+    let model = common::osorio();
+    let counts = [(700.0, 1000), (670.0, 40), (183.0, 200)].map(|(rpm, revolutions)| {
+        let machine = Machine::new(common::cam(&model), &model.follower, angular_velocity(rpm));
+        let mut motion = machine.start_on_cam(0.0, 1.0).unwrap();
+        let goal = motion.after(revolutions);
+        let mut counted = Counted::default();
+        let _ = machine.advance(&mut motion, goal, &mut counted).unwrap();
+        let Counted { work: Work { gaps, steps, marches, repeats }, events } = counted;
+        json!({
+            "rpm": rpm, "revolutions": revolutions, "events": events, "gap_evaluations": gaps, "newton_steps": steps,
+            "marches": marches, "repeats": repeats,
+        })
+    });
+    let mut settings = insta::Settings::clone_current();
+    settings.set_snapshot_path("../../golden/snapshots");
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    settings.bind(|| insta::assert_json_snapshot!("work", counts));
+}
