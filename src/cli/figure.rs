@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
-use crate::figures::{Listed, Plate, Subject, listed, plate};
+use crate::figures::{FIGURES, Listed, Plate, Subject, listed};
 use crate::model::Model;
 use crate::show::json;
 
@@ -71,14 +71,14 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let page = match id {
         None => list(&model, &subject, arguments.json)?,
         Some(id) => {
-            if !listed(&subject).iter().any(|figure| figure.id == id) {
-                let there = listed(&subject).iter().map(|figure| figure.id).collect::<Vec<_>>().join(", ");
+            let Some(entry) = FIGURES.iter().find(|entry| entry.id == id) else {
+                let there = FIGURES.map(|entry| entry.id).join(", ");
                 return Err(CommandError::Words(format!("no figure called \"{id}\"; there are: {there}")));
-            }
+            };
             // Opened before the work: a name that cannot be is told at once.
             let canvas = arguments.out.as_deref().map(picture::Canvas::create).transpose()?;
             let progress = Progress::spinner("computing the figure");
-            let plate = plate(&subject, id).ok_or_else(|| CommandError::Words(format!("no figure called \"{id}\"")))?;
+            let plate = entry.plate(&subject);
             drop(progress);
             match (&plate.drawn, canvas) {
                 (Ok(drawn), Some(canvas)) => super::commit(vec![canvas.draw(&drawn.figure)?])?,

@@ -27,14 +27,11 @@ const UNKNOWN: [f64; 2] = [0.0, 1.0];
 
 /// A rectangle of the page.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(missing_docs, reason = "edges and lengths of a rectangle")]
 pub struct Frame {
-    /// Its left edge.
     pub left: f64,
-    /// Its upper edge.
     pub top: f64,
-    /// Its width.
     pub width: f64,
-    /// Its height.
     pub height: f64,
 }
 

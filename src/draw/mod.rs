@@ -195,38 +195,19 @@ impl Series {
     }
 }
 
-/// The values of a series, and how they are joined.
+/// The values of a series, `[x, y]` each, and how they are joined.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
+#[expect(missing_docs, reason = "points, stroke and marker are what their types say")]
 pub enum Data {
     /// Points joined in order; what is not a number breaks the line.
-    Line {
-        /// `[x, y]`.
-        points: Vec<[f64; 2]>,
-        /// How it is stroked.
-        stroke: Stroke,
-    },
+    Line { points: Vec<[f64; 2]>, stroke: Stroke },
     /// Points joined in order, and what lies below them filled down to the frame.
-    Area {
-        /// `[x, y]`.
-        points: Vec<[f64; 2]>,
-        /// How its upper edge is stroked.
-        stroke: Stroke,
-    },
+    Area { points: Vec<[f64; 2]>, stroke: Stroke },
     /// A line with the head of an arrow at the end of each of its runs.
-    Arrow {
-        /// `[x, y]`.
-        points: Vec<[f64; 2]>,
-        /// How it is stroked.
-        stroke: Stroke,
-    },
+    Arrow { points: Vec<[f64; 2]>, stroke: Stroke },
     /// One marker each.
-    Points {
-        /// `[x, y]`.
-        points: Vec<[f64; 2]>,
-        /// What stands there.
-        marker: Marker,
-    },
+    Points { points: Vec<[f64; 2]>, marker: Marker },
     /// Words at points, over whatever else is there.
     Words(Vec<Word>),
     /// More points than there is paper, counted on a grid.

@@ -14,6 +14,7 @@
 //! or back in time.
 
 use std::f64::consts::TAU;
+use std::iter::successors;
 
 use nalgebra::Vector2;
 
@@ -48,7 +49,7 @@ const IMPACT: f64 = 0.6;
 /// How much slower than the orbit's its impact is, of the relative velocity, at an impact as far from the corner as can be.
 const SLOWER: f64 = 0.15;
 /// Halvings that are tried until the simulator's revolution has one impact.
-const HALVINGS: u32 = 8;
+const HALVINGS: usize = 8;
 /// Samples of a curve.
 const SAMPLES: u32 = 240;
 
@@ -125,35 +126,22 @@ impl Subject {
         let machine = self.machine(at.speed_rpm());
         let (corner, omega) = (&at.corner, at.angular_velocity());
         let sides = [self.cam.before(corner.segment), corner.segment].map(|index| &self.cam.segments()[index]);
-        let shorter = sides.iter().map(|segment| segment.end - segment.start).fold(f64::INFINITY, f64::min);
-        let mut reach = (FARTHEST / IMPACT).min(0.9 * shorter);
-        let mut neighbours = None;
-        for _ in 0..HALVINGS {
-            let near = |side| neighbour(at, &machine, side, reach);
-            if let Some(found) = near(Side::Minus).zip(near(Side::Plus)) {
-                neighbours = Some([found.0, found.1]);
-                break;
-            }
-            reach *= 0.5;
-        }
-        let Some(neighbours) = neighbours else {
+        let widths = sides.map(|segment| segment.end - segment.start);
+        // From as far as there is cam, by halves.
+        let reaches = |width: f64| successors(Some((FARTHEST / IMPACT).min(0.9 * width)), |reach| Some(0.5 * reach));
+        let beside = |side, reach| neighbour(at, &machine, side, reach);
+        let both = |reach| Some((reach, [beside(Side::Minus, reach)?, beside(Side::Plus, reach)?]));
+        let Some((reach, neighbours)) = reaches(widths[0].min(widths[1])).take(HALVINGS).find_map(both) else {
             return Err("no neighbour of the orbit has its one impact next to the corner".into());
         };
-        let widths = sides.map(|segment| segment.end - segment.start);
-        let mut far = neighbours[0].clone();
-        let mut wide = (FARTHEST / IMPACT).min(0.9 * widths[0]);
-        while wide > reach {
-            // Going back in time a damped follower is soon far away.
-            let seen = |found: &Neighbour| {
-                let off = (found.sections[0].position - at.state.position).abs();
-                off < 0.5 * (at.state.position - corner.minus.value).abs()
-            };
-            if let Some(found) = neighbour(at, &machine, Side::Minus, wide).filter(seen) {
-                far = found;
-                break;
-            }
-            wide *= 0.5;
-        }
+        // Going back in time a damped follower is soon far away.
+        let seen = |found: &Neighbour| {
+            let off = (found.sections[0].position - at.state.position).abs();
+            off < 0.5 * (at.state.position - corner.minus.value).abs()
+        };
+        let wider = reaches(widths[0]).take_while(|wide| *wide > reach);
+        let far = wider.filter_map(|wide| beside(Side::Minus, wide)).find(seen);
+        let far = far.unwrap_or_else(|| neighbours[0].clone());
         let window = reach / omega;
         let law = |index: usize, from: f64, to: f64| -> Line {
             // Of the segment before angle 0 the law is that of a turn earlier.

@@ -39,7 +39,7 @@ pub use through_corner::{ThroughCorner, through_corner};
 pub use trace::{Run, time_trace};
 
 /// Every figure of the report, in the paper's order.
-const FIGURES: [Entry; 14] = [
+pub(crate) const FIGURES: [Entry; 14] = [
     cam_shape::CAM_SHAPE,
     cam::CAM,
     trace::SLOW_TRACE,
@@ -59,7 +59,7 @@ const FIGURES: [Entry; 14] = [
 /// A row of the table.
 pub(crate) struct Entry {
     /// Its name in commands.
-    id: &'static str,
+    pub(crate) id: &'static str,
     /// Of which figure of the paper; empty for none.
     place: &'static str,
     title: fn(&Subject) -> String,
@@ -143,7 +143,7 @@ pub fn plate(subject: &Subject, id: &str) -> Option<Plate> {
 }
 
 impl Entry {
-    fn plate(&self, subject: &Subject) -> Plate {
+    pub(crate) fn plate(&self, subject: &Subject) -> Plate {
         let title = (self.title)(subject);
         let drawn = (self.draw)(subject, &title);
         let command = command("figure", &subject.model, &format!("{} --out {}.svg", self.id, self.id));

@@ -2,7 +2,6 @@
 //! what runs settle on while the speed falls and while it rises.
 
 use std::f64::consts::TAU;
-use std::ops::ControlFlow;
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -84,6 +83,12 @@ pub struct Shown {
     pub path: Vec<[f64; 2]>,
 }
 
+impl Shown {
+    fn new(place: Place, impact: Event, orbit: &PeriodicOrbit, path: Vec<[f64; 2]>) -> Self {
+        Self { place, impact, multipliers: orbit.multipliers(), stable: orbit.is_stable(), path }
+    }
+}
+
 /// What a run settles on.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Run {
@@ -157,8 +162,7 @@ fn orbits(machine: &Machine, at: &CornerImpact) -> Result<Vec<Shown>, SimulateEr
             segment if segment == after => Place::After,
             _ => Place::Elsewhere,
         };
-        let (multipliers, stable) = (orbit.multipliers(), orbit.is_stable());
-        Some(Shown { place, impact, multipliers, stable, path: path(machine, cycle) })
+        Some(Shown::new(place, impact, orbit, path(machine, cycle)))
     };
     Ok(found.iter().filter_map(shown).collect())
 }
@@ -177,8 +181,7 @@ fn on_corner(machine: &Machine, at: &CornerImpact) -> Vec<Shown> {
         }
         let orbit = PeriodicOrbit::of_cycle(machine, cycle, at.residual);
         let impact = Event { cam_angle: at.corner.angle, position: lift.value, ..orbit.events[0] };
-        let (multipliers, stable) = (orbit.multipliers(), orbit.is_stable());
-        Shown { place, impact, multipliers, stable, path: path(machine, &at.cycle) }
+        Shown::new(place, impact, &orbit, path(machine, &at.cycle))
     };
     sides(machine, at).into_iter().zip(lifts).zip(names).map(shown).collect()
 }
@@ -207,13 +210,11 @@ fn runs<'a>(machine: &Machine, speeds: impl Iterator<Item = &'a f64>) -> Result<
             Some(motion) => machine.resume(motion)?,
         };
         machine.revolve(&mut run, SETTLING)?;
-        let (goal, drawn) = (run.after(RECORDED), run);
-        let mut impacts = Vec::new();
-        let _ = machine.advance(&mut run, goal, &mut |event: &Event| {
+        let (drawn, mut impacts) = (run, Vec::new());
+        machine.watch(&mut run, RECORDED, |event| {
             if event.kind == EventKind::Impact {
                 impacts.push(event.cam_angle);
             }
-            ControlFlow::Continue(())
         })?;
         runs.push(Run { impacts, revolutions: RECORDED, paths: paths(&machine, drawn)? });
         motion = Some(run);

@@ -86,26 +86,22 @@ pub struct FrameEntry {
     pub speeding: RunFrame,
 }
 
-/// An orbit at one speed.
+/// An orbit at one speed, with its impact.
 #[derive(Clone, Debug, Serialize)]
+#[expect(missing_docs, reason = "names carry what a number is, and its unit")]
 pub struct OrbitFrame {
     /// `before`, `after` or `elsewhere`: where the impact is, seen from the corner.
     pub place: Place,
-    /// Whether it is stable.
     pub stable: bool,
     /// Cam angle of the impact.
     pub angle_deg: f64,
     /// That angle less the corner's.
     pub from_corner_deg: f64,
-    /// Where it hits the cam.
     pub position_m: f64,
-    /// v-.
     pub velocity_before_m_s: f64,
-    /// v+.
     pub velocity_after_m_s: f64,
-    /// Both.
     pub multipliers: [Eigenvalue; 2],
-    /// The larger modulus.
+    /// The larger modulus of the two.
     pub modulus: f64,
     /// One revolution: cam angle, deg, and position, m.
     pub path: Vec<[f64; 2]>,
@@ -138,18 +134,15 @@ const MARGIN: f64 = 0.06;
 
 /// Places after the point: a model's unit of length is its own.
 #[derive(Clone, Copy, Debug, Serialize)]
+#[expect(missing_docs, reason = "each is of the quantity that it is named after")]
 pub struct Places {
-    /// Of a speed, rpm: neighbouring frames differ.
+    /// So many that neighbouring frames differ.
     pub speed: i32,
-    /// Of a position, m: by the cam's travel.
+    /// By the cam's travel.
     pub position: i32,
-    /// Of a velocity, m/s.
     pub velocity: i32,
-    /// Of the cam's acceleration, m/rad^2.
     pub acceleration: i32,
-    /// Of an angle, deg.
     pub angle: i32,
-    /// Of a multiplier.
     pub multiplier: i32,
 }
 
