@@ -1,4 +1,5 @@
-# Most people need `make verify` and `make report`, and who changes something `make test`; all set up what they use.
+# Most people need `make verify` and `make report`, and who changes something `make quick` and `make test`; all set up what
+# they use.
 
 MODEL ?= models/osorio-2008.toml
 CARGO ?= cargo
@@ -6,7 +7,7 @@ CARGO ?= cargo
 RELEASE := --release --locked
 
 .DEFAULT_GOAL := help
-.PHONY: help verify report test check derive derive-check claims pictures review mutants bench bench-each bench-peers clean
+.PHONY: help verify report quick test check derive derive-check claims pictures review mutants bench bench-each bench-peers clean
 
 # Python and its packages, once; again when the list of packages changes.
 PYTHON ?= python3
@@ -28,8 +29,13 @@ report: $(VENV) ## write all that is found about MODEL as one HTML page in this 
 	$(CARGO) build $(RELEASE) --quiet
 	@target/release/corner-impact report $(MODEL)
 
+# In the dev profile, which compiles a change faster than the release profile does.
+quick: $(VENV) ## the tests that answer at once, after each change: within a minute
+	$(if $(shell command -v cargo-nextest),$(CARGO) nextest run --locked --test it,$(CARGO) test --locked --test it)
+
+# Not by nextest: it runs each test in a process of its own, and tests of the report share one that takes a while to make.
 test: $(VENV) ## run every test
-	$(CARGO) test $(RELEASE)
+	$(CARGO) test $(RELEASE) -- --include-ignored
 
 check: ## formatting, lints and documentation, warnings denied
 	$(CARGO) fmt --check
@@ -56,7 +62,7 @@ pictures: ## draw the pictures of docs/ again
 
 review: ## after a change to the model: look at each number that moved, accept or reject it
 	@command -v cargo-insta >/dev/null || $(CARGO) install cargo-insta --locked
-	$(CARGO) insta test $(RELEASE) --review
+	$(CARGO) insta test $(RELEASE) --review -- --include-ignored
 
 mutants: ## change signs and factors in the formulas; each change must fail a test
 	@command -v cargo-mutants >/dev/null || $(CARGO) install cargo-mutants --locked

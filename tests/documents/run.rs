@@ -21,6 +21,7 @@ pub enum Held {
 pub const ELSEWHERE: &[(&str, &str, Held)] = &[
     ("cargo install --path .", "compiles the program once more", Held::Landing),
     ("make check", "compiles everything once more", Held::Landing),
+    ("make quick", "runs a part of what `make test` does", Held::Target),
     ("make test", "is what runs this test", Held::Landing),
     ("make derive-check", "takes a minute of computer algebra", Held::Landing),
     ("make verify", "needs Python's packages; tests/it/routes.rs runs the same", Held::Landing),

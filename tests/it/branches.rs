@@ -109,6 +109,7 @@ fn a_line_is_one_impact() {
 /// The number moves the corner itself. The branch turns round there, and what a search finds beside the first orbit is on it
 /// too.
 #[test]
+#[ignore = "slow"]
 fn a_corner_that_moves_with_the_number_is_passed() {
     let model = common::osorio();
     let two = |model: &Model| {
@@ -305,6 +306,7 @@ fn is_ordinary(branch: &Branch, index: usize) -> bool {
 }
 
 #[test]
+#[ignore = "slow"]
 fn every_point_of_a_branch_is_an_orbit_of_the_simulator() {
     let mut seen = 0;
     for (file, rpm, parameter, range) in models() {

@@ -247,6 +247,7 @@ fn commands_refuse_a_bad_table() {
 
 /// As many rows as are allowed; one more is one too many.
 #[test]
+#[ignore = "slow"]
 fn a_million_rows() {
     let count = 1_000_000_u32;
     let rows: Vec<(f64, f64)> =

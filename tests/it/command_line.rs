@@ -40,6 +40,7 @@ fn examples(help: &str) -> Vec<String> {
 
 /// Every subcommand is listed, under a heading, and has examples that work as they are written.
 #[test]
+#[ignore = "slow"]
 fn examples_work_as_written() {
     let folder = TempDir::new().unwrap();
     std::fs::create_dir(folder.path().join("models")).unwrap();
@@ -108,6 +109,7 @@ fn help_and_version_go_to_standard_output() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn pages_fit_the_width_that_is_asked_for() {
     for line in [
         "verify --no-external",
@@ -162,6 +164,7 @@ fn stripped(text: &str) -> String {
 }
 
 #[test]
+#[ignore = "slow"]
 fn colour_is_where_it_belongs_and_says_nothing_by_itself() {
     let coloured = |line: &str, set: &[(&str, &str)]| {
         let output = program(line.split_whitespace()).envs(set.iter().copied()).output().unwrap();
@@ -201,6 +204,7 @@ fn colour_is_where_it_belongs_and_says_nothing_by_itself() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn a_model_need_not_be_named() {
     let note = "note: no MODEL given: using the paper's, osorio-2008, which is built in\n";
     for line in [
@@ -295,6 +299,7 @@ fn manual_and_completions_know_every_command() {
 /// A copy of the program in an empty folder, far from the project: all that needs no Python works, and what needs
 /// Python says so where there is none, and how to set it up or do without.
 #[test]
+#[ignore = "slow"]
 fn from_any_folder() {
     let (home, empty) = (TempDir::new().unwrap(), TempDir::new().unwrap());
     let copy = home.path().join("corner-impact");
@@ -336,6 +341,7 @@ fn from_any_folder() {
 
 /// In front of a person work of more than a second has a bar, or a spinner; `script` makes a terminal.
 #[test]
+#[ignore = "slow"]
 fn a_terminal_sees_how_far_it_is() {
     let typed = |line: &str| {
         let line = format!("{PROGRAM} {line}");

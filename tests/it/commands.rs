@@ -247,6 +247,7 @@ fn is_picture(path: &Path) {
 }
 
 #[test]
+#[ignore = "slow"]
 fn pictures_are_pictures() {
     let folder = TempDir::new().unwrap();
     for extension in ["svg", "png"] {

@@ -66,6 +66,7 @@ fn assert_agree(maps: &[Route], what: &str) {
 }
 
 #[test]
+#[ignore = "slow"]
 fn the_product_around_any_orbit_is_the_map_that_simulations_show() {
     let counts: Vec<_> = cases().iter().map(|case| (case.at.cycle.revolutions, case.at.cycle.contacts.len())).collect();
     assert_eq!(counts, [(1, 1), (1, 2), (2, 2), (3, 3), (1, 2), (1, 2)]);
@@ -89,6 +90,7 @@ fn numbers(model: &Model) -> Vec<String> {
 }
 
 #[test]
+#[ignore = "slow"]
 fn b_by_every_number_is_what_machines_with_that_number_show() {
     let (mut tried, mut untouched) = (0, 0);
     for Case { model, cam, at } in cases() {
@@ -126,6 +128,7 @@ fn a_fit_by_a_number_finds_the_same() {
 /// The border is one line of the space of states and numbers together: A+ - A- and every B+ - B- side by side have rank one.
 /// That a corner moves with a number comes out of the laws on its two sides.
 #[test]
+#[ignore = "slow"]
 fn the_jump_has_rank_one_in_states_and_numbers_together() {
     for Case { model, cam, at } in cases() {
         let jump = |map: &CornerMap| (map.plus.a - map.minus.a, map.plus.b - map.minus.b);
@@ -148,6 +151,7 @@ fn the_jump_has_rank_one_in_states_and_numbers_together() {
 
 /// Perturb the orbit, look on which side of the corner the impact falls.
 #[test]
+#[ignore = "slow"]
 fn the_border_says_on_which_side_the_impact_falls() {
     for Case { model, cam, at } in cases() {
         let (e, f) = border(model, cam, at);
@@ -209,6 +213,7 @@ fn what_cannot_be_varied_is_refused() {
 
 /// Up to twelve impacts, the last ones of which chatter or nearly graze: each amplifies the rounding of those before.
 #[test]
+#[ignore = "slow"]
 fn differences_know_their_errors_where_impacts_amplify_rounding() {
     for (name, least) in [("own.toml", 40), ("measured.toml", 130)] {
         let model = common::tutorial(name);

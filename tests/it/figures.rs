@@ -311,6 +311,7 @@ fn wild_data_are_drawn_without_panic() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn a_million_points_stay_small() {
     let mut grid = Density::new([660.0, 750.0], [90.0, 230.0]);
     sweep(2000, 500, |rpm, phase| grid.push(rpm, phase));

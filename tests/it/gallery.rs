@@ -98,6 +98,7 @@ fn the_figures_are_in_the_papers_order() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn the_papers_model_has_every_figure() {
     let subject = paper();
     let mut steps = Vec::new();
@@ -117,6 +118,7 @@ fn the_papers_model_has_every_figure() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn every_model_has_its_figures_or_a_reason() {
     fn models(folder: &Path, found: &mut Vec<PathBuf>) {
         for entry in std::fs::read_dir(folder).unwrap() {
@@ -203,6 +205,7 @@ fn the_shape_is_the_papers_construction() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn corners_are_marked_where_the_paper_has_them() {
     let figure = drawn(&paper(), "cam");
     let at: Vec<f64> = figure.marks.iter().map(|mark| mark.at).collect();
@@ -234,6 +237,7 @@ fn the_orbit_at_the_corner_is_the_papers() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn the_slow_motion_chatters_and_rests_and_its_impacts_begin_behind_p() {
     let subject = paper();
     let run = subject.settled(183.0, 2).unwrap();

@@ -121,6 +121,7 @@ fn manifolds_are_invariant() {
 
 /// With rising speed the unstable manifold comes nearer to the stable one, and touches it between 682.2 and 682.22 rpm.
 #[test]
+#[ignore = "slow"]
 fn the_chaotic_motion_is_lost_where_the_manifolds_touch() {
     let model = common::osorio();
     let distance = |rpm: f64| {

@@ -266,3 +266,20 @@ fn thresholds_stand_in_the_table() {
         }
     }
 }
+
+/// What `make mutants` changes, and the tests that must see it, are there.
+#[test]
+fn mutants_are_looked_for_where_there_is_something() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let settings = std::fs::read_to_string(root.join(".cargo/mutants.toml")).unwrap();
+    let quoted: Vec<&str> = settings.split('"').skip(1).step_by(2).collect();
+    let (files, filters): (Vec<&str>, Vec<&str>) = quoted.iter().partition(|word| word.ends_with(".rs"));
+    let modules: Vec<&str> = filters.iter().filter_map(|word| word.strip_suffix("::")).collect();
+    assert!(!files.is_empty() && !modules.is_empty(), "{settings}");
+    for file in files {
+        assert!(root.join(file).is_file(), "{file} is no file");
+    }
+    for module in modules {
+        assert!(root.join(format!("tests/it/{module}.rs")).is_file(), "{module} is no module of tests/it");
+    }
+}

@@ -55,6 +55,7 @@ fn every_equation_and_every_number_has_its_claim() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn every_check_comes_to_the_ledgers_verdict() {
     for held in held(&common::osorio()).claims {
         assert!(held.as_found, "{held:#?}");
@@ -103,6 +104,7 @@ fn the_drawn_cam_is_as_the_ledger_says() {
 
 /// A statement found open is one that no check decides, and the other way round.
 #[test]
+#[ignore = "slow"]
 fn open_is_what_no_check_decides() {
     for held in held(&common::osorio()).claims {
         let check = find(&held.id).unwrap();
@@ -112,6 +114,7 @@ fn open_is_what_no_check_decides() {
 
 /// Checks compute: with another restitution the paper's statements about its own map do not simply keep their verdicts.
 #[test]
+#[ignore = "slow"]
 fn a_check_that_sees_another_map_finds_something_else() {
     let mut model = common::osorio();
     let findings =
@@ -151,6 +154,7 @@ fn another_model_leaves_the_papers_numbers_open() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn the_page_in_docs_is_fresh() {
     let model = common::osorio();
     let (lead, sections) = pages::claims::document(&held(&model));
@@ -160,6 +164,7 @@ fn the_page_in_docs_is_fresh() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn the_json_document_has_the_fields_of_the_contract() {
     let file = common::model_files().into_iter().find(|file| common::stem(file) == "osorio-2008").unwrap();
     let output = common::program(["claims", "--json"]).arg(&file).output().unwrap();

@@ -32,6 +32,7 @@ fn most_while_printing(arguments: &[&str], rows: usize) -> u64 {
 
 /// However long a run or a record, memory stays where it was.
 #[test]
+#[ignore = "slow"]
 fn memory_does_not_grow_with_the_length_of_a_run() {
     let sweep = ["diagram", MODEL, "--rpm", "700:720:2", "--record", "500000", "--threads", "2", "--out", "-"];
     let diagram = most_while_printing(&sweep, 950_000);
@@ -42,6 +43,7 @@ fn memory_does_not_grow_with_the_length_of_a_run() {
 
 /// A picture that goes to a pipe waits there, whole, for its reader, but for what a pipe holds.
 #[test]
+#[ignore = "slow"]
 fn pictures_take_no_more_than_a_run() {
     let folder = tempfile::TempDir::new().unwrap();
     for (line, name) in [

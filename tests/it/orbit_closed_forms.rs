@@ -153,6 +153,7 @@ fn the_one(branch: &Branch, is: impl Fn(&Kind) -> bool, derived: f64) -> &Branch
 
 /// The wall as parameter: from the graze where the slow orbit begins, round the fold, to the fast one's flip and beyond.
 #[test]
+#[ignore = "slow"]
 fn the_oscillators_branch_has_its_graze_its_fold_and_its_flip() {
     for case in cases("oscillator") {
         let (model, rpm) = oscillator(&case);

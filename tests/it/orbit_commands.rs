@@ -182,6 +182,7 @@ fn pictures_and_tables_are_whole_files() {
 
 /// The corner impact at R is of three types, one after the other, as the restitution grows; the paper's is of one.
 #[test]
+#[ignore = "slow"]
 fn the_type_changes_along_a_curve_of_corner_impacts() {
     let (table, account) = done(&["curve", MODEL, "--rpm", "600:760", "--parameter", "restitution=0.5:0.95"]);
     let table = Table::new(&table, "rpm,parameter,value,revolutions,impacts,cam_angle_rad,jump_order,scenario");
@@ -214,6 +215,7 @@ fn the_type_changes_along_a_curve_of_corner_impacts() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn speeds_gives_the_short_answer() {
     let answer = document(&["speeds", MODEL, "--rpm", "100:200", "--speeds", "30", "--json"]);
     assert_eq!(answer["schema"], "corner-impact/speeds/1");
@@ -243,6 +245,7 @@ fn speeds_gives_the_short_answer() {
 /// A flip and the corner impact after it, 0.06 rpm apart, between two speeds that are run; and on another cam the corner
 /// impact that an orbit of one impact begins in, and not that in which what was there before ends.
 #[test]
+#[ignore = "slow"]
 fn changes_between_two_speeds_are_told_apart() {
     let answer = document(&["speeds", MODEL, "--rpm", "735:745", "--speeds", "31", "--json"]);
     for walk in ["rising", "falling"] {
@@ -276,7 +279,7 @@ fn what_cannot_be_followed_is_refused_with_a_reason() {
     assert!(refused(&["orbit", MODEL, "--rpm", "0"]).contains("above 0"));
     assert!(refused(&["orbit", MODEL, "--rpm", "700", "--revolutions", "0"]).contains("0"));
     assert!(refused(&["curve", MODEL, "--rpm", "600:760", "--parameter", "rpm=1:2"]).contains("a number of the model"));
-    assert!(refused(&["speeds", MODEL, "--rpm", "700:600"]).contains("not above"));
+    assert!(refused(&["speeds", MODEL, "--rpm", "700:600"]).contains("700 is not below 600"));
     let nowhere = ["continue", MODEL, "--from-rpm", "700", "--parameter", "rpm=690:710", "--out", "/nowhere/b.csv"];
     assert!(refused(&nowhere).contains("/nowhere"));
 }

@@ -62,6 +62,7 @@ fn read(text: &str) -> (f64, f64) {
 }
 
 #[test]
+#[ignore = "slow"]
 fn every_number_on_the_page_is_one_of_the_document_and_shows_it() {
     let (dossier, page) = papers();
     let mut known = BTreeSet::new();
@@ -87,6 +88,7 @@ fn every_number_on_the_page_is_one_of_the_document_and_shows_it() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn the_sliders_data_are_the_documents() {
     let (dossier, page) = papers();
     let embedded = between(page, "id=\"through-data\">", "</script>");
@@ -96,6 +98,7 @@ fn the_sliders_data_are_the_documents() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn the_page_needs_nothing_beside_it_and_is_small() {
     let (_, page) = papers();
     assert!(page.len() < 5_000_000, "{} bytes", page.len());
@@ -123,6 +126,7 @@ fn the_page_needs_nothing_beside_it_and_is_small() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn every_link_leads_to_a_place_on_the_page_and_no_place_is_named_twice() {
     let (_, page) = papers();
     let markup = page.split("<script>").next().unwrap();
@@ -135,6 +139,7 @@ fn every_link_leads_to_a_place_on_the_page_and_no_place_is_named_twice() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn claims_routes_and_figures_are_all_there() {
     let (dossier, page) = papers();
     let ledger = dossier.claims.as_ref().unwrap();
@@ -162,6 +167,7 @@ fn claims_routes_and_figures_are_all_there() {
 
 /// A model file's texts are its author's: markup in them is text on the page.
 #[test]
+#[ignore = "slow"]
 fn a_models_name_is_text_whatever_it_holds() {
     let evil = "</script><script>alert(1)</script><img src=x onerror=alert(2)> \\\" & 'x'";
     let text = OSORIO_2008.replacen("name = \"osorio-2008\"", &format!("name = \"{evil}\""), 1);
@@ -180,6 +186,7 @@ fn a_models_name_is_text_whatever_it_holds() {
 
 /// The same text in the slider's data would end its element.
 #[test]
+#[ignore = "slow"]
 fn text_in_the_sliders_data_does_not_end_it() {
     let mut dossier = papers().0.clone();
     dossier.through.as_mut().unwrap().corner = "</script><script>alert(1)</script><!--".into();
@@ -191,6 +198,7 @@ fn text_in_the_sliders_data_does_not_end_it() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn what_disagrees_stands_in_the_headline() {
     let (dossier, page) = papers();
     assert!(page.contains("Everything that was checked agrees."));
@@ -211,6 +219,7 @@ fn report(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
 }
 
 #[test]
+#[ignore = "slow"]
 fn a_model_without_a_corner_impact_has_a_page_that_says_why() {
     let folder = tempfile::tempdir().unwrap();
     let model = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/laws/rectified-sine.toml");
@@ -225,6 +234,7 @@ fn a_model_without_a_corner_impact_has_a_page_that_says_why() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn the_command_says_what_it_cannot_do() {
     let folder = tempfile::tempdir().unwrap();
     for (arguments, words) in [
@@ -242,6 +252,7 @@ fn the_command_says_what_it_cannot_do() {
 
 /// The orbits next to the corner impact are those that Feigin's classification counts, for every model that has one.
 #[test]
+#[ignore = "slow"]
 fn orbits_on_either_side_are_those_of_the_classification() {
     let mut checked = 0;
     for file in common::model_files() {
@@ -280,6 +291,7 @@ fn orbits_on_either_side_are_those_of_the_classification() {
 
 /// A machine ten thousand times smaller has the same slider, in its own numbers.
 #[test]
+#[ignore = "slow"]
 fn the_slider_shows_a_machine_of_any_size() {
     const SMALLER: f64 = 1e-4;
     let lengths = ["follower.rest_position", "cam.base_radius", "cam.flank_radius", "cam.nose_radius"];
@@ -320,6 +332,7 @@ fn the_slider_shows_a_machine_of_any_size() {
 
 /// Two digits of a small number are two, with and without a power of ten.
 #[test]
+#[ignore = "slow"]
 fn sizes_have_two_digits() {
     let mut dossier = papers().0.clone();
     let pairs = &mut dossier.verification.as_mut().unwrap().comparisons;
@@ -338,6 +351,7 @@ fn sizes_have_two_digits() {
 
 /// Drawn orbits and multipliers against the simulator, which knows neither.
 #[test]
+#[ignore = "slow"]
 fn drawn_orbits_are_those_of_the_simulator() {
     let model = common::osorio();
     let cam = common::cam(&model);

@@ -82,6 +82,7 @@ fn a_force_that_grows_slowly_out_of_nothing() {
 
 /// Cam and spring in resonance: the force of contact is the same all round, and as small as one likes.
 #[test]
+#[ignore = "slow"]
 fn a_force_that_is_hardly_there_all_round() {
     let cam = "law = \"harmonic\"\noffset = 0.5\namplitudes = [0.1]\nphases_deg = [0.0]\n";
     let rpm = 60.0 / TAU;
@@ -209,6 +210,7 @@ fn a_follower_that_sticks_is_kicked_at_corners() {
 
 /// A million rows: read, splined and run over in seconds.
 #[test]
+#[ignore = "slow"]
 fn a_table_of_a_million_rows() {
     let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("million");
     std::fs::create_dir_all(&folder).unwrap();

@@ -99,6 +99,7 @@ fn pressing(case: &Case, segment: usize, angle: f64) -> (f64, f64) {
 
 /// Looked at 500 times in 5 revolutions, the follower is over the cam or sticks to it, and the cam does not pull.
 #[test]
+#[ignore = "slow"]
 fn the_follower_is_never_below_the_cam_and_the_cam_never_pulls() {
     check(2000, |case| {
         let (machine, mut motion) = (&case.machine, case.motion().unwrap());
@@ -139,6 +140,7 @@ fn the_follower_is_never_below_the_cam_and_the_cam_never_pulls() {
 /// Impacts are on the cam, turn the relative velocity round and scale it by r, and come one after the other; a follower
 /// that sticks has the cam's velocity; the cam lets go where it no longer presses or where it has a corner.
 #[test]
+#[ignore = "slow"]
 fn events_obey_their_laws() {
     check(4000, |case| {
         let (machine, mut motion) = (&case.machine, case.motion().unwrap());
@@ -240,6 +242,7 @@ fn least_gap(machine: &Machine, angle: f64, start: State, end: f64) -> (f64, f64
 /// From the start and from every event on which a flight begins, a scan of that one flight finds nothing below the cam
 /// before the next impact, and nothing above it there.
 #[test]
+#[ignore = "slow"]
 fn the_first_contact_is_the_first() {
     check(1500, |case| {
         let (machine, mut motion) = (&case.machine, case.motion().unwrap());
@@ -347,6 +350,7 @@ fn depth(machine: &Machine, event: &Event) -> f64 {
 
 /// Split at two places, a run has the same events, as far as rounding lets it be told.
 #[test]
+#[ignore = "slow"]
 fn a_run_may_be_split_anywhere() {
     check(2000, |case| {
         let (machine, first) = (&case.machine, case.motion().unwrap());
@@ -414,6 +418,7 @@ fn the_same_run_is_the_same() {
 
 /// The matrix against differences of the state at the end, over two widths; 0 after the follower has stuck.
 #[test]
+#[ignore = "slow"]
 fn the_variational_flow_is_the_derivative_of_the_end() {
     static COMPARED: AtomicU32 = AtomicU32::new(0);
     check(3000, |case| {

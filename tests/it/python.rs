@@ -24,6 +24,7 @@ fn unwrapped(page: Vec<u8>) -> String {
 
 /// Every entry of A to five decimals and of B to 1e-6 relative, or better; the derived expressions to twelve digits.
 #[test]
+#[ignore = "slow"]
 fn both_programs_agree_on_every_model() {
     interpreter();
     for file in common::model_files() {
@@ -53,6 +54,7 @@ fn both_programs_agree_on_every_model() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn without_python_it_says_so_and_does_not_agree() {
     let model = "models/osorio-2008.toml";
     let output = verify(&[model], &[("CORNER_IMPACT_PYTHON", "/nonexistent/python")]);
@@ -74,6 +76,7 @@ fn without_python_it_says_so_and_does_not_agree() {
 /// An interpreter that runs no Python: it says what a failing script says, or prints what is no result.
 #[cfg(unix)]
 #[test]
+#[ignore = "slow"]
 fn a_script_that_fails_is_quoted() {
     let folder = tempfile::tempdir().unwrap();
     let says = r#"case "$*" in *evaluate.py) echo 'no module named sympathy' >&2; exit 1;; *) echo 'not json';; esac"#;
@@ -101,6 +104,7 @@ fn executable(folder: &Path, name: &str, text: &str) -> PathBuf {
 /// own, with modules of the names that the scripts import, and a module that Python imports by itself where it finds one.
 #[cfg(unix)]
 #[test]
+#[ignore = "slow"]
 fn nothing_of_the_current_folder_is_run() {
     let (home, stranger, private) =
         (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
@@ -142,6 +146,7 @@ fn nothing_of_the_current_folder_is_run() {
 
 /// A relative path to an interpreter is one from the current folder, wherever the scripts are run.
 #[test]
+#[ignore = "slow"]
 fn an_interpreter_is_named_from_the_current_folder() {
     interpreter();
     let output = verify(&["models/osorio-2008.toml"], &[("CORNER_IMPACT_PYTHON", ".venv/bin/python")]);
@@ -149,6 +154,7 @@ fn an_interpreter_is_named_from_the_current_folder() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn left_out_on_purpose_is_listed_and_agrees() {
     let output =
         verify(&["--no-external", "models/osorio-2008.toml"], &[("CORNER_IMPACT_PYTHON", "/nonexistent/python")]);
