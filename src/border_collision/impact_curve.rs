@@ -51,9 +51,7 @@ pub struct CurveImpact {
     pub cam_angle: f64,
     /// Turns of the cam in one period.
     pub revolutions: u64,
-    /// Impacts in one period.
     pub impacts: usize,
-    /// What happens there.
     pub happening: Happening,
     /// Two with the law before the corner, then two with the law after it.
     pub multipliers: Vec<Eigenvalue>,
@@ -87,7 +85,6 @@ impl CurveImpact {
 pub struct ImpactCurve {
     /// Which impact, and of what order.
     pub at: AtCorner,
-    /// In order along it.
     pub impacts: Vec<CurveImpact>,
     /// Why it starts and ends where it does.
     pub ends: [End; 2],

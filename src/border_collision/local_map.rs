@@ -62,21 +62,6 @@ impl LocalMap {
         Self { minus: map.minus, plus: map.plus, border }
     }
 
-    /// The normal form `(x, y) -> (trace x + y + mu, -determinant x)`, minus where x < 0.
-    pub fn normal_form(traces: [f64; 2], determinants: [f64; 2]) -> Self {
-        let side = |index: usize| SideMap {
-            a: Matrix2::new(traces[index], 1.0, -determinants[index], 0.0),
-            b: Vector2::new(1.0, 0.0),
-        };
-        Self { minus: side(0), plus: side(1), border: (RowVector2::new(1.0, 0.0), 0.0) }
-    }
-
-    /// The map of the line `x -> slope x + mu`, minus where x < 0.
-    pub fn of_the_line(slopes: [f64; 2]) -> Self {
-        let side = |index: usize| SideMap { a: Matrix2::new(slopes[index], 0.0, 0.0, 0.0), b: Vector2::new(1.0, 0.0) };
-        Self { minus: side(0), plus: side(1), border: (RowVector2::new(1.0, 0.0), 0.0) }
-    }
-
     /// The map of one side.
     pub fn of(&self, side: Side) -> &SideMap {
         match side {

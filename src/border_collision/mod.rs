@@ -6,24 +6,24 @@
 //! | [`mod@conditions`], [`feigin`] | what a classification rests on, and the classification |
 //! | [`mod@normal_form`] | the map with its parameter out of the border |
 //! | [`local_map`], [`word`] | the map itself; the sides that its orbits visit |
-//! | [`long_run`], [`outcome`] | where its motions end, on either side of the corner impact |
+//! | [`long_run`], `outcome` | where its motions end, on either side of the corner impact |
 //! | [`validity`], [`passage`] | how far it holds; how the machine leaves the place where its orbit was |
-//! | [`impact_curve`] | what happens along a curve of corner impacts in two numbers of the model |
+//! | `impact_curve` | what happens along a curve of corner impacts in two numbers of the model |
 
 pub mod conditions;
 pub mod feigin;
-pub mod impact_curve;
+pub(crate) mod impact_curve;
 pub mod local_map;
 pub mod long_run;
 pub mod normal_form;
-pub mod outcome;
+pub(crate) mod outcome;
 pub mod passage;
 pub mod validity;
 pub mod word;
 
 pub use conditions::{Condition, conditions};
 pub use feigin::{Classification, classify, scenario};
-pub use impact_curve::{AtCorner, ImpactCurve};
+pub(crate) use impact_curve::{AtCorner, ImpactCurve};
 pub use local_map::LocalMap;
 pub use normal_form::{NormalForm, normal_form};
 pub use outcome::LocalOutcome;

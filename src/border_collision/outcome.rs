@@ -31,7 +31,6 @@ pub struct LocalOutcome {
 /// Where some of the starts end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fate {
-    /// Where.
     pub end: End,
     /// How many starts end there, of [`LocalOutcome::starts`].
     pub starts: usize,

@@ -85,7 +85,7 @@ impl Harmonics {
     }
 
     /// A bound on `|c''''|` anywhere.
-    pub fn fourth_bound(&self) -> f64 {
+    pub fn fourth_bound(&self, _start: f64, _end: f64) -> f64 {
         self.bounds[1] * (1.0 + tolerance::TERM_ROUNDING.value * self.terms.len() as f64)
     }
 

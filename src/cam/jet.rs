@@ -11,7 +11,6 @@ impl Jet {
     /// The highest order at which a jump is looked for; laws that agree up to it meet smoothly as far as can be told.
     pub const HIGHEST_JUMP: usize = Self::ORDERS - 2;
 
-    /// Of a constant.
     pub(super) fn constant(value: f64) -> Self {
         let mut orders = [0.0; Self::ORDERS];
         orders[0] = value;

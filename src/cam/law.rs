@@ -76,13 +76,7 @@ impl Law {
 
     /// A bound on `|d^4c/dtheta^4|` over `[start, end]`, m/rad^4; infinite where the law does not reach.
     pub fn fourth_bound(&self, start: f64, end: f64) -> f64 {
-        match self {
-            Self::Dwell(_) => 0.0,
-            Self::Arc(arc) => arc.fourth_bound(start, end),
-            Self::Polynomial(polynomial) => polynomial.fourth_bound(start, end),
-            Self::Sinusoid(sinusoid) => sinusoid.fourth_bound(),
-            Self::Harmonics(harmonics) => harmonics.fourth_bound(),
-        }
+        of_law!(self, _still => 0.0, law => law.fourth_bound(start, end))
     }
 
     /// Lift and its derivatives up to a high order at `angle`, rad.

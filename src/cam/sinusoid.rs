@@ -78,7 +78,7 @@ impl Sinusoid {
     }
 
     /// A bound on `|c''''|` anywhere: `w^4 |(A, B)|`.
-    pub fn fourth_bound(&self) -> f64 {
+    pub fn fourth_bound(&self, _start: f64, _end: f64) -> f64 {
         self.frequency.powi(4) * self.sine.hypot(self.cosine) * (1.0 + tolerance::JET_ROUNDING.value)
     }
 

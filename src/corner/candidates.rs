@@ -18,7 +18,6 @@ pub const MOST_IMPACTS: usize = 12;
 /// The corner impacts, and what was looked at.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Candidates {
-    /// Each once.
     pub list: Vec<Candidate>,
     /// Speeds at which orbits were searched for, rpm.
     pub speeds: Vec<f64>,

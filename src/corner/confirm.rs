@@ -14,11 +14,9 @@ use crate::tolerance;
 /// A cycle that closes with an impact on a corner, of the cam with its laws continued.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
-    /// The impacts.
     pub cycle: Cycle,
     /// Index of the one on the corner.
     pub contact: usize,
-    /// The corner.
     pub corner: Corner,
     /// Whose law the impact obeys.
     pub side: Side,

@@ -64,22 +64,17 @@ impl CornerImpact {
         self.cycle.revolutions == 1 && self.cycle.contacts.len() == 1 && self.corner.jump_order > 1
     }
 
-    /// The contact that the section's flight starts at, and the angle of that flight, rad.
-    fn longest_flight(&self) -> (usize, f64) {
-        longest_flight(&self.cycle)
-    }
-
     /// The stroboscopic section, rad: the middle of the longest flight, where no impact is near. With one impact it is half a
     /// period from the corner.
     pub fn section_angle(&self) -> f64 {
-        let (index, turn) = self.longest_flight();
+        let (index, turn) = longest_flight(&self.cycle);
         (self.cycle.contacts[index].cam_angle + 0.5 * turn) % TAU
     }
 
     /// Once around from the section: the angle turned by each flight and the contact that it ends at, in order; and the angle
     /// of the last flight, rad, which ends on the section.
     pub fn course(&self) -> (Vec<(f64, usize)>, f64) {
-        let (last, turn) = self.longest_flight();
+        let (last, turn) = longest_flight(&self.cycle);
         let count = self.cycle.contacts.len();
         let flight = |later: usize| {
             let index = (last + 1 + later) % count;

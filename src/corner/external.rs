@@ -12,9 +12,7 @@ use crate::python::{self, PythonError};
 /// A route outside this program: its name, and its script in `derivations/`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Program {
-    /// The route.
     pub name: RouteName,
-    /// The script.
     pub script: &'static str,
 }
 
@@ -27,7 +25,6 @@ pub const PROGRAMS: [Program; 2] = [
 /// What such a route found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outside {
-    /// The map.
     pub route: Route,
     /// x*, m from the equilibrium and m/s.
     pub x_star: Vector2<f64>,

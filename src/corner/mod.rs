@@ -6,9 +6,9 @@
 //!
 //! | module | finds |
 //! |---|---|
-//! | [`period_equation`] | the speeds at which the one impact of an orbit is on a corner: all of a range, the roots of one equation |
-//! | [`candidates`] | corner impacts of several impacts, where branches of orbits pass a corner |
-//! | [`confirm`] | whether a corner impact of the equations is an orbit of the cam as it is |
+//! | `period_equation` | the speeds at which the one impact of an orbit is on a corner: all of a range, the roots of one equation |
+//! | `candidates` | corner impacts of several impacts, where branches of orbits pass a corner |
+//! | `confirm` | whether a corner impact of the equations is an orbit of the cam as it is |
 //! | [`mod@locate`] | the paper's kind, for `verify`; [`range`] all kinds |
 //!
 //! Each route then computes the matrices by means of its own:
@@ -19,18 +19,18 @@
 //! | [`variational`] | the laws of flight and impact; it multiplies their derivatives once around and simulates nothing |
 //! | [`finite_difference`] | is built on it: differences of simulated periods |
 //! | [`least_squares`] | is built on it: a polynomial fitted to simulated periods |
-//! | [`external`] | nothing: Python programs that get the model file's numbers and find the place themselves. The paper's orbits only |
+//! | `external` | nothing: Python programs that get the model file's numbers and find the place themselves. The paper's orbits only |
 //!
 //! [`jump_order`] has what a corner of any order makes of the map, predicted and measured.
 //!
 //! States here are the paper's x: position from the spring's equilibrium, and velocity.
 
 pub mod border;
-pub mod candidates;
+pub(crate) mod candidates;
 pub mod closed_form;
-pub mod confirm;
-pub mod corner_impact;
-pub mod external;
+pub(crate) mod confirm;
+pub(crate) mod corner_impact;
+pub(crate) mod external;
 mod extrapolation;
 pub mod finite_difference;
 pub mod jump_order;
@@ -38,9 +38,9 @@ pub mod least_squares;
 pub mod locate;
 pub mod map;
 pub mod one_sided;
-pub mod period_equation;
+pub(crate) mod period_equation;
 pub mod range;
-pub mod simulated_orbit;
+pub(crate) mod simulated_orbit;
 pub mod variational;
 pub mod varied;
 

@@ -48,7 +48,6 @@ pub struct Root {
 
 /// The roots in range.
 pub enum Roots {
-    /// Each of them.
     Some(Vec<Root>),
     /// The equation holds at every speed.
     All {

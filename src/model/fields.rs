@@ -89,41 +89,9 @@ impl Field {
 }
 
 /// Every name of a field or a table: none of them is a slip for another.
-const NAMES: [&str; 33] = [
-    "name",
-    "source",
-    "follower",
-    "cam",
-    "study",
-    "mass",
-    "damping",
-    "stiffness",
-    "gravity",
-    "rest_position",
-    "restitution",
-    "law",
-    "base_radius",
-    "flank_radius",
-    "nose_radius",
-    "flank_start_deg",
-    "nose_end_deg",
-    "offset",
-    "amplitude",
-    "amplitudes",
-    "phases_deg",
-    "base",
-    "segment",
-    "motion",
-    "span_deg",
-    "rise",
-    "start_deg",
-    "coefficients",
-    "file",
-    "spline",
-    "rpm_min",
-    "rpm_max",
-    "lift",
-];
+const NAMES: &str = "name source follower cam study mass damping stiffness gravity rest_position restitution law base_radius \
+    flank_radius nose_radius flank_start_deg nose_end_deg offset amplitude amplitudes phases_deg base \
+    segment motion span_deg rise start_deg coefficients file spline rpm_min rpm_max lift";
 
 /// The fields of a model file by dotted path, and which of them have been asked for.
 #[derive(Clone, Debug)]
@@ -300,9 +268,10 @@ impl Fields {
             (at, meant, format!("[{meant}]"))
         };
         // What is a name of the format stands for itself.
+        let is_name = |word: &str| NAMES.split_whitespace().any(|name| name == word);
         let inside = |path: &str| path.strip_prefix(at).map(|rest| rest.trim_start_matches('.').to_owned());
         let stray: Vec<String> = self.fields.keys().filter_map(|path| inside(path)).collect();
-        let stray = stray.iter().map(String::as_str).filter(|name| !name.contains(['.', '[']) && !NAMES.contains(name));
+        let stray = stray.iter().map(String::as_str).filter(|name| !name.contains(['.', '[']) && !is_name(name));
         let written = stray.filter(|word| nearest(word, [meant]).is_some()).min()?;
         let field = self.fields.get(&in_table(at, written))?;
         let is_table = shown.starts_with('[');

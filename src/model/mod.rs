@@ -12,14 +12,15 @@ mod table;
 
 use std::path::Path;
 
-pub use complaint::{ModelError, Pointer};
+pub use complaint::ModelError;
+pub(crate) use complaint::Pointer;
 use fields::{Allowed, Fields};
 pub use nearest::nearest;
-pub use profile::{
-    ArcsProfile, CamProfile, HarmonicProfile, MOST_COEFFICIENTS, Motion, MotionSegment, PolynomialSegment,
-    ProgramProfile, RectifiedSineProfile,
+pub(crate) use profile::{
+    ArcsProfile, MOST_COEFFICIENTS, MotionSegment, PolynomialSegment, ProgramProfile, RectifiedSineProfile,
 };
-pub use table::{Row, Spline, TableProfile};
+pub use profile::{CamProfile, HarmonicProfile, Motion};
+pub(crate) use table::{Row, Spline, TableProfile};
 
 /// The model whose numbers the paper prints, built in so that the binary needs no other file.
 pub const OSORIO_2008: &str = include_str!("../../models/osorio-2008.toml");
@@ -141,16 +142,6 @@ impl Model {
     /// A complaint about `field` found by a later stage; `allowed` says what would be accepted.
     pub fn reject(&self, field: &str, allowed: impl Into<String>) -> ModelError {
         self.fields.reject(field, allowed)
-    }
-
-    /// A complaint about `line` of another file that the model names.
-    pub fn reject_line(&self, file: &str, line: usize, allowed: impl Into<String>) -> ModelError {
-        let complaint = ModelError { line: Some(line), ..ModelError::file(file, allowed.into()) };
-        // The file has been read before, and is not kept; what has gone since is only not shown.
-        match std::fs::read_to_string(file) {
-            Ok(text) => complaint.in_line(&text, None),
-            Err(_) => complaint,
-        }
     }
 
     /// The file that commands are to be given for this model; none for the built-in one.

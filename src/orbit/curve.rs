@@ -37,7 +37,6 @@ impl<E> From<E> for NoPoint<E> {
 /// A point of the curve, its unit tangent, and what Newton's method took to get there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurvePoint {
-    /// The unknowns.
     pub unknowns: DVector<f64>,
     /// The direction in which the curve goes on.
     pub tangent: DVector<f64>,

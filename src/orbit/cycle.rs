@@ -40,7 +40,6 @@ pub struct Contact {
 pub struct Cycle {
     /// Turns of the cam in one period.
     pub revolutions: u64,
-    /// Its impacts.
     pub contacts: Vec<Contact>,
 }
 
@@ -50,9 +49,7 @@ pub struct Cycle {
     "no periodic orbit near the guess: after {steps} Newton steps the equations are off by {residual:e} of their size"
 )]
 pub struct NotClosed {
-    /// Steps taken.
     pub steps: usize,
-    /// What is left.
     pub residual: f64,
 }
 
@@ -61,7 +58,6 @@ pub(super) struct Impact {
     pub(super) lift: Lift,
     /// c', m/s.
     pub(super) cam_velocity: f64,
-    /// Right after.
     pub(super) leaving: State,
 }
 
@@ -221,7 +217,8 @@ impl Cycle {
         let (_, state) = machine.flight().fly(self.impact(machine, last).leaving, since);
         let (mut matrix, mut from) = (Matrix2::identity(), 0.0);
         for (turned, index) in order {
-            matrix = self.saltation(machine, index) * machine.flight().propagator((turned - from) / omega) * matrix;
+            matrix =
+                self.rates(machine, index).saltation() * machine.flight().propagator((turned - from) / omega) * matrix;
             from = turned;
         }
         (state, machine.flight().propagator(since) * matrix)
@@ -243,11 +240,6 @@ impl Cycle {
         }
     }
 
-    fn saltation(&self, machine: &Machine, index: usize) -> Matrix2<f64> {
-        self.rates(machine, index).saltation()
-    }
-
-    /// The impacts as events.
     pub fn events(&self, machine: &Machine) -> Vec<Event> {
         let event = |(index, contact): (usize, &Contact)| {
             let impact = self.impact(machine, index);

@@ -11,20 +11,13 @@ use crate::tolerance;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Departure {
     /// An impact lies outside of its segment.
-    Beyond {
-        /// Index of the contact.
-        contact: usize,
-    },
+    Beyond { contact: usize },
     /// The follower would come out of the cam at an impact, or touches it only.
-    Tangent {
-        /// Index of the contact.
-        contact: usize,
-    },
+    Tangent { contact: usize },
     /// The flight that starts at this contact meets the cam before it should.
     Earlier {
         /// Index of the contact that the flight starts at.
         contact: usize,
-        /// What it meets.
         event: Event,
     },
     /// The flight that starts at this contact does not come to the next; or there is none, since the follower sticks.

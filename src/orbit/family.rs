@@ -87,7 +87,6 @@ impl Family {
         Ok(Self { model: model.clone(), machine, rpm, free })
     }
 
-    /// What is free.
     pub fn free(&self) -> &[Parameter] {
         &self.free
     }

@@ -3,26 +3,26 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`cycle`] | an orbit as its impacts, the equations that close it, Newton's method |
+//! | `cycle` | an orbit as its impacts, the equations that close it, Newton's method |
 //! | `chain` | linear equations that link each impact with the next, in one pass |
-//! | [`mod@departure`] | whether a cycle is an orbit of the cam as it is, by simulation |
+//! | `departure` | whether a cycle is an orbit of the cam as it is, by simulation |
 //! | [`mod@search`] | orbits of one machine: exhaustively those of one impact, by many starts the others |
 //! | [`settle`] | what a run ends on: an orbit, chaos, rest |
-//! | [`family`] | machines that differ in a speed or a number of the model |
-//! | [`curve`] | pseudo-arclength steps along the solutions of one equation fewer than unknowns |
+//! | `family` | machines that differ in a speed or a number of the model |
+//! | `curve` | pseudo-arclength steps along the solutions of one equation fewer than unknowns |
 //! | [`branch`] | branches of orbits through corners, folds, flips and grazes, with those points located |
 
 pub mod branch;
 mod chain;
-pub mod curve;
-pub mod cycle;
-pub mod departure;
-pub mod family;
+pub(crate) mod curve;
+pub(crate) mod cycle;
+pub(crate) mod departure;
+pub(crate) mod family;
 mod multipliers;
 mod naming;
 pub mod search;
 pub mod settle;
-pub mod sticking;
+pub(crate) mod sticking;
 
 use std::f64::consts::TAU;
 
@@ -32,9 +32,10 @@ use serde::ser::{SerializeStruct, Serializer};
 
 use crate::flight::State;
 use crate::simulate::{Event, EventKind, Machine, SimulateError};
-pub use cycle::{Contact, Cycle, NotClosed};
-pub use departure::Departure;
-pub use family::{Family, FamilyError, Parameter};
+pub(crate) use cycle::{Contact, Cycle, NotClosed};
+pub(crate) use departure::Departure;
+pub use family::Parameter;
+pub(crate) use family::{Family, FamilyError};
 pub use multipliers::{Eigenvalue, eigenvalues};
 pub use search::{Search, search};
 

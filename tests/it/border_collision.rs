@@ -4,7 +4,7 @@
 //! of parameters and must end where they say.
 
 use approx::assert_relative_eq;
-use corner_impact::border_collision::LocalMap;
+use crate::common;
 use corner_impact::border_collision::local_map::PeriodicOrbit;
 use corner_impact::border_collision::long_run::{End, Escape};
 use corner_impact::border_collision::word::Word;
@@ -106,11 +106,11 @@ fn maps_of_the_line_end_where_the_known_partition_says() {
                 continue;
             }
             *seen.entry(expected.clone()).or_insert(0) += 1;
-            let map = LocalMap::of_the_line([a, b]);
+            let map = common::of_the_line([a, b]);
             let end = map.end(Vector2::zeros(), 1.0);
             assert_eq!(kind(&end), expected, "a = {a}, b = {b}: {end:?}");
             // Mirrored, x -> -x: the sides change places and mu its sign.
-            let mirrored = LocalMap::of_the_line([b, a]).end(Vector2::new(-0.0, 0.0), -1.0);
+            let mirrored = common::of_the_line([b, a]).end(Vector2::new(-0.0, 0.0), -1.0);
             let swapped: String = expected
                 .chars()
                 .map(|c| {
@@ -141,7 +141,7 @@ fn stable_orbits_of_the_line_begin_and_end_where_they_must() {
         for a in [0.15_f64, 0.3, 0.45, 0.6] {
             let power = a.powi(n as i32 - 1);
             let (exists, stable) = ((1.0 - (1.0 - a.powi(n as i32)) / (1.0 - a)) / power, -1.0 / power);
-            let orbit = |b: f64| LocalMap::of_the_line([a, b]).orbit(&word(&text), 1.0).unwrap();
+            let orbit = |b: f64| common::of_the_line([a, b]).orbit(&word(&text), 1.0).unwrap();
             assert!(
                 orbit(exists * (1.0 + 1e-6)).admissible() && !orbit(exists * (1.0 - 1e-6)).admissible(),
                 "{text} {a}"
@@ -164,7 +164,7 @@ fn the_exponent_of_a_markov_map_is_the_known_one() {
         // The density is 1 above the fixed point and 1/|b| below; mass on L and on R.
         let (left, right) = ((b + 1.0) / b, fixed / b.abs() + 1.0 - fixed);
         let known = (left * a.ln() + right * b.abs().ln()) / (left + right);
-        let map = LocalMap::of_the_line([a, b]);
+        let map = common::of_the_line([a, b]);
         let found = exponent(&map.end(Vector2::zeros(), 1.0));
         assert!((found.value - known).abs() < 5.0 * found.error, "b = {b}: {found:?}, known {known}");
         assert!(found.error > 0.0 && found.error < 0.003, "b = {b}: {found:?}");
@@ -174,7 +174,7 @@ fn the_exponent_of_a_markov_map_is_the_known_one() {
 /// Lozi's map, 1 - 1.7 |x| + y, 0.5 x: Sprott, Chaos and Time-Series Analysis (2003), gives 0.47023.
 #[test]
 fn the_exponent_of_lozis_map_is_the_known_one() {
-    let found = exponent(&LocalMap::normal_form([1.7, -1.7], [-0.5, -0.5]).end(Vector2::zeros(), 1.0));
+    let found = exponent(&common::normal_form([1.7, -1.7], [-0.5, -0.5]).end(Vector2::zeros(), 1.0));
     assert!((found.value - 0.47023).abs() < 5.0 * found.error && found.error < 0.003, "{found:?}");
 }
 
@@ -189,7 +189,7 @@ fn fixed_points_and_period_two_are_where_trace_and_determinant_say() {
     let mut ended = [0; 3];
     for (t_l, t_r) in grid([-2.53, 2.61], 14).flat_map(|l| grid([-2.57, 2.47], 14).map(move |r| (l, r))) {
         for (d_l, d_r) in determinants.iter().flat_map(|l| determinants.map(|r| (*l, r))) {
-            let map = LocalMap::normal_form([t_l, t_r], [d_l, d_r]);
+            let map = common::normal_form([t_l, t_r], [d_l, d_r]);
             let d = (1.0 + d_l) * (1.0 + d_r) - t_l * t_r;
             let fixed = |t: f64, d: f64| (1.0 / (1.0 - t + d), t.abs() < 1.0 + d && d.abs() < 1.0);
             let (x_l, x_r) = ((1.0 + d_r + t_r) / d, (1.0 + d_l + t_l) / d);
@@ -233,7 +233,7 @@ fn chaos_is_robust_where_it_is_known_to_be() {
             }
             let l = 0.5 * (t_l + (t_l * t_l - 4.0 * d_l).sqrt());
             let phi = l * (l - d_l) + (l - 1.0) * (l * t_r - d_r);
-            let map = LocalMap::normal_form([t_l, t_r], [d_l, d_r]);
+            let map = common::normal_form([t_l, t_r], [d_l, d_r]);
             let (from_0, from_fold) = (map.end(Vector2::zeros(), 1.0), map.end(Vector2::new(l / (l - d_l), 0.0), 1.0));
             let case = format!("traces {t_l} {t_r}, determinants {d_l} {d_r}, phi = {phi}: {from_0:?} {from_fold:?}");
             if phi > 1e-3 {
@@ -255,7 +255,7 @@ fn chaos_is_robust_where_it_is_known_to_be() {
 #[test]
 fn the_map_is_the_same_at_every_scale() {
     for (traces, determinants) in [([0.4, -1.7], [0.3, 0.2]), ([2.4, 0.3], [0.4, 0.5]), ([1.7, -1.7], [0.3, 0.3])] {
-        let map = LocalMap::normal_form(traces, determinants);
+        let map = common::normal_form(traces, determinants);
         for mu in [1.0, -1.0] {
             let (whole, part) = (map.end(Vector2::zeros(), mu), map.end(Vector2::zeros(), mu / 1024.0));
             assert_eq!(kind(&whole), kind(&part));
@@ -271,7 +271,7 @@ fn escapes_name_the_word_that_they_follow() {
     for (slopes, mu, text, multiplier) in
         [([1.5, 0.5], -1.0, "L", 1.5), ([0.5, 3.0], 1.0, "R", 3.0), ([-1.5, -2.0], 1.0, "LR", 3.0)]
     {
-        match LocalMap::of_the_line(slopes).end(Vector2::zeros(), mu) {
+        match common::of_the_line(slopes).end(Vector2::zeros(), mu) {
             End::Escapes(Escape::Follows { word, multiplier: found }) => {
                 assert_eq!(word.to_string(), text);
                 assert_relative_eq!(found, multiplier, max_relative = 1e-12);
@@ -280,14 +280,14 @@ fn escapes_name_the_word_that_they_follow() {
         }
     }
     // A spiral away follows no word for ever.
-    let spiral = LocalMap::normal_form([0.9, 0.8], [1.2, 1.3]).end(Vector2::zeros(), 1.0);
+    let spiral = common::normal_form([0.9, 0.8], [1.2, 1.3]).end(Vector2::zeros(), 1.0);
     assert_eq!(spiral, End::Escapes(Escape::Grown));
 }
 
 #[test]
 fn at_the_corner_impact_itself_the_map_shrinks_or_grows() {
     let fate = |traces, determinants| {
-        let outcome = LocalMap::normal_form(traces, determinants).outcome(0.0);
+        let outcome = common::normal_form(traces, determinants).outcome(0.0);
         assert!(outcome.fixed_points.is_empty() && outcome.orbits.is_empty() && outcome.starts() == 24);
         outcome.fates.iter().map(|fate| kind(&fate.end)).collect::<Vec<_>>()
     };
@@ -309,7 +309,7 @@ fn what_follows_a_word_for_ever_follows_it() {
         ([-1.5, -1.9], [0.3, 0.4], "LR"),
         ([0.5, -3.4], [1.3, -1.2], "LR"),
     ] {
-        let map = LocalMap::normal_form(traces, determinants);
+        let map = common::normal_form(traces, determinants);
         let word = word(text);
         for (x, y) in grid([-41.3, 39.7], 82).flat_map(|x| grid([-60.1, 58.9], 60).map(move |y| (x, y))) {
             for mu in [1.0, -1.0] {
@@ -336,7 +336,7 @@ fn what_follows_a_word_for_ever_follows_it() {
 /// 1/4 is a double and the unstable fixed point of R: rounding alone would keep the motion there.
 #[test]
 fn a_motion_does_not_rest_on_an_unstable_orbit() {
-    let map = LocalMap::of_the_line([0.25, -3.0]);
+    let map = common::of_the_line([0.25, -3.0]);
     assert_eq!(map.apply(Vector2::new(0.25, 0.0), 1.0)[0], 0.25);
     assert_eq!(kind(&map.end(Vector2::new(0.25, 0.0), 1.0)), "LR");
 }
@@ -344,7 +344,7 @@ fn a_motion_does_not_rest_on_an_unstable_orbit() {
 /// A thousand steps on L towards a stable fixed point that lies on the other side are no settled motion.
 #[test]
 fn a_motion_does_not_settle_on_an_orbit_of_the_other_side() {
-    let map = LocalMap::of_the_line([0.999, 0.5]);
+    let map = common::of_the_line([0.999, 0.5]);
     let end = map.end(Vector2::new(-1e6, 0.0), 1.0);
     assert_eq!(kind(&end), "R", "{end:?}");
 }

@@ -1,5 +1,6 @@
 //! Which conditions does a verdict rest on, and do Feigin's counts say what the orbits do?
 
+use crate::common;
 use approx::assert_relative_eq;
 use corner_impact::border_collision::conditions::{Condition, Decides};
 use corner_impact::border_collision::long_run::End;
@@ -143,7 +144,7 @@ fn distances_from_failing_have_no_units() {
 
 #[test]
 fn numbers_that_are_none_end_without_a_panic() {
-    let mut map = LocalMap::normal_form([0.5, f64::NAN], [0.3, 0.2]);
+    let mut map = common::normal_form([0.5, f64::NAN], [0.3, 0.2]);
     assert!(!matches!(map.outcome(1.0).fates[0].end, End::Periodic(_) | End::Chaotic(_)));
     map.plus.a = Matrix2::repeat(f64::INFINITY);
     assert!(!matches!(map.outcome(-1.0).fates[0].end, End::Chaotic(_)));

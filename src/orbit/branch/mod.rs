@@ -28,9 +28,10 @@ use nalgebra::Matrix2;
 
 use super::{Family, OrbitError, Parameter, PeriodicOrbit};
 use crate::model::Model;
-pub use find::{FoundBranches, corner_impacts, find_branches};
-pub use problem::{Pinned, Problem, Units};
-pub use special::{Kind, Special};
+pub(crate) use find::{FoundBranches, corner_impacts, find_branches};
+pub(crate) use problem::{Pinned, Problem, Units};
+pub use special::Kind;
+pub(crate) use special::Special;
 
 /// What is followed, and how far.
 #[derive(Clone, Debug, PartialEq)]

@@ -12,7 +12,6 @@ use crate::simulate::Machine;
 /// An impact that stays at an end of its segment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pinned {
-    /// Index of the contact.
     pub contact: usize,
     /// Whether it stays at the end of its segment; at the start otherwise.
     pub at_end: bool,
@@ -57,7 +56,6 @@ pub struct Units {
 }
 
 impl Units {
-    /// Those of a cycle.
     pub fn of(cycle: &Cycle, machine: &Machine) -> Self {
         let lift = lift_size(machine);
         let fastest =

@@ -62,7 +62,6 @@ impl Kind {
 /// Where it changes, and how well that is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Special {
-    /// What changes.
     pub kind: Kind,
     /// Two values of the parameter between which it does.
     pub bracket: [f64; 2],

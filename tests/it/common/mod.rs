@@ -8,8 +8,11 @@ use std::process::{Command, Output};
 use std::sync::mpsc;
 use std::time::Duration;
 
+use corner_impact::border_collision::LocalMap;
 use corner_impact::cam::Cam;
+use corner_impact::corner::SideMap;
 use corner_impact::model::{Model, OSORIO_2008};
+use nalgebra::{Matrix2, RowVector2, Vector2};
 
 /// The project's folder.
 pub const ROOT: &str = env!("CARGO_MANIFEST_DIR");
@@ -99,4 +102,20 @@ pub fn tutorial(name: &str) -> Model {
     let path = folder.path().join(name);
     std::fs::write(&path, file(name)).unwrap();
     read(&path)
+}
+
+fn map_from(sides: [SideMap; 2]) -> LocalMap {
+    let [minus, plus] = sides;
+    LocalMap { minus, plus, border: (RowVector2::new(1.0, 0.0), 0.0) }
+}
+
+/// The map in normal form `(x, y) -> (trace x + y + mu, -determinant x)`, minus where x < 0.
+pub fn normal_form(traces: [f64; 2], determinants: [f64; 2]) -> LocalMap {
+    let matrix = |side: usize| Matrix2::new(traces[side], 1.0, -determinants[side], 0.0);
+    map_from([0, 1].map(|side| SideMap { a: matrix(side), b: Vector2::new(1.0, 0.0) }))
+}
+
+/// The map of the line `x -> slope x + mu`, minus where x < 0.
+pub fn of_the_line(slopes: [f64; 2]) -> LocalMap {
+    map_from(slopes.map(|slope| SideMap { a: Matrix2::new(slope, 0.0, 0.0, 0.0), b: Vector2::new(1.0, 0.0) }))
 }
