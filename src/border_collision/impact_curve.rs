@@ -10,7 +10,7 @@ use crate::orbit::{Eigenvalue, eigenvalues};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AtCorner {
     /// Index of the impact, of those from angle 0 on.
-    pub contact: usize,
+    pub impact: usize,
     /// The lowest derivative that jumps.
     pub jump_order: usize,
 }
@@ -19,7 +19,7 @@ impl AtCorner {
     /// Of a point of a branch, if it is a corner impact.
     pub fn of(point: &BranchPoint) -> Option<Self> {
         match point.special {
-            Some(Special { kind: Kind::Corner { contact, jump_order, .. }, .. }) => Some(Self { contact, jump_order }),
+            Some(Special { kind: Kind::Corner { impact, jump_order, .. }, .. }) => Some(Self { impact, jump_order }),
             _ => None,
         }
     }
@@ -70,7 +70,7 @@ impl CurveImpact {
         Self {
             rpm: *rpm,
             value: *value,
-            cam_angle: orbit.impacts().nth(at.contact).map_or(f64::NAN, |impact| impact.cam_angle),
+            cam_angle: orbit.impacts().nth(at.impact).map_or(f64::NAN, |impact| impact.cam_angle),
             revolutions: orbit.revolutions,
             impacts: orbit.impacts().count(),
             happening,

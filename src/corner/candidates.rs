@@ -9,7 +9,7 @@ use super::period_equation::at_corner;
 use crate::cam::{Cam, Side};
 use crate::model::{Model, Study};
 use crate::orbit::branch::{BranchPoint, Kind, corner_impacts, find_branches};
-use crate::orbit::{Contact, Course, Search};
+use crate::orbit::{Course, Impact, Search};
 
 /// Impacts in a revolution of the orbits that are looked at: with more a follower is about to chatter, and its last hops
 /// are too short for the cam to be continued past a corner among them, as the estimators need.
@@ -44,25 +44,25 @@ pub fn candidates(model: &Model, cam: &Cam, range: Study, revolutions: u64) -> C
 /// The corner impact that a branch passes, if it is one of several impacts.
 fn candidate(cam: &Cam, point: &BranchPoint) -> Option<Candidate> {
     let special = point.special?;
-    let (Kind::Corner { contact, segment, jump_order }, Course::Impacts(cycle)) = (special.kind, &point.orbit.course)
+    let (Kind::Corner { impact, segment, jump_order }, Course::Impacts(cycle)) = (special.kind, &point.orbit.course)
     else {
         return None;
     };
-    if cycle.contacts.len() < 2 || cycle.contacts.len() > MOST_IMPACTS * cycle.revolutions as usize {
+    if cycle.impacts.len() < 2 || cycle.impacts.len() > MOST_IMPACTS * cycle.revolutions as usize {
         return None;
     }
     let corner = *cam.corners().iter().find(|corner| corner.segment == segment)?;
     // Where the velocity jumps, both sides have an orbit on the corner, at speeds of their own.
-    let is_before = cycle.contacts[contact].segment != segment;
+    let is_before = cycle.impacts[impact].segment != segment;
     let side = if jump_order == 1 && is_before { Side::Minus } else { Side::Plus };
-    let old = &cycle.contacts[contact];
+    let old = &cycle.impacts[impact];
     let on_corner = at_corner(cam, &corner, side, 0, old.velocity_before);
     // The angle may be named by the revolution before or after.
     let turns = ((old.cam_angle - on_corner.cam_angle) / TAU).round() as i64;
     let revolution = old.revolution + turns;
     let mut cycle = cycle.clone();
-    cycle.contacts[contact] = Contact { revolution, ..on_corner };
+    cycle.impacts[impact] = Impact { revolution, ..on_corner };
     let [slow, fast] = special.bracket.map(|rpm| 60.0 / rpm);
     let (period, bracket) = (60.0 / point.rpm, [fast, slow]);
-    Some(Candidate { cycle, contact, corner, side, period, bracket, residual: special.residual })
+    Some(Candidate { cycle, impact, corner, side, period, bracket, residual: special.residual })
 }

@@ -16,7 +16,7 @@ use crate::tolerance;
 pub struct Candidate {
     pub cycle: Cycle,
     /// Index of the one on the corner.
-    pub contact: usize,
+    pub impact: usize,
     pub corner: Corner,
     /// Whose law the impact obeys.
     pub side: Side,
@@ -31,18 +31,18 @@ pub struct Candidate {
 impl Candidate {
     /// The corner impact, if the cycle is an orbit of the cam as it is; or why it is none.
     pub fn confirmed(self, model: &Model, cam: &Cam) -> Result<CornerImpact, String> {
-        let Self { cycle, contact, corner, side, period, bracket, residual } = self;
+        let Self { cycle, impact, corner, side, period, bracket, residual } = self;
         let angular_velocity = TAU / period;
         let machine = Machine::new(cam.clone(), &model.follower, angular_velocity);
-        let velocity_before = cycle.contacts[contact].velocity_before;
-        let rates = cycle.rates(&machine, contact);
+        let velocity_before = cycle.impacts[impact].velocity_before;
+        let rates = cycle.rates(&machine, impact);
         let velocity_after = rebound(machine.restitution(), velocity_before, rates.cam_velocity);
-        for index in 0..cycle.contacts.len() {
+        for index in 0..cycle.impacts.len() {
             let rates = cycle.rates(&machine, index);
             let approach = rates.cam_velocity - rates.velocity_before;
             if approach.abs() <= tolerance::GRAZE_FOUND.value * (rates.cam_velocity.abs() + rates.velocity_before.abs())
             {
-                let angle = cycle.contacts[index].cam_angle.to_degrees();
+                let angle = cycle.impacts[index].cam_angle.to_degrees();
                 let velocity = rates.cam_velocity;
                 return Err(format!(
                     "a graze at {angle:.4} deg, v = c' = {velocity:.6} m/s: the map has no linear part"
@@ -59,7 +59,7 @@ impl Candidate {
         }
         let slack = tolerance::CORNER_ANGLE.value;
         let is_on_corner = |angle: f64| cam.corners().iter().any(|corner| apart(corner.angle, angle) <= slack);
-        let mut others = cycle.contacts.iter().enumerate().filter(|(index, _)| *index != contact);
+        let mut others = cycle.impacts.iter().enumerate().filter(|(index, _)| *index != impact);
         if let Some((_, other)) = others.find(|(_, other)| is_on_corner(other.cam_angle)) {
             let [one, two] = [corner.angle, other.cam_angle].map(f64::to_degrees);
             return Err(format!(
@@ -87,7 +87,7 @@ impl Candidate {
             origin: origin(&model.follower),
             closure,
             cycle,
-            contact,
+            impact,
             side,
         })
     }
@@ -95,17 +95,17 @@ impl Candidate {
 
 /// How the motion of the cam as it is leaves a cycle, in words.
 fn words(cycle: &Cycle, departure: Departure) -> String {
-    let angle = |contact: usize| cycle.contacts[contact].cam_angle.to_degrees();
+    let angle = |impact: usize| cycle.impacts[impact].cam_angle.to_degrees();
     match departure {
-        Departure::Beyond { contact } => {
-            format!("its impact at {:.4} deg is on another segment of the cam", angle(contact))
+        Departure::Beyond { impact } => {
+            format!("its impact at {:.4} deg is on another segment of the cam", angle(impact))
         }
-        Departure::Tangent { contact } => format!("the flight would come out of the cam at {:.4} deg", angle(contact)),
+        Departure::Tangent { impact } => format!("the flight would come out of the cam at {:.4} deg", angle(impact)),
         Departure::Earlier { event, .. } => {
             format!("the flight meets the cam elsewhere, at {:.4} deg", event.cam_angle.to_degrees())
         }
-        Departure::Elsewhere { contact } => {
-            format!("the flight from {:.4} deg does not come to the next impact", angle(contact))
+        Departure::Elsewhere { impact } => {
+            format!("the flight from {:.4} deg does not come to the next impact", angle(impact))
         }
     }
 }

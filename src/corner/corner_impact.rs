@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 use crate::cam::{Corner, Lift, Side};
 use crate::flight::State;
 use crate::model::Follower;
-use crate::orbit::{Contact, Cycle};
+use crate::orbit::{Cycle, Impact};
 use crate::simulate::Machine;
 
 /// A periodic orbit with an impact on a corner of the cam.
@@ -38,7 +38,7 @@ pub struct CornerImpact {
     /// The orbit's impacts.
     pub cycle: Cycle,
     /// Index of the one on the corner.
-    pub contact: usize,
+    pub impact: usize,
     /// The side whose law the impact obeys: where the velocity jumps, the orbits of the two sides differ.
     pub side: Side,
 }
@@ -61,21 +61,21 @@ impl CornerImpact {
 
     /// Whether it is the paper's: one impact in one revolution, at a corner of acceleration or a smoother one.
     pub fn is_simple(&self) -> bool {
-        self.cycle.revolutions == 1 && self.cycle.contacts.len() == 1 && self.corner.jump_order > 1
+        self.cycle.revolutions == 1 && self.cycle.impacts.len() == 1 && self.corner.jump_order > 1
     }
 
     /// The stroboscopic section, rad: the middle of the longest flight, where no impact is near. With one impact it is half a
     /// period from the corner.
     pub fn section_angle(&self) -> f64 {
         let (index, turn) = longest_flight(&self.cycle);
-        (self.cycle.contacts[index].cam_angle + 0.5 * turn) % TAU
+        (self.cycle.impacts[index].cam_angle + 0.5 * turn) % TAU
     }
 
-    /// Once around from the section: the angle turned by each flight and the contact that it ends at, in order; and the angle
+    /// Once around from the section: the angle turned by each flight and the impact that it ends at, in order; and the angle
     /// of the last flight, rad, which ends on the section.
     pub fn course(&self) -> (Vec<(f64, usize)>, f64) {
         let (last, turn) = longest_flight(&self.cycle);
-        let count = self.cycle.contacts.len();
+        let count = self.cycle.impacts.len();
         let flight = |later: usize| {
             let index = (last + 1 + later) % count;
             (if later == 0 { 0.5 * turn } else { self.cycle.turn((last + later) % count) }, index)
@@ -88,22 +88,22 @@ impl CornerImpact {
         Vector2::new(self.state.position - self.origin, self.state.velocity)
     }
 
-    /// The lift at a contact; at the corner, that of `side`.
-    pub fn lift(&self, machine: &Machine, contact: usize, side: Side) -> Lift {
-        if contact == self.contact {
+    /// The lift at a impact; at the corner, that of `side`.
+    pub fn lift(&self, machine: &Machine, impact: usize, side: Side) -> Lift {
+        if impact == self.impact {
             return match side {
                 Side::Minus => self.corner.minus,
                 Side::Plus => self.corner.plus,
             };
         }
-        let Contact { segment, cam_angle, .. } = self.cycle.contacts[contact];
+        let Impact { segment, cam_angle, .. } = self.cycle.impacts[impact];
         machine.cam().segments()[segment].law.lift(cam_angle)
     }
 }
 
-/// The longest flight of a cycle: the contact that it starts at, and its angle, rad.
+/// The longest flight of a cycle: the impact that it starts at, and its angle, rad.
 fn longest_flight(cycle: &Cycle) -> (usize, f64) {
-    let flights = (0..cycle.contacts.len()).map(|index| (index, cycle.turn(index)));
+    let flights = (0..cycle.impacts.len()).map(|index| (index, cycle.turn(index)));
     flights.fold((0, f64::NEG_INFINITY), |longest, flight| if flight.1 > longest.1 { flight } else { longest })
 }
 

@@ -44,7 +44,7 @@ pub fn side_map(
     varied: &Varied,
 ) -> Result<Known, SampleError> {
     let whole = OneSidedMap::by(model, cam, at, side, varied);
-    if at.cycle.contacts.len() == 1 {
+    if at.cycle.impacts.len() == 1 {
         return whole.and_then(|map| differences(&map, amplified_once(&map)?));
     }
     let parts = by_impacts(model, cam, at, side, varied);

@@ -66,7 +66,7 @@ struct Stretch {
     /// The first section, rad, and the follower there.
     section: f64,
     start: State,
-    /// The angle turned by each flight, rad, and the contact that it ends at.
+    /// The angle turned by each flight, rad, and the impact that it ends at.
     flights: Vec<(f64, usize)>,
     /// The second section.
     goal: Goal,
@@ -95,25 +95,25 @@ impl Stretch {
     fn pieces(at: &CornerImpact, machine: &Machine) -> Vec<Self> {
         let (flights, last) = at.course();
         let count = flights.len();
-        // The middle of the flight that ends at each contact: its angle, the follower, and the angle left to the contact.
+        // The middle of the flight that ends at each impact: its angle, the follower, and the angle left to the impact.
         let middle = |index: usize| {
             if index.is_multiple_of(count) {
                 return (at.section_angle(), at.state, flights[0].0);
             }
             let ((turn, _), (_, before)) = (flights[index], flights[index - 1]);
-            let angle = (at.cycle.contacts[before].cam_angle + 0.5 * turn).rem_euclid(TAU) % TAU;
+            let angle = (at.cycle.impacts[before].cam_angle + 0.5 * turn).rem_euclid(TAU) % TAU;
             let leaving = at.cycle.flight(machine, before).0;
             (angle, machine.flight().fly(leaving, 0.5 * turn / TAU * at.period).1, 0.5 * turn)
         };
         let piece = |index: usize| {
             let ((section, start, to), (cam_angle, end, _)) = (middle(index), middle(index + 1));
             let from = if index + 1 == count { last } else { 0.5 * flights[index + 1].0 };
-            let contact = flights[index].1;
+            let impact = flights[index].1;
             let revolution = ((section + to + from - cam_angle) / TAU).round() as u64;
             let goal = Goal { revolution, cam_angle };
-            let velocity_before = at.cycle.contacts[contact].velocity_before;
-            let approach = at.cycle.approach(machine, contact);
-            Self { section, start, flights: vec![(to, contact)], goal, end, approach, velocity_before }
+            let velocity_before = at.cycle.impacts[impact].velocity_before;
+            let approach = at.cycle.approach(machine, impact);
+            Self { section, start, flights: vec![(to, impact)], goal, end, approach, velocity_before }
         };
         (0..count).map(piece).collect()
     }
@@ -328,13 +328,13 @@ impl<'a> OneSidedMap<'a> {
         for (event, (turn, index)) in events.iter().zip(flights) {
             turned += turn;
             let later = event.turned_since(section) - turned;
-            if *index == self.at.contact {
+            if *index == self.at.impact {
                 past_corner = later;
                 continue;
             }
-            let contact = &self.at.cycle.contacts[*index];
-            let segment = &whole.segments()[contact.segment];
-            let angle = contact.cam_angle + later;
+            let impact = &self.at.cycle.impacts[*index];
+            let segment = &whole.segments()[impact.segment];
+            let angle = impact.cam_angle + later;
             if !(segment.start <= angle && angle <= segment.end) {
                 return None;
             }
@@ -345,6 +345,6 @@ impl<'a> OneSidedMap<'a> {
 
 /// How near to the corner another impact of the orbit is, rad.
 fn nearest_other(at: &CornerImpact) -> f64 {
-    let others = at.cycle.contacts.iter().enumerate().filter(|(index, _)| *index != at.contact);
-    others.fold(f64::INFINITY, |least, (_, contact)| least.min(apart(contact.cam_angle, at.corner.angle)))
+    let others = at.cycle.impacts.iter().enumerate().filter(|(index, _)| *index != at.impact);
+    others.fold(f64::INFINITY, |least, (_, impact)| least.min(apart(impact.cam_angle, at.corner.angle)))
 }

@@ -20,7 +20,7 @@ use crate::bracket::{Width, halve};
 use crate::cam::{Cam, Corner, Lift, Side};
 use crate::flight::{Flight, State};
 use crate::model::{Follower, Model, Study};
-use crate::orbit::{Contact, Cycle};
+use crate::orbit::{Cycle, Impact};
 use crate::simulate::{Event, EventKind, Machine};
 use crate::tolerance;
 
@@ -237,15 +237,15 @@ impl<'a> PeriodEquation<'a> {
             origin: origin(&model.follower),
             closure,
             cycle: self.cycle(cam, velocity_before),
-            contact: 0,
+            impact: 0,
             side: self.side,
         }))
     }
 
     /// The orbit's one impact, on its side of the corner.
     fn cycle(&self, cam: &Cam, velocity_before: f64) -> Cycle {
-        let contact = at_corner(cam, self.corner, self.side, 0, velocity_before);
-        Cycle { revolutions: self.revolutions, contacts: vec![contact] }
+        let impact = at_corner(cam, self.corner, self.side, 0, velocity_before);
+        Cycle { revolutions: self.revolutions, impacts: vec![impact] }
     }
 
     /// A root as its impact and period, whether or not it is an orbit of the cam; `None` in resonance.
@@ -253,7 +253,7 @@ impl<'a> PeriodEquation<'a> {
         let [velocity_before, _] = self.velocities(root.period);
         let cycle = self.cycle(cam, velocity_before);
         let (corner, side, Root { period, bracket, residual }) = (*self.corner, self.side, root);
-        let candidate = Candidate { cycle, contact: 0, corner, side, period, bracket, residual };
+        let candidate = Candidate { cycle, impact: 0, corner, side, period, bracket, residual };
         velocity_before.is_finite().then_some(candidate)
     }
 
@@ -297,13 +297,13 @@ impl<'a> PeriodEquation<'a> {
 }
 
 /// An impact on a corner, by the law of one side; at angle 0 the side before ends the revolution before.
-pub fn at_corner(cam: &Cam, corner: &Corner, side: Side, revolution: i64, velocity_before: f64) -> Contact {
+pub fn at_corner(cam: &Cam, corner: &Corner, side: Side, revolution: i64, velocity_before: f64) -> Impact {
     match (side, corner.segment) {
-        (Side::Plus, segment) => Contact { revolution, segment, cam_angle: corner.angle, velocity_before },
+        (Side::Plus, segment) => Impact { revolution, segment, cam_angle: corner.angle, velocity_before },
         (Side::Minus, 0) => {
             let (segment, cam_angle) = (cam.segments().len() - 1, TAU);
-            Contact { revolution: revolution - 1, segment, cam_angle, velocity_before }
+            Impact { revolution: revolution - 1, segment, cam_angle, velocity_before }
         }
-        (Side::Minus, after) => Contact { revolution, segment: after - 1, cam_angle: corner.angle, velocity_before },
+        (Side::Minus, after) => Impact { revolution, segment: after - 1, cam_angle: corner.angle, velocity_before },
     }
 }

@@ -26,7 +26,7 @@ use crate::simulate::Machine;
 pub fn route(model: &Model, cam: &Cam, at: &CornerImpact) -> Route {
     let around = Around::new(model, cam, at);
     let Ok(map) = CornerMap::try_from_sides(|side| {
-        Ok::<_, std::convert::Infallible>(around.side_map(side, &Change::of_period(at.cycle.contacts.len())))
+        Ok::<_, std::convert::Infallible>(around.side_map(side, &Change::of_period(at.cycle.impacts.len())))
     });
     Route { name: RouteName::Variational, map, uncertainty: None }
 }
@@ -43,11 +43,11 @@ pub fn route_by(model: &Model, cam: &Cam, at: &CornerImpact, varied: &Varied) ->
             Side::Minus => &mut error.minus,
             Side::Plus => &mut error.plus,
         };
-        for (contact, uncertain) in change.lift_errors.iter().enumerate() {
+        for (impact, uncertain) in change.lift_errors.iter().enumerate() {
             for moved in [LiftChange { slope: 0.0, ..*uncertain }, LiftChange { value: 0.0, ..*uncertain }] {
                 let mut other = change.clone();
-                other.lifts[contact].value += moved.value;
-                other.lifts[contact].slope += moved.slope;
+                other.lifts[impact].value += moved.value;
+                other.lifts[impact].slope += moved.slope;
                 off.b += (around.side_map(side, &other).b - map.b).abs();
             }
         }
@@ -61,7 +61,7 @@ pub fn route_by(model: &Model, cam: &Cam, at: &CornerImpact, varied: &Varied) ->
 /// on; and so, where it is negative, that the impact has been before.
 pub fn gap_at_corner(model: &Model, cam: &Cam, at: &CornerImpact) -> (RowVector2<f64>, f64) {
     let around = Around::new(model, cam, at);
-    let gap = around.go(at.side, &Change::of_period(at.cycle.contacts.len()), true);
+    let gap = around.go(at.side, &Change::of_period(at.cycle.impacts.len()), true);
     (RowVector2::new(gap[(0, 0)], gap[(0, 1)]), gap[(0, 2)])
 }
 
@@ -92,13 +92,13 @@ impl<'a> Around<'a> {
         let (flights, last) = self.at.course();
         let mut deviation = Matrix2x3::identity();
         let mut state = self.at.state;
-        for (turn, contact) in flights {
+        for (turn, impact) in flights {
             deviation = self.fly(deviation, state, turn, change);
-            if to_corner && contact == self.at.contact {
+            if to_corner && impact == self.at.impact {
                 return deviation;
             }
-            deviation = self.hit(deviation, contact, side, change);
-            state = self.at.cycle.flight(&self.machine, contact).0;
+            deviation = self.hit(deviation, impact, side, change);
+            state = self.at.cycle.flight(&self.machine, impact).0;
         }
         self.fly(deviation, state, last, change)
     }
@@ -132,16 +132,16 @@ impl<'a> Around<'a> {
         end.fixed_rows::<2>(0).into()
     }
 
-    fn hit(&self, deviation: Matrix2x3<f64>, contact: usize, side: Side, change: &Change) -> Matrix2x3<f64> {
+    fn hit(&self, deviation: Matrix2x3<f64>, impact: usize, side: Side, change: &Change) -> Matrix2x3<f64> {
         let omega = self.at.angular_velocity();
-        let lift = self.at.lift(&self.machine, contact, side);
+        let lift = self.at.lift(&self.machine, impact, side);
         let rates = ImpactRates {
             cam_velocity: omega * lift.slope,
             cam_acceleration: omega * omega * lift.curvature,
-            ..self.at.cycle.rates(&self.machine, contact)
+            ..self.at.cycle.rates(&self.machine, impact)
         };
         let (r, v, velocity) = (rates.restitution, rates.velocity_before, rates.cam_velocity);
-        let LiftChange { value, slope } = change.lifts[contact];
+        let LiftChange { value, slope } = change.lifts[impact];
         // From a cam that has risen by c_p, as from one at rest.
         let mut gap = deviation;
         gap[(0, 2)] -= value;

@@ -53,34 +53,34 @@ pub(super) struct Change {
     pub force: Vector2<f64>,
     /// Of r.
     pub restitution: f64,
-    /// Of the lift at each contact.
+    /// Of the lift at each impact.
     pub lifts: Vec<LiftChange>,
     /// What they may be off by.
     pub lift_errors: Vec<LiftChange>,
 }
 
 impl Change {
-    fn none(contacts: usize) -> Self {
-        let still = vec![LiftChange::default(); contacts];
+    fn none(impacts: usize) -> Self {
+        let still = vec![LiftChange::default(); impacts];
         let (matrix, force) = (Matrix2::zeros(), Vector2::zeros());
         Self { period: 0.0, matrix, force, restitution: 0.0, lifts: still.clone(), lift_errors: still }
     }
 
-    /// By T, for an orbit of so many contacts.
-    pub fn of_period(contacts: usize) -> Self {
-        Self { period: 1.0, ..Self::none(contacts) }
+    /// By T, for an orbit of so many impacts.
+    pub fn of_period(impacts: usize) -> Self {
+        Self { period: 1.0, ..Self::none(impacts) }
     }
 
     /// By any number, with the lift of one side at the corner.
     pub fn new(model: &Model, at: &CornerImpact, varied: &Varied, side: Side) -> Result<Self, NoChange> {
-        let contacts = at.cycle.contacts.len();
-        let Varied::Number(name) = varied else { return Ok(Self::of_period(contacts)) };
+        let impacts = at.cycle.impacts.len();
+        let Varied::Number(name) = varied else { return Ok(Self::of_period(impacts)) };
         let Follower { mass, damping, stiffness, rest_position, .. } = model.follower;
         // M = [[0, 1], [-k/m, -b/m]],  f = (0, k rest/m - g)
         let bottom = |position: f64, velocity: f64, force: f64| Self {
             matrix: Matrix2::new(0.0, 0.0, position, velocity),
             force: Vector2::new(0.0, force),
-            ..Self::none(contacts)
+            ..Self::none(impacts)
         };
         Ok(match name.as_str() {
             "follower.mass" => {
@@ -90,10 +90,10 @@ impl Change {
             "follower.stiffness" => bottom(-1.0 / mass, 0.0, rest_position / mass),
             "follower.gravity" => bottom(0.0, 0.0, -1.0),
             "follower.rest_position" => bottom(0.0, 0.0, stiffness / mass),
-            "follower.restitution" => Self { restitution: 1.0, ..Self::none(contacts) },
+            "follower.restitution" => Self { restitution: 1.0, ..Self::none(impacts) },
             _ => {
                 let (lifts, lift_errors) = lift_changes(model, at, name, side)?;
-                Self { lifts, lift_errors, ..Self::none(contacts) }
+                Self { lifts, lift_errors, ..Self::none(impacts) }
             }
         })
     }
@@ -110,7 +110,7 @@ pub(super) fn value_of(model: &Model, name: &str) -> Result<f64, NoChange> {
     value.ok_or_else(|| NoChange::Unknown { name: name.into() })
 }
 
-/// The lift under every contact by a number of the cam, and the errors: a difference over six cams on either side,
+/// The lift under every impact by a number of the cam, and the errors: a difference over six cams on either side,
 ///
 /// ```text
 /// h df/dp = (45 (f_1 - f_-1) - 9 (f_2 - f_-2) + (f_3 - f_-3))/60 + O(h^7)
@@ -131,16 +131,16 @@ fn lift_changes(
     let family = Family::new(model, at.speed_rpm(), vec![Parameter::Field(name.into())])?;
     let here = family.machine(&[value])?.0;
     let scale = LARGEST * if value == 0.0 { 1.0 } else { value.abs() };
-    let contacts = contacts(here.cam(), at, side);
+    let impacts = impacts(here.cam(), at, side);
     let mut failure = NoChange::OtherSegments { name: name.into(), value };
     let (mut wider, mut best): (Option<Vec<LiftChange>>, Option<_>) = (None, None);
     for halving in 0..STEPS {
         let step = scale * 0.5_f64.powi(halving);
-        let mut sums = vec![LiftChange::default(); contacts.len()];
+        let mut sums = vec![LiftChange::default(); impacts.len()];
         let mut sample = |multiple: f64, weight: f64| -> Result<bool, FamilyError> {
             let (machine, _) = family.machine(&[value + multiple * step])?;
             let segments = machine.cam().segments();
-            for (sum, (segment, angle)) in sums.iter_mut().zip(&contacts) {
+            for (sum, (segment, angle)) in sums.iter_mut().zip(&impacts) {
                 let lift = segments.get(*segment).map(|segment| segment.law.lift(*angle));
                 sum.value += weight * lift.map_or(f64::NAN, |lift| lift.value);
                 sum.slope += weight * lift.map_or(f64::NAN, |lift| lift.slope);
@@ -181,12 +181,12 @@ fn lift_changes(
     best.map(|(_, lifts, errors)| (lifts, errors)).ok_or(failure)
 }
 
-/// Segment and angle, rad, of every contact.
-fn contacts(cam: &Cam, at: &CornerImpact, side: Side) -> Vec<(usize, f64)> {
-    let place = |(index, contact): (usize, &crate::orbit::Contact)| {
-        let on_side = at_corner(cam, &at.corner, side, contact.revolution, contact.velocity_before);
-        let contact = if index == at.contact { &on_side } else { contact };
-        (contact.segment, contact.cam_angle)
+/// Segment and angle, rad, of every impact.
+fn impacts(cam: &Cam, at: &CornerImpact, side: Side) -> Vec<(usize, f64)> {
+    let place = |(index, impact): (usize, &crate::orbit::Impact)| {
+        let on_side = at_corner(cam, &at.corner, side, impact.revolution, impact.velocity_before);
+        let impact = if index == at.impact { &on_side } else { impact };
+        (impact.segment, impact.cam_angle)
     };
-    at.cycle.contacts.iter().enumerate().map(place).collect()
+    at.cycle.impacts.iter().enumerate().map(place).collect()
 }

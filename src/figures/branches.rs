@@ -99,7 +99,7 @@ pub fn branches_figure(
 /// Where a special point of one of the marked kinds is drawn: at the impact that it is about, or the first.
 fn place(point: &BranchPoint, which: usize) -> Option<[f64; 2]> {
     let special = point.special.filter(|special| mark(&special.kind) == which)?;
-    let index = if let Kind::Corner { contact, .. } = special.kind { contact } else { 0 };
+    let index = if let Kind::Corner { impact, .. } = special.kind { impact } else { 0 };
     let impact = point.orbit.impacts().nth(index).or_else(|| point.orbit.impacts().next())?;
     Some([point.value, impact.cam_angle.to_degrees()])
 }

@@ -173,11 +173,11 @@ fn on_corner(machine: &Machine, at: &CornerImpact) -> Vec<Shown> {
     let names = [Place::Before, Place::After];
     let shown = |((segment, lift), place): ((usize, Lift), Place)| {
         let mut cycle = at.cycle.clone();
-        let contact = &mut cycle.contacts[at.contact];
-        contact.segment = segment;
+        let impact = &mut cycle.impacts[at.impact];
+        impact.segment = segment;
         // A segment that ends at 2 pi has the corner at its own end.
         if place == Place::Before && segment > at.corner.segment {
-            contact.cam_angle = machine.cam().segments()[segment].end;
+            impact.cam_angle = machine.cam().segments()[segment].end;
         }
         let orbit = PeriodicOrbit::of_cycle(machine, cycle, at.residual);
         let impact = Event { cam_angle: at.corner.angle, position: lift.value, ..orbit.events[0] };
@@ -188,9 +188,9 @@ fn on_corner(machine: &Machine, at: &CornerImpact) -> Vec<Shown> {
 
 /// One revolution of a cycle of one impact: from angle 0 to the impact on the flight before it, then on the flight after it.
 fn path(machine: &Machine, cycle: &Cycle) -> Vec<[f64; 2]> {
-    let Some(contact) = cycle.contacts.first() else { return Vec::new() };
+    let Some(impact) = cycle.impacts.first() else { return Vec::new() };
     let (leaving, period) = cycle.flight(machine, 0);
-    let turned = contact.cam_angle.rem_euclid(TAU);
+    let turned = impact.cam_angle.rem_euclid(TAU);
     let position = |since: f64| leaving.position + machine.flight().fly(leaving, since / TAU * period).0;
     let angles = (0..=SAMPLES).map(|sample| TAU * f64::from(sample) / f64::from(SAMPLES));
     let (before, after): (Vec<f64>, Vec<f64>) = angles.partition(|angle| *angle < turned);

@@ -1,6 +1,6 @@
 //! A periodic orbit as the sequence of its impacts, and the equations that close it.
 //!
-//! Impact i is on a known segment of the cam, at angle `t_i` with velocity `v_i` before it. It is left with
+//! Struck i is on a known segment of the cam, at angle `t_i` with velocity `v_i` before it. It is left with
 //! `w_i = (1 + r) c'_i - r v_i`, and the flight to the next one, over `t_{i+1} - t_i`, must end there:
 //!
 //! ```text
@@ -24,7 +24,7 @@ use crate::tolerance;
 
 /// One impact of a cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Contact {
+pub struct Impact {
     /// How often the cam has passed angle 0 since the cycle's start; counted modulo the cycle's revolutions.
     pub revolution: i64,
     /// Index of the segment of the cam whose law holds.
@@ -40,7 +40,7 @@ pub struct Contact {
 pub struct Cycle {
     /// Turns of the cam in one period.
     pub revolutions: u64,
-    pub contacts: Vec<Contact>,
+    pub impacts: Vec<Impact>,
 }
 
 /// A cycle that the equations of no machine are met by: Newton's method found none from the guess.
@@ -54,7 +54,7 @@ pub struct NotClosed {
 }
 
 /// What the equations need of one impact.
-pub(super) struct Impact {
+pub(super) struct Struck {
     pub(super) lift: Lift,
     /// c', m/s.
     pub(super) cam_velocity: f64,
@@ -64,40 +64,40 @@ pub(super) struct Impact {
 impl Cycle {
     /// The cycle that the impacts of `revolutions` suggest.
     pub fn of_events(revolutions: u64, events: &[Event]) -> Self {
-        let contact = |event: &Event| Contact {
+        let impact = |event: &Event| Impact {
             revolution: event.revolution as i64,
             segment: event.segment,
             cam_angle: event.cam_angle,
             velocity_before: event.velocity_before,
         };
         let impacts = events.iter().filter(|event| event.kind == EventKind::Impact);
-        Self { revolutions, contacts: impacts.map(contact).collect() }
+        Self { revolutions, impacts: impacts.map(impact).collect() }
     }
 
-    pub(super) fn impact(&self, machine: &Machine, index: usize) -> Impact {
-        let contact = &self.contacts[index];
-        let lift = machine.cam().segments()[contact.segment].law.lift(contact.cam_angle);
+    pub(super) fn struck(&self, machine: &Machine, index: usize) -> Struck {
+        let impact = &self.impacts[index];
+        let lift = machine.cam().segments()[impact.segment].law.lift(impact.cam_angle);
         let cam_velocity = machine.angular_velocity() * lift.slope;
-        let velocity = rebound(machine.restitution(), contact.velocity_before, cam_velocity);
-        Impact { lift, cam_velocity, leaving: State { position: lift.value, velocity } }
+        let velocity = rebound(machine.restitution(), impact.velocity_before, cam_velocity);
+        Struck { lift, cam_velocity, leaving: State { position: lift.value, velocity } }
     }
 
     /// How fast follower and cam approach one another at an impact, m/s: `c' - v-`.
     pub fn approach(&self, machine: &Machine, index: usize) -> f64 {
-        self.impact(machine, index).cam_velocity - self.contacts[index].velocity_before
+        self.struck(machine, index).cam_velocity - self.impacts[index].velocity_before
     }
 
-    /// The angle turned from one contact to the next, rad.
+    /// The angle turned from one impact to the next, rad.
     pub fn turn(&self, index: usize) -> f64 {
-        let next = (index + 1) % self.contacts.len();
-        let (from, to) = (&self.contacts[index], &self.contacts[next]);
+        let next = (index + 1) % self.impacts.len();
+        let (from, to) = (&self.impacts[index], &self.impacts[next]);
         let later = if next == 0 { self.revolutions as f64 } else { 0.0 };
         (later + to.revolution as f64 - from.revolution as f64) * TAU + (to.cam_angle - from.cam_angle)
     }
 
     /// The state right after an impact, and the time of the flight that begins there, s.
     pub fn flight(&self, machine: &Machine, index: usize) -> (State, f64) {
-        (self.impact(machine, index).leaving, self.turn(index) / machine.angular_velocity())
+        (self.struck(machine, index).leaving, self.turn(index) / machine.angular_velocity())
     }
 
     /// What the equations are off by: for each flight the position, m, and the velocity over omega, m/rad.
@@ -105,9 +105,9 @@ impl Cycle {
         self.equations(machine).0
     }
 
-    /// The derivative of [`Cycle::residual`] by angle, rad, and velocity over omega, m/rad, of each contact in turn.
+    /// The derivative of [`Cycle::residual`] by angle, rad, and velocity over omega, m/rad, of each impact in turn.
     pub fn jacobian(&self, machine: &Machine) -> DMatrix<f64> {
-        let count = self.contacts.len();
+        let count = self.impacts.len();
         let mut rows = DMatrix::zeros(2 * count, 2 * count);
         for (index, link) in self.equations(machine).1.into_iter().enumerate() {
             let next = (index + 1) % count;
@@ -121,17 +121,17 @@ impl Cycle {
 
     /// Both, flight by flight.
     fn equations(&self, machine: &Machine) -> (DVector<f64>, Vec<Link>) {
-        let (count, omega, r) = (self.contacts.len(), machine.angular_velocity(), machine.restitution());
+        let (count, omega, r) = (self.impacts.len(), machine.angular_velocity(), machine.restitution());
         let flight = machine.flight();
-        let impacts: Vec<Impact> = (0..count).map(|index| self.impact(machine, index)).collect();
+        let struck: Vec<Struck> = (0..count).map(|index| self.struck(machine, index)).collect();
         let mut off = DVector::zeros(2 * count);
         let mut link = |index: usize| {
             let next = (index + 1) % count;
-            let (from, to) = (&impacts[index], &impacts[next]);
+            let (from, to) = (&struck[index], &struck[next]);
             let response = flight.response(self.turn(index) / omega);
             let (displacement, end) = flight.fly_by(from.leaving, &response);
             off[2 * index] = displacement - (to.lift.value - from.lift.value);
-            off[2 * index + 1] = (end.velocity - self.contacts[next].velocity_before) / omega;
+            off[2 * index + 1] = (end.velocity - self.impacts[next].velocity_before) / omega;
             let propagator = flight.propagator_by(&response);
             let moving = Vector2::new(end.velocity, flight.acceleration(end)) / omega;
             // The start moves along the cam, and the flight is as much shorter.
@@ -149,12 +149,12 @@ impl Cycle {
         (off, links)
     }
 
-    /// The cycle moved by `step`: angle, rad, and velocity over omega, m/rad, of each contact in turn.
+    /// The cycle moved by `step`: angle, rad, and velocity over omega, m/rad, of each impact in turn.
     pub fn moved(&self, machine: &Machine, step: &[f64]) -> Self {
         let mut moved = self.clone();
-        for (contact, step) in moved.contacts.iter_mut().zip(step.chunks_exact(2)) {
-            contact.cam_angle += step[0];
-            contact.velocity_before += step[1] * machine.angular_velocity();
+        for (impact, step) in moved.impacts.iter_mut().zip(step.chunks_exact(2)) {
+            impact.cam_angle += step[0];
+            impact.velocity_before += step[1] * machine.angular_velocity();
         }
         moved
     }
@@ -193,15 +193,15 @@ impl Cycle {
         Err(NotClosed { steps: STEPS, residual: last })
     }
 
-    /// The contacts in the order that a cam meets them from `cam_angle`, rad, in `[0, 2 pi)`, each with the angle turned.
+    /// The impacts in the order that a cam meets them from `cam_angle`, rad, in `[0, 2 pi)`, each with the angle turned.
     fn turned_from(&self, cam_angle: f64) -> Vec<(f64, usize)> {
         let period = self.revolutions as f64 * TAU;
-        let turned = |contact: &Contact| {
-            let turned = contact.revolution as f64 * TAU + (contact.cam_angle - cam_angle);
+        let turned = |impact: &Impact| {
+            let turned = impact.revolution as f64 * TAU + (impact.cam_angle - cam_angle);
             if (0.0..period).contains(&turned) { turned } else { turned.rem_euclid(period) }
         };
         let mut order: Vec<(f64, usize)> =
-            self.contacts.iter().enumerate().map(|(index, contact)| (turned(contact), index)).collect();
+            self.impacts.iter().enumerate().map(|(index, impact)| (turned(impact), index)).collect();
         order.sort_by(|one, other| one.0.total_cmp(&other.0));
         order
     }
@@ -214,7 +214,7 @@ impl Cycle {
         // From the last impact before the section.
         let (turned, last) = order[count - 1];
         let since = (self.revolutions as f64 * TAU - turned) / omega;
-        let (_, state) = machine.flight().fly(self.impact(machine, last).leaving, since);
+        let (_, state) = machine.flight().fly(self.struck(machine, last).leaving, since);
         let (mut matrix, mut from) = (Matrix2::identity(), 0.0);
         for (turned, index) in order {
             matrix =
@@ -226,35 +226,35 @@ impl Cycle {
 
     /// What an impact's saltation matrix is made of.
     pub fn rates(&self, machine: &Machine, index: usize) -> ImpactRates {
-        let impact = self.impact(machine, index);
+        let struck = self.struck(machine, index);
         let omega = machine.angular_velocity();
-        let velocity_before = self.contacts[index].velocity_before;
-        let before = State { velocity: velocity_before, ..impact.leaving };
+        let velocity_before = self.impacts[index].velocity_before;
+        let before = State { velocity: velocity_before, ..struck.leaving };
         ImpactRates {
             restitution: machine.restitution(),
             velocity_before,
             acceleration_before: machine.flight().acceleration(before),
-            acceleration_after: machine.flight().acceleration(impact.leaving),
-            cam_velocity: impact.cam_velocity,
-            cam_acceleration: omega * omega * impact.lift.curvature,
+            acceleration_after: machine.flight().acceleration(struck.leaving),
+            cam_velocity: struck.cam_velocity,
+            cam_acceleration: omega * omega * struck.lift.curvature,
         }
     }
 
     pub fn events(&self, machine: &Machine) -> Vec<Event> {
-        let event = |(index, contact): (usize, &Contact)| {
-            let impact = self.impact(machine, index);
+        let event = |(index, impact): (usize, &Impact)| {
+            let struck = self.struck(machine, index);
             Event {
                 kind: EventKind::Impact,
-                revolution: contact.revolution.rem_euclid(self.revolutions.max(1) as i64) as u64,
-                cam_angle: contact.cam_angle,
-                position: impact.lift.value,
-                velocity_before: contact.velocity_before,
-                velocity_after: impact.leaving.velocity,
-                cam_velocity: impact.cam_velocity,
-                segment: contact.segment,
+                revolution: impact.revolution.rem_euclid(self.revolutions.max(1) as i64) as u64,
+                cam_angle: impact.cam_angle,
+                position: struck.lift.value,
+                velocity_before: impact.velocity_before,
+                velocity_after: struck.leaving.velocity,
+                cam_velocity: struck.cam_velocity,
+                segment: impact.segment,
             }
         };
-        self.contacts.iter().enumerate().map(event).collect()
+        self.impacts.iter().enumerate().map(event).collect()
     }
 }
 

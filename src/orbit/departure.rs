@@ -11,19 +11,19 @@ use crate::tolerance;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Departure {
     /// An impact lies outside of its segment.
-    Beyond { contact: usize },
+    Beyond { impact: usize },
     /// The follower would come out of the cam at an impact, or touches it only.
-    Tangent { contact: usize },
-    /// The flight that starts at this contact meets the cam before it should.
+    Tangent { impact: usize },
+    /// The flight that starts at this impact meets the cam before it should.
     Earlier {
-        /// Index of the contact that the flight starts at.
-        contact: usize,
+        /// Index of the impact that the flight starts at.
+        impact: usize,
         event: Event,
     },
-    /// The flight that starts at this contact does not come to the next; or there is none, since the follower sticks.
+    /// The flight that starts at this impact does not come to the next; or there is none, since the follower sticks.
     Elsewhere {
-        /// Index of the contact that the flight starts at.
-        contact: usize,
+        /// Index of the impact that the flight starts at.
+        impact: usize,
     },
 }
 
@@ -31,42 +31,42 @@ impl Cycle {
     /// Where the cam as it is leaves this cycle, flight by flight, by simulation; `None` where it does not.
     pub fn departure(&self, machine: &Machine) -> Result<Option<Departure>, SimulateError> {
         let segments = machine.cam().segments();
-        let count = self.contacts.len();
-        for (index, contact) in self.contacts.iter().enumerate() {
-            let segment = &segments[contact.segment];
+        let count = self.impacts.len();
+        for (index, impact) in self.impacts.iter().enumerate() {
+            let segment = &segments[impact.segment];
             let slack = tolerance::CORNER_ANGLE.value;
-            if !(contact.cam_angle >= segment.start - slack && contact.cam_angle <= segment.end + slack) {
-                return Ok(Some(Departure::Beyond { contact: index }));
+            if !(impact.cam_angle >= segment.start - slack && impact.cam_angle <= segment.end + slack) {
+                return Ok(Some(Departure::Beyond { impact: index }));
             }
-            let impact = self.impact(machine, index);
-            let scale = impact.cam_velocity.abs() + contact.velocity_before.abs();
-            if !(impact.cam_velocity - contact.velocity_before > tolerance::GRAZING.value * scale) {
-                return Ok(Some(Departure::Tangent { contact: index }));
+            let struck = self.struck(machine, index);
+            let scale = struck.cam_velocity.abs() + impact.velocity_before.abs();
+            if !(struck.cam_velocity - impact.velocity_before > tolerance::GRAZING.value * scale) {
+                return Ok(Some(Departure::Tangent { impact: index }));
             }
         }
         for index in 0..count {
             let turn = self.turn(index);
             if !(turn > 0.0) {
-                return Ok(Some(Departure::Elsewhere { contact: index }));
+                return Ok(Some(Departure::Elsewhere { impact: index }));
             }
             let Some((met, turned)) = self.next_event(machine, index, turn)? else {
-                return Ok(Some(Departure::Elsewhere { contact: index }));
+                return Ok(Some(Departure::Elsewhere { impact: index }));
             };
             if turned < turn - tolerance::SAME_ORBIT.value {
-                return Ok(Some(Departure::Earlier { contact: index, event: met }));
+                return Ok(Some(Departure::Earlier { impact: index, event: met }));
             }
         }
         Ok(None)
     }
 
-    /// The first event after a contact, and the angle turned to it, rad; `None` where there is none for somewhat longer than
+    /// The first event after a impact, and the angle turned to it, rad; `None` where there is none for somewhat longer than
     /// `turn`.
     fn next_event(&self, machine: &Machine, index: usize, turn: f64) -> Result<Option<(Event, f64)>, SimulateError> {
-        let contact = &self.contacts[index];
-        let impact = self.impact(machine, index);
-        // A contact that rounding puts outside of its revolution is at the end of it.
-        let cam_angle = if contact.cam_angle >= TAU || contact.cam_angle < 0.0 { 0.0 } else { contact.cam_angle };
-        let relative = impact.leaving.velocity - machine.angular_velocity() * machine.cam().lift(cam_angle).slope;
+        let impact = &self.impacts[index];
+        let struck = self.struck(machine, index);
+        // A impact that rounding puts outside of its revolution is at the end of it.
+        let cam_angle = if impact.cam_angle >= TAU || impact.cam_angle < 0.0 { 0.0 } else { impact.cam_angle };
+        let relative = struck.leaving.velocity - machine.angular_velocity() * machine.cam().lift(cam_angle).slope;
         if relative <= 0.0 {
             return Ok(None);
         }

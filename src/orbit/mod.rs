@@ -32,7 +32,7 @@ use serde::ser::{SerializeStruct, Serializer};
 
 use crate::flight::State;
 use crate::simulate::{Event, EventKind, Machine, SimulateError};
-pub(crate) use cycle::{Contact, Cycle, NotClosed};
+pub(crate) use cycle::{Cycle, Impact, NotClosed};
 pub(crate) use departure::Departure;
 pub use family::Parameter;
 pub(crate) use family::{Family, FamilyError};

@@ -3,7 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use super::cycle::{Contact, Cycle};
+use super::cycle::{Cycle, Impact};
 use crate::simulate::Machine;
 use crate::tolerance;
 
@@ -15,25 +15,25 @@ impl Cycle {
     pub fn renamed(&self, machine: &Machine, is_corner: impl Fn(usize) -> bool) -> Self {
         let segments = machine.cam().segments();
         let mut renamed = self.clone();
-        for contact in &mut renamed.contacts {
+        for impact in &mut renamed.impacts {
             // As many moves as there are segments lead once round.
             for _ in 0..segments.len() {
-                let segment = &segments[contact.segment];
-                if contact.cam_angle < segment.start && !is_corner(contact.segment) {
-                    if contact.segment == 0 {
-                        contact.segment = segments.len() - 1;
-                        contact.cam_angle += TAU;
-                        contact.revolution -= 1;
+                let segment = &segments[impact.segment];
+                if impact.cam_angle < segment.start && !is_corner(impact.segment) {
+                    if impact.segment == 0 {
+                        impact.segment = segments.len() - 1;
+                        impact.cam_angle += TAU;
+                        impact.revolution -= 1;
                     } else {
-                        contact.segment -= 1;
+                        impact.segment -= 1;
                     }
-                } else if contact.cam_angle >= segment.end && !is_corner((contact.segment + 1) % segments.len()) {
-                    if contact.segment + 1 == segments.len() {
-                        contact.segment = 0;
-                        contact.cam_angle -= TAU;
-                        contact.revolution += 1;
+                } else if impact.cam_angle >= segment.end && !is_corner((impact.segment + 1) % segments.len()) {
+                    if impact.segment + 1 == segments.len() {
+                        impact.segment = 0;
+                        impact.cam_angle -= TAU;
+                        impact.revolution += 1;
                     } else {
-                        contact.segment += 1;
+                        impact.segment += 1;
                     }
                 } else {
                     break;
@@ -43,48 +43,47 @@ impl Cycle {
         renamed
     }
 
-    /// The same cycle with its revolutions counted from 0, and its contacts in order.
+    /// The same cycle with its revolutions counted from 0, and its impacts in order.
     pub fn in_order(mut self) -> Self {
         let revolutions = self.revolutions.max(1) as i64;
-        for contact in &mut self.contacts {
-            contact.revolution = contact.revolution.rem_euclid(revolutions);
+        for impact in &mut self.impacts {
+            impact.revolution = impact.revolution.rem_euclid(revolutions);
         }
-        self.contacts.sort_by(|one, other| {
+        self.impacts.sort_by(|one, other| {
             one.revolution.cmp(&other.revolution).then(one.cam_angle.total_cmp(&other.cam_angle))
         });
         self
     }
 
-    /// Where a contact stands once the contacts are [in order](Self::in_order).
-    pub fn place_in_order(&self, contact: usize) -> usize {
-        let key =
-            |contact: &Contact| (contact.revolution.rem_euclid(self.revolutions.max(1) as i64), contact.cam_angle);
-        let (revolution, angle) = key(&self.contacts[contact]);
-        let earlier = |other: &&Contact| {
+    /// Where a impact stands once the impacts are [in order](Self::in_order).
+    pub fn place_in_order(&self, impact: usize) -> usize {
+        let key = |impact: &Impact| (impact.revolution.rem_euclid(self.revolutions.max(1) as i64), impact.cam_angle);
+        let (revolution, angle) = key(&self.impacts[impact]);
+        let earlier = |other: &&Impact| {
             let (turn, place) = key(other);
             (turn, place) < (revolution, angle)
         };
-        self.contacts.iter().filter(earlier).count()
+        self.impacts.iter().filter(earlier).count()
     }
 
     /// The same cycle begun `revolutions` later.
     pub fn begun_later(&self, revolutions: u64) -> Self {
         let mut later = self.clone();
-        for contact in &mut later.contacts {
-            contact.revolution -= revolutions as i64;
+        for impact in &mut later.impacts {
+            impact.revolution -= revolutions as i64;
         }
         later.in_order()
     }
 
     /// Whether two cycles are the same motion, whichever revolution they begin with.
     pub fn is_same(&self, other: &Self) -> bool {
-        let near = |one: &Contact, other: &Contact| {
+        let near = |one: &Impact, other: &Impact| {
             let turns = one.revolution as f64 - other.revolution as f64;
             (one.cam_angle - other.cam_angle + TAU * turns).abs() <= tolerance::SAME_ORBIT.value
         };
-        let same = |other: &Self| self.contacts.iter().zip(&other.contacts).all(|(one, other)| near(one, other));
+        let same = |other: &Self| self.impacts.iter().zip(&other.impacts).all(|(one, other)| near(one, other));
         self.revolutions == other.revolutions
-            && self.contacts.len() == other.contacts.len()
+            && self.impacts.len() == other.impacts.len()
             && (0..self.revolutions).any(|later| same(&other.begun_later(later)))
     }
 
@@ -96,20 +95,20 @@ impl Cycle {
 
     fn repeats_after(&self, revolutions: u64) -> bool {
         let later = self.begun_later(revolutions);
-        let near = |(one, other): (&Contact, &Contact)| {
+        let near = |(one, other): (&Impact, &Impact)| {
             one.revolution == other.revolution && (one.cam_angle - other.cam_angle).abs() <= tolerance::SAME_ORBIT.value
         };
         let itself = self.clone().in_order();
-        itself.contacts.iter().zip(&later.contacts).all(near)
+        itself.impacts.iter().zip(&later.impacts).all(near)
     }
 
-    /// The contact half a period after `contact`, if it is one on the same segment.
-    pub fn second_half(&self, contact: usize) -> Option<usize> {
-        let half = self.contacts.len() / 2;
-        let even = self.revolutions.is_multiple_of(2) && self.contacts.len().is_multiple_of(2);
-        let (one, two) = (self.contacts.get(contact)?, self.contacts.get(contact + half)?);
+    /// The impact half a period after `impact`, if it is one on the same segment.
+    pub fn second_half(&self, impact: usize) -> Option<usize> {
+        let half = self.impacts.len() / 2;
+        let even = self.revolutions.is_multiple_of(2) && self.impacts.len().is_multiple_of(2);
+        let (one, two) = (self.impacts.get(impact)?, self.impacts.get(impact + half)?);
         let later = two.revolution - one.revolution == self.revolutions as i64 / 2;
-        (even && later && one.segment == two.segment).then_some(contact + half)
+        (even && later && one.segment == two.segment).then_some(impact + half)
     }
 
     /// The same motion over as few revolutions as it repeats after.
@@ -119,8 +118,8 @@ impl Cycle {
         match (1..cycle.revolutions).filter(|sooner| cycle.revolutions.is_multiple_of(*sooner)).find(sooner) {
             None => cycle,
             Some(revolutions) => {
-                let contacts = cycle.contacts.iter().filter(|contact| contact.revolution < revolutions as i64);
-                Self { revolutions, contacts: contacts.copied().collect() }
+                let impacts = cycle.impacts.iter().filter(|impact| impact.revolution < revolutions as i64);
+                Self { revolutions, impacts: impacts.copied().collect() }
             }
         }
     }

@@ -8,7 +8,7 @@ use std::convert::Infallible;
 use std::f64::consts::TAU;
 
 use super::settle::{MOST_IMPACTS, close, period, settled};
-use super::{Contact, Course, Cycle, PeriodicOrbit};
+use super::{Course, Cycle, Impact, PeriodicOrbit};
 use crate::bracket::{Width, halve};
 use crate::simulate::{EventKind, Machine, SimulateError};
 
@@ -164,8 +164,8 @@ fn one_impact(machine: &Machine, revolutions: u64) -> Vec<Cycle> {
                 let f = machine.flight().force(segment.law.lift(cam_angle).value);
                 let velocity_before = -f * p / s * s1 + f * s;
                 if velocity_before.is_finite() {
-                    let contact = Contact { revolution: 0, segment: index, cam_angle, velocity_before };
-                    guesses.push(Cycle { revolutions, contacts: vec![contact] });
+                    let impact = Impact { revolution: 0, segment: index, cam_angle, velocity_before };
+                    guesses.push(Cycle { revolutions, impacts: vec![impact] });
                 }
             }
             before = after;

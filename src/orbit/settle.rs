@@ -138,7 +138,7 @@ pub fn near(
 /// one that repeats sooner.
 pub fn close(machine: &Machine, guess: &Cycle) -> Option<PeriodicOrbit> {
     // An impact or so a revolution is no chattering, however many revolutions there are.
-    if guess.contacts.len() > MOST_IMPACTS.max(4 * guess.revolutions as usize) {
+    if guess.impacts.len() > MOST_IMPACTS.max(4 * guess.revolutions as usize) {
         return None;
     }
     let (cycle, residual) = guess.closed(machine).ok()?;

@@ -62,10 +62,9 @@ pub fn account(branch: &Branch, parameter: &str, index: usize) -> Result<String,
             Kind::Fold => "fold: a multiplier is 1".into(),
             Kind::Branching => "branching: a multiplier is 1, and another branch crosses".into(),
             Kind::Flip => "flip: a multiplier is -1".into(),
-            Kind::Corner { contact, jump_order, .. } => {
-                let angle =
-                    point.orbit.impacts().nth(*contact).map_or(f64::NAN, |impact| impact.cam_angle.to_degrees());
-                format!("corner impact: impact {} at {angle:.4} deg, jump of order {jump_order}", contact + 1)
+            Kind::Corner { impact, jump_order, .. } => {
+                let angle = point.orbit.impacts().nth(*impact).map_or(f64::NAN, |impact| impact.cam_angle.to_degrees());
+                format!("corner impact: impact {} at {angle:.4} deg, jump of order {jump_order}", impact + 1)
             }
             Kind::Graze { before, after } => format!("graze: from {before} to {after} impacts"),
             Kind::Type { after_corner, multiplier } => {

@@ -41,7 +41,7 @@ pub fn account(curve: &ImpactCurve, parameter: &str, index: usize) -> Result<Str
         page,
         "curve {index}: {} corner impacts, impact {} of {impacts} at {angle:.4} deg, jump of order {}",
         curve.impacts.len(),
-        at.contact + 1,
+        at.impact + 1,
         at.jump_order
     )?;
     writeln!(page, "  begins at {parameter} = {:.9}, {:.6} rpm: {}", first.value, first.rpm, curve.ends[0].words())?;
@@ -62,7 +62,7 @@ pub fn account(curve: &ImpactCurve, parameter: &str, index: usize) -> Result<Str
                     format!("a multiplier with the law {side} the corner is {multiplier}")
                 }
                 Kind::Fold => "the curve turns round".into(),
-                Kind::Corner { contact, .. } if contact == at.contact => "the model as it is".into(),
+                Kind::Corner { impact, .. } if impact == at.impact => "the model as it is".into(),
                 Kind::Corner { .. } => "another impact of the orbit is at a corner".into(),
                 _ => kind.name().into(),
             };

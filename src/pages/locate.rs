@@ -57,7 +57,7 @@ fn table(found: &[LocatedImpact]) -> Table {
             (at.speed_rpm(), Digits::Fixed(9)).into(),
             (at.corner.angle.to_degrees(), Digits::Fixed(6)).into(),
             at.corner.jump_order.into(),
-            at.cycle.contacts.len().into(),
+            at.cycle.impacts.len().into(),
             (at.velocity_before, Digits::Significant(8)).into(),
             (at.velocity_after, Digits::Significant(8)).into(),
             format!("{}{side}", impact.local.scenario()).into(),

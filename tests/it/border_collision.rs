@@ -3,8 +3,8 @@
 //! The conditions are derived in `derivations/border_collision.py` and stand here once more; the map is simulated on grids
 //! of parameters and must end where they say.
 
-use approx::assert_relative_eq;
 use crate::common;
+use approx::assert_relative_eq;
 use corner_impact::border_collision::local_map::PeriodicOrbit;
 use corner_impact::border_collision::long_run::{End, Escape};
 use corner_impact::border_collision::word::Word;

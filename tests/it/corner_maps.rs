@@ -68,7 +68,7 @@ fn assert_agree(maps: &[Route], what: &str) {
 #[test]
 #[ignore = "slow"]
 fn the_product_around_any_orbit_is_the_map_that_simulations_show() {
-    let counts: Vec<_> = cases().iter().map(|case| (case.at.cycle.revolutions, case.at.cycle.contacts.len())).collect();
+    let counts: Vec<_> = cases().iter().map(|case| (case.at.cycle.revolutions, case.at.cycle.impacts.len())).collect();
     assert_eq!(counts, [(1, 1), (1, 2), (2, 2), (3, 3), (1, 2), (1, 2)]);
     for Case { model, cam, at } in cases() {
         let routes = [
@@ -220,11 +220,7 @@ fn differences_know_their_errors_where_impacts_amplify_rounding() {
         let cam = common::cam(&model);
         let range = Study { rpm_min: 1000.0, rpm_max: 2000.0 };
         let found = range::find_corner_impacts(&model, &cam, range, 1).unwrap().found;
-        assert!(
-            found.len() >= least && found.iter().any(|at| at.cycle.contacts.len() >= 12),
-            "{name}: {}",
-            found.len()
-        );
+        assert!(found.len() >= least && found.iter().any(|at| at.cycle.impacts.len() >= 12), "{name}: {}", found.len());
         let mut amplified: f64 = 0.0;
         for at in found {
             let exact = variational::route(&model, &cam, &at).map;

@@ -84,7 +84,7 @@ fn one_impact_in_two_revolutions_is_found() {
     let found = surveyed(&model, 332.0, 332.6, 2);
     let [located] = found.found.as_slice() else { panic!("{:?}", found.found) };
     assert!((located.at.speed_rpm() - 332.297519227).abs() < 1e-8 && located.agrees, "{located:?}");
-    assert_eq!((located.at.cycle.revolutions, located.at.cycle.contacts.len()), (2, 1));
+    assert_eq!((located.at.cycle.revolutions, located.at.cycle.impacts.len()), (2, 1));
 }
 
 #[test]
@@ -150,7 +150,7 @@ fn orbits_exist_where_the_classification_says() {
     use corner_impact::simulate::{Machine, angular_velocity};
     let model = common::osorio();
     let found = surveyed(&model, 730.0, 740.0, 1);
-    let located = found.found.iter().find(|located| located.at.cycle.contacts.len() == 2).unwrap();
+    let located = found.found.iter().find(|located| located.at.cycle.impacts.len() == 2).unwrap();
     let Happens::BorderCollision(Ok(verdict)) = &located.local else { panic!("{:?}", located.local) };
     assert_eq!(verdict.scenario, Scenario::NonsmoothFold);
     let machine = Machine::new(common::cam(&model), &model.follower, 1.0);
@@ -158,7 +158,7 @@ fn orbits_exist_where_the_classification_says() {
         let machine = machine.at_speed(angular_velocity(rpm));
         let sides = [0, 1].map(|back| {
             let mut guess = located.at.cycle.clone();
-            guess.contacts[located.at.contact].segment -= back;
+            guess.impacts[located.at.impact].segment -= back;
             close(&machine, &guess)
         });
         sides.iter().flatten().count()
@@ -280,6 +280,6 @@ fn routes_agree_where_a_follower_chatters_before_the_corner() {
             .filter(|located| !located.agrees)
             .map(|located| (located.at.speed_rpm(), &located.comparisons));
         assert_eq!(off.collect::<Vec<_>>(), [], "{name}");
-        assert!(survey.found.iter().any(|located| located.at.cycle.contacts.len() >= impacts));
+        assert!(survey.found.iter().any(|located| located.at.cycle.impacts.len() >= impacts));
     }
 }

@@ -118,17 +118,17 @@ impl Stride<'_> {
         if value > high {
             cuts.push(Cut::Range(high));
         }
-        for (index, contact) in cycle.contacts.iter().enumerate() {
-            let segment = &machine.cam().segments()[contact.segment];
-            let pinned = self.pinned.is_some_and(|pinned| pinned.contact == index);
-            if contact.cam_angle > segment.end && !pinned {
-                cuts.push(Cut::Exit(Exit::Corner { contact: index, past_end: true }));
+        for (index, impact) in cycle.impacts.iter().enumerate() {
+            let segment = &machine.cam().segments()[impact.segment];
+            let pinned = self.pinned.is_some_and(|pinned| pinned.impact == index);
+            if impact.cam_angle > segment.end && !pinned {
+                cuts.push(Cut::Exit(Exit::Corner { impact: index, past_end: true }));
             }
-            if contact.cam_angle < segment.start && !pinned {
-                cuts.push(Cut::Exit(Exit::Corner { contact: index, past_end: false }));
+            if impact.cam_angle < segment.start && !pinned {
+                cuts.push(Cut::Exit(Exit::Corner { impact: index, past_end: false }));
             }
             if cycle.approach(&machine, index) <= 0.0 {
-                cuts.push(Cut::Exit(Exit::Tangent { contact: index }));
+                cuts.push(Cut::Exit(Exit::Tangent { impact: index }));
             }
         }
         Ok(cuts)
@@ -147,14 +147,14 @@ impl Stride<'_> {
                 let value = self.value(&at.unknowns);
                 if bound == self.following.range[0] { value - bound } else { bound - value }
             }
-            Cut::Exit(Exit::Corner { contact, past_end }) => {
-                let contact = &cycle.contacts[contact];
-                let segment = &machine.cam().segments()[contact.segment];
-                if past_end { segment.end - contact.cam_angle } else { contact.cam_angle - segment.start }
+            Cut::Exit(Exit::Corner { impact, past_end }) => {
+                let impact = &cycle.impacts[impact];
+                let segment = &machine.cam().segments()[impact.segment];
+                if past_end { segment.end - impact.cam_angle } else { impact.cam_angle - segment.start }
             }
-            Cut::Exit(Exit::Tangent { contact }) => cycle.approach(&machine, contact),
-            Cut::Exit(Exit::Touch { contact, turned }) => {
-                gap::least(&cycle, &machine, contact, turned).ok_or(NoPoint::NotClosed)?.0
+            Cut::Exit(Exit::Tangent { impact }) => cycle.approach(&machine, impact),
+            Cut::Exit(Exit::Touch { impact, turned }) => {
+                gap::least(&cycle, &machine, impact, turned).ok_or(NoPoint::NotClosed)?.0
             }
             Cut::Fold => at.tangent[at.tangent.len() - 1],
             // Its own equations are singular there: `halved` locates it.
@@ -218,8 +218,8 @@ impl Stride<'_> {
                 (Exit::Corner { .. }, None) => return Ok(None),
                 // Contacts are numbered as those of the orbit, from angle 0 on.
                 (_, order) => match switch::kind(exit, &cycle, &machine, order.unwrap_or(0)) {
-                    Kind::Corner { contact, segment, jump_order } => {
-                        Kind::Corner { contact: cycle.place_in_order(contact), segment, jump_order }
+                    Kind::Corner { impact, segment, jump_order } => {
+                        Kind::Corner { impact: cycle.place_in_order(impact), segment, jump_order }
                     }
                     other => other,
                 },
@@ -228,10 +228,10 @@ impl Stride<'_> {
         Ok(Some(Special { kind, bracket: located.bracket, residual: located.residual }))
     }
 
-    /// The order of the corner that a contact leaves its segment by, if it is one.
+    /// The order of the corner that a impact leaves its segment by, if it is one.
     pub(super) fn order(&self, exit: Exit, cycle: &Cycle, machine: &Machine) -> Option<usize> {
-        let Exit::Corner { contact, past_end } = exit else { return None };
-        let segment = cycle.contacts[contact].segment;
+        let Exit::Corner { impact, past_end } = exit else { return None };
+        let segment = cycle.impacts[impact].segment;
         let meeting = if past_end { (segment + 1) % machine.cam().segments().len() } else { segment };
         machine.cam().corners().iter().find(|corner| corner.segment == meeting).map(|corner| corner.jump_order)
     }

@@ -91,12 +91,12 @@ impl Walk<'_> {
                 }
             }
             let home = &begin.1.unknowns;
-            let alike = begin.0.contacts.len() == self.stride.pattern.contacts.len()
+            let alike = begin.0.impacts.len() == self.stride.pattern.impacts.len()
                 && begin
                     .0
-                    .contacts
+                    .impacts
                     .iter()
-                    .zip(&self.stride.pattern.contacts)
+                    .zip(&self.stride.pattern.impacts)
                     .all(|(one, other)| one.segment == other.segment);
             if alike && self.points.len() > 20 {
                 let away = &self.stride.from.unknowns - home;
@@ -110,7 +110,7 @@ impl Walk<'_> {
     /// Whether some impacts follow one another so closely that there is no telling them apart soon.
     fn chatters(&self) -> bool {
         let closest =
-            |cycle: Cycle| (0..cycle.contacts.len()).map(|index| cycle.turn(index)).fold(f64::INFINITY, f64::min);
+            |cycle: Cycle| (0..cycle.impacts.len()).map(|index| cycle.turn(index)).fold(f64::INFINITY, f64::min);
         let here = self.stride.problem().unpack(&self.stride.from.unknowns);
         here.is_ok_and(|(cycle, ..)| closest(cycle) < tolerance::CHATTERING_TURN.value)
     }
@@ -123,8 +123,8 @@ impl Walk<'_> {
         let units = Units::of(&cycle, &machine);
         let factor = units.velocity / self.stride.units.velocity;
         if !(1.0 / FACTOR..FACTOR).contains(&factor) {
-            self.stride.units.convert(&mut self.stride.from, cycle.contacts.len(), units);
-            self.stride.units.convert(&mut home.1, home.0.contacts.len(), units);
+            self.stride.units.convert(&mut self.stride.from, cycle.impacts.len(), units);
+            self.stride.units.convert(&mut home.1, home.0.impacts.len(), units);
             self.stride.units = units;
         }
     }
@@ -184,10 +184,10 @@ impl Walk<'_> {
         let (cycle, at, _) = problem.unpack(&clear.unknowns)?;
         match cycle.departure(&at) {
             Ok(None) => {}
-            Ok(Some(Departure::Earlier { contact, event })) => {
+            Ok(Some(Departure::Earlier { impact, event })) => {
                 let turned = (event.revolution as f64) * std::f64::consts::TAU + event.cam_angle
-                    - cycle.contacts[contact].cam_angle.rem_euclid(std::f64::consts::TAU);
-                let touch = Exit::Touch { contact, turned };
+                    - cycle.impacts[impact].cam_angle.rem_euclid(std::f64::consts::TAU);
+                let touch = Exit::Touch { impact, turned };
                 let located = self.stride.locate(&problem, Cut::Exit(touch), reach)?;
                 reach = located.step;
                 clear = located.point.clone();
@@ -286,8 +286,8 @@ impl Walk<'_> {
         let machine = self.stride.family.machine(&values)?.0;
         let (cycle, _, _) = self.stride.problem().unpack(&self.stride.from.unknowns)?;
         let exit = match exit {
-            Exit::Touch { contact, turned } => match gap::least(&cycle, &machine, contact, turned) {
-                Some((_, turned)) => Exit::Touch { contact, turned },
+            Exit::Touch { impact, turned } => match gap::least(&cycle, &machine, impact, turned) {
+                Some((_, turned)) => Exit::Touch { impact, turned },
                 None => return Ok(Some(End::Lost)),
             },
             other => other,
@@ -301,7 +301,7 @@ impl Walk<'_> {
         if beyond.repeats_sooner() {
             return Ok(Some(End::Shorter));
         }
-        if beyond.contacts.len() > MOST_IMPACTS * beyond.revolutions as usize {
+        if beyond.impacts.len() > MOST_IMPACTS * beyond.revolutions as usize {
             return Ok(Some(End::Chatter));
         }
         self.stride.pattern = beyond.clone();

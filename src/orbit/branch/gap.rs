@@ -6,7 +6,7 @@ use crate::orbit::Cycle;
 use crate::simulate::Machine;
 use crate::tolerance;
 
-/// Least gap, m, of the flight that starts at contact `index`, near an angle `turned`, rad, after its start; and where, rad
+/// Least gap, m, of the flight that starts at impact `index`, near an angle `turned`, rad, after its start; and where, rad
 /// after its start.
 ///
 /// `None` where the gap has no minimum there but falls to one of the flight's ends.
@@ -17,7 +17,7 @@ pub(super) fn least(cycle: &Cycle, machine: &Machine, index: usize, turned: f64)
     /// What each stride is longer by than the one before.
     const LONGER: f64 = 1.25;
     let (start, _) = cycle.flight(machine, index);
-    let from = cycle.contacts[index].cam_angle;
+    let from = cycle.impacts[index].cam_angle;
     let whole = cycle.turn(index);
     let omega = machine.angular_velocity();
     let gap = |turned: f64| {

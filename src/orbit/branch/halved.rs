@@ -4,7 +4,7 @@
 //! are not, so the flip is located on it.
 
 use crate::bracket::secants;
-use crate::orbit::{Contact, Cycle};
+use crate::orbit::{Cycle, Impact};
 use crate::simulate::Machine;
 use crate::tolerance;
 
@@ -23,18 +23,18 @@ pub(super) struct Flipped {
 /// How far the second half of a cycle is from its first, rad; `None` where the two have nothing to do with each other.
 pub(super) fn apart(cycle: &Cycle) -> Option<f64> {
     let other = cycle.second_half(0)?;
-    Some(cycle.contacts[other].cam_angle - cycle.contacts[0].cam_angle)
+    Some(cycle.impacts[other].cam_angle - cycle.impacts[0].cam_angle)
 }
 
 /// The mean of both halves.
 fn mean(cycle: &Cycle) -> Cycle {
-    let half = cycle.contacts.len() / 2;
-    let mut contacts = cycle.contacts[..half].to_vec();
-    for (contact, other) in contacts.iter_mut().zip(&cycle.contacts[half..]) {
-        contact.cam_angle = 0.5 * (contact.cam_angle + other.cam_angle);
-        contact.velocity_before = 0.5 * (contact.velocity_before + other.velocity_before);
+    let half = cycle.impacts.len() / 2;
+    let mut impacts = cycle.impacts[..half].to_vec();
+    for (impact, other) in impacts.iter_mut().zip(&cycle.impacts[half..]) {
+        impact.cam_angle = 0.5 * (impact.cam_angle + other.cam_angle);
+        impact.velocity_before = 0.5 * (impact.velocity_before + other.velocity_before);
     }
-    Cycle { revolutions: cycle.revolutions / 2, contacts }
+    Cycle { revolutions: cycle.revolutions / 2, impacts }
 }
 
 /// The flip between two cycles, at two values of the parameter, whose halves have changed places; `None` where what they
@@ -66,13 +66,13 @@ pub(super) fn flip(machine_at: impl Fn(f64) -> Option<Machine>, ends: [(f64, &Cy
     let ([(low, _), (high, at_high)], _) = secants([low, high], STEPS, 0.0, value).ok()?;
     let halves = mean(one);
     let reach = before.abs() + after.abs();
-    let near = |(found, halves): (&Contact, &Contact)| (found.cam_angle - halves.cam_angle).abs() <= reach;
-    let is_flip = at_high.abs() <= tolerance::SAME_ORBIT.value && cycle.contacts.iter().zip(&halves.contacts).all(near);
+    let near = |(found, halves): (&Impact, &Impact)| (found.cam_angle - halves.cam_angle).abs() <= reach;
+    let is_flip = at_high.abs() <= tolerance::SAME_ORBIT.value && cycle.impacts.iter().zip(&halves.impacts).all(near);
     let mut doubled = one.clone();
-    let half = cycle.contacts.len();
-    for (index, contact) in doubled.contacts.iter_mut().enumerate() {
-        let found = &cycle.contacts[index % half];
-        (contact.cam_angle, contact.velocity_before) = (found.cam_angle, found.velocity_before);
+    let half = cycle.impacts.len();
+    for (index, impact) in doubled.impacts.iter_mut().enumerate() {
+        let found = &cycle.impacts[index % half];
+        (impact.cam_angle, impact.velocity_before) = (found.cam_angle, found.velocity_before);
     }
     let bracket = [low.min(high), low.max(high)];
     is_flip.then_some(Flipped { value: high, cycle: doubled, bracket, residual: at_high.abs() })

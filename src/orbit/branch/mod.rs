@@ -154,7 +154,7 @@ impl Branch {
         speeds: [f64; 2],
         following: &Following,
     ) -> Result<Self, OrbitError> {
-        let (Some(Special { kind: Kind::Corner { contact, segment, .. }, .. }), super::Course::Impacts(cycle)) =
+        let (Some(Special { kind: Kind::Corner { impact, segment, .. }, .. }), super::Course::Impacts(cycle)) =
             (corner.special, &corner.orbit.course)
         else {
             return Ok(Self { points: Vec::new(), ends: [End::Lost, End::Lost] });
@@ -162,7 +162,7 @@ impl Branch {
         let family = Family::new(model, corner.rpm, vec![Parameter::Speed, following.parameter.clone()])?;
         let value = following.parameter.value(model, corner.rpm).unwrap_or(f64::NAN);
         let spans = [speeds[1] - speeds[0], following.range[1] - following.range[0]];
-        let pinned = Pinned { contact, at_end: cycle.contacts[contact].segment != segment };
+        let pinned = Pinned { impact, at_end: cycle.impacts[impact].segment != segment };
         let values = [corner.rpm, value];
         let start = follow::Start { cycle, values: &values, spans: &spans, pinned: Some(pinned) };
         let halves = [-1.0, 1.0].map(|direction| follow::half(&family, &start, following, direction));

@@ -12,7 +12,7 @@ use crate::simulate::Machine;
 /// An impact that stays at an end of its segment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pinned {
-    pub contact: usize,
+    pub impact: usize,
     /// Whether it stays at the end of its segment; at the start otherwise.
     pub at_end: bool,
 }
@@ -25,22 +25,22 @@ impl Pinned {
         if self.at_end { [own, other] } else { [other, own] }
     }
 
-    /// The same cycle, the pinned contact named after the segment on the other side of the corner.
+    /// The same cycle, the pinned impact named after the segment on the other side of the corner.
     pub(super) fn other_side(&self, cycle: &Cycle, machine: &Machine) -> Cycle {
         let last = machine.cam().segments().len() - 1;
         let mut other = cycle.clone();
-        let contact = &mut other.contacts[self.contact];
-        match (self.at_end, contact.segment) {
+        let impact = &mut other.impacts[self.impact];
+        match (self.at_end, impact.segment) {
             (true, segment) if segment == last => {
-                (contact.segment, contact.cam_angle, contact.revolution) =
-                    (0, contact.cam_angle - TAU, contact.revolution + 1);
+                (impact.segment, impact.cam_angle, impact.revolution) =
+                    (0, impact.cam_angle - TAU, impact.revolution + 1);
             }
-            (true, _) => contact.segment += 1,
+            (true, _) => impact.segment += 1,
             (false, 0) => {
-                (contact.segment, contact.cam_angle, contact.revolution) =
-                    (last, contact.cam_angle + TAU, contact.revolution - 1);
+                (impact.segment, impact.cam_angle, impact.revolution) =
+                    (last, impact.cam_angle + TAU, impact.revolution - 1);
             }
-            (false, _) => contact.segment -= 1,
+            (false, _) => impact.segment -= 1,
         }
         other
     }
@@ -58,15 +58,14 @@ pub struct Units {
 impl Units {
     pub fn of(cycle: &Cycle, machine: &Machine) -> Self {
         let lift = lift_size(machine);
-        let fastest =
-            cycle.contacts.iter().fold(0.0_f64, |fastest, contact| fastest.max(contact.velocity_before.abs()));
+        let fastest = cycle.impacts.iter().fold(0.0_f64, |fastest, impact| fastest.max(impact.velocity_before.abs()));
         Self { lift, velocity: lift.max(fastest / machine.angular_velocity()) }
     }
 
-    /// A point of a curve of cycles of so many contacts in these units, in those of `other`.
-    pub fn convert(&self, point: &mut CurvePoint, contacts: usize, other: Self) {
+    /// A point of a curve of cycles of so many impacts in these units, in those of `other`.
+    pub fn convert(&self, point: &mut CurvePoint, impacts: usize, other: Self) {
         let factor = self.velocity / other.velocity;
-        for index in (1..2 * contacts).step_by(2) {
+        for index in (1..2 * impacts).step_by(2) {
             point.unknowns[index] *= factor;
             point.tangent[index] *= factor;
         }
@@ -74,7 +73,7 @@ impl Units {
     }
 }
 
-/// Unknowns: angle (rad) and velocity over omega (by its unit) of each contact, then the free numbers (by `spans`).
+/// Unknowns: angle (rad) and velocity over omega (by its unit) of each impact, then the free numbers (by `spans`).
 pub struct Problem<'a> {
     family: &'a Family,
     /// Revolutions and segments; its angles and velocities are replaced.
@@ -93,24 +92,24 @@ impl<'a> Problem<'a> {
 
     /// The unknowns of `cycle` with these numbers.
     pub fn unknowns(&self, cycle: &Cycle, machine: &Machine, values: &[f64]) -> DVector<f64> {
-        let contacts = cycle.contacts.iter();
-        let of_contacts = contacts.flat_map(|contact| {
-            [contact.cam_angle, contact.velocity_before / machine.angular_velocity() / self.units.velocity]
+        let impacts = cycle.impacts.iter();
+        let of_impacts = impacts.flat_map(|impact| {
+            [impact.cam_angle, impact.velocity_before / machine.angular_velocity() / self.units.velocity]
         });
         let of_values = values.iter().zip(&self.spans).map(|(value, span)| value / span);
-        let all: Vec<f64> = of_contacts.chain(of_values).collect();
+        let all: Vec<f64> = of_impacts.chain(of_values).collect();
         DVector::from_vec(all)
     }
 
     /// The free numbers among the unknowns.
     pub fn values(&self, unknowns: &DVector<f64>) -> Vec<f64> {
-        let count = 2 * self.pattern.contacts.len();
+        let count = 2 * self.pattern.impacts.len();
         unknowns.iter().skip(count).zip(&self.spans).map(|(value, span)| value * span).collect()
     }
 
     /// Where the unknown of the free number `index` stands.
     pub fn column(&self, index: usize) -> usize {
-        2 * self.pattern.contacts.len() + index
+        2 * self.pattern.impacts.len() + index
     }
 
     /// The cycle and the machine that unknowns stand for, and its speed, rpm.
@@ -122,18 +121,18 @@ impl<'a> Problem<'a> {
 
     fn cycle(&self, unknowns: &DVector<f64>, machine: &Machine) -> Cycle {
         let mut cycle = self.pattern.clone();
-        for (index, contact) in cycle.contacts.iter_mut().enumerate() {
-            contact.cam_angle = unknowns[2 * index];
-            contact.velocity_before = unknowns[2 * index + 1] * self.units.velocity * machine.angular_velocity();
+        for (index, impact) in cycle.impacts.iter_mut().enumerate() {
+            impact.cam_angle = unknowns[2 * index];
+            impact.velocity_before = unknowns[2 * index + 1] * self.units.velocity * machine.angular_velocity();
         }
         cycle
     }
 
-    /// How far the pinned contact is from its corner, rad, if one is pinned.
+    /// How far the pinned impact is from its corner, rad, if one is pinned.
     fn off_corner(&self, unknowns: &DVector<f64>, machine: &Machine) -> Option<f64> {
-        let Pinned { contact, at_end } = self.pinned?;
-        let segment = &machine.cam().segments()[self.pattern.contacts[contact].segment];
-        Some(unknowns[2 * contact] - if at_end { segment.end } else { segment.start })
+        let Pinned { impact, at_end } = self.pinned?;
+        let segment = &machine.cam().segments()[self.pattern.impacts[impact].segment];
+        Some(unknowns[2 * impact] - if at_end { segment.end } else { segment.start })
     }
 
     fn residual_on(&self, unknowns: &DVector<f64>, machine: &Machine) -> DVector<f64> {
@@ -156,19 +155,19 @@ impl Equations for Problem<'_> {
     fn jacobian(&self, unknowns: &DVector<f64>) -> Result<DMatrix<f64>, FamilyError> {
         /// Of the span of a free number: its column steers Newton's method and the tangent, and needs six digits.
         const DIFFERENCE: f64 = 1e-5;
-        let count = 2 * self.pattern.contacts.len();
+        let count = 2 * self.pattern.impacts.len();
         let (machine, _) = self.family.machine(&self.values(unknowns))?;
-        let by_contacts = self.cycle(unknowns, &machine).jacobian(&machine);
+        let by_impacts = self.cycle(unknowns, &machine).jacobian(&machine);
         let rows = count + usize::from(self.pinned.is_some());
         let mut jacobian = DMatrix::zeros(rows, unknowns.len());
         for column in 0..count {
             let unit = if column % 2 == 0 { 1.0 } else { self.units.velocity } / self.units.lift;
             for row in 0..count {
-                jacobian[(row, column)] = by_contacts[(row, column)] * unit;
+                jacobian[(row, column)] = by_impacts[(row, column)] * unit;
             }
         }
         if let Some(pinned) = self.pinned {
-            jacobian[(count, 2 * pinned.contact)] = 1.0;
+            jacobian[(count, 2 * pinned.impact)] = 1.0;
         }
         for column in count..unknowns.len() {
             let moved = |step: f64| {

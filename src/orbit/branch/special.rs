@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::orbit::{Contact, Course, PeriodicOrbit};
+use crate::orbit::{Course, Impact, PeriodicOrbit};
 use crate::tolerance;
 
 /// What changes.
@@ -17,7 +17,7 @@ pub enum Kind {
     /// An impact passes a corner of the cam.
     Corner {
         /// Index of the impact.
-        contact: usize,
+        impact: usize,
         /// Index of the segment that starts at the corner.
         segment: usize,
         /// The lowest derivative of the lift that jumps there.
@@ -74,10 +74,10 @@ pub(super) fn is_near(one: &PeriodicOrbit, other: &PeriodicOrbit) -> bool {
     match (&one.course, &other.course) {
         (Course::Impacts(one), Course::Impacts(other)) => {
             one.revolutions == other.revolutions
-                && one.contacts.len() == other.contacts.len()
+                && one.impacts.len() == other.impacts.len()
                 && (0..one.revolutions).any(|later| {
                     let other = other.begun_later(later);
-                    let pairs = one.contacts.iter().zip(&other.contacts);
+                    let pairs = one.impacts.iter().zip(&other.impacts);
                     pairs.into_iter().all(|(a, b)| {
                         a.revolution == b.revolution
                             && (a.cam_angle - b.cam_angle).abs() < tolerance::NEIGHBOURING.value
@@ -96,14 +96,14 @@ pub(super) fn is_near(one: &PeriodicOrbit, other: &PeriodicOrbit) -> bool {
 /// moves the impacts least.
 pub(super) fn same_impacts(one: &PeriodicOrbit, other: &PeriodicOrbit) -> Vec<(usize, usize)> {
     let (Course::Impacts(from), Course::Impacts(to)) = (&one.course, &other.course) else { return Vec::new() };
-    let count = from.contacts.len();
-    if count != to.contacts.len() || from.revolutions != to.revolutions {
+    let count = from.impacts.len();
+    if count != to.impacts.len() || from.revolutions != to.revolutions {
         return Vec::new();
     }
     let period = from.revolutions as f64 * TAU;
-    let turned = |contact: &Contact| contact.revolution as f64 * TAU + contact.cam_angle;
+    let turned = |impact: &Impact| impact.revolution as f64 * TAU + impact.cam_angle;
     let moved = |further: usize| {
-        let pairs = (0..count).map(|index| (&from.contacts[index], &to.contacts[(index + further) % count]));
+        let pairs = (0..count).map(|index| (&from.impacts[index], &to.impacts[(index + further) % count]));
         pairs.fold(0.0_f64, |most, (here, there)| {
             let apart = (turned(there) - turned(here)).rem_euclid(period);
             most.max(apart.min(period - apart))

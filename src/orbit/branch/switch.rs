@@ -5,28 +5,28 @@ use nalgebra::DVector;
 use super::problem::{Pinned, Problem};
 use super::{gap, special::Kind};
 use crate::orbit::curve::{NoPoint, first_tangent};
-use crate::orbit::{Contact, Cycle, FamilyError};
+use crate::orbit::{Cycle, FamilyError, Impact};
 use crate::simulate::Machine;
 
 /// What an orbit leaves its cycle by.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Exit {
-    /// A contact goes past the end of its segment, or the start.
-    Corner { contact: usize, past_end: bool },
-    /// A contact is left without relative velocity.
-    Tangent { contact: usize },
-    /// The flight from a contact touches the cam at an angle turned, rad.
-    Touch { contact: usize, turned: f64 },
+    /// A impact goes past the end of its segment, or the start.
+    Corner { impact: usize, past_end: bool },
+    /// A impact is left without relative velocity.
+    Tangent { impact: usize },
+    /// The flight from a impact touches the cam at an angle turned, rad.
+    Touch { impact: usize, turned: f64 },
 }
 
 /// What the exit is called, on a cam whose corner there has this order.
 pub(super) fn kind(exit: Exit, cycle: &Cycle, machine: &Machine, order: usize) -> Kind {
-    let count = cycle.contacts.len();
+    let count = cycle.impacts.len();
     match exit {
-        Exit::Corner { contact, past_end } => {
-            let segment = cycle.contacts[contact].segment;
+        Exit::Corner { impact, past_end } => {
+            let segment = cycle.impacts[impact].segment;
             let next = (segment + 1) % machine.cam().segments().len();
-            Kind::Corner { contact, segment: if past_end { next } else { segment }, jump_order: order }
+            Kind::Corner { impact, segment: if past_end { next } else { segment }, jump_order: order }
         }
         Exit::Tangent { .. } => Kind::Graze { before: count, after: count - 1 },
         Exit::Touch { .. } => Kind::Graze { before: count, after: count + 1 },
@@ -38,14 +38,14 @@ pub(super) fn beyond(exit: Exit, cycle: &Cycle, machine: &Machine) -> Option<Cyc
     let segments = machine.cam().segments();
     let mut beyond = cycle.clone();
     match exit {
-        Exit::Corner { contact, past_end } => {
-            beyond = Pinned { contact, at_end: past_end }.other_side(cycle, machine);
+        Exit::Corner { impact, past_end } => {
+            beyond = Pinned { impact, at_end: past_end }.other_side(cycle, machine);
         }
-        Exit::Tangent { contact } => {
-            beyond.contacts.remove(contact);
+        Exit::Tangent { impact } => {
+            beyond.impacts.remove(impact);
         }
-        Exit::Touch { contact, turned } => {
-            let from = &cycle.contacts[contact];
+        Exit::Touch { impact, turned } => {
+            let from = &cycle.impacts[impact];
             let angle = from.cam_angle + turned;
             let turns = (angle / std::f64::consts::TAU).floor();
             let cam_angle = angle - turns * std::f64::consts::TAU;
@@ -53,17 +53,17 @@ pub(super) fn beyond(exit: Exit, cycle: &Cycle, machine: &Machine) -> Option<Cyc
             let slope = segments[segment].law.lift(cam_angle).slope;
             let revolution = from.revolution + turns as i64;
             let velocity_before = machine.angular_velocity() * slope;
-            beyond.contacts.insert(contact + 1, Contact { revolution, segment, cam_angle, velocity_before });
+            beyond.impacts.insert(impact + 1, Impact { revolution, segment, cam_angle, velocity_before });
         }
     }
-    (!beyond.contacts.is_empty()).then_some(beyond)
+    (!beyond.impacts.is_empty()).then_some(beyond)
 }
 
-/// Where the contact that `exit` is about stands in the cycle beyond, if it is in it.
-fn moved_contact(exit: Exit) -> Option<usize> {
+/// Where the impact that `exit` is about stands in the cycle beyond, if it is in it.
+fn moved_impact(exit: Exit) -> Option<usize> {
     match exit {
-        Exit::Corner { contact, .. } => Some(contact),
-        Exit::Touch { contact, .. } => Some(contact + 1),
+        Exit::Corner { impact, .. } => Some(impact),
+        Exit::Touch { impact, .. } => Some(impact + 1),
         Exit::Tangent { .. } => None,
     }
 }
@@ -82,19 +82,19 @@ pub(super) fn direction(
     let measure = |step: f64| -> Result<f64, NoPoint<FamilyError>> {
         let (cycle, machine, _) = problem.unpack(&(unknowns + &tangent * step))?;
         Ok(match exit {
-            Exit::Corner { contact, past_end } => {
+            Exit::Corner { impact, past_end } => {
                 // From the corner, which a number of the cam may move.
-                let contact = &cycle.contacts[contact];
-                let segment = &machine.cam().segments()[contact.segment];
-                if past_end { contact.cam_angle - segment.start } else { segment.end - contact.cam_angle }
+                let impact = &cycle.impacts[impact];
+                let segment = &machine.cam().segments()[impact.segment];
+                if past_end { impact.cam_angle - segment.start } else { segment.end - impact.cam_angle }
             }
             // An impact needs an approach, a flight a gap.
-            Exit::Touch { .. } => moved_contact(exit).map_or(f64::NAN, |contact| cycle.approach(&machine, contact)),
-            Exit::Tangent { contact } => {
-                let count = from.contacts.len();
-                let before = (contact + count - 1) % count;
-                // In the cycle without the contact the one before it has this index.
-                let index = if contact == 0 { count - 2 } else { before };
+            Exit::Touch { .. } => moved_impact(exit).map_or(f64::NAN, |impact| cycle.approach(&machine, impact)),
+            Exit::Tangent { impact } => {
+                let count = from.impacts.len();
+                let before = (impact + count - 1) % count;
+                // In the cycle without the impact the one before it has this index.
+                let index = if impact == 0 { count - 2 } else { before };
                 gap::least(&cycle, &machine, index, from.turn(before)).map_or(f64::NAN, |(gap, _)| gap)
             }
         })
