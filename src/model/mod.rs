@@ -13,14 +13,13 @@ mod table;
 use std::path::Path;
 
 pub use complaint::ModelError;
-pub(crate) use complaint::Pointer;
 use fields::{Allowed, Fields};
 pub use nearest::nearest;
 pub(crate) use profile::{
     ArcsProfile, MOST_COEFFICIENTS, MotionSegment, PolynomialSegment, ProgramProfile, RectifiedSineProfile,
 };
 pub use profile::{CamProfile, HarmonicProfile, Motion};
-pub(crate) use table::{Row, Spline, TableProfile};
+pub(crate) use table::{Spline, TableProfile};
 
 /// The model whose numbers the paper prints, built in so that the binary needs no other file.
 pub const OSORIO_2008: &str = include_str!("../../models/osorio-2008.toml");

@@ -15,7 +15,6 @@ pub enum Parameter {
 
 /// Why there is no machine with these numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[expect(missing_docs, reason = "the message says what each number is")]
 pub enum FamilyError {
     /// The model does not allow them.
     #[error("{0}")]
@@ -85,10 +84,6 @@ impl Family {
     pub fn new(model: &Model, rpm: f64, free: Vec<Parameter>) -> Result<Self, FamilyError> {
         let machine = Machine::new(Cam::new(model)?, &model.follower, speed(rpm)?);
         Ok(Self { model: model.clone(), machine, rpm, free })
-    }
-
-    pub fn free(&self) -> &[Parameter] {
-        &self.free
     }
 
     /// The machine with these values of the free numbers, and its speed, rpm.

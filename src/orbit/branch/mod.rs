@@ -28,8 +28,8 @@ use nalgebra::Matrix2;
 
 use super::{Family, OrbitError, Parameter, PeriodicOrbit};
 use crate::model::Model;
-pub(crate) use find::{FoundBranches, corner_impacts, find_branches};
-pub(crate) use problem::{Pinned, Problem, Units};
+pub(crate) use find::{corner_impacts, find_branches};
+pub(crate) use problem::Pinned;
 pub use special::Kind;
 pub(crate) use special::Special;
 
