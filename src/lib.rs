@@ -23,13 +23,13 @@
 //!    ▼
 //!  published             the digits that the paper prints, each right or wrong as it was found to be
 //!    ▼
-//!  study                 one module per question that a user can ask, named as its command: verify, locate, speeds, ...
+//!  study                 one module per question that a user can ask: verify, locate, speeds, ...; its result is the document
 //!    ▼
-//!  paper                 the paper's statements, one by one: holds, misprint, refuted, open
+//!  paper                 the paper's statements, one by one: holds, misprint, refuted, open; and how that is known
 //!    ▼
-//!  show                  how findings are shown: text for a terminal, JSON, CSV
+//!  show                  blocks on a terminal, in a browser and as Markdown; JSON, CSV; words and digits, each written once
 //!    ▼
-//!  figures               what each figure shows, as numbers and as a plot
+//!  figures               one file per figure: its numbers, plot, title and caption
 //!    ▼
 //!  pages                 the page of each command; the report
 //!    ▼
@@ -42,7 +42,7 @@
 //! plot into SVG or PNG and knows no mechanics.
 //!
 //! ```
-//! use corner_impact::{model::{Model, OSORIO_2008}, verify::{External, verify}};
+//! use corner_impact::{model::{Model, OSORIO_2008}, study::verify::{External, verify}};
 //!
 //! let model = Model::parse("osorio-2008.toml", OSORIO_2008)?;
 //! let findings = verify(&model, External::LeftOut)?;

@@ -16,15 +16,13 @@ const EQUATIONS: &str = include_str!("../../golden/derived/printed_equations.jso
 
 /// What checks may look at.
 pub struct Context<'a> {
-    /// The model.
-    pub model: &'a Model,
-    /// Its cam.
-    pub cam: &'a Cam,
-    /// What `verify` found for it, without programs outside.
-    pub findings: &'a Verification,
+    pub(super) model: &'a Model,
+    pub(super) cam: &'a Cam,
+    /// Without programs outside.
+    pub(super) findings: &'a Verification,
     /// Whether follower and cam are the paper's.
-    pub is_paper: bool,
-    /// What computer algebra found about each printed equation, by label.
+    pub(super) is_paper: bool,
+    /// By label.
     pub(super) equations: BTreeMap<String, Equation>,
 }
 

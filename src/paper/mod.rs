@@ -5,11 +5,11 @@
 //! misprint until somebody looks.
 
 pub mod checks;
-pub mod context;
+mod context;
 mod dynamics;
 pub mod jump_order;
 pub mod ledger;
-pub mod statements;
+mod statements;
 
 pub use context::{Context, Found, LedgerError};
 pub use ledger::{Claim, Claims, Held};

@@ -1,7 +1,6 @@
 //! The statements in words and the figures: each decided by a computation of its own.
 
 use std::fmt;
-use std::ops::ControlFlow;
 
 use nalgebra::Vector2;
 
@@ -10,11 +9,12 @@ use crate::agreement::{Quantity, worse};
 use crate::border_collision::Classification;
 use crate::border_collision::feigin::{Scenario, Speeds};
 use crate::cam::Side;
-use crate::corner;
 use crate::corner::map::RouteName;
+use crate::corner::{self, CornerImpact, LocateError};
 use crate::flight::{Flight, State};
+use crate::model::Model;
 use crate::published::Verdict;
-use crate::simulate::{Event, EventKind, Machine};
+use crate::simulate::{EventKind, Machine};
 use crate::tolerance;
 
 /// A number with ten significant digits, zero where rounding made it.
@@ -44,16 +44,9 @@ pub(super) fn equation_of_motion(context: &Context<'_>) -> Decision {
     let spring = follower.stiffness * (now.position - follower.rest_position);
     let law = -(follower.damping * now.velocity + spring) / follower.mass - follower.gravity;
     let size = follower.gravity.abs() + (spring.abs() + follower.damping * now.velocity.abs()) / follower.mass;
-    let evidence = format!(
-        "after 0.01 s, q'' by differences and by the equation: {} and {} m/s^2",
-        round(acceleration),
-        round(law)
-    );
+    let evidence =
+        format!("after 0.01 s, q'' by differences and by the equation: {acceleration:.3} and {law:.3} m/s^2");
     decide((acceleration - law).abs() <= tolerance::DIFFERENCED.value * size.max(1.0), Verdict::Refuted, evidence)
-}
-
-fn round(value: f64) -> String {
-    format!("{value:.3}")
 }
 
 /// eq:i1 at every impact of a run, with the cam's velocity from its law: the simulator's impacts are held against the print.
@@ -62,15 +55,14 @@ pub(super) fn restitution_law(context: &Context<'_>) -> Decision {
     let omega = context.findings.at.angular_velocity();
     let machine = Machine::new(context.cam.clone(), &context.model.follower, omega);
     let mut motion = machine.start_on_cam(0.0, 0.0)?;
-    let (r, goal, mut furthest) = (machine.restitution(), motion.after(REVOLUTIONS), None);
-    let _ = machine.advance(&mut motion, goal, &mut |event: &Event| {
+    let (r, mut furthest) = (machine.restitution(), None);
+    machine.watch(&mut motion, REVOLUTIONS, |event| {
         if event.kind == EventKind::Impact {
             let (cam, incoming) = (omega * context.cam.lift(event.cam_angle).slope, event.velocity_before);
             let printed = (1.0 + r) * cam - r * incoming;
             let off = (event.velocity_after - printed).abs() / (cam.abs() + incoming.abs());
             furthest = Some(furthest.map_or(off, |furthest| worse(furthest, off)));
         }
-        ControlFlow::Continue(())
     })?;
     let furthest = furthest.ok_or("the follower that starts on the cam meets no impact")?;
     let evidence = format!(
@@ -99,13 +91,19 @@ pub(super) fn profile_is_continuous(context: &Context<'_>) -> Decision {
     decide(!continuous, Verdict::Misprint, evidence)
 }
 
+/// What `of` says of the corner impact of the same machine with zeta = 1/s.
+fn damped<T>(context: &Context<'_>, of: impl Fn(&Model, &CornerImpact) -> T) -> Result<T, LocateError> {
+    let mut model = context.model.clone();
+    model.follower.damping = 2.0 * model.follower.mass;
+    let (at, _) = corner::locate(&model, context.cam)?;
+    Ok(of(&model, &at))
+}
+
 /// By symmetry in time of the undamped flight only: with a little damping it is not so.
 pub(super) fn at_rest(context: &Context<'_>) -> Decision {
     let velocity = context.findings.at.x_star()[1];
-    let mut damped = context.model.clone();
-    damped.follower.damping = 2.0 * damped.follower.mass;
-    let elsewhere = corner::locate(&damped, context.cam).map(|(at, _)| at.x_star()[1]);
-    let beside = elsewhere.map_or_else(|error| error.to_string(), |velocity| format!("{velocity:.4} m/s"));
+    let beside = damped(context, |_, at| at.x_star()[1])
+        .map_or_else(|error| error.to_string(), |velocity| format!("{velocity:.4} m/s"));
     let evidence = format!("{} m/s, because the follower is undamped; with zeta = 1/s it is {beside}", Shown(velocity));
     decide(velocity.abs() <= tolerance::DISPLAYED_ZERO.value, Verdict::Refuted, evidence)
 }
@@ -136,10 +134,7 @@ pub(super) fn positive_constants(context: &Context<'_>) -> Decision {
         let entry = |index: usize| number.printed.get(index)?.parse::<f64>().ok();
         Some(entry(0)? - entry(3)?)
     };
-    let mut damped = context.model.clone();
-    damped.follower.damping = 2.0 * damped.follower.mass;
-    let with_damping = corner::locate(&damped, context.cam)
-        .map(|(at, _)| corner::closed_form::route(&damped, &at).map.plus.a)
+    let with_damping = damped(context, |model, at| corner::closed_form::route(model, at).map.plus.a)
         .map_or_else(|error| error.to_string(), |a| format!("{:.4}", a[(0, 0)] - a[(1, 1)]));
     let differences = difference(Quantity::A(Side::Minus)).zip(difference(Quantity::A(Side::Plus)));
     let (minus, plus) = differences.ok_or("the printed matrices were not compared")?;

@@ -9,6 +9,7 @@ use crate::flight::Flight;
 use crate::paper::context::{Context, Decision, decide};
 use crate::published::Verdict;
 use crate::simulate::{Event, Machine, SimulateError, angular_velocity};
+use crate::study::speeds;
 use crate::tolerance;
 
 /// Halves `[low, high]`, rpm, to the rounding of its ends, around the one speed from which on `is` is true.
@@ -35,7 +36,8 @@ pub(in crate::paper) fn detachment(context: &Context<'_>) -> Decision {
     for rpm in 1..=114 {
         silent += usize::from(first_event(f64::from(rpm))?.is_none());
     }
-    let speed = first_speed(114.0, 116.0, |rpm| Ok(first_event(rpm)?.is_some()))?;
+    let found = speeds::detachment(context.model, [114.0, 116.0])?;
+    let speed = found.ok_or("the follower does not leave the cam first between 114 and 116 rpm")?;
     let at = first_event(speed)?.unwrap_or(f64::NAN);
     let corners = context.cam.corners();
     let nose = corners.get(1).map_or(f64::NAN, |corner| {
@@ -54,7 +56,7 @@ pub(in crate::paper) fn detachment(context: &Context<'_>) -> Decision {
 }
 
 /// Release at P, impacts that accumulate, sticking up to P again, and no memory of what was before.
-fn chattering(context: &Context<'_>, rpm: f64) -> Decision {
+pub(in crate::paper) fn chattering(context: &Context<'_>, rpm: f64) -> Decision {
     let [_, p, ..] = corners(context);
     let machine = machine(context, rpm);
     let round = Round::new(&machine, p)?;
@@ -76,14 +78,6 @@ fn chattering(context: &Context<'_>, rpm: f64) -> Decision {
     );
     let geometric = (ratio - machine.restitution()).abs() <= tolerance::GEOMETRIC.value;
     decide(geometric && round.period == 1 && round.releases == 0 && forgets, Verdict::Refuted, evidence)
-}
-
-pub(in crate::paper) fn chattering_at_183(context: &Context<'_>) -> Decision {
-    chattering(context, 183.0)
-}
-
-pub(in crate::paper) fn chattering_at_175(context: &Context<'_>) -> Decision {
-    chattering(context, 175.0)
 }
 
 /// Several impacts and an accumulation at every speed of the figure, up to where the accumulation reaches P.
@@ -131,23 +125,20 @@ pub(in crate::paper) fn resonant_peaks(context: &Context<'_>) -> Decision {
         let (left, right) = (at - below, at - above);
         Ok::<_, SimulateError>(if left * right > 0.0 { left.signum() } else { 0.0 })
     };
-    let (mut lowest, mut highest, mut cusps) = (Vec::new(), Vec::new(), true);
-    for index in 0..6 {
-        let rpm = crossing(index, q, [115.5, 130.0])?;
-        cusps &= peak(rpm)? < 0.0;
-        lowest.push(rpm);
-    }
-    for index in 1..6 {
-        let rpm = crossing(index, q_mirrored, [137.0, 198.0])?;
-        cusps &= peak(rpm)? > 0.0;
-        highest.push(rpm);
-    }
+    let mut cusps = true;
+    let mut crossed = |from: usize, corner: f64, between: [f64; 2], sign: f64| -> Result<String, SimulateError> {
+        let crossings = (from..6).map(|index| crossing(index, corner, between)).collect::<Result<Vec<_>, _>>()?;
+        for rpm in &crossings {
+            cusps &= peak(*rpm)? == sign;
+        }
+        Ok(listed(crossings.iter().map(|rpm| format!("{rpm:.3}"))))
+    };
+    let lowest = crossed(0, q, [115.5, 130.0], -1.0)?;
+    let highest = crossed(1, q_mirrored, [137.0, 198.0], 1.0)?;
     let evidence = format!(
-        "impacts 2 to 6 after the release cross Q' (200 deg) at {} rpm: at each the angle where impacts accumulate has a cusp \
-         upwards; impacts 1 to 6 cross Q (160 deg) at {} rpm: at each a cusp downwards: {cusps}. The crossing impact's own \
-         line is smooth, those after it have the cusp",
-        listed(highest.iter().map(|rpm| format!("{rpm:.3}"))),
-        listed(lowest.iter().map(|rpm| format!("{rpm:.3}")))
+        "impacts 2 to 6 after the release cross Q' (200 deg) at {highest} rpm: at each the angle where impacts accumulate has a cusp \
+         upwards; impacts 1 to 6 cross Q (160 deg) at {lowest} rpm: at each a cusp downwards: {cusps}. The crossing impact's own \
+         line is smooth, those after it have the cusp"
     );
     decide(cusps, Verdict::Refuted, evidence)
 }

@@ -4,6 +4,7 @@
 use super::transition::{from_x_star, is_period_one, map};
 use super::{listed, machine, settles};
 use crate::border_collision::{LocalMap, passage};
+use crate::bracket::secants;
 use crate::diagram::growth;
 use crate::flight::State;
 use crate::orbit::{Course, Search, search};
@@ -139,14 +140,6 @@ fn lost(context: &Context<'_>) -> Result<f64, SimulateError> {
         let sign = -saddle.unstable.1[0].signum();
         Ok(approach(&map, &saddle, sign, &curve, AWAY, SAMPLES)?.distance)
     };
-    let (mut one, mut two) = (681.0, 682.0);
-    let (mut at_one, mut at_two) = (distance(one)?, distance(two)?);
-    for secant in 0..SECANTS {
-        let next = two - at_two * (two - one) / (at_two - at_one);
-        (one, at_one, two) = (two, at_two, next);
-        if secant + 1 < SECANTS {
-            at_two = distance(two)?;
-        }
-    }
-    Ok(two)
+    let guesses = [(681.0, distance(681.0)?), (682.0, distance(682.0)?)];
+    Ok(secants(guesses, SECANTS, 0.0, distance)?.0[1].0)
 }

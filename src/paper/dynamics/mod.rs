@@ -14,13 +14,7 @@ use super::context::Context;
 use crate::orbit::settle::settled;
 use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError, angular_velocity};
 use crate::tolerance;
-pub(super) use chattering::{
-    chattering_at_175, chattering_at_183, detachment, impact_diagram_of_slow_cams, period_adding, resonant_peaks,
-};
-pub(super) use global::{coexisting, transition};
-pub(super) use transition::{
-    chaos_below, chaos_for_good, impact_diagram, orbit_at_700, period_one_above, transitions_at_corners,
-};
+pub(super) use {chattering::*, global::*, transition::*};
 
 fn listed(numbers: impl IntoIterator<Item = impl ToString>) -> String {
     numbers.into_iter().map(|number| number.to_string()).collect::<Vec<_>>().join(", ")
