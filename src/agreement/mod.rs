@@ -220,6 +220,14 @@ pub struct Pairs<'a> {
     pub closest: &'a Agreement,
 }
 
+document!(Pairs<'_> as pairs {
+    quantity: pairs.quantity,
+    pairs: pairs.all.len(),
+    agreeing: pairs.all.iter().filter(|pair| pair.agrees).count(),
+    closest: pairs.closest,
+    shared_decimals: shared_decimals(pairs.closest.max_abs_diff),
+});
+
 /// Comparisons by quantity, in the order in which quantities come first.
 pub fn by_quantity(comparisons: &[Agreement]) -> Vec<Pairs<'_>> {
     let used = |entry: &Agreement| {

@@ -4,13 +4,16 @@ use crate::border_collision::LocalOutcome;
 use crate::border_collision::feigin::{Speeds, speeds_at};
 use crate::border_collision::local_map::PeriodicOrbit;
 use crate::border_collision::validity::{Compared, Range};
-use crate::show::block::{Block, Words, words};
+use crate::show::block::{Block, Column, Span, Table, Words, words};
 use crate::show::digits::Digits;
 use crate::show::words;
 use crate::study::verify::Verification;
 
 /// Where the second column begins.
 const COLUMN: usize = 20;
+
+/// Orbits of a kind that a line has room for.
+const SHOWN: usize = 6;
 
 /// The condition nearest to failing, and those that fail.
 pub(crate) fn conditions(found: &Verification) -> Vec<(Words, Words)> {
@@ -27,6 +30,23 @@ pub(crate) fn conditions(found: &Verification) -> Vec<(Words, Words)> {
     nearest.into_iter().chain(failing).collect()
 }
 
+/// All conditions.
+pub(crate) fn every_condition(found: &Verification) -> Table {
+    let (left, numeric) = (|head| Column::left(head, 2, 0), |head| Column::right(head, 0));
+    let mut columns = vec![left("looked at"), numeric("value"), numeric("distance from failing")];
+    columns.extend(["holds", "decides", "or else"].map(left));
+    let mut table = Table::new("Conditions of the classification", columns);
+    for condition in &found.conditions {
+        let [value, distance] = [(condition.value, Digits::Significant(6)), (condition.distance, Digits::Size)];
+        let words =
+            [if condition.holds() { "yes" } else { "no" }, words::decides(condition.decides), condition.meaning];
+        let mut cells = vec![condition.name.into(), words![value], words![distance]];
+        cells.extend(words.map(Words::from));
+        table.row_bad_where(!condition.holds(), cells);
+    }
+    table
+}
+
 /// The local map's own motions and how far it holds.
 pub(crate) fn blocks(found: &Verification) -> Vec<Block> {
     if found.outcomes.is_empty() {
@@ -36,6 +56,14 @@ pub(crate) fn blocks(found: &Verification) -> Vec<Block> {
         Block::Heading("What the local map does by itself, next to the corner impact".into()),
         Block::Entries(COLUMN, found.outcomes.iter().flat_map(motions).collect()),
     ];
+    for outcome in found.outcomes.iter().filter(|outcome| outcome.mu != 0.0 && outcome.orbits.len() > SHOWN) {
+        let orbits = outcome
+            .orbits
+            .iter()
+            .map(|orbit| words![Span::Code(orbit.word.to_string()), " ", words::stability(orbit.stable())]);
+        let title = format!("Every periodic orbit {}", words::speeds(Speeds::of(outcome.mu)));
+        blocks.push(Block::Details(title.into(), vec![Block::paragraph(Words::joined(orbits, ", "))]));
+    }
     if !found.ranges.is_empty() {
         let of = |compared| {
             let ranges = found.ranges.iter().filter(move |range| range.compared == compared);
@@ -65,7 +93,6 @@ fn motions(outcome: &LocalOutcome) -> Vec<(Words, Words)> {
 
 /// The words of some orbits.
 fn listed(orbits: &[&PeriodicOrbit]) -> String {
-    const SHOWN: usize = 6;
     let some = orbits.iter().take(SHOWN).map(|orbit| orbit.word.to_string()).collect::<Vec<_>>().join(", ");
     match orbits.len() {
         0 => "none".into(),

@@ -1,6 +1,6 @@
 //! The page of `verify`, section by section: where the corner impact is, its map by every route, what happens there.
 
-use crate::agreement::{Agreement, by_quantity, fewest_shared_decimals, shared_decimals, worse};
+use crate::agreement::{Agreement, by_quantity, shared_decimals, worse};
 use crate::border_collision::feigin::{Scenario, SideCounts};
 use crate::border_collision::{Classification, NormalForm, Refusal};
 use crate::cam::Side;
@@ -10,7 +10,7 @@ use crate::show::Paged;
 use crate::show::block::{Block, Column, Mark, Span, Table, Words, words};
 use crate::show::digits::Digits;
 use crate::show::words;
-use crate::study::verify::Verification;
+use crate::study::verify::{Tally, Verification};
 
 impl Paged for Verification {
     fn blocks(&self) -> Vec<Block> {
@@ -30,47 +30,40 @@ impl Paged for Verification {
 pub(crate) fn orbit(found: &Verification) -> Vec<Block> {
     let at = &found.at;
     let (state, [before, after]) = (at.x_star(), at.cam_acceleration());
-    let significant = |value, digits| (value, Digits::Significant(digits));
-    let fixed = |value, places| (value, Digits::Fixed(places));
+    let significant = |value, digits| words![(value, Digits::Significant(digits))];
+    let fixed = |value, places| words![(value, Digits::Fixed(places))];
     let degrees = |angle: f64| fixed(angle.to_degrees(), 6);
-    let period = words!["T* = ", significant(at.period, 14), " s   (", fixed(at.speed_rpm(), 9), " rpm)"];
-    let x_star = words![
-        "x* = (",
-        significant(state[0], 13),
-        ", ",
-        significant(state[1], 13),
-        ")",
-        Span::Break,
-        "half a revolution from the impact; position is measured from q = ",
-        significant(at.origin, 9),
-        " m",
-    ];
-    let impact = words![
-        "at cam angle ",
-        degrees(at.corner.angle),
-        " deg, where c'' jumps from ",
-        fixed(before, 4),
-        " to ",
-        fixed(after, 4),
-        " m/s^2",
-        Span::Break,
-        "q = ",
-        fixed(at.corner.plus.value, 9),
-        " m, v = ",
-        fixed(at.velocity_before, 6),
-        " before and ",
-        fixed(at.velocity_after, 6),
-        " after, c' = ",
-        fixed(at.cam_velocity, 6),
-        " m/s",
-    ];
+    let period = Words::prose("_T^*_ = {} s   ({} rpm)", [significant(at.period, 14), fixed(at.speed_rpm(), 9)]);
+    let x_star = Words::prose(
+        "_x^*_ = ({}, {}){}half a revolution from the impact; position is measured from _q_ = {} m",
+        [significant(state[0], 13), significant(state[1], 13), Span::Break.into(), significant(at.origin, 9)],
+    );
+    let impact = Words::prose(
+        "at cam angle {} deg, where c'' jumps from {} to {} m/s^2{}_q_ = {} m, _v_ = {} before and {} after, c' = {} m/s",
+        [
+            degrees(at.corner.angle),
+            fixed(before, 4),
+            fixed(after, 4),
+            Span::Break.into(),
+            fixed(at.corner.plus.value, 9),
+            fixed(at.velocity_before, 6),
+            fixed(at.velocity_after, 6),
+            fixed(at.cam_velocity, 6),
+        ],
+    );
     let mut entries: Vec<(Words, Words)> =
         vec![("period".into(), period), ("state".into(), x_star), ("impact".into(), impact)];
     entries.extend(found.others.iter().map(|other| {
         let (speed, angle) = (fixed(other.speed_rpm(), 6), degrees(other.corner.angle));
         ("also".into(), words![speed, " rpm at ", angle, " deg: narrow [study] to verify that one"])
     }));
-    vec![Block::Heading("The orbit, solved for from the model".into()), Block::Entries(9, entries)]
+    let close = Words::prose(
+        "_T^∗_ lies between {} and {} s; one simulated revolution ends within {} of where it started, in parts of the orbit's \
+         size.",
+        [significant(at.bracket[0], 16), significant(at.bracket[1], 16), words![(at.closure, Digits::Size)]],
+    );
+    let title = Block::Heading("The orbit, solved for from the model".into());
+    vec![title, Block::Entries(9, entries), Block::Full(vec![Block::Note(close)])]
 }
 
 /// The map by every route, side by side, and how well estimates know it.
@@ -82,51 +75,57 @@ pub(crate) fn map(found: &Verification) -> Vec<Block> {
              the deviation one revolution later. minus holds where the impact comes before the corner, plus where it comes \
              after it. C = h (A+ - A-), D = h (B+ - B-), h = [1 0]: the sides meet where C dx + D dT = 0.",
         ),
+        Block::Full(vec![Block::paragraph(
+            "Each column is computed on its own: no two share a formula for A and B. Finite difference and least squares run \
+             the same simulator; symbolic and scipy run no code of this program. Digits in which a column leaves the closed \
+             form are underlined.",
+        )]),
         Block::Gap,
     ];
     for side in [Side::Minus, Side::Plus] {
-        blocks.push(Block::paragraph(format!("{side}: {}", words::side(side))));
-        blocks.extend([Block::Table(entries(found, side)), Block::Gap]);
+        blocks.push(Block::Brief(vec![Block::paragraph(format!("{side}: {}", words::side(side)))]));
+        let [brief, full] = [false, true].map(|has_room| vec![Block::Table(entries(found, side, has_room))]);
+        blocks.extend([Block::Brief(brief), Block::Full(full), Block::Gap]);
     }
     let (c, ten) = (found.map.c(), Digits::Significant(10));
     let border = words!["C = (", (c[0], ten), ", ", (c[1], ten), "),  D = ", (found.map.d(), ten)];
     blocks.extend([Block::Entries(0, vec![("".into(), border)]), Block::Gap]);
-    blocks.extend(found.routes_by_name().filter_map(known_to));
+    blocks.extend(found.routes_by_name().filter_map(known_to).flatten());
     blocks
 }
 
-/// A and B of one side by every route, and as the paper prints them.
-fn entries(found: &Verification, side: Side) -> Table {
-    const NAMES: [&str; 6] = ["A11", "A12", "A21", "A22", "B1", "B2"];
-    let routes: Vec<&Route> = found.routes_by_name().collect();
-    let printed: Vec<&str> = ["A", "B"]
-        .iter()
-        .filter_map(|letter| {
-            let is_it = |name: String| name == format!("{letter}_{side}");
-            found.published.iter().find(|number| is_it(number.agreement.quantity.to_string()))
-        })
-        .flat_map(|number| number.printed.iter().map(String::as_str))
-        .collect();
+/// A and B of one side by every route, how far these differ where there is room for it, and as the paper prints them.
+fn entries(found: &Verification, side: Side, has_room: bool) -> Table {
+    let rows = found.entries(side);
+    let printed = usize::from(rows.iter().any(|row| row.printed.is_some()));
+    let name = |route: &Route| match words::route(route.name) {
+        name if has_room => name,
+        // Two words, two lines.
+        name => name.replacen(' ', "\n", 1),
+    };
     let mut columns = vec![Column::left("", 4, 4)];
-    // Two words, two lines.
-    columns.extend(routes.iter().map(|route| Column::right(words::route(route.name).replacen(' ', "\n", 1), 14)));
-    columns.extend((!printed.is_empty()).then(|| Column::right("printed", 19)));
+    columns.extend(found.routes_by_name().map(|route| Column::right(name(route), 14)));
+    columns.extend(has_room.then(|| Column::right("differ by", 0)));
+    columns.extend((printed > 0).then(|| Column::right("printed", 19)));
     let mut table = Table::new(words::side(side), columns);
-    table.repeated = Some(usize::from(!printed.is_empty()));
-    for (index, name) in NAMES.into_iter().enumerate() {
-        let value = |route: &&Route| {
-            let all = route.map.of(side).entries();
-            Words::from((all[index], digits(if index < 4 { &all[..4] } else { &all[4..] })))
-        };
-        let cells = [name.into()].into_iter().chain(routes.iter().map(value));
-        table.row(cells.chain(printed.get(index).map(|digits| Words::from(*digits))).collect::<Vec<_>>());
+    table.repeated = Some(printed);
+    for (index, row) in rows.iter().enumerate() {
+        let like = if index < 4 { &rows[..4] } else { &rows[4..] };
+        let mut cells = vec![words::entry(row.entry, side).into()];
+        cells.extend(row.values.iter().enumerate().map(|(route, value)| {
+            let digits = digits(like.iter().map(|row| row.values[route]));
+            Words::from(Span::Against(*value, row.values[0], digits))
+        }));
+        cells.extend(has_room.then(|| words![(row.spread, Digits::Size)]));
+        cells.extend(row.printed.as_ref().map(Words::from));
+        table.row(cells);
     }
     table
 }
 
 /// Ten digits of the largest of some entries, which are read against one another, in a column of a terminal.
-fn digits(entries: &[f64]) -> Digits {
-    let largest = entries.iter().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
+fn digits(entries: impl Iterator<Item = f64>) -> Digits {
+    let largest = entries.fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
     match largest {
         0.0 => Digits::Fixed(9),
         _ if (1e-3..1e9).contains(&largest) => Digits::Fixed((9.0 - largest.log10().floor()) as usize),
@@ -135,35 +134,46 @@ fn digits(entries: &[f64]) -> Digits {
 }
 
 /// How well a route says that it knows the entries.
-fn known_to(route: &Route) -> Option<Block> {
-    let size = |value| (value, Digits::Size);
-    let (name, words) = (
-        words::route(route.name),
-        match route.uncertainty? {
-            Uncertainty::Fit { standard, systematic, condition_number } => {
-                let ((a, b), (bias_a, bias_b)) = (largest(&standard), largest(&systematic?));
-                words![
-                    "standard error up to ",
+fn known_to(route: &Route) -> Option<[Block; 2]> {
+    let size = |value| words![(value, Digits::Size)];
+    let name = words::route(route.name);
+    let (words, table) = match route.uncertainty? {
+        Uncertainty::Fit { standard, systematic, condition_number } => {
+            let ((a, b), (bias_a, bias_b)) = (largest(&standard), largest(&systematic?));
+            let told = Words::prose(
+                "standard error up to {} in A, {} in B; bias up to {}, {};{}condition number {}",
+                [
                     size(a),
-                    " in A, ",
                     size(b),
-                    " in B; bias up to ",
                     size(bias_a),
-                    ", ",
                     size(bias_b),
-                    ";",
-                    Span::Break,
-                    "condition number ",
-                    (condition_number, Digits::Fixed(1)),
-                ]
-            }
-            Uncertainty::Extrapolation(error) => {
-                let (a, b) = largest(&error);
-                words!["error estimate up to ", size(a), " in A, ", size(b), " in B"]
-            }
-        },
-    );
-    Some(Block::Entries(name.len() + 2, vec![(format!("{name}:").into(), words)]))
+                    Span::Break.into(),
+                    words![(condition_number, Digits::Fixed(1))],
+                ],
+            );
+            (told, errors(&standard))
+        }
+        Uncertainty::Extrapolation(error) => {
+            let (a, b) = largest(&error);
+            (Words::prose("error estimate up to {} in A, {} in B", [size(a), size(b)]), errors(&error))
+        }
+    };
+    let title = format!("How well {name} knows its entries");
+    let entries = Block::Entries(name.len() + 2, vec![(format!("{name}:").into(), words)]);
+    Some([entries, Block::Details(title.into(), vec![Block::Table(table)])])
+}
+
+/// The error of each entry.
+fn errors(error: &CornerMap) -> Table {
+    const NAMES: [&str; 6] = ["A11", "A12", "A21", "A22", "B1", "B2"];
+    let mut columns = vec![Column::left("side", 2, 0)];
+    columns.extend(NAMES.map(|name| Column::right(name, 0)));
+    let mut table = Table::new("Errors of the entries", columns);
+    for side in [Side::Minus, Side::Plus] {
+        let sizes = error.of(side).entries().map(|value| words![(value, Digits::Size)]);
+        table.row([vec![words::side(side).into()], sizes.to_vec()].concat());
+    }
+    table
 }
 
 /// The largest entries of A and of B.
@@ -201,7 +211,32 @@ pub(crate) fn agreement(found: &Verification) -> Vec<Block> {
         }
     }
     let title = "Do the routes agree? Every pair, in every quantity; shown is the pair closest to its bound";
-    vec![Block::Heading(title.into()), Block::Table(table)]
+    let all = format!("All {} comparisons, with the reason of each bound", found.comparisons.len());
+    let all = Block::Details(all.into(), vec![Block::Table(comparisons(found))]);
+    vec![Block::Heading(title.into()), Block::Table(table), all]
+}
+
+fn comparisons(found: &Verification) -> Table {
+    let left = |head| Column::left(head, 2, 0);
+    let numeric = |head| Column::right(head, 0);
+    let columns = [
+        left("quantity"),
+        left("between"),
+        numeric("differ by"),
+        numeric("in parts"),
+        numeric("allowed"),
+        left("verdict"),
+        left("why so much is allowed"),
+    ];
+    let mut table = Table::new("All comparisons", columns);
+    for pair in &found.comparisons {
+        let [differ, parts, allowed] =
+            [pair.max_abs_diff, pair.max_rel_diff, pair.bound.value].map(|value| words![(value, Digits::Size)]);
+        let verdict = Words::from(if pair.agrees { "agrees" } else { "disagrees" });
+        let (name, between) = (words::quantity(pair.quantity), pair.routes.map(words::route).join(" - ").into());
+        table.row_bad_where(!pair.agrees, [name, between, differ, parts, allowed, verdict, pair.bound.reason.into()]);
+    }
+    table
 }
 
 /// Eigenvalues, normal form and verdict, and what that rests on.
@@ -212,8 +247,8 @@ pub(crate) fn bifurcation(found: &Verification) -> Vec<Block> {
         words![one, ",  ", two]
     };
     let mut entries: Vec<(Words, Words)> = vec![
-        ("eigenvalues of A-".into(), eigenvalues(Side::Minus)),
-        ("eigenvalues of A+".into(), eigenvalues(Side::Plus)),
+        (Words::prose("eigenvalues of _A^-_", []), eigenvalues(Side::Minus)),
+        (Words::prose("eigenvalues of _A^+_", []), eigenvalues(Side::Plus)),
     ];
     entries.extend(found.normal_form.as_ref().ok().map(|form| ("normal form".into(), normal_form(form))));
     match &found.classification {
@@ -221,27 +256,35 @@ pub(crate) fn bifurcation(found: &Verification) -> Vec<Block> {
         Err(refusal) => entries.push(("verdict".into(), none(refusal))),
     }
     entries.extend(local_map::conditions(found));
-    vec![Block::Heading("What happens there".into()), Block::Entries(20, entries)]
+    let mut full: Vec<Block> = found.classification.iter().flat_map(fixed_points).collect();
+    full.extend((!found.conditions.is_empty()).then(|| Block::Table(local_map::every_condition(found))));
+    full.extend(found.normal_form.iter().map(|form| {
+        let column = |at: nalgebra::Vector2<f64>| Span::Matrix(vec![vec![at[0]], vec![at[1]]], Digits::UpTo(9)).into();
+        let shift = (Words::prose("_B\u{303}_", []), column(form.b_tilde));
+        Block::Entries(20, vec![(Words::prose("_W_", []), rows(&form.w).into()), shift])
+    }));
+    vec![Block::Heading("What happens there".into()), Block::Entries(20, entries), Block::Full(full)]
 }
 
 fn normal_form(form: &NormalForm) -> Words {
-    let nine = Digits::UpTo(9);
-    let rows = |m: &nalgebra::Matrix2<f64>| {
-        Span::Matrix(m.row_iter().map(|row| row.iter().copied().collect()).collect(), nine)
-    };
-    let pair = |one, two| words!["(", (one, nine), ", ", (two, nine), ")"];
-    words![
-        "A-bar ",
-        rows(&form.a_bar_minus),
-        Span::Break,
-        "A+bar ",
-        rows(&form.a_bar_plus),
-        Span::Break,
-        "B bar ",
-        pair(form.b_bar[0], form.b_bar[1]),
-        ",  C bar ",
-        pair(form.c_bar[0], form.c_bar[1]),
-    ]
+    let entry = |value| words![(value, Digits::UpTo(9))];
+    Words::prose(
+        "A-bar {}{}A+bar {}{}B bar ({}, {}),  C bar ({}, {})",
+        [
+            rows(&form.a_bar_minus).into(),
+            Span::Break.into(),
+            rows(&form.a_bar_plus).into(),
+            Span::Break.into(),
+            entry(form.b_bar[0]),
+            entry(form.b_bar[1]),
+            entry(form.c_bar[0]),
+            entry(form.c_bar[1]),
+        ],
+    )
+}
+
+fn rows(matrix: &nalgebra::Matrix2<f64>) -> Span {
+    Span::Matrix(matrix.row_iter().map(|row| row.iter().copied().collect()).collect(), Digits::UpTo(9))
 }
 
 fn classification(kind: &Classification) -> Vec<(Words, Words)> {
@@ -263,41 +306,71 @@ fn classification(kind: &Classification) -> Vec<(Words, Words)> {
         .into()
 }
 
+/// The fixed point of each side, and the rule that counts them.
+fn fixed_points(kind: &Classification) -> [Block; 2] {
+    let columns = ["", "det(I - A)", "fixed point for dT = 1 s, in m and m/s"].map(|head| Column::left(head, 2, 0));
+    let mut table = Table::new("The fixed point of each side", columns);
+    for (side, SideCounts { determinant, fixed_point, .. }) in [(Side::Minus, &kind.minus), (Side::Plus, &kind.plus)] {
+        let [determinant, position, velocity] =
+            [*determinant, fixed_point[0], fixed_point[1]].map(|value| words![(value, Digits::Significant(8))]);
+        table.row([words::side(side).into(), determinant, Words::prose("({}, {})", [position, velocity])]);
+    }
+    let odd =
+        "An odd number of eigenvalues above 1 on both sides together is a fold; an odd number below -1 is a flip.";
+    [Block::Table(table), Block::Note(odd.into())]
+}
+
 fn none(refusal: &Refusal) -> Words {
     words!["none", Span::Break, refusal.to_string()]
 }
 
-/// The paper's printed numbers, each in a line, and what is wrong with those that do not hold.
-fn published(found: &Verification) -> Vec<Block> {
+/// The paper's printed numbers, each in a line, or digit by digit where there is room, and what is wrong with those that do
+/// not hold.
+pub(crate) fn published(found: &Verification) -> Vec<Block> {
     if found.published.is_empty() {
         return Vec::new();
     }
+    let label = "The paper's printed numbers";
     let widths = [(2, 20), (0, 20), (0, 18), (0, 22), (0, 0)];
-    let mut table = Table::new("The paper's printed numbers", widths.map(|(gap, least)| Column::left("", gap, least)));
+    let mut brief = Table::new(label, widths.map(|(gap, least)| Column::left("", gap, least)));
+    let (left, numeric) = (|head| Column::left(head, 2, 0), |head| Column::right(head, 0));
+    let mut columns = ["quantity", "where"].map(left).to_vec();
+    columns.extend(["printed", "computed", "differ by", "allowed"].map(numeric));
+    columns.push(left("verdict"));
+    let mut full = Table::new(label, columns);
     let mut notes = Vec::new();
     for number in &found.published {
-        let Agreement { quantity, max_abs_diff, .. } = number.agreement;
+        let Agreement { quantity, max_abs_diff, bound, .. } = &number.agreement;
+        let (name, place) = (words::quantity(*quantity), Words::from(number.place.as_str()));
         let mut verdict = words::verdict(number.verdict);
         if !number.as_found {
             verdict.push(words!["   ", (Mark::Bad, "UNEXPECTED")]);
         }
-        table.row([
-            words::quantity(quantity),
-            number.place.as_str().into(),
-            format!("differs by {:>7}", Digits::Size.text(max_abs_diff)).into(),
-            format!(", shares {}", words::shared(shared_decimals(max_abs_diff))).into(),
-            verdict,
+        brief.row([
+            name.clone(),
+            place.clone(),
+            format!("differs by {:>7}", Digits::Size.text(*max_abs_diff)).into(),
+            format!(", shares {}", words::shared(shared_decimals(*max_abs_diff))).into(),
+            verdict.clone(),
         ]);
+        for (index, digits) in number.printed.iter().enumerate() {
+            let computed = number.computed.get(index).map(|value| words![(*value, Digits::Significant(15))]);
+            let mut cells = vec![Words::default(), Words::default(), digits.into(), computed.unwrap_or_default()];
+            if index == 0 {
+                cells[..2].clone_from_slice(&[name.clone(), place.clone()]);
+                cells.extend([*max_abs_diff, bound.value].map(|value| words![(value, Digits::Size)]));
+                cells.push(verdict.clone());
+            }
+            full.row_bad_where(!number.as_found, cells);
+        }
         if !number.note.is_empty() {
-            let computed: Vec<_> =
-                number.computed.iter().map(|value| Words::from((*value, Digits::Significant(10)))).collect();
-            let printed = format!(", printed ({}), computed (", number.printed.join(", "));
-            let note = words![words::quantity(quantity), printed, Words::joined(computed, ", "), "): ", number.note];
-            notes.extend([Block::Gap, Block::paragraph(note)]);
+            let computed = number.computed.iter().map(|value| words![(*value, Digits::Significant(10))]);
+            let parts = [name, number.printed.join(", ").into(), Words::joined(computed, ", "), number.note.into()];
+            notes.extend([Block::Gap, Block::paragraph(Words::prose("{}, printed ({}), computed ({}): {}", parts))]);
         }
     }
-    let heading = Block::Heading("The paper's printed numbers".into());
-    [heading, Block::Table(table)].into_iter().chain(notes).collect()
+    let tables = [Block::Brief(vec![Block::Table(brief)]), Block::Full(vec![Block::Table(full)])];
+    [Block::Heading(label.into())].into_iter().chain(tables).chain(notes).collect()
 }
 
 /// What did not run, and whether everything agrees.
@@ -308,27 +381,11 @@ pub(crate) fn verdict(found: &Verification) -> Vec<Block> {
         blocks.extend([Block::Heading("NOT RUN".into()), Block::List(found.skipped.iter().map(line).collect())]);
     }
     blocks.push(Block::Heading("Verdict".into()));
-    let (pairs, numbers) = (&found.comparisons, &found.published);
-    let agreeing = pairs.iter().filter(|entry| entry.agrees).count();
-    let fewest = fewest_shared_decimals(pairs);
-    let more = if fewest.is_some() { " or more" } else { "" };
-    blocks.push(Block::paragraph(format!(
-        "{agreeing} of {} comparisons agree; every entry of A and B shares {}{more}.",
-        pairs.len(),
-        words::shared(fewest)
-    )));
-    if !numbers.is_empty() {
-        let unexpected = numbers.iter().filter(|number| !number.as_found).count();
-        let wrong = numbers.iter().filter(|number| number.as_found && !number.agreement.agrees).count();
-        blocks.push(Block::paragraph(format!(
-            "Of the paper's {} printed numbers {} hold, {wrong} are wrong as listed, {unexpected} came out otherwise than found.",
-            numbers.len(),
-            numbers.len() - wrong - unexpected
-        )));
-    }
+    blocks.extend(tally(found).into_iter().map(Block::paragraph));
     let missing: Vec<&str> =
         found.skipped.iter().filter(|skipped| skipped.failed).map(|skipped| skipped.route.as_str()).collect();
-    let all_agree = agreeing == pairs.len() && numbers.iter().all(|number| number.as_found);
+    let Tally { comparisons, agreeing, printed_otherwise, .. } = found.tally();
+    let all_agree = agreeing == comparisons && printed_otherwise == 0;
     let (mark, word, reason) = match missing.as_slice() {
         _ if found.agrees => (Mark::Good, "AGREES", String::new()),
         [] => (Mark::Bad, "DISAGREES", ": a comparison above".to_owned()),
@@ -341,4 +398,19 @@ pub(crate) fn verdict(found: &Verification) -> Vec<Block> {
     };
     blocks.push(Block::paragraph(words![(mark, word), reason]));
     blocks
+}
+
+/// How many comparisons agree and how many printed numbers hold.
+pub(crate) fn tally(found: &Verification) -> Vec<Words> {
+    let Tally { comparisons, agreeing, shared_decimals, printed, printed_right, printed_wrong, printed_otherwise } =
+        found.tally();
+    let more = if shared_decimals.is_some() { " or more" } else { "" };
+    let shares = words::shared(shared_decimals);
+    let compared =
+        format!("{agreeing} of {comparisons} comparisons agree; every entry of A and B shares {shares}{more}.");
+    let numbers = format!(
+        "Of the paper's {printed} printed numbers {printed_right} hold, {printed_wrong} are wrong as listed, \
+         {printed_otherwise} came out otherwise than found."
+    );
+    [Some(compared), (printed > 0).then_some(numbers)].into_iter().flatten().map(Words::from).collect()
 }

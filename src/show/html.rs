@@ -80,7 +80,7 @@ fn span(span: &Span) -> Markup {
             },
             Span::Against(value, other, digits) => (against(*value, *other, *digits)),
             Span::Symbol(Symbol { letter, below, above, .. }) => span.symbol {
-                i { (letter) } @if !below.is_empty() { sub { (below) } } @if !above.is_empty() { sup { (above) } }
+                i { (letter) } @if !below.is_empty() { sub { (below) } } @if !above.is_empty() { sup { (above.replace('-', "\u{2212}")) } }
             },
             Span::Matrix(rows, digits) => table.matrix {
                 tbody { @for row in rows { tr { @for entry in row { td { (digits.markup(*entry)) } } } } }

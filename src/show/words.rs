@@ -201,14 +201,7 @@ pub fn symbol(plain: &str, letter: &'static str, below: &str, above: &'static st
 }
 
 /// An entry of a map, such as `A12`, with its indices and its side.
-pub fn entry(name: &str, side: &str) -> Symbol {
-    let (letter, above) = (
-        if name.starts_with('A') { "A" } else { "B" },
-        match side {
-            "minus" => "\u{2212}",
-            "plus" => "+",
-            _ => "",
-        },
-    );
-    symbol(name, letter, name.get(1..).unwrap_or_default(), above)
+pub fn entry(name: &str, side: Side) -> Symbol {
+    let letter = if name.starts_with('A') { "A" } else { "B" };
+    symbol(name, letter, name.get(1..).unwrap_or_default(), sign(side))
 }

@@ -4,14 +4,15 @@ use std::collections::BTreeMap;
 use std::thread::JoinHandle;
 
 use nalgebra::RowVector2;
+use serde::Serialize;
 
-use crate::agreement::{Agreement, NamedOrbit, compare_orbits};
+use crate::agreement::{Agreement, NamedOrbit, Quantity, compare_orbits, fewest_shared_decimals};
 use crate::border_collision::validity::{self, Range};
 use crate::border_collision::{
     Classification, Condition, Degenerate, LocalMap, LocalOutcome, NormalForm, Refusal, classify, conditions,
     normal_form,
 };
-use crate::cam::Cam;
+use crate::cam::{Cam, Side};
 use crate::corner::border::border;
 use crate::corner::external::{self, Outside, PROGRAMS, Program};
 use crate::corner::map::{RouteName, Sides};
@@ -110,6 +111,69 @@ impl Verification {
     pub fn routes_by_name(&self) -> impl Iterator<Item = &Route> {
         self.routes.iter().map(|route| (route.name, route)).collect::<BTreeMap<_, _>>().into_values()
     }
+
+    /// The entries of A and B of a side by every route.
+    pub fn entries(&self, side: Side) -> Vec<Entry> {
+        let maps: Vec<[f64; 6]> = self.routes_by_name().map(|route| route.map.of(side).entries()).collect();
+        let printed = |quantity| self.published.iter().find(|number| number.agreement.quantity == quantity);
+        let (a, b) = (printed(Quantity::A(side)), printed(Quantity::B(side)));
+        let printed: Vec<&String> = [a, b].into_iter().flatten().flat_map(|number| &number.printed).collect();
+        let one = |(index, entry): (usize, &'static str)| {
+            let values: Vec<f64> = maps.iter().map(|entries| entries[index]).collect();
+            let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+            let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            Entry { entry, values, spread: most - least, printed: printed.get(index).map(|digits| (*digits).clone()) }
+        };
+        ["A11", "A12", "A21", "A22", "B1", "B2"].into_iter().enumerate().map(one).collect()
+    }
+
+    /// Comparisons and printed numbers by what came of them.
+    pub fn tally(&self) -> Tally {
+        let (pairs, numbers) = (&self.comparisons, &self.published);
+        let right = numbers.iter().filter(|number| number.as_found && number.agreement.agrees).count();
+        let otherwise = numbers.iter().filter(|number| !number.as_found).count();
+        Tally {
+            comparisons: pairs.len(),
+            agreeing: pairs.iter().filter(|pair| pair.agrees).count(),
+            shared_decimals: fewest_shared_decimals(pairs),
+            printed: numbers.len(),
+            printed_right: right,
+            printed_wrong: numbers.len() - right - otherwise,
+            printed_otherwise: otherwise,
+        }
+    }
+}
+
+/// How many comparisons and printed numbers there are of each kind.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Tally {
+    /// Comparisons of two routes.
+    pub comparisons: usize,
+    /// Those that agree.
+    pub agreeing: usize,
+    /// Decimals that every entry of A and B shares between any two routes; none where they are the same in all digits.
+    pub shared_decimals: Option<u32>,
+    /// The paper's printed numbers that were looked at.
+    pub printed: usize,
+    /// Those that hold.
+    pub printed_right: usize,
+    /// Those that are wrong as the ledger says.
+    pub printed_wrong: usize,
+    /// Those that came out otherwise than the ledger says.
+    pub printed_otherwise: usize,
+}
+
+/// One entry of A or B by every route.
+#[derive(Clone, Debug, Serialize)]
+pub struct Entry {
+    /// `A11` to `B2`.
+    pub entry: &'static str,
+    /// By each route, in the order of their names.
+    pub values: Vec<f64>,
+    /// The largest less the smallest of them.
+    pub spread: f64,
+    /// As the paper prints it.
+    pub printed: Option<String>,
 }
 
 /// Whether to run the routes outside this program.

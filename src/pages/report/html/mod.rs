@@ -4,11 +4,8 @@
 //! order and digits. A number that was computed stands in a `data` element whose value has all the digits that the document has;
 //! numbers in captions and sentences are the document's words.
 
-mod bifurcation;
 mod ledger;
-mod maps;
 mod model;
-mod orbit;
 mod plates;
 mod reproduce;
 mod slider;
@@ -20,9 +17,10 @@ use std::fmt;
 use maud::{DOCTYPE, PreEscaped, html};
 
 use crate::pages::report::dossier::Dossier;
-use crate::show::block::{Column, Section, Table, Words, words};
-use crate::show::digits::Digits;
+use crate::pages::{local_map, verify};
+use crate::show::block::{Block, Column, Section, Table, Words};
 use crate::show::html::{blocks, words};
+use crate::study::verify::Verification;
 
 const STYLE: &str = include_str!("page.css");
 const SCRIPTS: [&str; 2] = [include_str!("ledger.js"), include_str!("slider.js")];
@@ -40,15 +38,21 @@ pub enum HtmlError {
 
 /// The page.
 pub fn render(dossier: &Dossier) -> Result<String, HtmlError> {
+    let found = dossier.verification.as_ref();
+    // Of blocks that begin with a heading, which the page has in other words.
+    let titled = |id, title: &str, of: fn(&Verification) -> Vec<Block>| {
+        let blocks = found.map(of).filter(|blocks| !blocks.is_empty())?;
+        Some(Section { id, title: title.into(), blocks: blocks.into_iter().skip(1).collect() })
+    };
     let sections: Vec<Section> = [
         Some(verdict::section(dossier)),
         Some(model::section(dossier)?),
-        Some(orbit::section(dossier)),
-        maps::section(dossier),
-        maps::printed(dossier),
-        bifurcation::section(dossier),
+        titled("corner-impact", "Where the corner impact is", verify::orbit).or_else(|| Some(nowhere())),
+        titled("maps", "The local map by every route", |found| [verify::map(found), verify::agreement(found)].concat()),
+        titled("printed", "The paper's digits", verify::published),
+        titled("bifurcation", "What happens there", verify::bifurcation),
         Some(slider::section(dossier)?),
-        bifurcation::local_map(dossier),
+        titled("local-map", "What the local map does by itself", local_map::blocks),
         ledger::section(dossier),
         Some(speeds::section(dossier)),
         plates::section(dossier)?,
@@ -96,6 +100,17 @@ pub fn render(dossier: &Dossier) -> Result<String, HtmlError> {
     Ok(page.into_string())
 }
 
+/// In the place of a corner impact.
+fn nowhere() -> Section {
+    let words = html! {
+        p {
+            "There is none to verify; " a href="#findings" { "the findings" }
+            " say why. What follows is what cam and follower do without it."
+        }
+    };
+    Section { id: "corner-impact", title: "Where the corner impact is".into(), blocks: vec![Block::Markup(words)] }
+}
+
 /// A column whose cells are words.
 fn left(head: impl Into<Words>) -> Column {
     Column::left(head, 2, 0)
@@ -109,11 +124,6 @@ fn numeric(head: impl Into<Words>) -> Column {
 /// A table whose rows say by themselves what they are of.
 fn unheaded(label: &str, columns: usize) -> Table {
     Table::new(label, vec![left(""); columns])
-}
-
-/// A computed number in so many significant digits.
-fn number(value: f64, digits: usize) -> Words {
-    words![(value, Digits::Significant(digits))]
 }
 
 /// Text that ends a `script` element neither by a tag nor by a comment.

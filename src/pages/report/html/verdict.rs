@@ -3,10 +3,11 @@
 use maud::html;
 
 use crate::pages::report::dossier::Dossier;
+use crate::pages::verify::tally;
 use crate::published::Verdict;
 use crate::show::block::{Block, Mark, Section, Words, words};
 use crate::show::digits::Digits;
-use crate::show::words::{quantity, route, shared, spoken};
+use crate::show::words::{quantity, route, spoken};
 use crate::study::verify::Verification;
 
 pub(crate) fn section(dossier: &Dossier) -> Section {
@@ -39,32 +40,15 @@ fn strong(text: &str) -> Words {
 
 fn findings(dossier: &Dossier, found: &Verification) -> Vec<Words> {
     let head = &dossier.headline;
-    let shares = match head.agreeing {
-        0 => Words::default(),
-        _ => words!["; every entry of A and B shares ", shared(head.shared_decimals), " or more"],
-    };
     let kind = match &found.classification {
         Ok(kind) => words!["It is a ", strong(&spoken(&kind.scenario.to_string())), "."],
         Err(_) => "It has no classification.".into(),
     };
+    let speed = words![(found.at.speed_rpm(), Digits::Fixed(6))];
     let angle = words![(found.at.corner.angle.to_degrees(), Digits::Fixed(4))];
-    let mut findings = vec![
-        Words::prose(
-            "{} comparisons between {} routes to the local map agree{}.",
-            [strong(&format!("{} of {}", head.agreeing, head.comparisons)), head.routes.len().into(), shares],
-        ),
-        Words::prose(
-            "The corner impact is at {} rpm, where the cam has turned by {}°. {}",
-            [words![(found.at.speed_rpm(), Digits::Fixed(6))], angle, kind],
-        ),
-    ];
-    if head.printed > 0 {
-        let hold = strong(&format!("{} hold", head.printed_right));
-        findings.push(Words::prose(
-            "Of the paper's {} printed numbers {}, {} are wrong as the ledger says, and {} came out otherwise.",
-            [head.printed.into(), hold, head.printed_wrong.into(), head.printed_otherwise.into()],
-        ));
-    }
+    let place = "The corner impact is at {} rpm, where the cam has turned by {}°. {}";
+    let mut findings = tally(found);
+    findings.insert(1, Words::prose(place, [speed, angle, kind]));
     if let Some(ledger) = &dossier.claims {
         let count = |verdict| ledger.counts.get(&verdict).copied().unwrap_or_default();
         let [misprint, refuted, open] =
