@@ -128,7 +128,7 @@ fn digits(entries: impl Iterator<Item = f64>) -> Digits {
     let largest = entries.fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
     match largest {
         0.0 => Digits::Fixed(9),
-        _ if (1e-3..1e9).contains(&largest) => Digits::Fixed((9.0 - largest.log10().floor()) as usize),
+        _ if (0.001..1e9).contains(&largest) => Digits::Fixed((9.0 - largest.log10().floor()) as usize),
         _ => Digits::Power(6),
     }
 }
