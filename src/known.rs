@@ -17,3 +17,14 @@ pub enum Known {
 }
 
 named!(Known);
+
+/// A list of orbits has all of so many revolutions and impacts, and how that is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Complete {
+    /// Turns of the cam in one period.
+    pub revolutions: u64,
+    /// Impacts in one period.
+    pub impacts: usize,
+    /// Sampled where orbits are told apart by samples: what lies between two of them can be missed.
+    pub known: Known,
+}

@@ -6,7 +6,7 @@
 //!
 //! | module | finds |
 //! |---|---|
-//! | `period_equation` | the speeds at which the one impact of an orbit is on a corner: all of a range, the roots of one equation |
+//! | `period_equation` | the speeds at which the one impact of an orbit is on a corner: the roots of one equation, by its signs at samples |
 //! | `candidates` | corner impacts of several impacts, where branches of orbits pass a corner |
 //! | `confirm` | whether a corner impact of the equations is an orbit of the cam as it is |
 //! | [`mod@locate`] | the paper's kind, for `verify`; [`range`] all kinds |

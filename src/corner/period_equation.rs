@@ -75,7 +75,7 @@ pub enum Verdict {
 
 impl<'a> PeriodEquation<'a> {
     /// Least samples in a range, and most: beyond them the range is refused, not thinned out.
-    const SAMPLES: [f64; 2] = [4096.0, 1e6];
+    pub const SAMPLES: [f64; 2] = [4096.0, 1e6];
     /// Samples for each radian or time constant that the follower goes through between the shortest period and the longest.
     const SAMPLES_PER_RADIAN: f64 = 64.0;
     /// The most radians of the follower's motion, between the shortest period and the longest, that are searched.

@@ -1,10 +1,12 @@
-//! Every corner impact of a range of speeds that can be found: exhaustively those of one impact, by search those of more.
+//! Every corner impact of a range of speeds that can be found: those of one impact as roots of one equation, by search those of
+//! more.
 
 use super::candidates::{Candidates, candidates};
 use super::confirm::Candidate;
 use super::corner_impact::CornerImpact;
 use super::period_equation::{PeriodEquation, Root, Roots, Verdict};
 use crate::cam::{Cam, Corner, Side};
+use crate::known::{Complete, Known};
 use crate::model::{Model, Study};
 use crate::simulate::angular_velocity;
 use crate::tolerance;
@@ -31,6 +33,8 @@ pub struct FoundCornerImpacts {
     pub rejected: Vec<Rejected>,
     /// The corners of the cam, in order of angle.
     pub corners: Vec<Corner>,
+    /// For which numbers of impacts the list is all there is: those of one impact are sign changes between samples.
+    pub complete: Vec<Complete>,
     /// How orbits of several impacts were looked for.
     pub searched: Candidates,
 }
@@ -67,8 +71,9 @@ pub fn find_corner_impacts(
     }
     let corners = cam.corners();
     let one_impact = one_impact(model, cam, &corners, range, revolutions)?;
+    let complete = vec![Complete { revolutions, impacts: 1, known: Known::Sampled }];
     let searched = candidates(model, cam, range, revolutions);
-    let mut all = FoundCornerImpacts { found: Vec::new(), rejected: Vec::new(), corners, searched };
+    let mut all = FoundCornerImpacts { found: Vec::new(), rejected: Vec::new(), corners, complete, searched };
     for (corner, period, verdict) in one_impact {
         all.keep(&corner, 60.0 / period, verdict);
     }

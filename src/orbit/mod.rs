@@ -6,7 +6,7 @@
 //! | `cycle` | an orbit as its impacts, the equations that close it, Newton's method |
 //! | `chain` | linear equations that link each impact with the next, in one pass |
 //! | `departure` | whether a cycle is an orbit of the cam as it is, by simulation |
-//! | [`mod@search`] | orbits of one machine: exhaustively those of one impact, by many starts the others |
+//! | [`mod@search`] | orbits of one machine: those of one impact as roots of one function, by many starts the others |
 //! | [`settle`] | what a run ends on: an orbit, chaos, rest |
 //! | `family` | machines that differ in a speed or a number of the model |
 //! | `curve` | pseudo-arclength steps along the solutions of one equation fewer than unknowns |
@@ -27,10 +27,9 @@ pub(crate) mod sticking;
 use std::f64::consts::TAU;
 
 use nalgebra::Matrix2;
-use serde::Serialize;
-use serde::ser::{SerializeStruct, Serializer};
 
 use crate::flight::State;
+use crate::known::Known;
 use crate::simulate::{Event, EventKind, Machine, SimulateError};
 pub(crate) use cycle::{Cycle, Impact, NotClosed};
 pub(crate) use departure::Departure;
@@ -56,45 +55,33 @@ pub struct PeriodicOrbit {
     pub course: Course,
 }
 
-/// Impacts apart from sticks and releases; the multipliers instead of the matrix.
-impl Serialize for PeriodicOrbit {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        #[derive(Serialize)]
-        struct Impact {
-            revolution: u64,
-            cam_angle_rad: f64,
-            velocity_before_m_s: f64,
-            velocity_after_m_s: f64,
-        }
-        #[derive(Serialize)]
-        struct Contact {
-            event: EventKind,
-            revolution: u64,
-            cam_angle_rad: f64,
-        }
-        let impact = |&Event { revolution, cam_angle, velocity_before, velocity_after, .. }: &Event| Impact {
-            revolution,
-            cam_angle_rad: cam_angle,
-            velocity_before_m_s: velocity_before,
-            velocity_after_m_s: velocity_after,
-        };
-        let contact = |&Event { kind: event, revolution, cam_angle: cam_angle_rad, .. }: &Event| Contact {
-            event,
-            revolution,
-            cam_angle_rad,
-        };
-        let mut orbit = serializer.serialize_struct("PeriodicOrbit", 8)?;
-        orbit.serialize_field("revolutions", &self.revolutions)?;
-        orbit.serialize_field("impacts", &self.impacts().map(impact).collect::<Vec<_>>())?;
-        orbit.serialize_field("contact", &self.rests().map(contact).collect::<Vec<_>>())?;
-        orbit.serialize_field("state", &[self.state.position, self.state.velocity])?;
-        orbit.serialize_field("multipliers", &self.multipliers())?;
-        orbit.serialize_field("stable", &self.is_stable())?;
-        orbit.serialize_field("course", self.course.name())?;
-        orbit.serialize_field("residual", &self.residual)?;
-        orbit.end()
-    }
-}
+// Impacts apart from sticks and releases; the multipliers instead of the matrix.
+document!(PeriodicOrbit as orbit {
+    known: Known::Computed,
+    revolutions: orbit.revolutions,
+    impacts: orbit.impacts().map(Met).collect::<Vec<_>>(),
+    contact: orbit.rests().map(Rest).collect::<Vec<_>>(),
+    state: [orbit.state.position, orbit.state.velocity],
+    multipliers: orbit.multipliers(),
+    stable: orbit.is_stable(),
+    course: orbit.course.name(),
+    residual: orbit.residual,
+});
+
+/// An event as an impact of an orbit.
+struct Met<'a>(&'a Event);
+
+document!(Met<'_> as it {
+    revolution: it.0.revolution,
+    cam_angle_rad: it.0.cam_angle,
+    velocity_before_m_s: it.0.velocity_before,
+    velocity_after_m_s: it.0.velocity_after,
+});
+
+/// An event as the start or the end of sticking.
+struct Rest<'a>(&'a Event);
+
+document!(Rest<'_> as it { event: it.0.kind, revolution: it.0.revolution, cam_angle_rad: it.0.cam_angle });
 
 /// The kinds of periodic motion.
 #[derive(Clone, Debug, PartialEq)]

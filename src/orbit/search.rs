@@ -10,6 +10,7 @@ use std::f64::consts::TAU;
 use super::settle::{MOST_IMPACTS, close, period, settled};
 use super::{Course, Cycle, Impact, PeriodicOrbit};
 use crate::bracket::{Width, halve};
+use crate::known::{Complete, Known};
 use crate::simulate::{EventKind, Machine, SimulateError};
 
 /// Which orbits are looked for.
@@ -22,6 +23,12 @@ pub struct Search {
 }
 
 impl Search {
+    /// What the list of [`search`] has all of: one function's changes of sign between samples.
+    pub fn complete(&self) -> Option<Complete> {
+        let one = self.impacts.is_none_or(|impacts| impacts == 1);
+        one.then_some(Complete { revolutions: self.revolutions, impacts: 1, known: Known::Sampled })
+    }
+
     /// The most revolutions that an orbit is looked for over.
     pub const MOST_REVOLUTIONS: u64 = 1000;
 }

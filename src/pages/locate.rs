@@ -2,6 +2,7 @@
 
 use crate::border_collision::Classification;
 use crate::corner::candidates::MOST_IMPACTS;
+use crate::corner::period_equation::PeriodEquation;
 use crate::show::Paged;
 use crate::show::block::{Block, Column, Mark, Table, Words, words};
 use crate::show::digits::Digits;
@@ -120,9 +121,10 @@ fn searched(found: &Located) -> String {
         "The cam has no corner: no derivative of its lift jumps as far as can be told.".to_owned()
     } else {
         format!(
-            "{corners} corner(s) of the cam. Orbits of one impact: all, as the roots of one equation. Orbits of several impacts: \
-             those on branches that a search finds at {} speeds ({} of them), of up to {MOST_IMPACTS} impacts a revolution; \
+            "{corners} corner(s) of the cam. Orbits of one impact: where one equation changes its sign between two of {} samples \
+             or more; two roots between the same two are missed. Orbits of several impacts: those on branches that a search finds at {} speeds ({} of them), of up to {MOST_IMPACTS} impacts a revolution; \
              there may be others. Orbits on which the follower sticks forget where they hit: they are left out.",
+            PeriodEquation::SAMPLES[0],
             searched.speeds.len(),
             searched.branches
         )

@@ -15,6 +15,7 @@ use crate::corner::border::border;
 use crate::corner::map::RouteName;
 use crate::corner::range::{FoundCornerImpacts, RangeError, find_corner_impacts};
 use crate::corner::{CornerImpact, CornerMap, variational};
+use crate::known::Known;
 use crate::model::{Model, ModelError, Study};
 use crate::study::ModelLabel;
 use crate::study::compared::{self, Log, Skipped, compare_borders};
@@ -44,6 +45,7 @@ document!(Located as it {
     revolutions: it.revolutions,
     corner_impacts: it.found,
     rejected: it.looked_at.rejected,
+    complete: it.looked_at.complete,
     searched: Searched(&it.looked_at),
     agrees: it.agrees,
 });
@@ -55,8 +57,6 @@ document!(Searched<'_> as it {
     corners_rad: it.0.corners.iter().map(|corner| corner.angle).collect::<Vec<_>>(),
     speeds_rpm: it.0.searched.speeds,
     branches: it.0.searched.branches,
-    one_impact_exhaustive: true,
-    several_impacts_exhaustive: false,
     failed: it.0.searched.failed,
 });
 
@@ -78,6 +78,7 @@ pub struct LocatedImpact {
 }
 
 document!(LocatedImpact as it {
+    known: Known::Computed,
     speed_rpm: it.at.speed_rpm(),
     period_s: it.at.period,
     orbit_period_s: it.at.period * it.at.cycle.revolutions as f64,

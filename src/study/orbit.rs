@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::StudyError;
 use crate::cam::Cam;
 use crate::flight::State;
+use crate::known::Complete;
 use crate::model::Model;
 use crate::orbit::settle::near;
 use crate::orbit::{PeriodicOrbit, Search, search};
@@ -20,6 +21,8 @@ pub struct Orbits {
     pub speed_rpm: f64,
     /// The cam angle at which their states are, rad.
     pub section_angle_rad: f64,
+    /// For which numbers of impacts the list is all there is.
+    pub complete: Vec<Complete>,
     /// Those that were found.
     pub orbits: Vec<PeriodicOrbit>,
 }
@@ -36,10 +39,14 @@ pub enum Wanted {
 /// Looks for the periodic orbits of a model at `speed_rpm`.
 pub fn orbits(model: &Model, speed_rpm: f64, wanted: Wanted) -> Result<Orbits, StudyError> {
     let machine = Machine::new(Cam::new(model)?, &model.follower, angular_velocity(speed_rpm));
+    let complete = match &wanted {
+        Wanted::All(wanted) => wanted.complete().into_iter().collect(),
+        Wanted::Near(..) => Vec::new(),
+    };
     let orbits = match wanted {
         Wanted::All(wanted) => search(&machine, &wanted)?,
         Wanted::Near(state, revolutions) => near(&machine, 0.0, state, revolutions)?.into_iter().collect(),
     };
     let schema = "corner-impact/orbit/1";
-    Ok(Orbits { schema, model: model.name.clone(), speed_rpm, section_angle_rad: 0.0, orbits })
+    Ok(Orbits { schema, model: model.name.clone(), speed_rpm, section_angle_rad: 0.0, complete, orbits })
 }

@@ -43,6 +43,8 @@ fn the_papers_corner_impact_is_among_them() {
     let speeds = speeds(&document);
     assert!(speeds.is_sorted() && speeds.len() >= 2, "{speeds:?}");
     let at = &document["corner_impacts"][0];
+    let one_impact = serde_json::json!([{ "revolutions": 1, "impacts": 1, "known": "sampled" }]);
+    assert_eq!((&document["complete"], &at["known"]), (&one_impact, &"computed".into()));
     let near =
         |value: &Value, expected: f64| (value.as_f64().unwrap() - expected).abs() <= 1e-12 * expected.abs().max(1.0);
     assert!(near(&at["speed_rpm"], 673.234445003848821) && near(&at["period_s"], 0.08912199969158884), "{at}");
@@ -69,6 +71,8 @@ fn an_orbit_of_two_revolutions_reaches_the_noses_end() {
     let (code, document) = document(MODEL, "738:741", "2");
     assert_eq!(code, Some(0));
     let at = &document["corner_impacts"][0];
+    let one_impact = serde_json::json!([{ "revolutions": 2, "impacts": 1, "known": "sampled" }]);
+    assert_eq!((&document["complete"], &at["known"]), (&one_impact, &"computed".into()));
     assert!((at["speed_rpm"].as_f64().unwrap() - 739.377929649).abs() < 1e-8, "{at}");
     assert_eq!([&at["revolutions"], &at["impacts"], &at["jump_order"]], [2, 2, 2]);
     assert!((at["cam_angle_rad"].as_f64().unwrap().to_degrees() - 160.0).abs() < 1e-12);
@@ -235,6 +239,8 @@ fn the_page_says_what_was_looked_at() {
     let page = String::from_utf8(output.stdout).unwrap();
     assert!(page.contains("673.234445004") && page.contains("nonsmooth-fold") && page.contains("agree"), "{page}");
     assert!(page.contains("634.331399 rpm") && page.contains("would come out of the cam"), "{page}");
+    let words = page.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains("4096 samples or more; two roots between the same two are missed"), "{page}");
     assert!(page.contains("there may be\n  others") || page.contains("there may be others"), "{page}");
     assert!(page.lines().all(|line| line.chars().count() <= 100), "{page}");
 }
