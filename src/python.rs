@@ -29,43 +29,22 @@ const TIME_LIMIT: Duration = Duration::from_secs(120);
 
 /// Why a script has no result.
 #[derive(Debug, thiserror::Error)]
-pub enum PythonError {
-    /// The scripts could not be written to a temporary folder.
+pub(crate) enum PythonError {
     #[error("the scripts could not be written to a temporary folder: {0}")]
     NotWritten(std::io::Error),
-    /// The interpreter did not start.
     #[error("`{command}` did not start: {error}; `make verify` sets up Python, --no-external does without it")]
-    NotStarted {
-        /// The command line.
-        command: String,
-        /// What the system said.
-        error: std::io::Error,
-    },
-    /// The script ended with an error.
+    NotStarted { command: String, error: std::io::Error },
     #[error(
         "`{command}` failed ({status}); if a package is missing, `make verify` sets it up, and --no-external does without; it \
          said:\n{stderr}"
     )]
-    Failed {
-        /// The command line.
-        command: String,
-        /// The exit status in words.
-        status: String,
-        /// What the script wrote to standard error, trimmed.
-        stderr: String,
-    },
-    /// What the script printed is not its result.
+    Failed { command: String, status: String, stderr: String },
     #[error("`{command}` printed something else than its result: {error}")]
-    Output {
-        /// The command line.
-        command: String,
-        /// Where the output stops being a result.
-        error: String,
-    },
+    Output { command: String, error: String },
 }
 
 /// Runs `derivations/<script>` with `input` on standard input and reads its standard output as a `T`.
-pub fn run<T: serde::de::DeserializeOwned>(script: &str, input: &serde_json::Value) -> Result<T, PythonError> {
+pub(crate) fn run<T: serde::de::DeserializeOwned>(script: &str, input: &serde_json::Value) -> Result<T, PythonError> {
     let folder = written().map_err(PythonError::NotWritten)?;
     let interpreter = interpreter();
     let script = format!("derivations/{script}");
