@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use super::start::{finite, range, rpm, turn};
-use super::{CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::Progress};
+use super::{CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::watched};
 use crate::figures::basins_figure;
 use crate::orbit::Search;
-use crate::show::{Paged, csv};
+use crate::show::csv;
 use crate::study::basins::{Border, Grid, Patience, Section, Summary};
 
 /// Runs a grid of starts at one speed and says what each ends on, as a table or a picture.
@@ -72,9 +72,8 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let section = Section::new(&model, arguments.rpm, turn(arguments.strobe))?;
     let grid = section.grid(arguments.grid, arguments.position, arguments.velocity)?;
     let patience = Patience { revolutions: arguments.revolutions, longest: arguments.longest };
-    let (clock, progress) = (Instant::now(), Progress::spinner(""));
-    let basins = grid.basins_watched(&section.map.machine, patience, arguments.threads.map(usize::from), &progress)?;
-    drop(progress);
+    let (clock, threads) = (Instant::now(), arguments.threads.map(usize::from));
+    let basins = watched("", |watch| grid.basins_watched(&section.map.machine, patience, threads, watch))?;
     let wall_s = clock.elapsed().as_secs_f64();
     if let Some(path) = &arguments.out {
         let table = |table: &mut dyn Write| Ok(table.write_all(csv::basins(&basins).as_bytes())?);
@@ -87,7 +86,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     }
     let summary = Summary::new(&model, arguments.rpm, basins, wall_s);
     if !to_standard {
-        session.answer(&summary, arguments.summary, |width| summary.page(width))?;
+        session.answer(&summary, arguments.summary)?;
     }
     Ok(Exit::Agrees)
 }

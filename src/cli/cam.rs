@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
 use crate::cam::{Cam, Jet};
 use crate::figures::cam_figure;
-use crate::show::Paged;
 use crate::study::cam::CamSheet;
 
 /// Lists the segments of a model's cam and the corners where they meet.
@@ -38,6 +37,5 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     }
     drop(progress);
     let sheet = CamSheet::new(&model, &cam, arguments.order);
-    session.answer(&sheet, arguments.json, |width| sheet.page(width))?;
-    Ok(Exit::Agrees)
+    session.answer(&sheet, arguments.json)
 }

@@ -5,12 +5,13 @@ use std::path::PathBuf;
 
 use super::picture::{Target, picture_or_table};
 use super::start::{parameter, positive, rpm};
-use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
+use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::cam::Cam;
 use crate::figures::{branches_figure, corner_marks};
 use crate::orbit::branch::Following;
 use crate::orbit::{Parameter, Search};
-use crate::pages::branch;
+use crate::pages;
+use crate::show::csv;
 use crate::study::branches::branches;
 
 /// Follows the orbits of one speed through a parameter, round folds and through corners.
@@ -65,17 +66,15 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     };
     let target = Target::create(&arguments.out, &mut *session.out)?;
     let wanted = Search { revolutions: arguments.revolutions, impacts: arguments.impacts };
-    let progress = Progress::spinner("");
-    let found = branches(&model, arguments.from_rpm, &wanted, following, &progress)?;
-    drop(progress);
+    let found = watched("", |watch| branches(&model, arguments.from_rpm, &wanted, following, watch))?;
     let name = found.following.parameter.name();
     for (index, branch) in found.branches.iter().enumerate() {
         // Nobody is left to tell where standard error is closed.
-        let _ = session.err.write_all(branch::account(branch, name, index + 1)?.as_bytes());
+        let _ = session.err.write_all(pages::branches::branch(branch, name, index + 1).as_bytes());
     }
-    let table = |table: &mut dyn Write| Ok(table.write_all(branch::table(name, &found.branches).as_bytes())?);
+    let table = |table: &mut dyn Write| Ok(table.write_all(csv::branches(name, &found.branches).as_bytes())?);
     target.fill(table, || {
-        let settled = found.settled(arguments.runs, &Progress::spinner(""))?;
+        let settled = watched("", |watch| found.settled(arguments.runs, watch))?;
         Ok(branches_figure(&found.title(), (name, *range), &found.branches, settled, &corners))
     })?;
     Ok(Exit::Agrees)

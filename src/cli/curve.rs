@@ -5,12 +5,13 @@ use std::path::PathBuf;
 
 use super::picture::{Target, picture_or_table};
 use super::start::{parameter, positive, rpm_range};
-use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
+use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::draw::layout::widened;
 use crate::figures::curve_figure;
 use crate::orbit::branch::Following;
 use crate::orbit::{Parameter, Search};
-use crate::pages::curve;
+use crate::pages;
+use crate::show::csv;
 use crate::study::curve::{Curves, curves};
 
 /// Follows corner impacts through a number of the model: their speed, and where their type changes.
@@ -54,23 +55,18 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let target = Target::create(&arguments.out, &mut *session.out)?;
     let wanted = Search { revolutions: arguments.revolutions, impacts: arguments.impacts };
     let following = Following { parameter, range: *range, longest_step: arguments.step, most_points: MOST_POINTS };
-    let progress = Progress::spinner("");
-    let Curves { own, curves } = curves(&model, arguments.rpm, &wanted, &following, &progress)?;
-    drop(progress);
+    let Curves { own, curves } = watched("", |watch| curves(&model, arguments.rpm, &wanted, &following, watch))?;
     let (name, [low, high]) = (following.parameter.name(), arguments.rpm);
-    let mut accounts: Vec<String> = Vec::new();
-    for (index, found) in curves.iter().enumerate() {
-        accounts.push(curve::account(found, name, index + 1)?);
-    }
+    let accounts = curves.iter().zip(1..).map(|(found, index)| pages::branches::curve(found, name, index));
+    let mut accounts: String = accounts.collect();
     if curves.is_empty() {
         let turns = wanted.revolutions;
-        accounts.push(format!(
-            "no corner impact of an orbit of {turns} revolution(s) found between {low} and {high} rpm\n"
-        ));
+        accounts =
+            format!("no corner impact of an orbit of {turns} revolution(s) found between {low} and {high} rpm\n");
     }
     // Nobody is left to tell where standard error is closed.
-    let _ = session.err.write_all(accounts.concat().as_bytes());
-    let table = |table: &mut dyn Write| Ok(table.write_all(curve::table(name, &curves).as_bytes())?);
+    let _ = session.err.write_all(accounts.as_bytes());
+    let table = |table: &mut dyn Write| Ok(table.write_all(csv::curves(name, &curves).as_bytes())?);
     target.fill(table, || {
         let title = format!("{}: corner impacts against {name}", model.name);
         let speeds = curves.iter().flat_map(|found| &found.impacts).map(|impact| impact.rpm);

@@ -10,7 +10,7 @@ use super::{CommandError, Exit, ModelArgument, Session, picture, picture::Target
 use crate::cam::Cam;
 use crate::diagram::{Counted, Following, Places, Section, Speeds, Sweep};
 use crate::figures::{corner_marks, impact_diagram, strobe_diagram};
-use crate::show::{Paged, csv};
+use crate::show::csv;
 use crate::simulate::{Machine, angular_velocity};
 use crate::study::diagram::{Shown, Swept};
 
@@ -97,16 +97,12 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         },
         lyapunov: arguments.lyapunov,
     };
-    let (progress, threads) = (Progress::spinner(""), arguments.threads.map(usize::from));
-    let (name, target) = (model.name.as_str(), arguments.out.as_deref());
+    let (threads, target) = (arguments.threads.map(usize::from), arguments.out.as_deref());
+    let (name, progress) = (model.name.as_str(), Progress::spinner(""));
     let swept = match target.map(|path| Target::create(path, &mut *session.out)).transpose()? {
         None => Swept::new(name, &sweep, threads, &progress, |_: Counted| Ok::<(), CommandError>(()))?,
         Some(Target::Table(mut file)) => {
-            let columns = match sweep.section {
-                Section::Impacts => csv::IMPACT_DIAGRAM,
-                Section::Strobe(_) => csv::STROBE_DIAGRAM,
-            };
-            writeln!(file, "{columns}{}", if sweep.lyapunov { csv::LYAPUNOV } else { "" })?;
+            file.write_all(csv::diagram(&sweep).as_bytes())?;
             let take = |lines: csv::Lines| Ok::<(), CommandError>(file.write_all(lines.0.as_bytes())?);
             let swept = Swept::new(name, &sweep, threads, &progress, take)?;
             super::commit(vec![file])?;
@@ -128,7 +124,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     };
     drop(progress);
     if !to_standard {
-        session.answer(&swept, arguments.summary, |width| swept.page(width))?;
+        session.answer(&swept, arguments.summary)?;
     }
     Ok(Exit::Agrees)
 }

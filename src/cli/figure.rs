@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
+use super::progress::{Progress, watched};
+use super::{CommandError, Exit, ModelArgument, Session, picture};
 use crate::figures::{FIGURES, Listed, Plate, Subject, listed};
 use crate::model::Model;
 use crate::show::json;
@@ -65,9 +66,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     if id.is_none() && arguments.out.is_some() {
         return Err(CommandError::Words("--out is for one figure: name it, from the list without --out".into()));
     }
-    let progress = Progress::spinner("verifying the model");
-    let subject = Subject::new(&model)?;
-    drop(progress);
+    let subject = watched("verifying the model", |_| Subject::new(&model))?;
     let page = match id {
         None => list(&model, &subject, arguments.json)?,
         Some(id) => {

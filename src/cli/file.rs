@@ -59,7 +59,6 @@ impl Drop for Listed {
 }
 
 /// A place for results: a file that appears when it is complete, or a stream.
-#[derive(Debug)]
 pub struct Output<'a> {
     path: PathBuf,
     sink: Sink<'a>,
@@ -76,13 +75,9 @@ enum Sink<'a> {
     Standard(BufWriter<Box<dyn Write + 'a>>),
 }
 
-impl std::fmt::Debug for Sink<'_> {
+impl std::fmt::Debug for Output<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Whole { target, .. } => write!(f, "Whole({})", target.display()),
-            Self::Device(_) => f.write_str("Device"),
-            Self::Standard(_) => f.write_str("Standard"),
-        }
+        write!(f, "Output({})", self.path.display())
     }
 }
 

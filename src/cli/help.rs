@@ -7,6 +7,7 @@ use clap::builder::styling::{AnsiColor, Styles};
 use clap::{Command, CommandFactory};
 
 use super::{Arguments, GROUPS};
+use crate::show::page::options;
 
 /// Headings and names stand out; what is to be filled in does not shout.
 const STYLES: Styles = Styles::styled()
@@ -51,6 +52,7 @@ fn with_heading(text: &str) -> StyledStr {
 fn template(command: &Command, width: usize) -> StyledStr {
     let (header, literal) = (STYLES.get_header(), STYLES.get_literal());
     let longest = command.get_subcommands().map(|sub| sub.get_name().len()).max().unwrap_or(0);
+    let indent = " ".repeat(longest + 4);
     let mut text = "{about-with-newline}\n{usage-heading} {usage}\n".to_owned();
     for (heading, names) in GROUPS {
         let _ = writeln!(text, "\n{header}{heading}:{header:#}");
@@ -58,28 +60,11 @@ fn template(command: &Command, width: usize) -> StyledStr {
         for sub in names.iter().filter_map(|name| find(&name.to_lowercase())) {
             let about = sub.get_about().map(ToString::to_string).unwrap_or_default();
             let name = sub.get_name();
-            let _ = write!(text, "  {literal}{name}{literal:#}{:1$}", "", longest - name.len() + 2);
-            hang(&mut text, about.trim(), longest + 4, width);
+            let about = textwrap::fill(about.trim(), options(width).initial_indent(&indent).subsequent_indent(&indent));
+            let gap = longest - name.len() + 2;
+            let _ = writeln!(text, "  {literal}{name}{literal:#}{:gap$}{}", "", about.trim_start());
         }
     }
     text.push_str("\n{options}{after-help}");
     text.into()
-}
-
-/// Words in lines that fit, of which the first goes on at `indent`.
-fn hang(text: &mut String, words: &str, indent: usize, width: usize) {
-    let mut column = indent;
-    for (index, word) in words.split_whitespace().enumerate() {
-        let length = word.chars().count();
-        if index > 0 && column + 1 + length > width {
-            let _ = write!(text, "\n{:indent$}", "");
-            column = indent;
-        } else if index > 0 {
-            text.push(' ');
-            column += 1;
-        }
-        text.push_str(word);
-        column += length;
-    }
-    text.push('\n');
 }

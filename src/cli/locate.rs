@@ -1,10 +1,9 @@
 //! `corner-impact locate [MODEL]`.
 
 use super::start::rpm_range;
-use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
+use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::model::Study;
 use crate::orbit::Search;
-use crate::show::Paged;
 use crate::study::locate::{LocateError, locate};
 
 /// Lists the speeds at which a periodic orbit has an impact on a corner of the cam, and what happens there.
@@ -35,12 +34,12 @@ fn study(text: &str) -> Result<Study, String> {
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let model = arguments.model.read(session)?;
-    let progress = Progress::spinner("looking for orbits with an impact on a corner");
-    let found = locate(&model, arguments.rpm, arguments.revolutions).map_err(|error| match error {
-        LocateError::Range(error) => CommandError::Words(format!("{}: {error}", model.file())),
-        error => error.into(),
+    let found = watched("looking for orbits with an impact on a corner", |_| {
+        locate(&model, arguments.rpm, arguments.revolutions).map_err(|error| match error {
+            LocateError::Range(error) => CommandError::Words(format!("{}: {error}", model.file())),
+            error => error.into(),
+        })
     })?;
-    drop(progress);
-    session.answer(&found, arguments.json, |width| found.page(width))?;
+    session.answer(&found, arguments.json)?;
     Ok(if found.agrees { Exit::Agrees } else { Exit::Disagrees })
 }

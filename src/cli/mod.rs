@@ -29,11 +29,11 @@ use std::error::Error;
 use std::ffi::OsString;
 use std::io::Write;
 
-use clap::{FromArgMatches, Parser, Subcommand};
+use clap::{ColorChoice, FromArgMatches, Parser, Subcommand};
 
 use model::ModelArgument;
+use session::Session;
 pub use session::Terminal;
-use session::{ColorChoice, Session};
 
 use crate::cli::file::{FileError, Output};
 use crate::model::ModelError;
@@ -158,7 +158,7 @@ pub fn run_at(
 ) -> Exit {
     let words: Vec<OsString> = arguments.into_iter().collect();
     // What is wrong with a command line is coloured as it says itself.
-    let mut session = Session { out, err, terminal, color: ColorChoice::said(&words) };
+    let mut session = Session { out, err, terminal, color: session::said(&words) };
     let matches = help::command(session.width()).try_get_matches_from(words);
     let arguments = match matches.and_then(|matches| Arguments::from_arg_matches(&matches)) {
         Ok(arguments) => arguments,

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{CommandError, progress::Progress, session::Session};
+use super::{CommandError, progress::watched, session::Session};
 use crate::model::Model;
 
 /// Which model a command is about.
@@ -24,8 +24,7 @@ impl ModelArgument {
         match &self.file {
             Some(path) => {
                 // A table of a million lifts takes its time.
-                let _progress = Progress::spinner("reading the model");
-                Ok(Model::read(path)?)
+                Ok(watched("reading the model", |_| Model::read(path))?)
             }
             None => {
                 let model = Model::built_in()?;

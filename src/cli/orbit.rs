@@ -1,10 +1,9 @@
 //! `corner-impact orbit [MODEL] --rpm R`.
 
 use super::start::{rpm, state};
-use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
+use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::flight::State;
 use crate::orbit::Search;
-use crate::show::Paged;
 use crate::study::orbit::{Wanted, orbits};
 
 /// Finds periodic orbits at one speed, stable and unstable, with their multipliers.
@@ -41,9 +40,6 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         Some(state) => Wanted::Near(state, arguments.revolutions),
         None => Wanted::All(Search { revolutions: arguments.revolutions, impacts: arguments.impacts }),
     };
-    let progress = Progress::spinner("looking for periodic orbits");
-    let found = orbits(&model, arguments.rpm, wanted)?;
-    drop(progress);
-    session.answer(&found, arguments.json, |width| found.page(width))?;
-    Ok(Exit::Agrees)
+    let found = watched("looking for periodic orbits", |_| orbits(&model, arguments.rpm, wanted))?;
+    session.answer(&found, arguments.json)
 }

@@ -10,6 +10,11 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::progress::Watch;
 
+/// Does some work, which may tell how far it has come; it begins at `what`.
+pub(super) fn watched<T>(what: &str, work: impl FnOnce(&dyn Watch) -> T) -> T {
+    work(&Progress::spinner(what))
+}
+
 /// How far a command has come: a bar where the total is known, a spinner where it is not, and what it is at.
 pub(super) struct Progress {
     bar: ProgressBar,

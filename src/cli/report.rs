@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::progress::Progress;
+use super::progress::watched;
 use super::{CommandError, Exit, ModelArgument, Session};
 use crate::cli::file::Output;
 use crate::model::Model;
@@ -61,9 +61,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         None => None,
     };
     let external = if arguments.no_external { External::LeftOut } else { External::Run };
-    let progress = Progress::spinner("");
-    let dossier = Dossier::of(&model, external, &progress)?;
-    drop(progress);
+    let dossier = watched("", |watch| Dossier::of(&model, external, watch))?;
     let write = |mut file: Output<'_>| {
         let page = html::render(&dossier)?;
         file.write_all(page.as_bytes())?;

@@ -1,40 +1,24 @@
 //! What a command talks to: the two streams, and what is known about the terminal that they may be.
 
 use std::ffi::OsString;
-use std::fmt;
 use std::io::{ErrorKind, IsTerminal, Write};
 
+use clap::{ColorChoice, ValueEnum};
 use serde::Serialize;
 
 use super::{CommandError, Exit, complaint};
 use crate::model::ModelError;
-use crate::show::{Page, json};
+use crate::show::{Page, Paged, json};
 
-/// Whether to colour.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
-pub(super) enum ColorChoice {
-    // On a terminal, unless NO_COLOR is set; anywhere if CLICOLOR_FORCE is.
-    #[default]
-    Auto,
-    // On pipes and in files that a shell opened, too.
-    Always,
-    // Nowhere.
-    Never,
-}
-
-impl ColorChoice {
-    /// What a command line says before it is known to be one.
-    pub(super) fn said(words: &[OsString]) -> Self {
-        let mut said = Self::default();
-        let mut words = words.iter().skip(1).filter_map(|word| word.to_str()).take_while(|word| *word != "--");
-        while let Some(word) = words.next() {
-            let value = if word == "--color" { words.next() } else { word.strip_prefix("--color=") };
-            if let Some(choice) = value.and_then(|value| <Self as clap::ValueEnum>::from_str(value, false).ok()) {
-                said = choice;
-            }
-        }
-        said
+/// The colours that a command line asks for before it is known to be one.
+pub(super) fn said(words: &[OsString]) -> ColorChoice {
+    let mut said = ColorChoice::Auto;
+    let mut words = words.iter().skip(1).filter_map(|word| word.to_str()).take_while(|word| *word != "--");
+    while let Some(word) = words.next() {
+        let value = if word == "--color" { words.next() } else { word.strip_prefix("--color=") };
+        said = value.and_then(|value| ColorChoice::from_str(value, false).ok()).unwrap_or(said);
     }
+    said
 }
 
 /// What the streams of a process are connected to, and what its environment wants.
@@ -168,13 +152,9 @@ impl Session<'_> {
     }
 
     /// Prints what was found: one document for a program, or the page for people, in as many columns as there are.
-    pub(super) fn answer(
-        &mut self,
-        found: &impl Serialize,
-        as_json: bool,
-        page: impl FnOnce(usize) -> Result<Page, fmt::Error>,
-    ) -> Result<(), CommandError> {
-        let text = if as_json { json::render(found)? } else { self.shown(&page(self.width())?) };
-        self.print(&text)
+    pub(super) fn answer(&mut self, found: &(impl Serialize + Paged), as_json: bool) -> Result<Exit, CommandError> {
+        let text = if as_json { json::render(found)? } else { self.shown(&found.page(self.width())?) };
+        self.print(&text)?;
+        Ok(Exit::Agrees)
     }
 }

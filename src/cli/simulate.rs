@@ -1,14 +1,15 @@
 //! `corner-impact simulate [MODEL] --rpm R`.
 
+use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Component, Path, PathBuf};
 
 use super::picture::{Canvas, is_standard, picture};
 use super::start::{StartArguments, count, finite, rpm, turn};
-use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
+use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::cli::file::Output;
 use crate::figures::{self, phase_plane as phase_plane_figure, time_trace};
-use crate::show::{Paged, csv};
+use crate::show::csv;
 use crate::study::simulate::{Sight, Simulation, Until, Wanted};
 
 /// Runs one motion of a model and says what happened.
@@ -107,8 +108,8 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         Ok(Some(file))
     };
     let (mut events, mut states) = (open(events, csv::EVENTS)?, open(strobe_out, csv::STROBE)?);
-    let (progress, mut lines) = (Progress::spinner(""), String::new());
-    let run = simulation.run(wanted, &progress, |sight| -> Result<(), CommandError> {
+    let mut lines = String::new();
+    let see = |sight: Sight<'_>| -> Result<(), CommandError> {
         lines.clear();
         let file = match sight {
             Sight::Events(seen) => {
@@ -122,8 +123,8 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
             }
         };
         Ok(file.as_mut().map_or(Ok(()), |file| file.write_all(lines.as_bytes()))?)
-    })?;
-    drop(progress);
+    };
+    let run = watched("", |watch| simulation.run(wanted, watch, see))?;
     let mut files: Vec<Output<'_>> = [events, states].into_iter().flatten().collect();
     if trace.is_some() || plane.is_some() {
         let seen = figures::Run::new(machine, run.before_drawn, drawn.min(arguments.revolutions))?;
@@ -133,7 +134,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     }
     super::commit(files)?;
     if arguments.summary || streams == 0 {
-        session.answer(&run, arguments.summary, |width| run.page(width))?;
+        session.answer(&run, arguments.summary)?;
     }
     Ok(Exit::Agrees)
 }
@@ -142,14 +143,12 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
 fn distinct(files: &[(&str, &Option<PathBuf>)]) -> Result<(), CommandError> {
     // As far as names tell: ./x is x.
     let parts = |path: &Path| path.components().filter(|part| *part != Component::CurDir).collect::<PathBuf>();
-    let mut names: Vec<(&str, PathBuf)> = Vec::new();
+    let mut names = BTreeMap::new();
     let given = files.iter().filter_map(|(option, path)| Some((*option, path.as_deref()?)));
     for (option, path) in given.filter(|(_, path)| path.as_os_str() != "-") {
-        let name = parts(path);
-        if let Some((before, _)) = names.iter().find(|(_, other)| *other == name) {
+        if let Some(before) = names.insert(parts(path), option) {
             return Err(CommandError::Words(format!("{before} and {option} are both {}", path.display())));
         }
-        names.push((option, name));
     }
     Ok(())
 }

@@ -1,8 +1,7 @@
 //! `corner-impact speeds [MODEL]`.
 
 use super::start::rpm_range;
-use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
-use crate::show::Paged;
+use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::study::speeds::{Care, regimes, usual_speeds};
 
 /// Tells at which speeds the follower leaves the cam, chatters, bounces regularly, is chaotic, and where hysteresis is.
@@ -34,9 +33,6 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let model = arguments.model.read(session)?;
     let rpm = arguments.rpm.unwrap_or_else(|| usual_speeds(&model));
     let care = Care { speeds: arguments.speeds as usize, settling: arguments.settling, ..Care::default() };
-    let progress = Progress::spinner("");
-    let found = regimes(&model, rpm, care, &progress)?;
-    drop(progress);
-    session.answer(&found, arguments.json, |width| found.page(width))?;
-    Ok(Exit::Agrees)
+    let found = watched("", |watch| regimes(&model, rpm, care, watch))?;
+    session.answer(&found, arguments.json)
 }

@@ -1,7 +1,6 @@
 //! `corner-impact verify [MODEL]`.
 
-use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
-use crate::show::Paged;
+use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::study::verify::{External, verify_watched};
 
 /// Finds the corner impact of a model, computes its map by every route, and says whether they agree.
@@ -26,13 +25,11 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let model = arguments.model.read(session)?;
     let external = if arguments.no_external { External::LeftOut } else { External::Run };
-    let progress = Progress::spinner("");
-    let findings = verify_watched(&model, external, &progress)?;
-    drop(progress);
+    let findings = watched("", |watch| verify_watched(&model, external, watch))?;
     for failure in findings.skipped.iter().filter(|skipped| skipped.failed) {
         // The page says the same.
         session.complain(&format!("{} did not run: {}", failure.route, failure.why));
     }
-    session.answer(&findings, arguments.json, |width| findings.page(width))?;
+    session.answer(&findings, arguments.json)?;
     Ok(if findings.agrees { Exit::Agrees } else { Exit::Disagrees })
 }

@@ -1,10 +1,9 @@
 //! The page of each command, laid out from what was found.
 
 mod basins;
-pub mod branch;
+pub(crate) mod branches;
 pub mod cam;
 pub mod claims;
-pub mod curve;
 mod local_map;
 mod locate;
 mod orbit;

@@ -1,27 +1,19 @@
-//! Events and states as lines of CSV: numbers in the fewest digits that read back as the same double.
+//! Tables as lines of CSV: numbers in the fewest digits that read back as the same double, without a point where they are
+//! whole and never with a power of ten, which is why the csv crate, that writes `1.0` and `1e-7`, does not write them.
 
-use std::fmt::Write;
+use std::fmt::{Display, Write};
 
-use crate::diagram::{Block, Row, Seen};
+use crate::border_collision::ImpactCurve;
+use crate::diagram::{Block, Row, Section, Seen, Sweep};
 use crate::flight::State;
+use crate::orbit::Eigenvalue;
+use crate::orbit::branch::{Branch, Kind};
 use crate::simulate::{Event, Machine, Motion};
 use crate::study::basins::{Basins, Ending};
 
 /// The columns of a run's events.
 pub const EVENTS: &str =
     "revolution,time_s,cam_angle_rad,event,position_m,velocity_before_m_s,velocity_after_m_s,cam_velocity_m_s\n";
-
-/// The columns of a run's states at one angle.
-pub const STROBE: &str = "revolution,position_m,velocity_m_s,gap_m,contact\n";
-
-/// The columns of a diagram of impacts.
-pub const IMPACT_DIAGRAM: &str = "rpm,revolution,cam_angle_rad,event,position_m,velocity_before_m_s,velocity_after_m_s";
-
-/// The columns of a stroboscopic diagram.
-pub const STROBE_DIAGRAM: &str = "rpm,revolution,position_m,velocity_m_s";
-
-/// The column that a diagram has on request.
-pub const LYAPUNOV: &str = ",lyapunov_per_revolution";
 
 /// Appends an event of a run at `angular_velocity`, rad/s, that started at `start_angle`, rad.
 pub fn event(line: &mut String, event: &Event, start_angle: f64, angular_velocity: f64) {
@@ -34,11 +26,23 @@ pub fn event(line: &mut String, event: &Event, start_angle: f64, angular_velocit
     );
 }
 
+/// The columns of a run's states at one angle.
+pub const STROBE: &str = "revolution,position_m,velocity_m_s,gap_m,contact\n";
+
 /// Appends the state of a run at a section.
 pub fn strobe(line: &mut String, machine: &Machine, motion: &Motion) {
     let State { position, velocity } = motion.state;
     let (gap, contact) = (machine.gap(motion), motion.contact);
     let _ = writeln!(line, "{},{position},{velocity},{gap},{contact}", motion.revolution);
+}
+
+/// The columns of a diagram.
+pub fn diagram(sweep: &Sweep) -> String {
+    let seen = match sweep.section {
+        Section::Impacts => "cam_angle_rad,event,position_m,velocity_before_m_s,velocity_after_m_s",
+        Section::Strobe(_) => "position_m,velocity_m_s",
+    };
+    format!("rpm,revolution,{seen}{}\n", if sweep.lyapunov { ",lyapunov_per_revolution" } else { "" })
 }
 
 /// Lines of a diagram, as a worker makes them.
@@ -73,23 +77,71 @@ impl Block for Lines {
     }
 }
 
-/// The columns of a grid of starts; those of an orbit are empty where there is none, `ending` where the start is below the
-/// cam.
-pub const BASINS: &str = "position_m,velocity_m_s,ending,part,revolutions,impacts\n";
+/// What there is, or an empty cell.
+fn cell(value: Option<impl Display>) -> String {
+    value.map_or(String::new(), |value| value.to_string())
+}
 
-/// A line for each start, row by row.
+/// Two multipliers, each as real and imaginary part.
+fn multipliers([one, two]: [Eigenvalue; 2]) -> String {
+    format!("{},{},{},{}", one.re, one.im, two.re, two.im)
+}
+
+/// A line for each start, row by row; `ending` is empty where the start is below the cam.
 pub fn basins(basins: &Basins) -> String {
-    let mut lines = String::from(BASINS);
-    for (cell, part) in basins.cells.iter().enumerate() {
-        let State { position, velocity } = basins.grid.start(cell);
-        let _ = write!(lines, "{position},{velocity},");
-        let _ = match part.map(|index| (index, &basins.parts[index].ending)) {
-            None => writeln!(lines, ",,,"),
-            Some((index, Ending::Orbit(orbit))) => {
-                writeln!(lines, "orbit,{index},{},{}", orbit.revolutions, orbit.impacts().count())
-            }
-            Some((index, ending)) => writeln!(lines, "{},{index},,", ending.name()),
+    let mut lines = String::from("position_m,velocity_m_s,ending,part,revolutions,impacts\n");
+    for (index, part) in basins.cells.iter().enumerate() {
+        let State { position, velocity } = basins.grid.start(index);
+        let ending = part.map(|part| &basins.parts[part].ending);
+        let orbit = ending.and_then(|ending| if let Ending::Orbit(orbit) = ending { Some(orbit) } else { None });
+        let (name, part) = (ending.map_or("", Ending::name), cell(*part));
+        let (turns, impacts) = (cell(orbit.map(|o| o.revolutions)), cell(orbit.map(|o| o.impacts().count())));
+        let _ = writeln!(lines, "{position},{velocity},{name},{part},{turns},{impacts}");
+    }
+    lines
+}
+
+/// Every orbit of every branch: of its impacts the first, where the state is that right after it; of an orbit without any,
+/// the state at angle 0.
+pub fn branches(parameter: &str, branches: &[Branch]) -> String {
+    let mut lines = String::from(
+        "rpm,parameter,value,revolutions,impacts,cam_angle_rad,position_m,velocity_m_s,multiplier_1_re,multiplier_1_im,\
+         multiplier_2_re,multiplier_2_im,stable,special,branch,jump_order,bracket_low,bracket_high,special_residual\n",
+    );
+    let points = branches.iter().zip(1..).flat_map(|(branch, index)| branch.points.iter().map(move |p| (index, p)));
+    for (index, point) in points {
+        let (rpm, value, orbit, special) = (point.rpm, point.value, &point.orbit, point.special);
+        let (turns, stable, impacts) = (orbit.revolutions, orbit.is_stable(), orbit.impacts().count());
+        let first = orbit.impacts().next().map(|first| (first.cam_angle, first.position, first.velocity_after));
+        let (angle, position, velocity) = first.unwrap_or((0.0, orbit.state.position, orbit.state.velocity));
+        let order = match special.map(|special| special.kind) {
+            Some(Kind::Corner { jump_order, .. }) => Some(jump_order),
+            _ => None,
         };
+        let (order, low) = (cell(order), cell(special.map(|special| special.bracket[0])));
+        let (high, residual) = (cell(special.map(|special| special.bracket[1])), cell(special.map(|s| s.residual)));
+        let (special, both) = (special.map_or("", |special| special.kind.name()), multipliers(orbit.multipliers()));
+        let _ = write!(lines, "{rpm},{parameter},{value},{turns},{impacts},{angle},{position},{velocity},{both},");
+        let _ = writeln!(lines, "{stable},{special},{index},{order},{low},{high},{residual}");
+    }
+    lines
+}
+
+/// Every corner impact of every curve.
+pub fn curves(parameter: &str, curves: &[ImpactCurve]) -> String {
+    let mut lines = String::from(
+        "rpm,parameter,value,revolutions,impacts,cam_angle_rad,jump_order,scenario,multiplier_minus_1_re,\
+         multiplier_minus_1_im,multiplier_minus_2_re,multiplier_minus_2_im,multiplier_plus_1_re,multiplier_plus_1_im,\
+         multiplier_plus_2_re,multiplier_plus_2_im,special,curve\n",
+    );
+    let impacts =
+        curves.iter().zip(1..).flat_map(|(curve, index)| curve.impacts.iter().map(move |i| (curve, index, i)));
+    for (curve, index, impact) in impacts {
+        let (rpm, value, angle, turns) = (impact.rpm, impact.value, impact.cam_angle, impact.revolutions);
+        let (count, order, happening) = (impact.impacts, curve.at.jump_order, impact.happening);
+        let _ = write!(lines, "{rpm},{parameter},{value},{turns},{count},{angle},{order},{happening}");
+        impact.multipliers.iter().for_each(|value| lines.extend([format!(",{},{}", value.re, value.im)]));
+        let _ = writeln!(lines, ",{},{index}", impact.special.map_or("", |special| special.kind.name()));
     }
     lines
 }

@@ -205,7 +205,7 @@ pub fn text(words: &Words) -> String {
 }
 
 /// Lines that break at spaces only, as late as they can; a word that is longer than the room stays whole.
-fn options<'a>(width: usize) -> Options<'a> {
+pub(crate) fn options<'a>(width: usize) -> Options<'a> {
     Options::new(width)
         .break_words(false)
         .word_separator(WordSeparator::AsciiSpace)
