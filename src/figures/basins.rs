@@ -21,7 +21,7 @@ pub fn basins_figure(title: &str, basins: &Basins, stable: &[State], saddles: &[
     for row in 0..rows {
         for column in 0..columns {
             let (right, up) = (place(column, columns), place(row, rows));
-            let cell = ((up * grid.rows as f64) as usize) * grid.columns + (right * grid.columns as f64) as usize;
+            let cell = ((up * grid.cells[1] as f64) as usize) * grid.cells[0] + (right * grid.cells[0] as f64) as usize;
             let Some(part) = basins.cells[cell] else { continue };
             areas[part.min(COLOURS.len() - 1)].push(x[0] + right * (x[1] - x[0]), y[0] + up * (y[1] - y[0]));
         }

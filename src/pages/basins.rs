@@ -8,7 +8,7 @@ impl Paged for Summary {
     fn blocks(&self) -> Vec<Block> {
         let Self { model, rpm, basins, wall_s, .. } = self;
         let angle = basins.grid.cam_angle.to_degrees();
-        let mut lines = vec![format!("{model} at {rpm} rpm, {} starts at {angle:.4} deg", basins.starts())];
+        let mut lines = vec![format!("{model} at {rpm} rpm, {} starts at {angle:.4} deg", basins.starts)];
         for part in &basins.parts {
             let orbit = match &part.ending {
                 Ending::Orbit(orbit) => {

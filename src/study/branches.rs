@@ -1,14 +1,12 @@
 //! Where orbits go when a number changes: branches of them, the points that they pass, and what runs settle on.
 
-use super::{StudyError, inside};
-use crate::cam::Cam;
+use super::{StudyError, inside, machine};
 use crate::diagram::settled_impacts;
 use crate::draw::Density;
 use crate::model::Model;
 use crate::orbit::branch::{Branch, Following};
 use crate::orbit::{Family, Parameter, Search, search};
 use crate::progress::Watch;
-use crate::simulate::{Machine, angular_velocity};
 
 /// The branches through the orbits of one speed.
 #[derive(Clone, Debug)]
@@ -30,7 +28,7 @@ pub fn branches<'a>(
     watch: &dyn Watch,
 ) -> Result<Branches<'a>, StudyError> {
     let value = inside(model, from_rpm, &following)?;
-    let machine = Machine::new(Cam::new(model)?, &model.follower, angular_velocity(from_rpm));
+    let machine = machine(model, from_rpm)?;
     watch.at("looking for periodic orbits", 0, 0);
     let orbits = search(&machine, wanted)?;
     if orbits.is_empty() {

@@ -14,10 +14,11 @@ pub mod verify;
 
 use serde::Serialize;
 
+use crate::cam::Cam;
 use crate::model::{Model, ModelError};
 use crate::orbit::branch::Following;
 use crate::orbit::{FamilyError, OrbitError};
-use crate::simulate::SimulateError;
+use crate::simulate::{Machine, SimulateError, angular_velocity};
 
 /// Which model a finding is about.
 #[derive(Clone, Debug, Serialize)]
@@ -92,6 +93,11 @@ pub enum StudyError {
     /// No starts were named, and the machine has none of its own.
     #[error("no range to put starts in: give --position and --velocity")]
     NoStarts,
+}
+
+/// The machine of a model at a speed, rpm.
+fn machine(model: &Model, rpm: f64) -> Result<Machine, ModelError> {
+    Ok(Machine::new(Cam::new(model)?, &model.follower, angular_velocity(rpm)))
 }
 
 /// The value of what is followed where it is looked for, which must be within its range.

@@ -2,14 +2,12 @@
 
 use serde::Serialize;
 
-use super::StudyError;
-use crate::cam::Cam;
+use super::{StudyError, machine};
 use crate::flight::State;
 use crate::known::Complete;
 use crate::model::Model;
 use crate::orbit::settle::near;
 use crate::orbit::{PeriodicOrbit, Search, search};
-use crate::simulate::{Machine, angular_velocity};
 
 /// The periodic orbits of a model at a speed: the document of `orbit --json`.
 #[derive(Clone, Debug, Serialize)]
@@ -38,7 +36,7 @@ pub enum Wanted {
 
 /// Looks for the periodic orbits of a model at `speed_rpm`.
 pub fn orbits(model: &Model, speed_rpm: f64, wanted: Wanted) -> Result<Orbits, StudyError> {
-    let machine = Machine::new(Cam::new(model)?, &model.follower, angular_velocity(speed_rpm));
+    let machine = machine(model, speed_rpm)?;
     let complete = match &wanted {
         Wanted::All(wanted) => wanted.complete().into_iter().collect(),
         Wanted::Near(..) => Vec::new(),

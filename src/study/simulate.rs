@@ -6,12 +6,11 @@ use std::time::{Duration, Instant};
 
 use serde::Serialize;
 
-use super::StudyError;
-use crate::cam::Cam;
+use super::{StudyError, machine};
 use crate::diagram::{Start, growth_and_error};
 use crate::model::Model;
 use crate::progress::Watch;
-use crate::simulate::{Event, EventKind, Goal, Machine, Motion, angular_velocity};
+use crate::simulate::{Event, EventKind, Goal, Machine, Motion};
 
 /// A machine at a speed, and the motion that begins there.
 #[derive(Clone, Debug)]
@@ -115,7 +114,7 @@ const PATIENCE: u64 = 100_000;
 impl Simulation {
     /// The motion of a model at a speed from a start.
     pub fn new(model: &Model, rpm: f64, start: Start) -> Result<Self, StudyError> {
-        let machine = Machine::new(Cam::new(model)?, &model.follower, angular_velocity(rpm));
+        let machine = machine(model, rpm)?;
         let first = start.motion(&machine)?;
         Ok(Self { model: model.name.clone(), rpm, machine, first })
     }

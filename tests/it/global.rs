@@ -143,7 +143,7 @@ fn the_chaotic_motion_is_lost_where_the_manifolds_touch() {
 #[test]
 fn basins_do_not_depend_on_threads() {
     let map = map(&common::osorio(), 678.0);
-    let grid = Grid { cam_angle: SECTION, positions: [0.0, 6.0], velocities: [-60.0, 60.0], columns: 16, rows: 9 };
+    let grid = Grid { cam_angle: SECTION, positions: [0.0, 6.0], velocities: [-60.0, 60.0], cells: [16, 9] };
     let one = grid.basins(&map.machine, Patience::default(), Some(1)).unwrap();
     assert_eq!(one, grid.basins(&map.machine, Patience::default(), Some(3)).unwrap());
     let Ending::Orbit(orbit) = &one.parts[0].ending else { panic!("{:?}", one.parts) };
@@ -151,10 +151,10 @@ fn basins_do_not_depend_on_threads() {
     assert_eq!(one.parts[1].ending, Ending::Chaotic);
     let share = one.parts[0].share;
     assert!((share - 0.6).abs() < 0.1, "{share}");
-    assert_eq!(one.parts[0].standard_error, (share * (1.0 - share) / one.starts() as f64).sqrt());
+    assert_eq!(one.parts[0].standard_error, (share * (1.0 - share) / one.starts as f64).sqrt());
     // The first column, at 0.19 m, is below the cam.
     assert!(one.cells.iter().filter(|cell| cell.is_none()).count() == 9, "{:?}", one.cells);
-    assert_eq!(one.starts(), 15 * 9);
+    assert_eq!(one.starts, 15 * 9);
     for cell in [20, 77, 140] {
         let motion = map.machine.start(SECTION, grid.start(cell));
         let part = motion.ok().map(|motion| ending(&map.machine, motion, Patience::default()).unwrap());

@@ -12,18 +12,19 @@ use crate::progress::{Unwatched, Watch};
 use crate::simulate::{Machine, SimulateError};
 
 /// Starts on the section at one cam angle: the middles of cells, evenly spaced in position and velocity.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Grid {
     /// The section, rad, in `[0, 2 pi)`.
+    #[serde(rename = "cam_angle_rad")]
     pub cam_angle: f64,
     /// Positions, m: the outer edges of the first and the last cell.
+    #[serde(rename = "position_m")]
     pub positions: [f64; 2],
     /// Velocities, m/s.
+    #[serde(rename = "velocity_m_s")]
     pub velocities: [f64; 2],
-    /// Cells along the positions, 1 or more.
-    pub columns: usize,
-    /// Cells along the velocities, 1 or more.
-    pub rows: usize,
+    /// How many along the positions and along the velocities, 1 or more.
+    pub cells: [usize; 2],
 }
 
 impl Grid {
@@ -32,12 +33,13 @@ impl Grid {
 
     /// The start of a cell, counted row by row, from the lowest velocity up and from the lowest position on.
     pub fn start(&self, cell: usize) -> State {
+        let [columns, rows] = self.cells;
         let middle = |[low, high]: [f64; 2], index: usize, count: usize| {
             low + (high - low) * ((index as f64 + 0.5) / count as f64)
         };
         State {
-            position: middle(self.positions, cell % self.columns, self.columns),
-            velocity: middle(self.velocities, cell / self.columns, self.rows),
+            position: middle(self.positions, cell % columns, columns),
+            velocity: middle(self.velocities, cell / columns, rows),
         }
     }
 
@@ -59,7 +61,7 @@ impl Grid {
             builder = builder.num_threads(threads);
         }
         let pool = builder.build().map_err(|error| GridError::Threads(error.to_string()))?;
-        let (done, total) = (AtomicU64::new(0), (self.columns * self.rows) as u64);
+        let (done, total) = (AtomicU64::new(0), self.cells.iter().product::<usize>() as u64);
         let one = |cell: usize| {
             watch.at("runs", done.fetch_add(1, Ordering::Relaxed), total);
             let state = self.start(cell);
@@ -71,7 +73,7 @@ impl Grid {
             ending(machine, motion, patience).map(Some).map_err(|error| GridError::Simulate { state, error })
         };
         let found: Result<Vec<Option<Ending>>, GridError> =
-            pool.install(|| (0..self.columns * self.rows).into_par_iter().map(one).collect());
+            pool.install(|| (0..self.cells.iter().product()).into_par_iter().map(one).collect());
         Ok(Basins::new(*self, found?))
     }
 }
@@ -122,27 +124,19 @@ pub struct Part {
     pub standard_error: f64,
 }
 
-impl Serialize for Basins {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut basins = serializer.serialize_struct("Basins", 6)?;
-        basins.serialize_field("cam_angle_rad", &self.grid.cam_angle)?;
-        basins.serialize_field("position_m", &self.grid.positions)?;
-        basins.serialize_field("velocity_m_s", &self.grid.velocities)?;
-        basins.serialize_field("cells", &[self.grid.columns, self.grid.rows])?;
-        basins.serialize_field("starts", &self.starts())?;
-        basins.serialize_field("endings", &self.parts)?;
-        basins.end()
-    }
-}
-
 /// What the starts of a grid end on.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Basins {
     /// The starts.
+    #[serde(flatten)]
     pub grid: Grid,
+    /// How many of them are above the cam.
+    pub starts: usize,
     /// The endings found, that of most starts first.
+    #[serde(rename = "endings")]
     pub parts: Vec<Part>,
     /// For each cell the index of its part; nothing where the start is below the cam.
+    #[serde(skip)]
     pub cells: Vec<Option<usize>>,
 }
 
@@ -159,7 +153,8 @@ impl Basins {
         }
         // Stable: among parts of one size the first found comes first.
         found.sort_by_key(|(_, starts)| std::cmp::Reverse(starts.len()));
-        let all = found.iter().map(|(_, starts)| starts.len()).sum::<usize>() as f64;
+        let starts = found.iter().map(|(_, starts)| starts.len()).sum::<usize>();
+        let all = starts as f64;
         let mut parts = Vec::with_capacity(found.len());
         for (index, (ending, starts)) in found.into_iter().enumerate() {
             starts.iter().for_each(|cell| cells[*cell] = Some(index));
@@ -167,11 +162,6 @@ impl Basins {
             let standard_error = (share * (1.0 - share) / all).sqrt();
             parts.push(Part { ending, starts: starts.len(), share, standard_error });
         }
-        Self { grid, parts, cells }
-    }
-
-    /// Starts above the cam.
-    pub fn starts(&self) -> usize {
-        self.parts.iter().map(|part| part.starts).sum()
+        Self { grid, starts, parts, cells }
     }
 }

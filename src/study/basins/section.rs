@@ -3,13 +3,11 @@
 use serde::Serialize;
 
 use super::{Basins, Curve, Ending, Extent, Grid, Reversed, Saddle};
-use crate::cam::Cam;
 use crate::flight::State;
 use crate::model::{Follower, Model};
 use crate::orbit::{Course, PeriodicOrbit, Search, search};
 use crate::section::StroboscopicMap;
-use crate::simulate::{Machine, angular_velocity};
-use crate::study::StudyError;
+use crate::study::{StudyError, machine};
 
 /// What a grid of starts came to: the document of `basins --summary`.
 #[derive(Clone, Debug, Serialize)]
@@ -56,7 +54,7 @@ pub struct Border {
 impl Section {
     /// The section at `cam_angle`, rad, in `[0, 2 pi)`.
     pub fn new(model: &Model, rpm: f64, cam_angle: f64) -> Result<Self, StudyError> {
-        let machine = Machine::new(Cam::new(model)?, &model.follower, angular_velocity(rpm));
+        let machine = machine(model, rpm)?;
         let orbits = search(&machine, &Search { revolutions: 1, impacts: Some(1) })?;
         Ok(Self { follower: model.follower, map: StroboscopicMap { machine, cam_angle }, orbits })
     }
@@ -73,7 +71,7 @@ impl Section {
     /// does, and the velocities over three times the range of the orbits' and the cam's.
     pub fn grid(
         &self,
-        [columns, rows]: [usize; 2],
+        cells: [usize; 2],
         positions: Option<[f64; 2]>,
         velocities: Option<[f64; 2]>,
     ) -> Result<Grid, StudyError> {
@@ -89,7 +87,7 @@ impl Section {
         let positions = positions.unwrap_or([lift.value, lift.value + 2.0 * (highest - lift.value)]);
         let velocities = velocities.unwrap_or([range[0] - span, range[1] + span]);
         let is_range = |[low, high]: [f64; 2]| low < high && (high - low).is_finite();
-        let grid = Grid { cam_angle: *cam_angle, positions, velocities, columns, rows };
+        let grid = Grid { cam_angle: *cam_angle, positions, velocities, cells };
         if is_range(positions) && is_range(velocities) { Ok(grid) } else { Err(StudyError::NoStarts) }
     }
 

@@ -5,12 +5,13 @@ use std::cell::RefCell;
 use serde::Serialize;
 use serde::ser::{SerializeStruct, Serializer};
 
-use super::run::{LONGER, between, long_run, machine};
+use super::run::{LONGER, between, long_run};
 use super::{Care, Regime, RegimeError, Settled};
 use crate::model::Model;
 use crate::orbit::Parameter;
 use crate::orbit::branch::{Branch, Following, Kind, Special};
 use crate::simulate::{Machine, Motion};
+use crate::study::machine;
 use crate::tolerance;
 
 /// A change of the motion between two speeds.

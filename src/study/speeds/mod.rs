@@ -18,6 +18,7 @@ use crate::model::{Model, ModelError};
 use crate::orbit::{Course, OrbitError, PeriodicOrbit};
 use crate::progress::Watch;
 use crate::simulate::SimulateError;
+use crate::study::machine;
 pub use change::{Cause, Change};
 pub use run::detachment;
 
@@ -208,7 +209,7 @@ pub fn usual_speeds(model: &Model) -> [f64; 2] {
 
 /// Walks through `rpm` upwards and downwards, told to `watch` speed by speed.
 pub fn regimes(model: &Model, rpm: [f64; 2], care: Care, watch: &dyn Watch) -> Result<Regimes, RegimeError> {
-    let machine = run::machine(model, rpm[0])?;
+    let machine = machine(model, rpm[0])?;
     let detachment_rpm = detachment(model, rpm)?;
     let (done, total) = (AtomicU64::new(0), 2 * care.speeds as u64);
     let passed = || watch.at("other speeds", done.fetch_add(1, Ordering::Relaxed) + 1, total);

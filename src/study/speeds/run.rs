@@ -3,22 +3,17 @@
 use std::ops::ControlFlow;
 
 use super::{Care, Regime, RegimeError, Settled};
-use crate::cam::Cam;
 use crate::diagram::growth;
 use crate::model::Model;
 use crate::orbit::settle::settled;
 use crate::simulate::{Event, Machine, Motion, SimulateError, angular_velocity};
+use crate::study::machine;
 use crate::tolerance;
 
 /// Revolutions over which the growth of a deviation is averaged.
 const AVERAGED: u64 = 400;
 /// How much longer a run is at most next to a change, if it neither repeats nor is chaotic.
 pub(super) const LONGER: u64 = 4;
-
-/// The machine of a model at a speed, rpm.
-pub(super) fn machine(model: &Model, rpm: f64) -> Result<Machine, RegimeError> {
-    Ok(Machine::new(Cam::new(model)?, &model.follower, angular_velocity(rpm)))
-}
 
 /// Where the follower first leaves the cam between two speeds, rpm; `None` where it leaves at the lower already, or at
 /// neither.
