@@ -55,7 +55,7 @@ impl Quantity {
     }
 
     /// Whether it is A or B itself, of either side.
-    pub fn is_of_the_map(self) -> bool {
+    pub(crate) fn is_of_the_map(self) -> bool {
         matches!(self, Self::A(_) | Self::B(_))
     }
 }
@@ -100,7 +100,7 @@ pub fn compare(routes: [RouteName; 2], quantity: Quantity, entries: [&[f64]; 2],
 }
 
 /// The larger of two; not a number if either is not, which [`f64::max`] would pass over.
-pub fn worse(one: f64, other: f64) -> f64 {
+pub(crate) fn worse(one: f64, other: f64) -> f64 {
     if one.is_nan() || other.is_nan() { f64::NAN } else { one.max(other) }
 }
 
@@ -189,10 +189,10 @@ fn is_integrated(route: RouteName) -> bool {
 }
 
 /// An orbit by one route: name, x* and T*.
-pub type NamedOrbit = (RouteName, Vector2<f64>, f64);
+pub(crate) type NamedOrbit = (RouteName, Vector2<f64>, f64);
 
 /// Every pair of routes to the orbit.
-pub fn compare_orbits(orbits: &[NamedOrbit]) -> Vec<Agreement> {
+pub(crate) fn compare_orbits(orbits: &[NamedOrbit]) -> Vec<Agreement> {
     pairs(orbits)
         .flat_map(|((left, x, t), (right, y, u))| {
             let integrated = is_integrated(*left) || is_integrated(*right);
@@ -211,7 +211,7 @@ fn pairs<T>(items: &[T]) -> impl Iterator<Item = (&T, &T)> {
 
 /// The pairs of routes that one quantity was compared by.
 #[derive(Clone, Debug)]
-pub struct Pairs<'a> {
+pub(crate) struct Pairs<'a> {
     /// Which.
     pub quantity: Quantity,
     /// Every pair.
@@ -229,7 +229,7 @@ document!(Pairs<'_> as pairs {
 });
 
 /// Comparisons by quantity, in the order in which quantities come first.
-pub fn by_quantity(comparisons: &[Agreement]) -> Vec<Pairs<'_>> {
+pub(crate) fn by_quantity(comparisons: &[Agreement]) -> Vec<Pairs<'_>> {
     let used = |entry: &Agreement| {
         let used = entry.max_abs_diff / entry.bound.value;
         if used.is_nan() { f64::INFINITY } else { used }
@@ -250,7 +250,7 @@ pub fn by_quantity(comparisons: &[Agreement]) -> Vec<Pairs<'_>> {
 }
 
 /// The fewest decimals that every entry of A and B shares between any two routes; `None` for all digits.
-pub fn fewest_shared_decimals(comparisons: &[Agreement]) -> Option<u32> {
+pub(crate) fn fewest_shared_decimals(comparisons: &[Agreement]) -> Option<u32> {
     let maps = comparisons.iter().filter(|entry| entry.quantity.is_of_the_map());
     maps.filter_map(|entry| shared_decimals(entry.max_abs_diff)).min()
 }
