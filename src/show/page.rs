@@ -9,7 +9,7 @@ use std::fmt::{self, Write};
 use textwrap::core::display_width;
 use textwrap::{Options, WordSeparator, WordSplitter, WrapAlgorithm};
 
-use crate::show::block::{Block, Mark, Section, Span, Table, Words};
+use crate::show::block::{Block, Mark, Span, Table, Words};
 
 /// Columns of a page where nothing says how many there are.
 pub const WIDTH: usize = 100;
@@ -79,74 +79,44 @@ pub trait Paged {
 }
 
 impl Page {
-    /// An empty page of `width` columns.
-    pub fn new(width: usize) -> Self {
-        Self { width, text: String::new(), line: 0 }
-    }
-
-    /// Its columns.
-    pub fn width(&self) -> usize {
-        self.width
-    }
-
     /// A page of `blocks`.
     pub fn of(width: usize, blocks: &[Block]) -> Result<Self, fmt::Error> {
-        let mut page = Self::new(width);
+        let mut page = Self { width, text: String::new(), line: 0 };
         page.blocks(blocks)?;
         Ok(page)
     }
 
-    /// Writes words that stand out; within a line.
-    pub fn marked(&mut self, mark: Mark, words: &str) {
-        self.text.push_str(&mark.around(words));
-    }
-
-    /// A title and a line under it.
-    pub fn title(&mut self, text: &str) -> fmt::Result {
-        self.underlined(text, '=')
-    }
-
-    /// A heading and a line under it, after an empty one.
-    pub fn heading(&mut self, text: &str) -> fmt::Result {
-        writeln!(self)?;
-        self.underlined(text, '-')
-    }
-
+    /// Words that stand out and a line under them.
     fn underlined(&mut self, text: &str, rule: char) -> fmt::Result {
-        self.marked(Mark::Heading, text);
+        self.text.push_str(&Mark::Heading.around(text));
         let length = display_width(text).min(self.width);
         writeln!(self, "\n{}", String::from(rule).repeat(length))
     }
 
     /// Text in lines that fit, indented.
-    pub fn paragraph_at(&mut self, indent: usize, text: &str) -> fmt::Result {
+    fn paragraph(&mut self, indent: usize, text: &str) -> fmt::Result {
         let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
         lines(&text, self.width.saturating_sub(indent))
             .iter()
             .try_for_each(|line| writeln!(self, "{:indent$}{line}", ""))
     }
 
-    /// Sections one after the other.
-    pub fn sections<'a>(&mut self, sections: impl IntoIterator<Item = &'a Section>) -> fmt::Result {
-        sections.into_iter().try_for_each(|section| {
-            self.heading(&text(&section.title))?;
-            self.blocks(&section.blocks)
-        })
-    }
-
     /// Blocks one after the other.
-    pub fn blocks(&mut self, blocks: &[Block]) -> fmt::Result {
+    fn blocks(&mut self, blocks: &[Block]) -> fmt::Result {
         blocks.iter().try_for_each(|block| match block {
-            Block::Title(words) => self.title(&text(words)),
-            Block::Heading(words) => self.heading(&text(words)),
+            Block::Title(words) => self.underlined(&text(words), '='),
+            Block::Heading(words) => {
+                writeln!(self)?;
+                self.underlined(&text(words), '-')
+            }
             Block::Line(words) => writeln!(self, "{}", text(words)),
-            Block::Paragraph(indent, words) => self.paragraph_at(*indent, &text(words)),
-            Block::Note(words) => self.paragraph_at(2, &text(words)),
+            Block::Paragraph(indent, words) => self.paragraph(*indent, &text(words)),
+            Block::Note(words) => self.paragraph(2, &text(words)),
             Block::Entries(width, entries) => {
                 entries.iter().try_for_each(|(name, words)| self.entry(*width, &text(name), &text(words)))
             }
             Block::Table(table) => self.table(table),
-            Block::List(items) => items.iter().try_for_each(|words| self.paragraph_at(2, &text(words))),
+            Block::List(items) => items.iter().try_for_each(|words| self.paragraph(2, &text(words))),
             Block::Brief(blocks) => self.blocks(blocks),
             Block::Gap => writeln!(self),
             Block::Full(_) | Block::Details(..) | Block::Markup(_) => Ok(()),
@@ -241,7 +211,7 @@ const NARROWEST: usize = 18;
 
 impl Page {
     /// A table: with its gaps, or close together, or, where even that does not fit, in several tables or row by row.
-    pub fn table(&mut self, table: &Table) -> fmt::Result {
+    fn table(&mut self, table: &Table) -> fmt::Result {
         let Some(last) = table.columns.len().checked_sub(1) else { return Ok(()) };
         let heads: Vec<String> = table.columns.iter().map(|column| text(&column.head)).collect();
         let rows: Vec<Vec<String>> = table.rows.iter().map(|row| row.cells.iter().map(text).collect()).collect();
