@@ -110,7 +110,10 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         }
         Some(Target::Picture(canvas)) => {
             let mut shown = Shown::new(&sweep);
-            let take = |found: Places| Ok::<(), CommandError>(shown.take(&found));
+            let take = |found: Places| -> Result<(), CommandError> {
+                shown.take(&found);
+                Ok(())
+            };
             let swept = Swept::new(name, &sweep, threads, &progress, take)?;
             let (places, exponents) = shown.places();
             let (title, exponents) = (title(name, &sweep), arguments.lyapunov.then_some(exponents.as_slice()));

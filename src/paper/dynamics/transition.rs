@@ -82,7 +82,7 @@ pub(in crate::paper) fn impact_diagram(context: &Context<'_>) -> Decision {
     let evidence = format!(
         "one impact, in one place, at all of {} rpm: {one_line}; none such at 661, 665, 670, 673 rpm: {scattered}; nor at \
          740, 745, 750 rpm: {beyond}",
-        listed(&ABOVE)
+        listed(ABOVE)
     );
     decide(one_line && scattered && beyond, Verdict::Refuted, evidence)
 }
