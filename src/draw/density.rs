@@ -2,6 +2,8 @@
 
 use serde::{Serialize, Serializer};
 
+use super::layout::{LARGEST, widened};
+
 /// Cells across and up: three to a unit of a full-width figure, about 300 to the inch in print.
 const CELLS: [usize; 2] = [1800, 1200];
 
@@ -202,11 +204,9 @@ impl Cloud {
         if self.grid.is_some() {
             return;
         }
-        let drawn = self.kept.iter().map(|[_, y]| *y).filter(|y| y.abs() < super::layout::LARGEST);
-        let extent = drawn.fold(None, |extent: Option<[f64; 2]>, y| {
-            Some(extent.map_or([y, y], |[low, high]| [low.min(y), high.max(y)]))
-        });
-        let range = super::layout::widened(extent.unwrap_or([0.0, 1.0]), 0.02);
+        let drawn = self.kept.iter().map(|[_, y]| *y).filter(|y| y.abs() < LARGEST);
+        let [low, high] = super::extent(drawn);
+        let range = widened(if low <= high { [low, high] } else { [0.0, 1.0] }, 0.02);
         let mut grid = Density::new(self.x, range);
         for [x, y] in std::mem::take(&mut self.kept) {
             grid.push(x, y);

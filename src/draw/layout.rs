@@ -141,43 +141,40 @@ fn valid(range: Option<[f64; 2]>) -> Option<[f64; 2]> {
         .filter(|range| widened(*range, 0.0) == *range)
 }
 
+/// The extent of values, where there are any.
+fn known(values: impl IntoIterator<Item = f64>) -> Option<[f64; 2]> {
+    Some(super::extent(values)).filter(|[low, high]| low <= high)
+}
+
 /// The extent of what can be drawn of a panel's series in one direction.
 fn extent(panel: &Panel, direction: usize) -> Option<[f64; 2]> {
-    let join = |one: Option<[f64; 2]>, low: f64, high: f64| {
-        Some(one.map_or([low, high], |[least, most]| [least.min(low), most.max(high)]))
-    };
     let drawable = |point: &&[f64; 2]| point.iter().all(|part| part.abs() < LARGEST);
-    panel.series.iter().fold(None, |found, series| match &series.data {
+    let extents = panel.series.iter().filter_map(|series| match &series.data {
         Data::Line { points, .. }
         | Data::Arrow { points, .. }
         | Data::Area { points, .. }
-        | Data::Points { points, .. } => {
-            points.iter().filter(drawable).fold(found, |found, point| join(found, point[direction], point[direction]))
-        }
-        Data::Density(density) | Data::Region { cells: density, .. } if density.occupied() > 0 => {
-            let [low, high] = density.ranges()[direction];
-            join(found, low, high)
+        | Data::Points { points, .. } => known(points.iter().filter(drawable).map(|point| point[direction])),
+        Data::Density(density) | Data::Region { cells: density, .. } => {
+            (density.occupied() > 0).then(|| density.ranges()[direction])
         }
         // Words stand at what is drawn.
-        Data::Density(_) | Data::Region { .. } | Data::Words(_) => found,
-    })
+        Data::Words(_) => None,
+    });
+    known(extents.flatten())
 }
 
 /// Nothing where there is neither a range nor data.
 fn vertical_range(panel: &Panel) -> Option<[f64; 2]> {
     valid(panel.y.range).or_else(|| {
-        let data = extent(panel, 1);
         let marks = panel.marks.iter().map(|mark| mark.at).filter(|at| at.abs() < LARGEST);
-        let both = marks.fold(data, |found, at| found.map(|[low, high]| [low.min(at), high.max(at)]));
-        both.map(|range| widened(range, 0.07))
+        known(marks.chain(extent(panel, 1)?)).map(|range| widened(range, 0.07))
     })
 }
 
 fn horizontal_range(figure: &Figure) -> Option<[f64; 2]> {
     valid(figure.x.range).or_else(|| {
-        let data = figure.panels.iter().filter_map(|panel| extent(panel, 0));
-        let both = data.reduce(|[low, high], [least, most]| [low.min(least), high.max(most)]);
-        both.map(|range| widened(range, 0.02))
+        let extents = figure.panels.iter().filter_map(|panel| extent(panel, 0));
+        known(extents.flatten()).map(|range| widened(range, 0.02))
     })
 }
 

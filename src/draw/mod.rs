@@ -124,6 +124,12 @@ impl Mark {
 /// In the points of a line: where it is broken.
 pub(crate) const BREAK: [f64; 2] = [f64::NAN; 2];
 
+/// The least and the greatest of some values; upside down where there are none.
+pub(crate) fn extent(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
+    let none = [f64::INFINITY, f64::NEG_INFINITY];
+    values.into_iter().fold(none, |[low, high], value| [low.min(value), high.max(value)])
+}
+
 /// Data drawn in one way.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Series {

@@ -35,6 +35,9 @@ pub enum PngError {
     Pack(String),
 }
 
+/// Stands for the raised minus, which the letters lack: one letter from other letters would take its whole line there.
+const RAISED_MINUS: &str = r#"<tspan baseline-shift="35%" font-size="70%">−</tspan>"#;
+
 /// What is drawn over the layers before it.
 enum Paint {
     Drawing(Box<Tree>),
@@ -53,10 +56,13 @@ pub fn render(figure: &Figure, width: u32) -> Result<Vec<u8>, PngError> {
     if let Some(family) = family {
         fonts.set_sans_serif_family(family);
     }
-    // Only for what the first has no glyph of, such as a raised minus.
+    // Only for what the first has no glyph of: a model's name may have any.
     fonts.load_font_source(Source::Binary(Arc::new(epaint_default_fonts::HACK_REGULAR)));
     let layers = svg::write(figure, true)?.into_iter().map(|layer| match layer {
-        Layer::Drawing(text) => Tree::from_str(&text, &options).map(|tree| Paint::Drawing(Box::new(tree))),
+        Layer::Drawing(text) => {
+            let tree = Tree::from_str(&text.replace('⁻', RAISED_MINUS), &options);
+            tree.map(|tree| Paint::Drawing(Box::new(tree)))
+        }
         Layer::Grid(grid, colour, frame) => Ok(Paint::Grid(grid, colour, frame)),
     });
     let layers: Vec<Paint> = layers.collect::<Result<_, _>>()?;

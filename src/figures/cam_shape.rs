@@ -6,7 +6,7 @@
 use std::f64::consts::TAU;
 
 use crate::cam::{Arc, Cam, Corner, Law, Segment};
-use crate::draw::{Axis, BREAK, Beside, Colour, Figure, Marker, Panel, Series, Stroke, Word};
+use crate::draw::{Axis, BREAK, Beside, Colour, Figure, Marker, Panel, Series, Stroke, Word, extent};
 use crate::figures::cam::{corner_marks, corners_in_words, of_circles};
 use crate::figures::{Entry, drawn};
 
@@ -79,9 +79,7 @@ fn place(angle: f64, radius: f64) -> [f64; 2] {
 impl Outline {
     /// The outline of a cam.
     pub fn new(cam: &Cam) -> Self {
-        let lifts = cam.segments().iter().map(|segment| segment.bounds.lift);
-        let [low, high] = lifts
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], [least, most]| [low.min(least), high.max(most)]);
+        let [low, high] = extent(cam.segments().iter().flat_map(|segment| segment.bounds.lift));
         let stroke = high - low;
         // A radius that the lift would turn inside out, or to a needle, is none.
         let added = if low >= stroke { 0.0 } else { 2.0 * stroke - low };

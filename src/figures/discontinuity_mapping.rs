@@ -1,7 +1,7 @@
 //! The discontinuity mapping P_D next to the corner: an impact before it above, one after it below.
 
 use crate::cam::Side;
-use crate::draw::{Axis, BREAK, Beside, Colour, Figure, Marker, Panel, Series, Stroke, Word};
+use crate::draw::{Axis, BREAK, Beside, Colour, Figure, Marker, Panel, Series, Stroke, Word, extent};
 use crate::figures::composition::{Composition, Neighbour};
 use crate::figures::{Entry, drawn};
 
@@ -35,8 +35,7 @@ fn mapping(shown: &Composition, near: &Neighbour) -> Panel {
     let [before, after] = [&shown.before, &shown.after].map(|law| [0, 1].map(|part| scaled(&law[part])));
     let cam = [before[0].as_slice(), &after[0]].concat();
     let continued = [before[1].as_slice(), &[BREAK], &after[1]].concat();
-    let heights = cam.iter().map(|[_, c]| *c).chain([minus, plus]);
-    let [low, high] = heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], q| [low.min(q), high.max(q)]);
+    let [low, high] = extent(cam.iter().map(|[_, c]| *c).chain([minus, plus]));
     let room = 0.16 * (high - low);
     let range = [low - room, high + room];
     let [coming, going] = [&near.coming, &near.going].map(|line| [0, 1].map(|part| scaled(&line[part])));

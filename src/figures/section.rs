@@ -2,7 +2,7 @@
 //! the states of one long run there.
 
 use crate::draw::layout::widened;
-use crate::draw::{Axis, BREAK, Cloud, Colour, Data, Density, Figure, Marker, Panel, Series};
+use crate::draw::{Axis, BREAK, Cloud, Colour, Data, Density, Figure, Marker, Panel, Series, extent};
 use crate::figures::trace::TRANSIENT;
 use crate::figures::{Entry, Fast, SPEED, Subject, by_stability, drawn, position};
 use crate::flight::State;
@@ -73,7 +73,7 @@ fn section_diagram(title: &str, runs: Density, branches: &[Crossings], corner: [
     let [rpm, all] = runs.ranges();
     let shown = |[speed, _]: &&[f64; 2]| (rpm[0]..=rpm[1]).contains(speed);
     let heights = branches.iter().flat_map(|line| &line.points).chain([&corner]).filter(shown).map(|[_, q]| *q);
-    let all = widened(heights.fold(all, |[low, high], q| [low.min(q), high.max(q)]), 0.03);
+    let all = widened(extent(heights.chain(all)), 0.03);
     let mut series = vec![Series::new("runs", Colour::Grey, Data::Density(runs))];
     series.extend(by_stability(["stable", "unstable"], |stable| {
         let lines = branches.iter().filter(|line| line.stable == stable);
@@ -86,10 +86,7 @@ fn section_diagram(title: &str, runs: Density, branches: &[Crossings], corner: [
 
 /// The states of a long run at the section; and where an orbit that is gone was, if that is among them.
 fn attractor(title: &str, states: &[State], gone: State) -> Figure {
-    let ends = |value: fn(&State) -> f64| {
-        let all = states.iter().map(value);
-        widened(all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)]), 0.03)
-    };
+    let ends = |value: fn(&State) -> f64| widened(extent(states.iter().map(value)), 0.03);
     let (x, y) = (ends(|state| state.position), ends(|state| state.velocity));
     let mut cloud = Density::new(x, y);
     states.iter().for_each(|state| cloud.push(state.position, state.velocity));

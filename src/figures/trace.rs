@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::draw::{Axis, Colour, Data, Figure, Marker, Panel, Series, Stroke};
+use crate::draw::{Axis, Colour, Data, Figure, Marker, Panel, Series, Stroke, extent};
 use crate::figures::cam::corner_marks;
 use crate::figures::{Drawn, Entry, Subject, drawn};
 use crate::section::{self, Sample};
@@ -196,7 +196,6 @@ pub fn time_trace(title: &str, run: &Run) -> Figure {
         Panel::new(Axis::new("position", "m"), 0.34, positions),
         Panel::new(Axis::new("gap q − c", "m"), 0.2, gap).with_zero(),
     ];
-    let along = || line(|_| 0.0).map(|[x, _]| x).filter(|x| x.is_finite());
-    let ends = [along().fold(f64::INFINITY, f64::min), along().fold(f64::NEG_INFINITY, f64::max)];
+    let ends = extent(line(|_| 0.0).map(|[x, _]| x).filter(|x| x.is_finite()));
     Figure::new(title, Axis::new("revolutions of the cam", "").over(ends), panels)
 }

@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 
 use serde::Serialize;
 
-use crate::draw::Spacing;
 use crate::draw::ticks::{ticks, unit};
+use crate::draw::{Spacing, extent};
 use crate::figures::through_corner::{Moment, Place, Run, Shown};
 use crate::figures::{CornerMark, ThroughCorner};
 use crate::orbit::Eigenvalue;
@@ -299,10 +299,6 @@ fn is_finite(moment: &Moment) -> bool {
     let run =
         |run: &Run| run.impacts.iter().chain(run.paths.iter().flatten().flatten()).all(|number| number.is_finite());
     moment.rpm.is_finite() && moment.orbits.iter().all(orbit) && run(&moment.slowing) && run(&moment.speeding)
-}
-
-fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
 }
 
 impl AxisEntry {
