@@ -166,6 +166,7 @@ fn followers_that_nothing_brings_back() {
 
 /// Cams that bend a million million times as sharply as they are large, and speeds at both ends of what is allowed.
 #[test]
+#[ignore = "slow"]
 fn extreme_cams_and_speeds() {
     let cams = [
         program(0.2, &[("dwell", 180.0, 0.0), ("parabolic", 1e-4, 1.0), ("parabolic", 180.0 - 1e-4, -1.0)]),

@@ -59,6 +59,7 @@ fn every_orbit_found_closes() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn every_point_of_a_branch_closes() {
     static FOUND: [AtomicU32; 2] = [AtomicU32::new(0), AtomicU32::new(0)];
     check(25, |case| {

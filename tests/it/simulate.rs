@@ -135,6 +135,7 @@ fn impacts_are_those_of_a_fine_scan() {
 
 /// A toothed cam, one segment all round: over one window the gap bends up and down many times.
 #[test]
+#[ignore = "slow"]
 fn impacts_on_a_toothed_cam_are_those_of_a_fine_scan() {
     let mut impacts = 0;
     for (stiffness, gravity, damping) in [(400.0, 0.0, 0.0), (0.0, 9.81, 0.0), (3000.0, 1.0, 4.0), (900.0, 0.0, 80.0)] {

@@ -106,6 +106,7 @@ const PICTURES: [&str; 4] = [
 
 /// A device has no name to keep: what is written to it is lost at once, and said to be.
 #[test]
+#[ignore = "slow"]
 fn a_picture_on_a_full_device_is_an_error() {
     if !Path::new("/dev/full").exists() {
         return;
@@ -125,6 +126,7 @@ fn a_picture_on_a_full_device_is_an_error() {
 
 /// A file that may not grow as far as it has to, as on a full disk: the one that was there stays.
 #[test]
+#[ignore = "slow"]
 fn a_picture_without_room_leaves_the_old_one() {
     let program = env!("CARGO_BIN_EXE_corner-impact");
     for line in
