@@ -1,578 +1,527 @@
-//! Can the figures be read: ticks, labels, lines and clouds, from any data, in a small file?
+//! Are the report's figures there, in the paper's order, for any model; are their numbers the paper's; and does
+//! `corner-impact figure` list them, draw one, and say why there is none?
 
-use std::f64::consts::TAU;
+use std::f64::consts::PI;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
 
-use corner_impact::cam::Cam;
-use corner_impact::draw::layout::{Layout, TEXT, Text, WIDTH, width};
-use corner_impact::draw::ticks::{Tick, ticks, unit};
-use corner_impact::draw::{
-    Axis, Cloud, Colour, Data, Density, Figure, Mark, Marker, Panel, Series, Spacing, Stroke, png, svg, thin,
-};
-use corner_impact::figures::{
-    CornerMark, Run, cam_figure, corner_marks, impact_diagram, phase_plane, strobe_diagram, time_trace,
-};
+use crate::common::ROOT;
+use approx::assert_relative_eq;
+use corner_impact::cam::Side;
+use corner_impact::cli::{Exit, run};
+use corner_impact::draw::layout::Layout;
+use corner_impact::draw::{Data, Figure, Series, svg};
+use corner_impact::figures::{Effort, Neighbour, Outline, Plate, Subject, listed, plate, plates};
 use corner_impact::flight::State;
 use corner_impact::model::{Model, OSORIO_2008};
-use corner_impact::section::Sample;
-use corner_impact::simulate::{Event, EventKind};
-use resvg::tiny_skia::Pixmap;
-use resvg::usvg::{Options, Tree, roxmltree::Document};
+use corner_impact::simulate::EventKind;
+use rayon::prelude::*;
 
-fn series(data: Data) -> Series {
-    Series { label: "f".into(), colour: Colour::Blue, data }
+/// An independent computation's values for the paper's model.
+const THETA_P: f64 = 2.62112450116623235;
+const OMEGA_STAR: f64 = 673.234445003848821;
+const X_STAR: f64 = 5.09700788184262174;
+const LIFT_P: f64 = 0.531255562019001;
+/// k/m, where the spring is slack, and r.
+const SPRING: f64 = 1430.8 / 1.221;
+const SLACK: f64 = 0.3;
+const RESTITUTION: f64 = 0.8;
+
+fn paper() -> Subject {
+    Subject::new(&Model::parse("osorio-2008.toml", OSORIO_2008).unwrap()).unwrap()
 }
 
-fn figure(data: Data) -> Figure {
-    let panel = Panel { y: Axis::new("up", "m"), height: 0.4, series: vec![series(data)], marks: vec![] };
-    Figure { title: "T".into(), x: Axis::new("across", "s"), marks: vec![], panels: vec![panel], note: String::new() }
+fn drawn(subject: &Subject, id: &str) -> Figure {
+    plate(subject, id).unwrap().drawn.unwrap().figure
 }
 
-fn line(points: Vec<[f64; 2]>) -> Data {
-    Data::Line { points, stroke: Stroke::Solid }
+fn points(data: &Data) -> &[[f64; 2]] {
+    match data {
+        Data::Line { points, .. } | Data::Area { points, .. } | Data::Arrow { points, .. } => points,
+        Data::Points { points, .. } => points,
+        Data::Words(_) | Data::Density(_) | Data::Region { .. } => &[],
+    }
 }
 
-fn parabola() -> Figure {
-    figure(line((0..100).map(|i| [f64::from(i), f64::from(i * i)]).collect()))
+/// The points of the series of this name in a panel, without breaks.
+fn series(figure: &Figure, panel: usize, label: &str) -> Vec<[f64; 2]> {
+    let found = figure.panels[panel].series.iter().find(|series| series.label == label);
+    let found = found.unwrap_or_else(|| panic!("{}: no series {label}", figure.title));
+    points(&found.data).iter().copied().filter(|[x, _]| !x.is_nan()).collect()
 }
 
-/// The SVG, after it was read as XML and as SVG.
-fn drawn(figure: &Figure) -> String {
+/// Whether a figure can be read: numbers, or breaks; something to see in each panel; a small file.
+fn check(plate: &Plate) {
+    let figure = &plate.drawn.as_ref().unwrap().figure;
+    let (id, layout) = (plate.id, Layout::new(figure));
+    for (panel, place) in figure.panels.iter().zip(&layout.panels) {
+        let mut seen = false;
+        for series in &panel.series {
+            for [x, y] in points(&series.data) {
+                assert!(x.is_nan() == y.is_nan() && !x.is_infinite() && !y.is_infinite(), "{id}: {x}, {y}");
+                let across = (layout.range[0]..=layout.range[1]).contains(x);
+                seen |= across && (place.range[0]..=place.range[1]).contains(y);
+            }
+            if let Data::Density(density) | Data::Region { cells: density, .. } = &series.data {
+                seen |= density.occupied() > 0;
+            }
+            if let Data::Words(words) = &series.data {
+                assert!(words.iter().all(|word| !word.text.is_empty() && word.at[0].is_finite()), "{id}: {words:?}");
+            }
+        }
+        assert!(seen, "{id}: nothing to see in {}", panel.y.label);
+    }
     let text = svg::render(figure).unwrap();
-    Document::parse(&text).unwrap();
-    Tree::from_str(&text, &Options::default()).unwrap();
-    text
-}
-
-fn texts(svg: &str) -> Vec<String> {
-    let document = Document::parse(svg).unwrap();
-    let texts = document.descendants().filter(|node| node.has_tag_name("text"));
-    texts.map(|node| node.text().unwrap_or_default().to_owned()).collect()
-}
-
-fn attribute<'a>(svg: &'a str, tag: &str, name: &str) -> Vec<&'a str> {
-    let tags = svg.split('<').filter(|part| part.starts_with(&format!("{tag} ")));
-    tags.filter_map(|part| part.split(&format!(" {name}=\"")).nth(1)?.split('"').next()).collect()
-}
-
-/// A made-up sweep: chaos below 673.2 rpm, a single line above.
-fn sweep(speeds: usize, impacts: usize, mut push: impl FnMut(f64, f64)) {
-    let mut x: f64 = 0.3;
-    for speed in 0..speeds {
-        let rpm = 660.0 + 90.0 * speed as f64 / speeds as f64;
-        for _ in 0..impacts {
-            x = 3.99 * x * (1.0 - x);
-            push(rpm, if rpm < 673.2 { 100.0 + 110.0 * x } else { 150.0 + 0.6 * (rpm - 673.2) });
-        }
-    }
-}
-
-/// Hops and rests by turns, 0.002 revolutions a sample, with impacts after 2 and after 6 tenths of a revolution.
-fn motion() -> Run {
-    let sample = |i: i32| {
-        let (turned, contact) = (0.3 + f64::from(i) * 0.002 * TAU, (i / 100) % 2 == 1);
-        let gap = if contact { 0.0 } else { (f64::from(i % 100) / 100.0 * TAU / 2.0).sin() * 0.02 };
-        let lift = 0.4 + 0.1 * turned.sin();
-        let velocity = (f64::from(i % 100) / 100.0 * TAU / 2.0).cos();
-        Sample { turned, state: State { position: lift + gap, velocity }, lift, cam_velocity: 0.0, gap, contact }
-    };
-    let impact = |turned: f64| Event {
-        kind: EventKind::Impact,
-        revolution: 0,
-        cam_angle: 0.3 + turned * TAU,
-        position: 0.45,
-        velocity_before: -1.0,
-        velocity_after: 1.0,
-        cam_velocity: 0.0,
-        segment: 0,
-    };
-    Run { rpm: 60.0, samples: (0..600).map(sample).collect(), events: [0.2, 0.6].map(impact).to_vec() }
-}
-
-#[test]
-fn ticks_are_round_and_inside() {
-    for range in
-        [[0.0, 1.0], [-3.7, 12.9], [0.4, 0.5537], [660.0, 750.0], [673.2344, 673.2345], [-2e-7, 5e-7], [0.0, 3e9]]
-    {
-        let found = ticks(range, Spacing::Decimal, 8, |_| true);
-        let at: Vec<f64> = found.ticks.iter().map(|tick| tick.at).collect();
-        assert!((3..=8).contains(&at.len()), "{range:?}: {at:?}");
-        assert!(at.iter().all(|at| (range[0]..=range[1]).contains(at)), "{range:?}: {at:?}");
-        let step = (at[1] - at[0]) / 10_f64.powf((at[1] - at[0]).log10().floor());
-        let nice = [1.0, 2.0, 5.0, 10.0].iter().any(|nice| (step / nice - 1.0).abs() < 1e-3);
-        assert!(nice, "{range:?}: {at:?}");
-        let labels: Vec<&str> = found.ticks.iter().map(|tick| tick.label.as_str()).collect();
-        for (tick, label) in found.ticks.iter().zip(&labels) {
-            let value: f64 = label.replace('−', "-").parse().unwrap();
-            let shown = value * 10_f64.powi(found.exponent);
-            assert!((shown - tick.at).abs() <= 1e-6 * (range[1] - range[0]), "{tick:?}");
-            assert_eq!(labels.iter().filter(|other| *other == label).count(), 1, "{labels:?}");
-            assert!(label.chars().count() <= 10, "{label}");
-        }
+    assert!(text.len() < 250_000, "{id}: {} bytes", text.len());
+    let paths = text.split(" d=\"").skip(1).filter_map(|rest| rest.split('"').next());
+    for path in paths {
+        assert!(!path.contains("NaN") && !path.contains("inf"), "{id}: {path}");
     }
 }
 
 #[test]
-fn angles_are_cut_into_parts_of_a_circle() {
-    let steps = |range, most| {
-        let found = ticks(range, Spacing::Degrees, most, |_| true).ticks;
-        found[1].at - found[0].at
-    };
-    assert_eq!(steps([0.0, 360.0], 13), 30.0);
-    assert_eq!(steps([0.0, 360.0], 9), 45.0);
-    assert_eq!(steps([0.0, 360.0], 7), 60.0);
-    assert_eq!(steps([0.0, 360.0], 5), 90.0);
-    assert_eq!(steps([90.0, 230.0], 10), 15.0);
-    assert_eq!(steps([149.0, 152.0], 8), 0.5);
-    assert_eq!(steps([0.0, 3600.0], 6), 720.0);
-}
-
-#[test]
-fn impossible_ranges_have_no_ticks() {
-    for range in [[0.0, 0.0], [1.0, 0.0], [f64::NAN, 1.0], [0.0, f64::INFINITY], [-1e308, 1e308]] {
-        assert!(ticks(range, Spacing::Decimal, 8, |_| true).ticks.is_empty(), "{range:?}");
-    }
-    // Labels that never fit end the search.
-    assert!(ticks([0.0, 1.0], Spacing::Degrees, 8, |_| false).ticks.len() <= 1);
-    assert_eq!(unit("m", -3), "10⁻³ m");
-    assert_eq!(unit("", 12), "10¹²");
-    assert_eq!(unit("rpm", 0), "rpm");
-}
-
-fn overlap(one: &Text, other: &Text) -> bool {
-    let apart = |text: &Text| (text.at[0], text.at[0] + width(&text.text, TEXT));
-    let ((left, right), (other_left, other_right)) = (apart(one), apart(other));
-    left < other_right && other_left < right && (one.at[1] - other.at[1]).abs() < TEXT
-}
-
-#[test]
-fn no_label_covers_another() {
-    for count in [2_usize, 6, 12] {
-        for spread in [0.5, 10.0, 340.0] {
-            let mark = |i: usize| Mark {
-                at: 5.0 + spread * i as f64 / count as f64,
-                label: format!("P{i} {:.1}°", 5.0 + spread * i as f64 / count as f64),
-            };
-            let marks: Vec<Mark> = (0..count).map(mark).collect();
-            let mut figure = figure(line(vec![[0.0, 0.0], [360.0, 360.0]]));
-            figure.x = Axis::degrees("angle").over([0.0, 360.0]);
-            figure.panels[0].y = Axis::degrees("phase").over([0.0, 360.0]);
-            figure.marks.clone_from(&marks);
-            figure.panels[0].marks = marks;
-            let layout = Layout::new(&figure);
-            let frame = layout.panels[0].frame;
-            let mut labels: Vec<Text> = layout.marks.iter().map(|mark| mark.label.clone().unwrap()).collect();
-            for (mark, label) in layout.marks.iter().map(|mark| (mark, mark.label.as_ref().unwrap())) {
-                let crossed = labels.iter().find(|other| {
-                    let inside = other.at[0] < mark.at && mark.at < other.at[0] + width(&other.text, TEXT);
-                    inside && other.at[1] >= label.at[1] && other.at != label.at
-                });
-                assert!(crossed.is_none(), "the line of {label:?} runs through {crossed:?}");
-            }
-            labels.extend(layout.panels[0].marks.iter().map(|mark| mark.label.clone().unwrap()));
-            labels.push(layout.panels[0].name.clone());
-            labels.extend(layout.panels[0].legend.iter().map(|(_, text)| text.clone()));
-            let tick = |tick: &Tick| {
-                let middle = frame.left + frame.width * tick.at / 360.0;
-                Text { at: [middle - width(&tick.label, TEXT) / 2.0, frame.bottom() + 20.0], text: tick.label.clone() }
-            };
-            labels.extend(layout.ticks.iter().map(tick));
-            for (index, label) in labels.iter().enumerate() {
-                assert!(label.at[0] >= 0.0 && label.at[0] + width(&label.text, TEXT) <= WIDTH, "{label:?}");
-                assert!(label.at[1] > TEXT && label.at[1] < layout.height, "{label:?}");
-                let covered = labels[index + 1..].iter().find(|other| overlap(label, other));
-                assert!(covered.is_none(), "{label:?} covers {covered:?}");
-            }
-        }
-    }
-}
-
-#[test]
-fn legends_wrap_instead_of_running_off_the_page() {
-    let mut figure = parabola();
-    let many = (0..9)
-        .map(|i| Series { label: format!("a rather long name, number {i}"), ..figure.panels[0].series[0].clone() });
-    figure.panels[0].series = many.collect();
-    let layout = Layout::new(&figure);
-    let panel = &layout.panels[0];
-    assert_eq!(panel.legend.len(), 9);
-    for (index, (_, label)) in panel.legend.iter().enumerate() {
-        assert!(label.at[0] + width(&label.text, TEXT) <= WIDTH, "{label:?}");
-        assert!(label.at[1] < panel.frame.top, "{label:?}");
-        assert!(panel.legend[index + 1..].iter().all(|(_, other)| !overlap(label, other)), "{label:?}");
-        assert!(!overlap(label, &panel.name), "{label:?}");
-    }
-}
-
-#[test]
-fn every_axis_says_its_name_and_unit() {
-    let model = Model::parse("osorio-2008.toml", OSORIO_2008).unwrap();
-    let figure = cam_figure(&Cam::new(&model).unwrap(), "The cam");
-    let texts = texts(&drawn(&figure));
-    for text in [
-        "The cam",
-        "lift c (m)",
-        "velocity dc/dθ (m/rad)",
-        "acceleration d²c/dθ² (m/rad²)",
-        "cam angle θ (deg)",
-        "P 150.2°",
-        "Q' 200.0°",
-        "R' 270.0°",
-        "360",
-        "0.55",
-        "−0.2",
-    ] {
-        assert!(texts.iter().any(|found| found == text), "{text}: {texts:?}");
-    }
-    // Small values bear their power of ten beside the unit.
-    let small = drawn(&self::figure(line(vec![[0.0, 0.0], [1.0, 4e-4]])));
-    assert!(small.contains("up (10⁻⁶ m)"), "{small}");
-}
-
-#[test]
-fn the_cam_is_drawn_with_its_jumps_left_open() {
-    let model = Model::parse("osorio-2008.toml", OSORIO_2008).unwrap();
-    let cam = Cam::new(&model).unwrap();
-    let figure = cam_figure(&cam, "");
-    for (order, (panel, breaks)) in figure.panels.iter().zip([0, 0, 6]).enumerate() {
-        let Data::Line { points, .. } = &panel.series[0].data else { panic!() };
-        assert_eq!(points.iter().filter(|point| point[0].is_nan()).count(), breaks);
-        for point in points.iter().filter(|point| !point[0].is_nan()) {
-            let on = |angle: f64| {
-                let lift = cam.lift(angle.to_radians().min(TAU - 1e-12));
-                [lift.value, lift.slope, lift.curvature][order]
-            };
-            let near = [-1e-7, 1e-7].map(|shift| (on((point[0] + shift).max(0.0)) - point[1]).abs());
-            assert!(near[0].min(near[1]) < 1e-6, "{order} {point:?}");
-        }
-    }
-    let names: Vec<String> = corner_marks(&cam).into_iter().map(|mark| mark.name).collect();
-    assert_eq!(names, ["R", "P", "Q", "Q'", "P'", "R'"]);
-    // Seven strokes in the panel of the acceleration, one in the others.
-    let strokes: Vec<usize> =
-        attribute(&drawn(&figure), "path", "d").iter().map(|path| path.matches('M').count()).collect();
-    assert!(strokes.contains(&7), "{strokes:?}");
-}
-
-#[test]
-fn nothing_to_draw_is_said() {
-    let nan = f64::NAN;
-    let density = |x, y| Data::Density(Density::new(x, y));
-    let mut outside = Density::new([0.0, 1.0], [0.0, 1.0]);
-    for (x, y) in [(2.0, 0.5), (nan, 0.5), (0.5, f64::INFINITY)] {
-        outside.push(x, y);
-    }
-    assert_eq!((outside.outside(), outside.occupied(), outside.extent()), (3, 0, None));
-    for data in [
-        line(vec![]),
-        line(vec![[nan, 1.0], [1.0, nan], [f64::INFINITY, f64::NEG_INFINITY]]),
-        Data::Area { points: vec![[nan, nan]], stroke: Stroke::Thin },
-        Data::Points { points: vec![[1e308, -1e308]], marker: Marker::Ring },
-        Data::Density(outside),
-        density([1.0, 0.0], [nan, 3.0]),
-        Data::Density(Cloud::new([0.0, 1.0]).finish()),
-    ] {
-        let figure = figure(data);
-        let svg = drawn(&figure);
-        assert!(svg.contains(">no data<"), "{svg}");
-        assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
-        assert!(png::render(&figure, 300).is_ok());
-    }
-    let empty = Run { rpm: 60.0, samples: vec![], events: vec![] };
-    assert_eq!(drawn(&time_trace("", &empty)).matches(">no data<").count(), 2);
-    let none = Figure { panels: vec![], ..parabola() };
-    assert!(drawn(&none).contains("<svg") && png::render(&none, 100).is_ok());
-    assert!(!drawn(&parabola()).contains("no data"));
-}
-
-#[test]
-fn wild_data_are_drawn_without_panic() {
-    let wild =
-        [0.0, -0.0, 1e-320, 5e-324, 1.0, -1.0, 1e300, -9e299, 1e308, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.1];
-    let points: Vec<[f64; 2]> = wild.iter().flat_map(|x| wild.iter().map(move |y| [*x, *y])).collect();
-    for range in [None, Some([1.0, 0.0]), Some([f64::NAN, 1.0]), Some([1.0, 1.0 + 1e-15]), Some([-1e-300, 1e-300])] {
-        for stroke in [Stroke::Thin, Stroke::Dashed, Stroke::Thick] {
-            let mut figure = figure(line(points.clone()));
-            figure.x.range = range;
-            figure.panels[0].y = Axis { range, ..Axis::degrees("φ") };
-            figure.panels[0].height = if stroke == Stroke::Thin { f64::NAN } else { 0.3 };
-            figure.panels[0].series.push(series(Data::Area { points: points.clone(), stroke }));
-            figure.panels[0].series.push(series(Data::Points { points: points.clone(), marker: Marker::Below }));
-            figure.marks = wild.iter().map(|at| Mark { at: *at, label: "m".into() }).collect();
-            figure.panels[0].marks.clone_from(&figure.marks);
-            let svg = drawn(&figure);
-            assert!(!svg.contains("NaN") && !svg.contains("inf"));
-        }
-    }
-    let mut cloud = Cloud::new([0.0, 1.0]);
-    for i in 0..10_000 {
-        cloud.push(0.5, wild[i % wild.len()]);
-    }
-    assert!(cloud.finish().occupied() > 0);
+fn the_figures_are_in_the_papers_order() {
+    let found: Vec<(&str, &str)> = listed(&paper()).iter().map(|figure| (figure.id, figure.place)).collect();
+    let wanted = [
+        ("cam-shape", "Figures 3(a) and 9"),
+        ("cam", "Figure 3(b)"),
+        ("slow-trace", "Figure 4(a) and (b)"),
+        ("slow-phase-plane", "Figure 4(c)"),
+        ("slow-impacts", "Figure 5(a)"),
+        ("interrupted-trace", "Figure 5(b)"),
+        ("fast-impacts", "Figure 5(c)"),
+        ("fast-section", "Figure 5(d)"),
+        ("corner-orbit", "Figure 5(e)"),
+        ("beyond-trace", "Figure 5(f)"),
+        ("beyond-attractor", ""),
+        ("composition", "Figure 6"),
+        ("discontinuity-mapping", "Figure 7"),
+        ("local-map", "Figure 8"),
+    ];
+    assert_eq!(found, wanted);
 }
 
 #[test]
 #[ignore = "slow"]
-fn a_million_points_stay_small() {
-    let mut grid = Density::new([660.0, 750.0], [90.0, 230.0]);
-    sweep(2000, 500, |rpm, phase| grid.push(rpm, phase));
-    assert!(grid.occupied() > 50_000, "{}", grid.occupied());
-    let mut noise = Density::new([0.0, 1.0], [0.0, 1.0]);
-    let mut state = 1_u64;
-    let mut random = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1_u64 << 53) as f64
-    };
-    (0..1_000_000).for_each(|_| noise.push(random(), random()));
-    let lines = |points: Vec<[f64; 2]>| svg::render(&figure(line(points))).unwrap().len();
-    let wave = |i: i32| [f64::from(i) * 1e-6, (f64::from(i) * 0.7).sin()];
-    for (what, size) in [
-        ("sweep", svg::render(&figure(Data::Density(grid))).unwrap().len()),
-        ("noise", svg::render(&figure(Data::Density(noise))).unwrap().len()),
-        ("fast wave", lines((0..1_000_000).map(wave).collect())),
-        ("tangle", lines((0..1_000_000).map(|_| [random(), random()]).collect())),
-        ("scatter", {
-            let points = (0..1_000_000).map(|_| [random(), random()]).collect();
-            svg::render(&figure(Data::Points { points, marker: Marker::Ring })).unwrap().len()
-        }),
-    ] {
-        assert!((5_000..1_000_000).contains(&size), "{what}: {size} bytes");
+fn the_papers_model_has_every_figure() {
+    let subject = paper();
+    let mut steps = Vec::new();
+    let plates = plates(&subject, &mut |done, of| steps.push((done, of)));
+    assert_eq!(steps, (0..=plates.len()).map(|done| (done, plates.len())).collect::<Vec<_>>());
+    let mut titles: Vec<&str> = plates.iter().map(|plate| plate.title.as_str()).collect();
+    titles.sort_unstable();
+    titles.dedup();
+    assert_eq!(titles.len(), plates.len(), "two figures of one title");
+    for plate in &plates {
+        let caption = &plate.drawn.as_ref().unwrap_or_else(|why| panic!("{}: {why}", plate.id)).caption;
+        let sentences = caption.matches(". ").count() + 1;
+        assert!(caption.ends_with('.') && (1..=3).contains(&sentences), "{}: {caption}", plate.id);
+        assert!(plate.command.starts_with("corner-impact figure ") && plate.command.contains(plate.id));
+        check(plate);
     }
 }
 
-/// A grid keeps what was pushed; a cloud keeps what it did not expect.
 #[test]
-fn grids_keep_every_point() {
-    let mut whole = Density::new([660.0, 750.0], [90.0, 230.0]);
-    sweep(200, 50, |rpm, phase| whole.push(rpm, phase));
-    let [low, high] = whole.extent().unwrap();
-    assert!((99.0..103.0).contains(&low) && (207.0..211.0).contains(&high), "{low} {high}");
-
-    let mut cloud = Cloud::new([0.0, 1.0]);
-    for i in 0..20_000 {
-        cloud.push(0.5, if i < 10_000 { f64::from(i % 10) } else { f64::from(i % 10) - 40.0 });
-    }
-    cloud.push(0.5, 300.0);
-    let grid = cloud.finish();
-    assert_eq!(grid.outside(), 0);
-    assert_eq!(grid.occupied(), 21);
-    let [low, high] = grid.extent().unwrap();
-    assert!((-41.0..=-40.0).contains(&low) && (300.0..=301.0).contains(&high), "{low} {high}");
-}
-
-/// Where it was pushed is where it is drawn: up is up, and a point that came often is darker.
-#[test]
-fn points_are_drawn_where_they_are() {
-    let mut grid = Density::new([0.0, 1.0], [0.0, 1.0]);
-    grid.push(0.25, 0.9);
-    (0..50).for_each(|_| grid.push(0.75, 0.9));
-    let of = |data: Data| {
-        let mut figure = figure(data);
-        figure.x.range = Some([0.0, 1.0]);
-        figure.panels[0].y.range = Some([0.0, 1.0]);
-        let frame = Layout::new(&figure).panels[0].frame;
-        let image = Pixmap::decode_png(&png::render(&figure, 2880).unwrap()).unwrap();
-        move |x: f64, y: f64| {
-            let at = [frame.left + frame.width * x, frame.bottom() - frame.height * y].map(|part| (4.0 * part) as u32);
-            image.pixel(at[0], at[1]).unwrap().red()
+#[ignore = "slow"]
+fn every_model_has_its_figures_or_a_reason() {
+    fn models(folder: &Path, found: &mut Vec<PathBuf>) {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                models(&path, found);
+            } else if path.extension().is_some_and(|extension| extension == "toml") {
+                found.push(path);
+            }
         }
-    };
-    let few = of(Data::Density(grid));
-    assert!(few(0.25, 0.9) < 255 && few(0.75, 0.9) < few(0.25, 0.9), "{} {}", few(0.25, 0.9), few(0.75, 0.9));
-    assert_eq!((few(0.25, 0.1), few(0.5, 0.9)), (255, 255));
-    let mut many = Density::new([0.0, 1.0], [0.0, 1.0]);
-    sweep(2000, 200, |rpm, phase| many.push((rpm - 660.0) / 90.0 * 0.5, 0.5 + (phase - 90.0) / 280.0));
-    assert!(many.occupied() > 25_000);
-    let many = of(Data::Density(many));
-    assert!(many(0.03, 0.6) < 250 && many(0.03, 0.4) == 255 && many(0.75, 0.75) == 255);
-    let line = of(line(vec![[0.0, 0.8], [1.0, 0.8]]));
-    assert!(line(0.5, 0.8) < 40 && line(0.5, 0.2) == 255);
-}
-
-/// In a PNG a grid is drawn by itself: within its frame, without a seam, over what comes before and under what comes after.
-#[test]
-fn a_grid_lies_between_what_is_below_and_above_it() {
-    let mut grid = Density::new([-1.0, 2.0], [-1.0, 2.0]);
-    (0..400_000).for_each(|i| grid.push(f64::from(i % 800) / 300.0 - 0.9, f64::from(i / 800) / 180.0 - 0.9));
-    assert!(grid.occupied() > 25_000);
-    let mut few = Density::new([-1.0, 2.0], [-1.0, 2.0]);
-    (0..20_000).for_each(|i| few.push(0.5, f64::from(i) / 10_000.0 - 0.5));
-    assert!(few.occupied() < 25_000);
-    for (grid, seam) in [(grid, 0.4), (few, 0.5)] {
-        let line = |y: f64, colour| Series { colour, ..series(line(vec![[0.0, y], [1.0, y]])) };
-        let (below, above) = (line(0.3, Colour::Ink), line(0.8, Colour::Vermilion));
-        let mut figure = figure(Data::Density(grid));
-        figure.x.range = Some([0.0, 1.0]);
-        figure.panels[0].y.range = Some([0.0, 1.0]);
-        figure.panels[0].series.insert(0, below);
-        figure.panels[0].series.push(above);
-        let frame = Layout::new(&figure).panels[0].frame;
-        let image = Pixmap::decode_png(&png::render(&figure, 2880).unwrap()).unwrap();
-        let pixel = |x: f64, y: f64| {
-            let at = [frame.left + frame.width * x, frame.bottom() - frame.height * y].map(|part| (4.0 * part) as u32);
-            let pixel = image.pixel(at[0], at[1]).unwrap();
-            [pixel.red(), pixel.green(), pixel.blue()]
-        };
-        let blue = |[red, _, blue]: [u8; 3]| blue > red && red < 200;
-        assert!(blue(pixel(seam, 0.3)), "{:?} over a line", pixel(seam, 0.3));
-        assert_eq!(pixel(seam, 0.8), [0xd5, 0x5e, 0x00], "under a line");
-        for outside in [[seam, -0.02], [seam, 1.02], [-0.005, 0.43], [1.005, 0.43]] {
-            assert_eq!(pixel(outside[0], outside[1]), [255; 3], "{outside:?} is outside the frame");
+    }
+    let mut files = Vec::new();
+    models(&Path::new(env!("CARGO_MANIFEST_DIR")).join("models"), &mut files);
+    assert!(files.len() >= 15, "{files:?}");
+    files.par_iter().for_each(|file| {
+        let model = Model::read(file).unwrap();
+        let mut subject = Subject::new(&model).unwrap();
+        // Whether there is a figure, and one that can be read, does not depend on how fine the sweeps are.
+        subject.slow_effort.speeds = 80;
+        subject.fast_effort = Effort { speeds: 60, transient: 100, record: 30 };
+        let plates = plates(&subject, &mut |_, _| {});
+        for plate in &plates {
+            match &plate.drawn {
+                Err(why) => assert!(why.len() > 20, "{}: {}: {why}", file.display(), plate.id),
+                Ok(_) => check(plate),
+            }
         }
-        let column: Vec<[u8; 3]> = (350..750).map(|part| pixel(seam, f64::from(part) / 1000.0)).collect();
-        assert!(column.iter().all(|pixel| blue(*pixel)), "{column:?}");
-    }
-}
-
-#[test]
-fn thinned_lines_keep_their_shape_and_breaks() {
-    let wave = |i: i32| [f64::from(i) * 0.01, 100.0 + 50.0 * (f64::from(i) * 0.0005).sin()];
-    let points: Vec<[f64; 2]> = (0..60_000).map(wave).collect();
-    let strokes = thin::strokes(points.iter().copied(), 40_000);
-    assert_eq!(strokes.len(), 1);
-    assert!(strokes[0].len() < 2000, "{}", strokes[0].len());
-    assert_eq!((strokes[0].first(), strokes[0].last()), (points.first(), points.last()));
-    for point in &points {
-        let pair = strokes[0].windows(2).find(|pair| pair[0][0] <= point[0] && point[0] <= pair[1][0]).unwrap();
-        let share = (point[0] - pair[0][0]) / (pair[1][0] - pair[0][0]);
-        let off = pair[0][1] + share * (pair[1][1] - pair[0][1]) - point[1];
-        assert!(off.abs() < 0.1, "{point:?} off by {off}");
-    }
-    let nan = [f64::NAN; 2];
-    let broken = thin::strokes([[0.0, 0.0], [1.0, 0.0], nan, nan, [2.0, 0.0], [3.0, 9.0], nan], 100);
-    assert_eq!(broken, [vec![[0.0, 0.0], [1.0, 0.0]], vec![[2.0, 0.0], [3.0, 9.0]]]);
-    // There and back again is not nowhere.
-    assert_eq!(thin::strokes([[0.0, 0.0], [9.0, 0.0], [0.0, 0.0]], 100)[0].len(), 3);
-    // Too long for its width: the peaks stay.
-    let spikes = (0..1000).map(|i| [f64::from(i) * 1e-3, if i == 437 { 77.0 } else { f64::from(i % 2) }]);
-    let thinned = thin::strokes(spikes, 50);
-    assert!(thinned[0].len() <= 12 && thinned[0].contains(&[0.437, 77.0]), "{thinned:?}");
-}
-
-#[test]
-fn a_diagram_shows_corners_and_exponents() {
-    let corner = |name: &str, degrees: f64| CornerMark { angle_rad: degrees.to_radians(), name: name.into() };
-    let corners = [corner("P", 150.2), corner("Q", 160.0)];
-    let mut grid = Density::new([660.0, 750.0], [90.0, 230.0]);
-    sweep(200, 50, |rpm, phase| grid.push(rpm, phase));
-    let exponents = [[660.0, 0.4], [673.0, 0.2], [674.0, -0.1], [750.0, -0.3]];
-    let with = texts(&drawn(&impact_diagram("D", grid.clone(), &corners, Some(&exponents[..]))));
-    for text in [
-        "cam angle at impact φ (deg)",
-        "P 150.2°",
-        "Q 160.0°",
-        "cam speed ω (rpm)",
-        "Lyapunov exponent λ (per revolution)",
-        "0.0",
-    ] {
-        assert!(with.iter().any(|found| found == text), "{text}: {with:?}");
-    }
-    let strobe = texts(&drawn(&strobe_diagram("D", grid, None)));
-    assert!(strobe.iter().any(|found| found == "follower position q at the section (m)"), "{strobe:?}");
-    assert!(!strobe.iter().any(|found| found.contains("Lyapunov") || found.contains("150.2")), "{strobe:?}");
-}
-
-#[test]
-fn a_trace_shows_contact_and_impacts() {
-    let run = motion();
-    let figure = time_trace("M", &run);
-    let svg = drawn(&figure);
-    let found = texts(&svg);
-    for text in
-        ["position (m)", "cam c", "follower q", "in contact", "impact", "gap q − c (m)", "revolutions of the cam"]
-    {
-        assert_eq!(found.iter().filter(|found| *found == text).count(), 1, "{text}: {found:?}");
-    }
-    let series = |label: &str| &figure.panels[0].series.iter().find(|series| series.label == label).unwrap().data;
-    let Data::Line { points: riding, stroke: Stroke::Thick } = series("in contact") else { panic!("{figure:?}") };
-    let shown: Vec<bool> = riding.iter().map(|point| !point[0].is_nan()).collect();
-    assert_eq!(shown, run.samples.iter().map(|sample| sample.contact).collect::<Vec<_>>());
-    let Data::Points { points: impacts, .. } = series("impact") else { panic!("{figure:?}") };
-    for ([turned, position], wanted) in impacts.iter().zip([0.2, 0.6]) {
-        assert!((turned - wanted).abs() < 1e-12 && *position == 0.45, "{impacts:?}");
-    }
-    assert!(svg.contains(r#"stroke-width="4.5""#));
-    assert!((figure.x.range.unwrap()[1] - 599.0 * 0.002).abs() < 1e-12);
-    let plane = texts(&drawn(&phase_plane("P", &run)));
-    assert!(plane.contains(&"gap q − c (m)".to_owned()) && plane.contains(&"gap velocity q' − c' (m/s)".to_owned()));
-}
-
-#[test]
-fn any_text_is_only_text() {
-    let mut figure = parabola();
-    let wild = "a<b & \"c\" > 'd' ]]> \u{1} \u{ffff} <script>";
-    figure.title = wild.into();
-    figure.x.label = wild.into();
-    figure.panels[0].series[0].label = wild.into();
-    figure.panels[0].marks.push(Mark { at: 100.0, label: wild.into() });
-    figure.note = wild.into();
-    let svg = drawn(&figure);
-    let document = Document::parse(&svg).unwrap();
-    assert!(!document.descendants().any(|node| node.has_tag_name("script")));
-    let shown = texts(&svg).into_iter().filter(|text| text.starts_with("a<b & \"c\" > 'd' ]]>")).count();
-    assert_eq!(shown, 5, "{svg}");
-}
-
-#[test]
-fn light_on_paper_and_dark_on_a_dark_screen() {
-    let svg = drawn(&parabola());
-    assert!(svg.contains("@media screen and (prefers-color-scheme: dark)"));
-    for colour in ["#ffffff", "#1a1a1a", "#0072b2"] {
-        assert!(svg.contains(&format!("=\"{colour}\"")), "{colour}");
-    }
-    // Every class that is used has its dark colour.
-    let style = svg.split("<style>").nth(1).unwrap().split("</style>").next().unwrap();
-    let document = Document::parse(&svg).unwrap();
-    let classes: Vec<&str> = document.descendants().filter_map(|node| node.attribute("class")).collect();
-    assert!(classes.len() > 3);
-    assert!(classes.iter().all(|class| style.contains(&format!(".{class} {{"))), "{classes:?}");
-    // What has a colour has a class.
-    let painted = document.descendants().filter(|node| {
-        ["fill", "stroke"].iter().any(|name| node.attribute(*name).is_some_and(|value| value != "none"))
+        // What needs a corner impact is there exactly where there is one; the cam is there for all.
+        let drawn = |id: &str| plates.iter().any(|plate| plate.id == id && plate.drawn.is_ok());
+        assert!(drawn("cam") && drawn("cam-shape"));
+        for id in ["corner-orbit", "fast-impacts", "composition", "local-map"] {
+            assert_eq!(drawn(id), subject.found().is_ok(), "{}: {id}", file.display());
+        }
     });
-    assert!(painted.clone().count() > 3 && painted.clone().all(|node| node.attribute("class").is_some()));
-    let image = Pixmap::decode_png(&png::render(&parabola(), 400).unwrap()).unwrap();
-    let corner = image.pixel(0, 0).unwrap();
-    assert_eq!((corner.red(), corner.green(), corner.blue(), corner.alpha()), (255, 255, 255, 255));
+}
+
+/// Without gravity a stiffness 1.21 times as large makes every speed 1.1 times as large.
+#[test]
+fn other_models_are_shown_at_speeds_in_the_papers_proportions() {
+    let stiffer = OSORIO_2008
+        .replace("stiffness = 1430.8", "stiffness = 1731.268")
+        .replace("rpm_min = 600.0", "rpm_min = 660.0")
+        .replace("rpm_max = 760.0", "rpm_max = 836.0");
+    assert_ne!(stiffer, OSORIO_2008);
+    let subject = Subject::new(&Model::parse("stiffer.toml", &stiffer).unwrap()).unwrap();
+    assert!(!subject.is_paper);
+    let slow = subject.shown.slow.unwrap();
+    assert_eq!((slow.chattering, slow.range, slow.interrupted), (201.3, [126.5, 220.0], 192.5));
+    let fast = subject.shown.fast.unwrap();
+    assert_eq!((fast.range, fast.beyond), ([726.0, 825.0], 737.0));
 }
 
 #[test]
-fn a_png_has_its_size_and_letters() {
-    let image = |figure: &Figure| Pixmap::decode_png(&png::render(figure, 900).unwrap()).unwrap();
-    let (plain, mut other) = (image(&parabola()), parabola());
-    let layout = Layout::new(&other);
-    assert_eq!(plain.width(), 900);
-    assert!((f64::from(plain.height()) - 900.0 * layout.height / WIDTH).abs() <= 1.0);
-    other.title = "U".into();
-    let differing = |other: &Pixmap| {
-        let pairs = plain.pixels().iter().zip(other.pixels()).enumerate();
-        pairs.filter(|(_, (one, other))| one != other).map(|(at, _)| at / 900).collect::<Vec<_>>()
-    };
-    let rows = differing(&image(&other));
-    assert!(rows.len() > 10 && rows.iter().all(|row| *row < 40), "{rows:?}");
-    // A raised minus comes from another face than the letters around it.
-    other = parabola();
-    other.panels[0].y.unit = "10⁻".into();
-    let mut unknown = parabola();
-    unknown.panels[0].y.unit = "10\u{e123}".into();
-    assert_ne!(image(&other), image(&unknown), "both are drawn as the box of a missing letter");
-    for width in [0, 10_001, u32::MAX] {
-        assert!(png::render(&parabola(), width).unwrap_err().to_string().contains(&width.to_string()));
+fn the_shape_is_the_papers_construction() {
+    let outline = Outline::new(&paper().cam);
+    assert_eq!(outline.added, 0.0);
+    let length = |[x, y]: [f64; 2]| x.hypot(y);
+    let (angle, corner) = outline.corners[1];
+    assert_relative_eq!(angle, THETA_P, epsilon = 1e-12);
+    // Seen with the follower above: what comes to it from the right has the larger angle.
+    for (found, wanted) in corner.iter().zip([LIFT_P * THETA_P.sin(), LIFT_P * THETA_P.cos()]) {
+        assert_relative_eq!(*found, wanted, epsilon = 1e-12);
+    }
+    // P, O2 and O1 are on one line, 0.15 and 0.85 from P.
+    let [flank, nose] = [1, 2].map(|piece| outline.pieces[piece].centre.unwrap());
+    assert_relative_eq!(length(flank), 0.45, epsilon = 1e-12);
+    assert_relative_eq!(length(nose), 0.403933207238214137, epsilon = 1e-12);
+    let from = |centre: [f64; 2]| [corner[0] - centre[0], corner[1] - centre[1]];
+    assert_relative_eq!(length(from(flank)), 0.85, epsilon = 1e-12);
+    assert_relative_eq!(length(from(nose)), 0.15, epsilon = 1e-12);
+    // Every point of the flank is on its circle, though it was computed as a lift.
+    for [x, y] in &outline.pieces[1].points {
+        assert_relative_eq!(length([x - flank[0], y - flank[1]]), 0.85, epsilon = 1e-12);
+    }
+    let figure = drawn(&paper(), "cam-shape");
+    let turns = |series: &&Series| matches!(&series.data, Data::Arrow { points, .. } if points.len() > 2);
+    let turn = points(&figure.panels[0].series.iter().find(turns).unwrap().data);
+    assert!(turn[turn.len() - 1][0] < turn[0][0], "the cam turns to the left");
+    // On the page a circle is one.
+    let layout = Layout::new(&figure);
+    let (frame, range) = (layout.panels[0].frame, layout.panels[0].range);
+    let [across, up] = [frame.width / (layout.range[1] - layout.range[0]), frame.height / (range[1] - range[0])];
+    assert_relative_eq!(across, up, max_relative = 1e-9);
+}
+
+#[test]
+#[ignore = "slow"]
+fn corners_are_marked_where_the_paper_has_them() {
+    let figure = drawn(&paper(), "cam");
+    let at: Vec<f64> = figure.marks.iter().map(|mark| mark.at).collect();
+    let p = THETA_P.to_degrees();
+    for (found, wanted) in at.iter().zip([90.0, p, 160.0, 200.0, 360.0 - p, 270.0]) {
+        assert_relative_eq!(*found, wanted, epsilon = 1e-9);
+    }
+    for id in ["slow-impacts", "fast-impacts"] {
+        let horizontal: Vec<f64> = drawn(&paper(), id).panels[0].marks.iter().map(|mark| mark.at).collect();
+        assert_eq!(horizontal, at, "{id}");
     }
 }
 
 #[test]
-fn the_same_figure_is_the_same_bytes() {
-    let build = || {
-        let mut grid = Density::new([660.0, 750.0], [90.0, 230.0]);
-        sweep(2000, 100, |rpm, phase| grid.push(rpm, phase));
-        impact_diagram("D", grid, &[], None)
-    };
-    assert_eq!(svg::render(&build()).unwrap(), svg::render(&build()).unwrap());
-    assert_eq!(png::render(&build(), 500).unwrap(), png::render(&build(), 500).unwrap());
-    let json = serde_json::to_string(&build()).unwrap();
+fn the_orbit_at_the_corner_is_the_papers() {
+    let subject = paper();
+    let run = subject.corner_orbit().unwrap();
+    assert_relative_eq!(run.rpm, OMEGA_STAR, max_relative = 1e-12);
+    let [event] = run.events.as_slice() else { panic!("{:?}", run.events) };
+    assert_relative_eq!(event.cam_angle, THETA_P, epsilon = 1e-10);
+    for sample in [run.samples.first().unwrap(), run.samples.last().unwrap()] {
+        assert_relative_eq!(sample.state.position, SLACK + X_STAR, epsilon = 1e-10);
+        assert_relative_eq!(sample.state.velocity, 0.0, epsilon = 1e-8);
+    }
+    let figure = drawn(&subject, "corner-orbit");
+    let [impact] = series(&figure, 0, "impact at the corner P")[..] else { panic!("not one impact") };
+    assert_relative_eq!(impact[0], 0.5, epsilon = 1e-10);
+    assert_relative_eq!(impact[1], LIFT_P, epsilon = 1e-10);
+}
+
+#[test]
+#[ignore = "slow"]
+fn the_slow_motion_chatters_and_rests_and_its_impacts_begin_behind_p() {
+    let subject = paper();
+    let run = subject.settled(183.0, 2).unwrap();
+    assert!(run.samples.iter().all(|sample| sample.gap > -1e-12));
+    let count = |kind| run.events.iter().filter(|event| event.kind == kind).count();
+    assert_eq!((count(EventKind::Stick), count(EventKind::Release)), (2, 2));
+    assert!(count(EventKind::Impact) > 40, "{}", count(EventKind::Impact));
+    let release = run.events.iter().find(|event| event.kind == EventKind::Release).unwrap();
+    assert_relative_eq!(release.cam_angle, THETA_P, epsilon = 1e-9);
+    // The follower leaves the cam at P from 114.979 rpm on.
+    let impacts = subject.slow_impacts([114.97, 115.5]).unwrap();
+    let slowest = impacts.iter().map(|[rpm, _]| *rpm).fold(f64::INFINITY, f64::min);
+    assert!((slowest - 114.979).abs() < 1e-3, "{slowest}");
+    assert!(impacts.iter().all(|[_, angle]| *angle > THETA_P));
+}
+
+#[test]
+fn the_branches_end_at_the_corner_impact() {
+    let subject = paper();
+    let figure = drawn(&subject, "fast-section");
+    for label in ["stable", "unstable"] {
+        let line = series(&figure, 0, label);
+        let slowest = line.iter().copied().min_by(|one, two| one[0].total_cmp(&two[0])).unwrap();
+        assert_relative_eq!(slowest[0], OMEGA_STAR, max_relative = 1e-9);
+        assert_relative_eq!(slowest[1], SLACK + X_STAR, max_relative = 1e-6);
+    }
+    let [ring] = series(&figure, 0, "corner impact")[..] else { panic!("not one ring") };
+    assert_relative_eq!(ring[0], OMEGA_STAR, max_relative = 1e-9);
+    assert_relative_eq!(ring[1], SLACK + X_STAR, max_relative = 1e-9);
+    let figure = drawn(&subject, "fast-impacts");
+    let slower = |label: &str| series(&figure, 0, label).into_iter().filter(|[rpm, _]| *rpm < 730.0);
+    assert!(slower("stable").count() > 10 && slower("stable").all(|[_, angle]| angle > THETA_P.to_degrees() - 1e-5));
     assert!(
-        json.contains("\"density\"") && json.contains("\"cam speed ω\"") && json.len() < 2_000_000,
-        "{}",
-        json.len()
+        slower("unstable").count() > 10 && slower("unstable").all(|[_, angle]| angle < THETA_P.to_degrees() + 1e-5)
     );
+    let rings = series(&figure, 0, "corner impact");
+    let near = |rpm: f64, angle: f64| rings.iter().any(|[x, y]| (x - rpm).abs() < 1e-5 && (y - angle).abs() < 1e-5);
+    assert!(near(OMEGA_STAR, THETA_P.to_degrees()), "{rings:?}");
+    // Of the orbit of two impacts the ring is at the one at Q.
+    assert!(rings.iter().any(|[rpm, angle]| (rpm - 739.378).abs() < 0.01 && (angle - 160.0).abs() < 1e-5), "{rings:?}");
+    // The flip at 739.32 rpm is not the paper's; the stable orbit is lost there.
+    let flips = series(&figure, 0, "flip");
+    assert!(flips.iter().any(|[rpm, _]| (rpm - 739.32).abs() < 0.01), "{flips:?}");
+}
+
+/// From 675 to 682 rpm runs that come from slower speeds are chaotic and those that come from faster ones periodic.
+#[test]
+fn runs_with_rising_and_with_falling_speed_are_shown() {
+    let mut subject = paper();
+    subject.fast_effort = Effort { speeds: 16, transient: 300, record: 20 };
+    let range = [675.0, 690.0];
+    let impacts = subject.fast_runs(range, false).unwrap();
+    let slowest: Vec<f64> = impacts.iter().filter(|[rpm, _]| *rpm == range[0]).map(|[_, angle]| *angle).collect();
+    let orbit = *slowest.last().unwrap();
+    assert!(orbit > THETA_P && orbit < 160_f64.to_radians(), "{orbit}");
+    let on_it = slowest.iter().filter(|angle| (**angle - orbit).abs() < 1e-5).count();
+    assert!(on_it >= 20 && slowest.len() - on_it >= 10, "{on_it} of {}", slowest.len());
+    let [rpm, position] = *subject.fast_runs(range, true).unwrap().last().unwrap();
+    assert!(rpm == range[0] && position > 4.5 && position < SLACK + X_STAR, "{rpm}, {position}");
+}
+
+#[test]
+fn chaos_stays_above_the_cam_and_does_not_repeat() {
+    let subject = paper();
+    let states = subject.section_states(670.0, 2000).unwrap();
+    let section = subject.cam.lift(THETA_P + PI).value;
+    assert!(states.iter().all(|state| state.position >= section - 1e-12));
+    let mut bits: Vec<u64> = states.iter().map(|state| state.position.to_bits()).collect();
+    bits.sort_unstable();
+    bits.dedup();
+    assert_eq!(bits.len(), states.len());
+    let figure = drawn(&subject, "beyond-attractor");
+    let Data::Density(density) = &figure.panels[0].series[0].data else { panic!("no states") };
+    assert!(density.occupied() > 1000 && density.outside() == 0, "{}", density.occupied());
+    // At the section: where the motion repeats, it is on the branch there.
+    let settled = subject.section_states(700.0, 1).unwrap()[0];
+    let branch = series(&drawn(&subject, "fast-section"), 0, "stable");
+    let off = |[rpm, _]: &[f64; 2]| (rpm - 700.0).abs();
+    let nearest = branch.iter().min_by(|one, other| off(one).total_cmp(&off(other))).unwrap();
+    assert_relative_eq!(settled.position, nearest[1], max_relative = 0.05);
+}
+
+/// The undamped flight as the paper writes it, about the slack spring.
+fn flown(State { position, velocity }: State, time: f64) -> State {
+    let omega = SPRING.sqrt();
+    let (sin, cos) = (omega * time).sin_cos();
+    let x = position - SLACK;
+    State { position: SLACK + x * cos + velocity / omega * sin, velocity: velocity * cos - x * omega * sin }
+}
+
+fn assert_same(one: State, other: State) {
+    assert_relative_eq!(one.position, other.position, epsilon = 1e-9);
+    assert_relative_eq!(one.velocity, other.velocity, epsilon = 1e-7);
+}
+
+#[test]
+fn the_composition_is_the_papers_on_a_real_motion() {
+    let subject = paper();
+    let shown = subject.composition().unwrap();
+    let half = 0.5 * 60.0 / OMEGA_STAR;
+    let omega = OMEGA_STAR * PI / 30.0;
+    assert_same(shown.states[0], State { position: SLACK + X_STAR, velocity: 0.0 });
+    for near in shown.neighbours.iter().chain([&shown.far]) {
+        let [first, minus, plus, last] = near.sections;
+        let [before, after] = near.impact;
+        assert_eq!(near.side == Side::Minus, near.time < 0.0);
+        // P1, and the impact on the same flight, on the cam.
+        assert_same(flown(first, half), minus);
+        assert_same(flown(minus, near.time), before);
+        let lift = subject.cam.lift(THETA_P + omega * near.time);
+        assert_relative_eq!(before.position, lift.value, epsilon = 1e-9);
+        // PD: v+ = (1 + r) c' - r v-, then the flight after it to time 0, and P2.
+        let velocity = (1.0 + RESTITUTION) * omega * lift.slope - RESTITUTION * before.velocity;
+        assert_same(after, State { velocity, ..before });
+        assert_same(flown(plus, near.time), after);
+        assert_same(flown(plus, half), last);
+        // A real revolution does the same.
+        assert_same(near.simulated, last);
+        // Far enough away to be seen.
+        assert!((omega * near.time).abs() > 0.05, "{}", near.time);
+        let ends = |line: &[[f64; 2]]| (line[0], line[line.len() - 1]);
+        assert_relative_eq!(ends(&near.coming[0]).0[1], first.position, epsilon = 1e-9);
+        assert_relative_eq!(ends(&near.going[0]).1[1], last.position, epsilon = 1e-9);
+        // One of the two flights goes on where no motion is, to the section.
+        let unreal = if near.side == Side::Minus { &near.coming[1] } else { &near.going[1] };
+        let other = if near.side == Side::Minus { &near.going[1] } else { &near.coming[1] };
+        assert!(other.is_empty() && unreal.iter().any(|[time, _]| *time == 0.0));
+    }
+    // The orbit comes to the corner at -T, 0 and T.
+    for time in [-2.0 * half, 0.0, 2.0 * half] {
+        let nearest = shown.orbit.iter().min_by(|one, two| (one[0] - time).abs().total_cmp(&(two[0] - time).abs()));
+        assert_relative_eq!(nearest.unwrap()[1], LIFT_P, epsilon = 1e-9);
+    }
+}
+
+#[test]
+fn the_composition_is_drawn_on_the_side_and_in_the_units_that_it_has() {
+    let subject = paper();
+    let shown = subject.composition().unwrap();
+    let lift = |time: f64| subject.cam.lift(THETA_P + OMEGA_STAR * PI / 30.0 * time).value;
+    for [time, height] in shown.cam.iter().filter(|[time, _]| time.abs() < 0.2 * shown.period) {
+        assert_relative_eq!(*height, lift(*time), epsilon = 1e-9);
+    }
+    // Each law is the cam's on its own side and continued on the other, above the cam or below it.
+    for [time, height] in shown.before[0].iter().chain(&shown.after[0]) {
+        assert_relative_eq!(*height, lift(*time), epsilon = 1e-9);
+    }
+    assert!(shown.before[1].iter().filter(|[time, _]| *time > 1e-4).all(|[time, height]| *height > lift(*time)));
+    assert!(shown.after[1].iter().filter(|[time, _]| *time < -1e-4).all(|[time, height]| *height < lift(*time)));
+    let positions = |near: &Neighbour| near.sections.map(|state| state.position);
+    let figure = drawn(&subject, "composition");
+    let [first, minus, plus, _] = positions(&shown.far);
+    assert_eq!(shown.far.side, Side::Minus);
+    assert_eq!(series(&figure, 0, "discontinuity mapping"), [[0.0, minus], [0.0, plus]]);
+    let start = series(&figure, 0, "neighbour")[0];
+    assert_relative_eq!(start[0], -0.5, epsilon = 1e-12);
+    assert_relative_eq!(start[1], first, epsilon = 1e-9);
+    let figure = drawn(&subject, "discontinuity-mapping");
+    assert_eq!(figure.x.unit, "ms");
+    for (panel, near) in shown.neighbours.iter().enumerate() {
+        let [_, minus, plus, _] = positions(near);
+        assert_eq!(series(&figure, panel, "discontinuity mapping"), [[0.0, minus], [0.0, plus]]);
+        let hit = [1e3 * near.time, near.impact[0].position];
+        let is_hit = |[time, q]: &[f64; 2]| (time - hit[0]).abs() < 1e-9 && (q - hit[1]).abs() < 1e-9;
+        assert!(series(&figure, panel, "neighbour").iter().any(is_hit), "{hit:?}");
+    }
+}
+
+#[test]
+fn both_fixed_points_of_the_local_map_are_on_the_faster_side() {
+    let subject = paper();
+    let shown = subject.next_to_corner().unwrap();
+    let mut rays: Vec<(&str, f64, bool, f64, f64)> = shown
+        .rays
+        .iter()
+        .map(|ray| (ray.word.as_str(), ray.sign, ray.stable, ray.positions[0], ray.velocities[0]))
+        .collect();
+    rays.sort_by(|one, two| one.0.cmp(two.0));
+    let [minus, plus] = rays[..] else { panic!("{rays:?}") };
+    assert_eq!((minus.0, minus.1, minus.2), ("L", -1.0, false));
+    assert_eq!((plus.0, plus.1, plus.2), ("R", -1.0, true));
+    for (found, wanted) in
+        [(minus.3, -44230.7307195), (minus.4, -592025.380881), (plus.3, -1626.27024460971), (plus.4, 4121.88460936384)]
+    {
+        assert_relative_eq!(found, wanted, max_relative = 1e-8);
+    }
+    // Drawn left of 0, which is faster, and the machine's own orbits come in along them.
+    let figure = drawn(&subject, "local-map");
+    for label in ["of the local map: stable", "unstable", "the machine's own orbits"] {
+        let line = series(&figure, 0, label);
+        assert!(line.len() > 1 && line.iter().all(|[change, _]| *change < 1e-6), "{label}");
+    }
+    assert_eq!(figure.x.unit, "µs");
+    let machine = series(&figure, 0, "the machine's own orbits");
+    assert!(machine.iter().any(|[change, _]| *change < -0.9e6 * shown.reach));
+    // The names stand at their rays.
+    let words = figure.panels[0].series.iter().find_map(|series| match &series.data {
+        Data::Words(words) => Some(words),
+        _ => None,
+    });
+    for (name, slope) in [("x^− before the corner", minus.3), ("x^+ after the corner", plus.3)] {
+        let word = words.unwrap().iter().find(|word| word.text == name).unwrap();
+        assert_relative_eq!(word.at[1] / word.at[0] * 1e6, -slope, max_relative = 1e-6);
+    }
+    for line in &shown.machine {
+        let slope = if line.stable { -plus.3 } else { -minus.3 };
+        let near = line.points.iter().filter(|[change, _]| *change < 0.0 && *change > -0.05 * shown.reach);
+        for [change, position] in near.filter(|[change, _]| *change < -1e-3 * shown.reach) {
+            assert_relative_eq!(position / change, slope, max_relative = 0.02);
+        }
+    }
+}
+
+/// What `corner-impact figure` does with these words.
+fn command(words: &[&str]) -> (Exit, String, String) {
+    let words = ["corner-impact", "figure"].iter().chain(words).map(OsString::from);
+    let (mut out, mut err) = (Vec::new(), Vec::new());
+    let exit = run(words, &mut out, &mut err);
+    (exit, String::from_utf8(out).unwrap(), String::from_utf8(err).unwrap())
+}
+
+fn file(name: &str) -> String {
+    Path::new(ROOT).join("models").join(name).display().to_string()
+}
+
+#[test]
+fn it_lists_the_figures_and_each_name_of_the_list_is_drawn() {
+    let (exit, page, _) = command(&[]);
+    assert_eq!(exit, Exit::Agrees);
+    assert_eq!(page.lines().count(), listed(&paper()).len(), "{page}");
+    let first = page.lines().next().unwrap();
+    assert!(first.starts_with("cam-shape ") && first.contains("Figures 3(a) and 9"), "{first}");
+    let (_, document, _) = command(&["--json"]);
+    let document: serde_json::Value = serde_json::from_str(&document).unwrap();
+    assert_eq!(document["schema"], "corner-impact/figure/1");
+    for (line, figure) in page.lines().zip(document["figures"].as_array().unwrap()) {
+        assert!(line.starts_with(figure["id"].as_str().unwrap()) && line.ends_with(figure["title"].as_str().unwrap()));
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("drawn.svg").display().to_string();
+    let (exit, page, err) = command(&["local-map", "--out", &path]);
+    assert_eq!(exit, Exit::Agrees, "{err}");
+    assert!(page.contains("Figure 8 of the paper"), "{page}");
+    assert!(std::fs::read_to_string(&path).unwrap().contains("673.2344 rpm"));
+}
+
+#[test]
+fn a_model_file_goes_before_the_name() {
+    let model = file("damped-heavy.toml");
+    let (exit, page, err) = command(&[&model, "corner-orbit"]);
+    assert_eq!(exit, Exit::Agrees, "{err}");
+    assert!(page.contains("706.478"), "{page}");
+    assert!(page.contains("(as Figure 5(e) of the paper)"), "{page}");
+    let (_, list, _) = command(&[&model]);
+    assert!(list.lines().count() == listed(&paper()).len() && list.contains("damped-heavy: the cam"), "{list}");
+    assert!(page.contains(&format!("corner-impact figure {model} corner-orbit --out corner-orbit.svg")), "{page}");
+    let (_, document, _) = command(&[&model, "corner-orbit", "--json"]);
+    let document: serde_json::Value = serde_json::from_str(&document).unwrap();
+    assert!(document["figure"]["panels"][0]["series"].is_array() && document["absent"].is_null());
+}
+
+#[test]
+fn what_cannot_be_drawn_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("drawn.png");
+    let out = path.display().to_string();
+    let cases: [(&[&str], &str); 4] = [
+        (&["chaos"], "no figure called \"chaos\"; there are: cam-shape, cam,"),
+        (&[&file("laws/harmonic.toml"), "composition", "--out", &out], "[study]"),
+        (&[&file("laws/rectified-sine.toml"), "slow-trace", "--out", &out], "begins to leave the cam"),
+        (&["--out", &out], "--out is for one figure"),
+    ];
+    for (words, wanted) in cases {
+        let (exit, _, err) = command(words);
+        assert_eq!(exit, Exit::BadInput, "{words:?}");
+        assert!(err.contains(wanted), "{words:?}: {err}");
+        assert!(!path.exists());
+    }
+    let (exit, document, _) = command(&[&file("laws/harmonic.toml"), "composition", "--json"]);
+    let document: serde_json::Value = serde_json::from_str(&document).unwrap();
+    assert_eq!(exit, Exit::Agrees);
+    assert!(document["figure"].is_null() && document["absent"].as_str().unwrap().contains("[study]"));
 }
