@@ -102,25 +102,3 @@ fn what_the_derivations_name_exists() {
     }
     assert!(checked > 20, "{checked}");
 }
-
-/// Paths of the project that the documents name in code font lead somewhere; `NAME` stands for what a reader puts there.
-#[test]
-fn what_the_documents_name_exists() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let pages = std::fs::read_dir(root.join("docs")).unwrap().map(|entry| entry.unwrap().path());
-    let pages = pages.filter(|path| path.extension().is_some_and(|extension| extension == "md"));
-    let mut checked = 0;
-    for page in pages.chain(["README.md", "derivations/README.md"].map(|name| root.join(name))) {
-        let text = std::fs::read_to_string(&page).unwrap();
-        for name in text.split(['`', '\n']) {
-            let is_path = ["src/", "tests/", "derivations/", "golden/"].iter().any(|folder| name.starts_with(folder))
-                && !name.contains([' ', '|', '<'])
-                && !name.contains("NAME");
-            if is_path {
-                assert!(root.join(name).exists(), "{}: {name}", page.display());
-                checked += 1;
-            }
-        }
-    }
-    assert!(checked > 40, "{checked}");
-}
