@@ -18,8 +18,7 @@ mod subject;
 pub mod through_corner;
 mod trace;
 
-use serde::ser::SerializeStruct;
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 use crate::draw::{Axis, Colour, Figure, Series, Stroke};
 use crate::show::command::command;
@@ -95,20 +94,15 @@ pub(crate) fn drawn(figure: Figure, caption: impl Into<String>) -> Result<Drawn,
     Ok(Drawn { figure, caption: caption.into() })
 }
 
-impl Serialize for Plate {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let drawn = self.drawn.as_ref();
-        let mut document = serializer.serialize_struct("Plate", 7)?;
-        document.serialize_field("id", self.id)?;
-        document.serialize_field("place", self.place)?;
-        document.serialize_field("title", &self.title)?;
-        document.serialize_field("caption", drawn.map_or("", |drawn| &drawn.caption))?;
-        document.serialize_field("command", &self.command)?;
-        document.serialize_field("figure", &drawn.ok().map(|drawn| &drawn.figure))?;
-        document.serialize_field("absent", &drawn.err())?;
-        document.end()
-    }
-}
+document!(Plate as plate {
+    id: plate.id,
+    place: plate.place,
+    title: plate.title,
+    caption: plate.drawn.as_ref().map_or("", |drawn| &drawn.caption),
+    command: plate.command,
+    figure: plate.drawn.as_ref().ok().map(|drawn| &drawn.figure),
+    absent: plate.drawn.as_ref().err(),
+});
 
 /// A figure that can be asked for.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]

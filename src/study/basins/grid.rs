@@ -4,7 +4,6 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
 use serde::Serialize;
-use serde::ser::{SerializeStruct, Serializer};
 
 use super::{Ending, Patience, ending};
 use crate::flight::State;
@@ -94,19 +93,22 @@ pub enum GridError {
     Threads(String),
 }
 
-/// A document has its fields' names, and an orbit's numbers beside the name of the ending.
-impl Serialize for Part {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut part = serializer.serialize_struct("Part", 6)?;
-        part.serialize_field("ending", self.ending.name())?;
-        if let Ending::Orbit(orbit) = &self.ending {
-            part.serialize_field("revolutions", &orbit.revolutions)?;
-            part.serialize_field("impacts", &orbit.impacts().count())?;
+// An orbit's numbers stand beside the name of the ending.
+document!(Part as part {
+    ending: part.ending.name(),
+    revolutions if_any: part.orbit().map(|orbit| orbit.revolutions),
+    impacts if_any: part.orbit().map(|orbit| orbit.impacts().count()),
+    starts: part.starts,
+    share: part.share,
+    share_standard_error: part.standard_error,
+});
+
+impl Part {
+    fn orbit(&self) -> Option<&crate::orbit::PeriodicOrbit> {
+        match &self.ending {
+            Ending::Orbit(orbit) => Some(orbit),
+            _ => None,
         }
-        part.serialize_field("starts", &self.starts)?;
-        part.serialize_field("share", &self.share)?;
-        part.serialize_field("share_standard_error", &self.standard_error)?;
-        part.end()
     }
 }
 

@@ -3,7 +3,6 @@
 use std::cell::RefCell;
 
 use serde::Serialize;
-use serde::ser::{SerializeStruct, Serializer};
 
 use super::run::{LONGER, between, long_run};
 use super::{Care, Regime, RegimeError, Settled};
@@ -37,15 +36,8 @@ pub enum Cause {
     Unexplained,
 }
 
-/// The words, and whether it is located: a special point of a branch, and not a bracket of runs.
-impl Serialize for Cause {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut cause = serializer.serialize_struct("Cause", 2)?;
-        cause.serialize_field("cause", &self.words())?;
-        cause.serialize_field("located", &matches!(self, Self::Special(..)))?;
-        cause.end()
-    }
-}
+// Located is a special point of a branch, and not a bracket of runs.
+document!(Cause as cause { cause: cause.words(), located: matches!(cause, Cause::Special(..)) });
 
 impl Cause {
     /// In words.

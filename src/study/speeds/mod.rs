@@ -12,7 +12,6 @@ mod walk;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use serde::Serialize;
-use serde::ser::{SerializeStruct, Serializer};
 
 use crate::model::{Model, ModelError};
 use crate::orbit::{Course, OrbitError, PeriodicOrbit};
@@ -59,17 +58,12 @@ pub struct Settled {
     pub growth: Option<f64>,
 }
 
-impl Serialize for Settled {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let (revolutions, impacts) = self.period().unzip();
-        let mut settled = serializer.serialize_struct("Settled", 4)?;
-        settled.serialize_field("regime", &self.regime)?;
-        settled.serialize_field("revolutions", &revolutions)?;
-        settled.serialize_field("impacts", &impacts)?;
-        settled.serialize_field("lyapunov_per_revolution", &self.growth)?;
-        settled.end()
-    }
-}
+document!(Settled as it {
+    regime: it.regime,
+    revolutions: it.period().map(|(revolutions, _)| revolutions),
+    impacts: it.period().map(|(_, impacts)| impacts),
+    lyapunov_per_revolution: it.growth,
+});
 
 impl Settled {
     fn of_orbit(rpm: f64, orbit: PeriodicOrbit) -> Self {
