@@ -31,7 +31,9 @@
 //!    ▼
 //!  figures               one file per figure: its numbers, plot, title and caption
 //!    ▼
-//!  pages                 the page of each command; the report
+//!  report                everything about one model in one value
+//!    ▼
+//!  pages                 the page of each command, and that of the report
 //!    ▼
 //!  cli                   parse, one library call, exit code
 //! ```
@@ -97,6 +99,8 @@ pub mod paper;
 pub mod show;
 
 pub mod figures;
+
+pub mod report;
 
 pub mod pages;
 

@@ -7,8 +7,8 @@ use super::progress::watched;
 use super::{CommandError, Exit, ModelArgument, Session};
 use crate::cli::file::Output;
 use crate::model::Model;
-use crate::pages::Dossier;
 use crate::pages::report::html;
+use crate::report::Report;
 use crate::show::json;
 use crate::study::verify::External;
 
@@ -61,22 +61,22 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         None => None,
     };
     let external = if arguments.no_external { External::LeftOut } else { External::Run };
-    let dossier = watched("", |watch| Dossier::of(&model, external, watch))?;
+    let report = watched("", |watch| Report::of(&model, external, watch))?;
     let write = |mut file: Output<'_>| {
-        let page = html::render(&dossier)?;
+        let page = html::render(&report)?;
         file.write_all(page.as_bytes())?;
         super::commit(vec![file])
     };
     file.map(write).transpose()?;
-    for route in &dossier.headline.failed {
+    for route in report.failed() {
         session.complain(&format!("{route} did not run; the page says why"));
     }
     match (arguments.json, &path) {
-        (true, _) => session.print(&json::render(&dossier)?)?,
+        (true, _) => session.print(&json::render(&report)?)?,
         (false, Some(path)) if path.as_path() != Path::new("-") => session.print(&format!("{}\n", path.display()))?,
         _ => {}
     }
-    Ok(if dossier.agrees { Exit::Agrees } else { Exit::Disagrees })
+    Ok(if report.agrees { Exit::Agrees } else { Exit::Disagrees })
 }
 
 /// Named after the model file, where the command is run.

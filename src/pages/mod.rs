@@ -11,5 +11,3 @@ pub mod report;
 mod simulate;
 mod speeds;
 mod verify;
-
-pub use report::Dossier;

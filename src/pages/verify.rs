@@ -113,7 +113,10 @@ fn entries(found: &Verification, side: Side, has_room: bool) -> Table {
         let like = if index < 4 { &rows[..4] } else { &rows[4..] };
         let mut cells = vec![words::entry(row.entry, side).into()];
         cells.extend(row.values.iter().enumerate().map(|(route, value)| {
-            let digits = digits(like.iter().map(|row| row.values[route]));
+            let digits = match has_room {
+                true => Digits::Aligned(11),
+                false => digits(like.iter().map(|row| row.values[route])),
+            };
             Words::from(Span::Against(*value, row.values[0], digits))
         }));
         cells.extend(has_room.then(|| words![(row.spread, Digits::Size)]));

@@ -7,16 +7,16 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use corner_impact::model::Model;
-use corner_impact::pages::Dossier;
 use corner_impact::pages::report::html;
-use corner_impact::pages::report::through::{FrameEntry, ThroughEntry};
 use corner_impact::progress::Unwatched;
+use corner_impact::report::Report;
+use corner_impact::report::through::{FrameEntry, ThroughEntry};
 use corner_impact::study::verify::External;
 use devtools::Page;
 use serde_json::Value;
 
 struct Written {
-    dossier: Dossier,
+    dossier: Report,
     file: PathBuf,
     _folder: tempfile::TempDir,
 }
@@ -25,7 +25,7 @@ struct Written {
 fn written() -> &'static Written {
     static WRITTEN: OnceLock<Written> = OnceLock::new();
     WRITTEN.get_or_init(|| {
-        let dossier = Dossier::of(&Model::built_in().unwrap(), External::LeftOut, &Unwatched).unwrap();
+        let dossier = Report::of(&Model::built_in().unwrap(), External::LeftOut, &Unwatched).unwrap();
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("report.html");
         std::fs::write(&file, html::render(&dossier).unwrap()).unwrap();

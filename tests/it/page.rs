@@ -10,20 +10,20 @@ use corner_impact::figures::corner_marks;
 use corner_impact::figures::through_corner::{Moment, Place, Shown, through_corner};
 use corner_impact::model::{Model, OSORIO_2008};
 use corner_impact::orbit::eigenvalues;
-use corner_impact::pages::Dossier;
 use corner_impact::pages::report::html;
-use corner_impact::pages::report::through::ThroughEntry;
 use corner_impact::progress::Unwatched;
+use corner_impact::report::Report;
+use corner_impact::report::through::ThroughEntry;
 use corner_impact::section::StroboscopicMap;
 use corner_impact::simulate::{Machine, angular_velocity};
 use corner_impact::study::verify::{External, verify};
 use serde_json::Value;
 
 /// The paper's report and its page, made once.
-fn papers() -> &'static (Dossier, String) {
-    static MADE: OnceLock<(Dossier, String)> = OnceLock::new();
+fn papers() -> &'static (Report, String) {
+    static MADE: OnceLock<(Report, String)> = OnceLock::new();
     MADE.get_or_init(|| {
-        let dossier = Dossier::of(&Model::built_in().unwrap(), External::LeftOut, &Unwatched).unwrap();
+        let dossier = Report::of(&Model::built_in().unwrap(), External::LeftOut, &Unwatched).unwrap();
         let page = html::render(&dossier).unwrap();
         (dossier, page)
     })
@@ -94,7 +94,7 @@ fn the_sliders_data_are_the_documents() {
     let embedded = between(page, "id=\"through-data\">", "</script>");
     let [embedded] = embedded.as_slice() else { panic!("{} blocks of data", embedded.len()) };
     let embedded: Value = serde_json::from_str(embedded).unwrap();
-    assert_eq!(embedded, serde_json::to_value(&dossier.through).unwrap());
+    assert_eq!(embedded, serde_json::to_value(dossier.through.as_ref().unwrap()).unwrap());
 }
 
 #[test]
@@ -174,8 +174,8 @@ fn a_models_name_is_text_whatever_it_holds() {
     let text = text.replacen("source = \"\"\"", &format!("source = \"\"\"{} ", evil.replace("\\\"", "'")), 1);
     let model = Model::parse("<b>evil</b>.toml", &text).unwrap();
     assert!(model.name.contains("<script>"));
-    let dossier = Dossier::of(&model, External::LeftOut, &Unwatched).unwrap();
-    assert!(dossier.through.is_some() && dossier.claims.is_some());
+    let dossier = Report::of(&model, External::LeftOut, &Unwatched).unwrap();
+    assert!(dossier.through.is_ok() && dossier.claims.is_some());
     let page = html::render(&dossier).unwrap();
     for raw in ["<script>alert", "<img src=x", "<b>evil"] {
         assert!(!page.contains(raw), "{raw}");

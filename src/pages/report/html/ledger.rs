@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use maud::html;
 
-use crate::pages::report::dossier::Dossier;
+use crate::report::Report;
 use crate::show::block::{Block, Section};
 use crate::show::html::words;
 use crate::show::words::verdict;
@@ -23,8 +23,8 @@ fn anchors<'a>(ids: impl Iterator<Item = &'a str>) -> Vec<String> {
     ids.map(anchor).collect()
 }
 
-pub(crate) fn section(dossier: &Dossier) -> Option<Section> {
-    let ledger = dossier.claims.as_ref()?;
+pub(crate) fn section(report: &Report) -> Option<Section> {
+    let ledger = report.claims.as_ref()?;
     let anchors = anchors(ledger.claims.iter().map(|claim| claim.id.as_str()));
     let body = html! {
         p {

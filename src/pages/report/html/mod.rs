@@ -1,6 +1,6 @@
 //! The report as one HTML page that needs nothing beside it: no network, no font, no other file.
 //!
-//! Sections stand in a referee's order of reading. Whatever is shown comes from the [`Dossier`]; chosen here are words,
+//! Sections stand in a referee's order of reading. Whatever is shown comes from the [`Report`]; chosen here are words,
 //! order and digits. A number that was computed stands in a `data` element whose value has all the digits that the document has;
 //! numbers in captions and sentences are the document's words.
 
@@ -16,8 +16,8 @@ use std::fmt;
 
 use maud::{DOCTYPE, PreEscaped, html};
 
-use crate::pages::report::dossier::Dossier;
 use crate::pages::{local_map, verify};
+use crate::report::{Report, VERSION};
 use crate::show::block::{Block, Column, Section, Table, Words};
 use crate::show::html::{blocks, words};
 use crate::study::verify::Verification;
@@ -37,32 +37,32 @@ pub enum HtmlError {
 }
 
 /// The page.
-pub fn render(dossier: &Dossier) -> Result<String, HtmlError> {
-    let found = dossier.verification.as_ref();
+pub fn render(report: &Report) -> Result<String, HtmlError> {
+    let found = report.verification.as_ref().ok();
     // Of blocks that begin with a heading, which the page has in other words.
     let titled = |id, title: &str, of: fn(&Verification) -> Vec<Block>| {
         let blocks = found.map(of).filter(|blocks| !blocks.is_empty())?;
         Some(Section { id, title: title.into(), blocks: blocks.into_iter().skip(1).collect() })
     };
     let sections: Vec<Section> = [
-        Some(verdict::section(dossier)),
-        Some(model::section(dossier)?),
+        Some(verdict::section(report)),
+        Some(model::section(report)?),
         titled("corner-impact", "Where the corner impact is", verify::orbit).or_else(|| Some(nowhere())),
         titled("maps", "The local map by every route", |found| [verify::map(found), verify::agreement(found)].concat()),
         titled("printed", "The paper's digits", verify::published),
         titled("bifurcation", "What happens there", verify::bifurcation),
-        Some(slider::section(dossier)?),
+        Some(slider::section(report)?),
         titled("local-map", "What the local map does by itself", local_map::blocks),
-        ledger::section(dossier),
-        Some(speeds::section(dossier)),
-        plates::section(dossier)?,
-        Some(reproduce::section(dossier)),
+        ledger::section(report),
+        Some(speeds::section(report)),
+        plates::section(report)?,
+        Some(reproduce::section(report)),
     ]
     .into_iter()
     .flatten()
     .collect();
-    let what = if dossier.verification.is_some() { "Corner impact" } else { "Cam and follower" };
-    let title = format!("{what} of {}", dossier.model.name);
+    let what = if report.verification.is_ok() { "Corner impact" } else { "Cam and follower" };
+    let title = format!("{what} of {}", report.model.name);
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -70,14 +70,14 @@ pub fn render(dossier: &Dossier) -> Result<String, HtmlError> {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
-                meta name="generator" content={ "corner-impact " (dossier.version) };
+                meta name="generator" content={ "corner-impact " (VERSION) };
                 title { (title) }
                 style { (PreEscaped(STYLE)) }
             }
             body {
                 a.skip href="#main" { "Skip to the findings" }
                 header {
-                    p.kind { "Report of corner-impact " (dossier.version) }
+                    p.kind { "Report of corner-impact " (VERSION) }
                     h1 { (title) }
                 }
                 nav aria-label="Sections" {

@@ -1,8 +1,8 @@
 //! What the model is.
 
 use crate::pages::cam;
-use crate::pages::report::dossier::Dossier;
 use crate::pages::report::html::{HtmlError, left, numeric, plates};
+use crate::report::Report;
 use crate::show::block::{Block, Section, Span, Table, Words, words};
 use crate::show::digits::Digits;
 use crate::show::words::symbol;
@@ -10,11 +10,11 @@ use crate::show::words::symbol;
 /// Rows of a table that is not folded away.
 const LONG: usize = 24;
 
-pub(crate) fn section(dossier: &Dossier) -> Result<Section, HtmlError> {
-    let sheet = &dossier.model;
+pub(crate) fn section(report: &Report) -> Result<Section, HtmlError> {
+    let sheet = &report.model;
     let motion = "A follower of mass _m_ on a spring falls on a cam of lift _c_(_θ_) and leaves it with _v^+_ = (1 + _r_) _c_′ − \
                   _r_ _v^−_; between impacts _m q_″ + _b q_′ + _k_ (_q_ − slack) = −_m g_.";
-    let numbers = Block::Table(numbers(dossier));
+    let numbers = Block::Table(numbers(report));
     let mut blocks = vec![Block::paragraph(&sheet.source), Block::paragraph(Words::prose(motion, []))];
     blocks.push(match sheet.quantities.len() {
         count if count > LONG => Block::Details(words![count, " numbers of the model"], vec![numbers]),
@@ -22,16 +22,16 @@ pub(crate) fn section(dossier: &Dossier) -> Result<Section, HtmlError> {
     });
     blocks.push(Block::paragraph(words!["The cam: ", cam::lift(&sheet.cam), "."]));
     blocks.extend(cam::parts(&sheet.cam));
-    if let Some(plate) = dossier.plates.iter().find(|plate| plate.id == plates::CAM) {
-        blocks.push(Block::Markup(plates::plate(plate, dossier)?));
+    if let Some(plate) = report.plates.iter().find(|plate| plate.id == plates::CAM) {
+        blocks.push(Block::Markup(plates::plate(plate, report)?));
     }
     Ok(Section { id: "model", title: "The model".into(), blocks })
 }
 
-fn numbers(dossier: &Dossier) -> Table {
+fn numbers(report: &Report) -> Table {
     let columns = [left("quantity"), left(""), numeric("value"), left("unit"), left("in the file")];
     let mut table = Table::new("Numbers of the model", columns);
-    for quantity in &dossier.model.quantities {
+    for quantity in &report.model.quantities {
         let (digits, field) = match quantity.field.as_str() {
             "" => (Digits::Significant(12), "follows".into()),
             field => (Digits::All, Span::Code(field.into()).into()),

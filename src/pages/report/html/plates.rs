@@ -4,25 +4,25 @@ use maud::{Markup, PreEscaped, html};
 
 use crate::draw::svg;
 use crate::figures::{Drawn, Plate};
-use crate::pages::report::dossier::Dossier;
 use crate::pages::report::html::HtmlError;
+use crate::report::Report;
 use crate::show::block::{Block, Section};
 
 /// The figure that stands with the model.
 pub(crate) const CAM: &str = "cam";
 
-pub(crate) fn section(dossier: &Dossier) -> Result<Option<Section>, HtmlError> {
-    if dossier.plates.is_empty() {
+pub(crate) fn section(report: &Report) -> Result<Option<Section>, HtmlError> {
+    if report.plates.is_empty() {
         return Ok(None);
     }
     let (mut drawn, mut before) = (Vec::new(), None);
-    for plate in &dossier.plates {
+    for plate in &report.plates {
         let absent = plate.drawn.as_ref().err();
         let again = absent.is_some() && absent == before;
         drawn.push(match plate.id {
-            CAM => elsewhere(plate, dossier),
-            _ if again => self::absent(plate, dossier),
-            _ => self::plate(plate, dossier)?,
+            CAM => elsewhere(plate, report),
+            _ if again => self::absent(plate, report),
+            _ => self::plate(plate, report)?,
         });
         before = absent;
     }
@@ -30,26 +30,26 @@ pub(crate) fn section(dossier: &Dossier) -> Result<Option<Section>, HtmlError> {
     Ok(Some(Section { id: "figures", title: "Figures".into(), blocks: vec![Block::Markup(body)] }))
 }
 
-fn elsewhere(plate: &Plate, dossier: &Dossier) -> Markup {
-    html! { p.note { (place(plate, dossier)) a href={ "#plate-" (plate.id) } { (plate.title) } " stands with the model." } }
+fn elsewhere(plate: &Plate, report: &Report) -> Markup {
+    html! { p.note { (place(plate, report)) a href={ "#plate-" (plate.id) } { (plate.title) } " stands with the model." } }
 }
 
 /// A figure that is missing for the reason of the one before it.
-fn absent(plate: &Plate, dossier: &Dossier) -> Markup {
+fn absent(plate: &Plate, report: &Report) -> Markup {
     html! {
         figure id={ "plate-" (plate.id) } {
-            figcaption { (place(plate, dossier)) strong { (plate.title) } ". " span.absent { "Not drawn, for the same reason." } }
+            figcaption { (place(plate, report)) strong { (plate.title) } ". " span.absent { "Not drawn, for the same reason." } }
         }
     }
 }
 
 /// The paper's figure, for the paper's model: those of another one are none of the paper's.
-fn place(plate: &Plate, dossier: &Dossier) -> Markup {
-    html! { @if dossier.is_paper && !plate.place.is_empty() { span.place { (plate.place) ". " } } }
+fn place(plate: &Plate, report: &Report) -> Markup {
+    html! { @if report.is_paper && !plate.place.is_empty() { span.place { (plate.place) ". " } } }
 }
 
 /// A figure with its caption, the paper's figure that it redraws, and the command that makes it.
-pub(crate) fn plate(plate: &Plate, dossier: &Dossier) -> Result<Markup, HtmlError> {
+pub(crate) fn plate(plate: &Plate, report: &Report) -> Result<Markup, HtmlError> {
     let (drawing, caption) = match &plate.drawn {
         Ok(Drawn { figure, caption }) => {
             let drawing = PreEscaped(svg::render(figure)?);
@@ -59,6 +59,6 @@ pub(crate) fn plate(plate: &Plate, dossier: &Dossier) -> Result<Markup, HtmlErro
         Err(why) => (html! {}, html! { strong { (plate.title) } ". " span.absent { "Not drawn: " (why) "." } }),
     };
     Ok(html! {
-        figure id={ "plate-" (plate.id) } { (drawing) figcaption { (place(plate, dossier)) (caption) } }
+        figure id={ "plate-" (plate.id) } { (drawing) figcaption { (place(plate, report)) (caption) } }
     })
 }

@@ -1,17 +1,17 @@
 //! How to do it again.
 
-use crate::pages::report::dossier::Dossier;
+use crate::report::{Report, VERSION};
 use crate::show::block::{Block, Section, Span, Words};
 
-pub(crate) fn section(dossier: &Dossier) -> Section {
+pub(crate) fn section(report: &Report) -> Section {
     let code = |text: &str| Words::from(Span::Code(text.into()));
-    let commands = dossier.commands.iter().map(|(command, what)| (code(command), (*what).into()));
+    let commands = report.commands.iter().map(|(command, what)| (code(command), (*what).into()));
     let written = "This page was written by corner-impact {} from {}. Its numbers are one document, which the first command \
                    prints with `--json`; the page only lays them out.";
     let sources =
         "With the sources, `make test` runs every check and `make derive-check` redoes the proofs by computer algebra.";
     let blocks = vec![
-        Block::paragraph(Words::prose(written, [dossier.version.into(), code(&dossier.model.file)])),
+        Block::paragraph(Words::prose(written, [VERSION.into(), code(&report.model.file)])),
         Block::Entries(0, commands.collect()),
         Block::paragraph(Words::prose(sources, [])),
     ];

@@ -2,27 +2,24 @@
 
 use maud::{Markup, html};
 
-use crate::pages::report::dossier::Dossier;
 use crate::pages::report::html::{HtmlError, json, left, numeric};
-use crate::pages::report::through::ThroughEntry;
+use crate::report::Report;
+use crate::report::through::ThroughEntry;
 use crate::show::block::{Block, Section, Span, Table, Words, words};
 use crate::show::digits::Digits;
 use crate::show::html::wide;
 use crate::show::words;
 
-pub(crate) fn section(dossier: &Dossier) -> Result<Section, HtmlError> {
-    let blocks = match (&dossier.through, &dossier.no_through) {
-        (Some(through), _) => vec![
+pub(crate) fn section(report: &Report) -> Result<Section, HtmlError> {
+    let blocks = match (&report.through, &report.verification) {
+        (Ok(through), _) => vec![
             Block::Markup(player(through)),
             Block::Details("The same as a table".into(), vec![Block::Table(table(through))]),
             Block::Markup(data(through)?),
         ],
-        _ if dossier.verification.is_none() => {
-            vec![Block::paragraph("There is no corner impact to lead a motion through.")]
-        }
-        (_, why) => {
-            let why = why.as_ref().map(|why| format!(": {why}")).unwrap_or_default();
-            vec![Block::paragraph(format!("There is no motion to lead through the corner impact{why}."))]
+        (_, Err(_)) => vec![Block::paragraph("There is no corner impact to lead a motion through.")],
+        (Err(why), _) => {
+            vec![Block::paragraph(format!("There is no motion to lead through the corner impact: {why}."))]
         }
     };
     Ok(Section { id: "through", title: "Through the corner impact".into(), blocks })

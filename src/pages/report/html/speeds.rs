@@ -1,17 +1,17 @@
 //! What the follower does at other speeds.
 
-use crate::pages::report::dossier::Dossier;
 use crate::pages::report::html::unheaded;
 use crate::pages::speeds::table;
+use crate::report::Report;
 use crate::show::block::{Block, Section, Words, words};
 use crate::show::digits::Digits;
 use crate::show::words::regime;
 use crate::study::speeds::Regimes;
 
-pub(crate) fn section(dossier: &Dossier) -> Section {
-    let blocks = match (&dossier.speeds, &dossier.no_speeds) {
-        (Some(found), _) => regimes(found),
-        (_, why) => vec![Block::paragraph(format!("Not known: {}.", why.as_deref().unwrap_or("nothing was run")))],
+pub(crate) fn section(report: &Report) -> Section {
+    let blocks = match &report.speeds {
+        Ok(found) => regimes(found),
+        Err(why) => vec![Block::paragraph(format!("Not known: {why}."))],
     };
     Section { id: "speeds", title: "At other speeds".into(), blocks }
 }

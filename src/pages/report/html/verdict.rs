@@ -2,32 +2,32 @@
 
 use maud::html;
 
-use crate::pages::report::dossier::Dossier;
 use crate::pages::verify::tally;
 use crate::published::Verdict;
+use crate::report::Report;
 use crate::show::block::{Block, Mark, Section, Words, words};
 use crate::show::digits::Digits;
 use crate::show::words::{quantity, route, spoken};
 use crate::study::verify::Verification;
 
-pub(crate) fn section(dossier: &Dossier) -> Section {
-    let (class, verdict) = match (&dossier.verification, dossier.agrees) {
-        (None, _) => {
+pub(crate) fn section(report: &Report) -> Section {
+    let (class, verdict) = match (&report.verification, report.agrees) {
+        (Err(_), _) => {
             ("verdict agrees", "There is no corner impact to verify: nothing was checked, and nothing disagrees.")
         }
-        (Some(_), true) => ("verdict agrees", "Everything that was checked agrees."),
-        (Some(_), false) => ("verdict disagrees", "Something that was checked does not agree."),
+        (Ok(_), true) => ("verdict agrees", "Everything that was checked agrees."),
+        (Ok(_), false) => ("verdict disagrees", "Something that was checked does not agree."),
     };
     let mut blocks = vec![Block::Markup(html! { p class=(class) { (verdict) } })];
-    if let Some(found) = &dossier.verification {
-        blocks.push(Block::List(findings(dossier, found)));
-        for (title, items) in [("What does not agree", disagreements(dossier, found)), ("Not run", not_run(found))] {
+    if let Ok(found) = &report.verification {
+        blocks.push(Block::List(findings(report, found)));
+        for (title, items) in [("What does not agree", disagreements(report, found)), ("Not run", not_run(found))] {
             if !items.is_empty() {
                 blocks.extend([Block::Heading(title.into()), Block::List(items)]);
             }
         }
     }
-    if let Some(why) = &dossier.nothing_to_verify {
+    if let Err(why) = &report.verification {
         blocks.push(Block::Markup(html! { p { "In the words of the search: " } pre.why { (why) } }));
     }
     Section { id: "findings", title: "Findings".into(), blocks }
@@ -38,8 +38,7 @@ fn strong(text: &str) -> Words {
     (Mark::Strong, text).into()
 }
 
-fn findings(dossier: &Dossier, found: &Verification) -> Vec<Words> {
-    let head = &dossier.headline;
+fn findings(report: &Report, found: &Verification) -> Vec<Words> {
     let kind = match &found.classification {
         Ok(kind) => words!["It is a ", strong(&spoken(&kind.scenario.to_string())), "."],
         Err(_) => "It has no classification.".into(),
@@ -49,12 +48,12 @@ fn findings(dossier: &Dossier, found: &Verification) -> Vec<Words> {
     let place = "The corner impact is at {} rpm, where the cam has turned by {}°. {}";
     let mut findings = tally(found);
     findings.insert(1, Words::prose(place, [speed, angle, kind]));
-    if let Some(ledger) = &dossier.claims {
+    if let Some(ledger) = &report.claims {
         let count = |verdict| ledger.counts.get(&verdict).copied().unwrap_or_default();
         let [misprint, refuted, open] =
             [Verdict::Misprint, Verdict::Refuted, Verdict::Open].map(|verdict| Words::from(count(verdict)));
         let hold = strong(&format!("{} hold", count(Verdict::Holds)));
-        let checks = match head.claims_otherwise {
+        let checks = match report.claims_otherwise() {
             0 => "every check comes to the ledger's verdict".into(),
             some => words![some, " came out otherwise than the ledger says"],
         };
@@ -66,7 +65,7 @@ fn findings(dossier: &Dossier, found: &Verification) -> Vec<Words> {
     findings
 }
 
-fn disagreements(dossier: &Dossier, found: &Verification) -> Vec<Words> {
+fn disagreements(report: &Report, found: &Verification) -> Vec<Words> {
     let pairs = found.comparisons.iter().filter(|pair| !pair.agrees).map(|pair| {
         let [one, other] = pair.routes.map(route);
         words![
@@ -81,7 +80,7 @@ fn disagreements(dossier: &Dossier, found: &Verification) -> Vec<Words> {
         let name = quantity(number.agreement.quantity);
         words![name, format!(" in print ({}) came out otherwise", number.place)]
     });
-    let claims = dossier.claims.iter().flat_map(|ledger| &ledger.claims).filter(|claim| !claim.as_found);
+    let claims = report.claims.iter().flat_map(|ledger| &ledger.claims).filter(|claim| !claim.as_found);
     let claims = claims.map(|claim| format!("the claim {} came out otherwise", claim.id).into());
     pairs.chain(numbers).chain(claims).collect()
 }

@@ -1,0 +1,227 @@
+//! Everything that is found about one model in one value: what the HTML page is made of.
+
+pub mod quantities;
+pub mod through;
+
+use serde::Serialize;
+
+use crate::agreement::by_quantity;
+use crate::cam::{Cam, Jet, Side};
+use crate::figures::{Plate, Subject, corner_marks, plates, through_corner};
+use crate::model::{Model, ModelError};
+use crate::paper::{Claims, Context, LedgerError};
+use crate::progress::Watch;
+use crate::report::quantities::{Quantity, quantities};
+use crate::report::through::ThroughEntry;
+use crate::show::command::command;
+use crate::show::words;
+use crate::study::cam::CamSheet;
+use crate::study::speeds::{Care, Regimes, regimes, usual_speeds};
+use crate::study::verify::{External, Tally, Verification, verify_watched};
+
+/// A report on one model; serializes to the document `corner-impact/report/1`.
+#[derive(Clone, Debug)]
+pub struct Report {
+    /// Whether nothing that was checked disagrees.
+    pub agrees: bool,
+    /// Whether follower and cam are the paper's.
+    pub is_paper: bool,
+    /// What the model is.
+    pub model: ModelSheet,
+    /// The corner impact and its map by every route, or why there is none.
+    pub verification: Result<Verification, String>,
+    /// The motion at speeds on either side of the corner impact, or why there is none.
+    pub through: Result<ThroughEntry, String>,
+    /// The paper's statements, where the model is the paper's.
+    pub claims: Option<Claims>,
+    /// What the follower does at other speeds, or why that is not known.
+    pub speeds: Result<Regimes, String>,
+    /// The figures, in the paper's order.
+    pub plates: Vec<Plate>,
+    /// Commands that do all this again, each with what it does.
+    pub commands: Vec<(String, &'static str)>,
+}
+
+/// The version of this program.
+pub(crate) const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+document!(Report as it {
+    schema: "corner-impact/report/1",
+    version: VERSION,
+    agrees: it.agrees,
+    is_paper: it.is_paper,
+    headline: Headline(it),
+    model: it.model,
+    verification: it.verification.as_ref().ok(),
+    nothing_to_verify: it.verification.as_ref().err(),
+    corner_deg: it.verification.as_ref().ok().map(|found| found.at.corner.angle.to_degrees()),
+    tables: it
+        .verification
+        .iter()
+        .flat_map(|found| [Side::Minus, Side::Plus].map(|side| MapTable { found, side }))
+        .collect::<Vec<_>>(),
+    quantities: it.verification.iter().flat_map(|found| by_quantity(&found.comparisons)).collect::<Vec<_>>(),
+    through: it.through.as_ref().ok(),
+    no_through: it.through.as_ref().err(),
+    claims: it.claims,
+    speeds: it.speeds.as_ref().ok(),
+    no_speeds: it.speeds.as_ref().err(),
+    plates: it.plates,
+    commands: it.commands,
+});
+
+/// The findings in brief.
+struct Headline<'a>(&'a Report);
+
+document!(Headline<'_> as it {
+    comparisons: it.0.tally().comparisons,
+    agreeing: it.0.tally().agreeing,
+    shared_decimals: it.0.tally().shared_decimals,
+    routes: it.0.verification.iter().flat_map(names).collect::<Vec<_>>(),
+    failed: it.0.failed(),
+    printed: it.0.tally().printed,
+    printed_right: it.0.tally().printed_right,
+    printed_wrong: it.0.tally().printed_wrong,
+    printed_otherwise: it.0.tally().printed_otherwise,
+    claims_otherwise: it.0.claims_otherwise(),
+});
+
+/// One side's matrices by every route.
+struct MapTable<'a> {
+    found: &'a Verification,
+    side: Side,
+}
+
+document!(MapTable<'_> as it { side: it.side, routes: names(it.found), rows: it.found.entries(it.side) });
+
+/// The routes that ran.
+fn names(found: &Verification) -> Vec<String> {
+    found.routes_by_name().map(|route| words::route(route.name)).collect()
+}
+
+/// What the model is.
+#[derive(Clone, Debug, Serialize)]
+pub struct ModelSheet {
+    /// Its name.
+    pub name: String,
+    /// Where its numbers come from.
+    pub source: String,
+    /// Its file, as given.
+    pub file: String,
+    /// Every number of it.
+    pub quantities: Vec<Quantity>,
+    /// Segments and corners.
+    pub cam: CamSheet,
+}
+
+/// Why there is no report.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ReportError {
+    /// The model is impossible.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// The ledger cannot be held against it.
+    #[error(transparent)]
+    Ledger(#[from] LedgerError),
+}
+
+/// Speeds that are run for the section on other speeds.
+const SPEEDS: usize = 100;
+/// Parts of the work that are done when each stage is, of one.
+const VERIFIED: f64 = 0.1;
+const HELD: f64 = 0.25;
+const SURVEYED: f64 = 0.55;
+const THROUGH: f64 = 0.6;
+
+impl Report {
+    /// Everything about a model.
+    ///
+    /// A model without a corner impact to verify has a report that says so.
+    pub fn of(model: &Model, external: External, watch: &dyn Watch) -> Result<Self, ReportError> {
+        let part = |from, to| Part { watch, from, to };
+        let cam = Cam::new(model)?;
+        let is_paper = model.is_the_papers()?;
+        let verification = verify_watched(model, external, &part(0.0, VERIFIED)).map_err(|error| error.to_string());
+        let claims = match &verification {
+            Ok(found) if is_paper => Some(Claims::hold(&Context::new(model, &cam, found)?, &part(VERIFIED, HELD))?),
+            _ => None,
+        };
+        let speeds = speeds(model, &part(HELD, SURVEYED));
+        part(SURVEYED, THROUGH).at("the orbits on both sides of the corner impact", 0, 1);
+        let through = verification.as_ref().map_err(String::clone).and_then(|found| through(model, &cam, found));
+        let subject = Subject::with(model, verification.clone())?;
+        let drawing = part(THROUGH, 1.0);
+        let plates = plates(&subject, &mut |done, total| drawing.at("the figures", done as u64, total as u64));
+        let agrees = verification.as_ref().map_or(true, |found| found.agrees)
+            && claims.as_ref().is_none_or(|claims| claims.agrees);
+        let sheet = ModelSheet {
+            name: model.name.clone(),
+            source: model.source.clone(),
+            file: model.file().to_owned(),
+            quantities: quantities(model),
+            cam: CamSheet::new(model, &cam, Jet::HIGHEST_JUMP),
+        };
+        let commands = commands(model, verification.is_ok());
+        Ok(Self { agrees, is_paper, model: sheet, verification, through, claims, speeds, plates, commands })
+    }
+
+    /// Comparisons and printed numbers by what came of them; none without a corner impact.
+    pub(crate) fn tally(&self) -> Tally {
+        self.verification.as_ref().map(Verification::tally).unwrap_or_default()
+    }
+
+    /// What should have run and did not.
+    pub(crate) fn failed(&self) -> Vec<String> {
+        let skipped = self.verification.iter().flat_map(|found| &found.skipped);
+        skipped.filter(|skipped| skipped.failed).map(|skipped| words::spoken(&skipped.route)).collect()
+    }
+
+    /// Statements that came out otherwise than the ledger says.
+    pub(crate) fn claims_otherwise(&self) -> usize {
+        self.claims.iter().flat_map(|ledger| &ledger.claims).filter(|claim| !claim.as_found).count()
+    }
+}
+
+/// The motion on either side of the corner impact, or why there is none.
+fn through(model: &Model, cam: &Cam, found: &Verification) -> Result<ThroughEntry, String> {
+    match through_corner(model, cam, &found.at) {
+        Ok(Some(through)) => {
+            ThroughEntry::new(&through, found.at.corner.angle, &corner_marks(cam)).map_err(|error| error.to_string())
+        }
+        Ok(None) => Err("the corner impact is not one of an orbit with one impact a revolution".to_owned()),
+        Err(error) => Err(format!("a run cannot go on: {error}")),
+    }
+}
+
+/// A part of the work, told as its share of the whole.
+struct Part<'a> {
+    watch: &'a dyn Watch,
+    from: f64,
+    to: f64,
+}
+
+impl Watch for Part<'_> {
+    fn at(&self, what: &str, done: u64, total: u64) {
+        const STEPS: f64 = 1000.0;
+        let share = if total > 0 { done as f64 / total as f64 } else { 0.0 };
+        self.watch.at(what, (STEPS * (self.from + (self.to - self.from) * share)) as u64, STEPS as u64);
+    }
+}
+
+/// What the follower does at its usual speeds, or why that is not known.
+fn speeds(model: &Model, watch: &dyn Watch) -> Result<Regimes, String> {
+    let care = Care { speeds: SPEEDS, ..Care::default() };
+    regimes(model, usual_speeds(model), care, watch).map_err(|error| error.to_string())
+}
+
+fn commands(model: &Model, verified: bool) -> Vec<(String, &'static str)> {
+    let again = |name: &str, what| (command(name, model, ""), what);
+    let mut commands = vec![again("report", "writes this page")];
+    if verified {
+        commands.push(again("verify", "finds the corner impact, its map by every route, and compares"));
+        commands.push(again("claims", "holds the statements of the paper that this program checks against it"));
+    }
+    commands.push(again("cam", "lists segments and corners of the cam"));
+    commands.push(again("speeds", "what the follower does at each speed, with more speeds than here"));
+    commands
+}
