@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::run::{LONGER, between, long_run};
 use super::{Care, Regime, RegimeError, Settled};
+use crate::bracket::{self, Width};
 use crate::model::Model;
 use crate::orbit::Parameter;
 use crate::orbit::branch::{Branch, Following, Kind, Special};
@@ -139,24 +140,26 @@ struct Halved {
 /// Halves the way from a motion at one speed, rpm, to another speed, each long run going on from the last that `stays`.
 fn halve(
     machine: &Machine,
-    (mut here, mut motion): (f64, Motion),
-    mut there: f64,
+    (here, mut motion): (f64, Motion),
+    there: f64,
     (care, settles): (Care, bool),
     stays: &dyn Fn(&Settled) -> bool,
 ) -> Result<Halved, RegimeError> {
     let (mut before, mut beyond) = (None, None);
     // Nothing is told apart by waiting for what has not settled on either side.
     let longer = if settles { LONGER } else { 1 };
-    while (there - here).abs() > tolerance::SPEED_BRACKETED.value {
-        let middle = 0.5 * (here + there);
-        let (settled, end) = long_run(machine, middle, &motion, care, longer)?;
-        if stays(&settled) {
-            (here, motion, before) = (middle, end, Some(settled));
+    let mut bracket = bracket::halve([here, there], Width::Absolute(tolerance::SPEED_BRACKETED.value), |rpm| {
+        let (settled, end) = long_run(machine, rpm, &motion, care, longer)?;
+        let changed = !stays(&settled);
+        if changed {
+            beyond = Some((settled, end));
         } else {
-            (there, beyond) = (middle, Some((settled, end)));
+            (motion, before) = (end, Some(settled));
         }
-    }
-    Ok(Halved { bracket: [here.min(there), here.max(there)], before, beyond })
+        Ok::<_, RegimeError>(changed)
+    })?;
+    bracket.sort_by(f64::total_cmp);
+    Ok(Halved { bracket, before, beyond })
 }
 
 /// A special point of a branch, where it is, rpm, and the angle of the corner that it is at, rad.

@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 
 use super::{Care, Regime, RegimeError, Settled};
+use crate::bracket::{Width, halve};
 use crate::diagram::growth;
 use crate::model::Model;
 use crate::orbit::settle::settled;
@@ -48,12 +49,8 @@ fn stays(machine: &Machine, rpm: f64) -> Result<bool, RegimeError> {
 
 /// The neighbouring speeds, rpm, of which the follower stays on the cam at the first only; between one where it does and
 /// one where it does not.
-pub(super) fn between(machine: &Machine, mut on: f64, mut off: f64) -> Result<[f64; 2], RegimeError> {
-    while (off - on).abs() > tolerance::ROOT_WIDTH.value * off {
-        let middle = 0.5 * (on + off);
-        if stays(machine, middle)? { on = middle } else { off = middle }
-    }
-    Ok([on, off])
+pub(super) fn between(machine: &Machine, on: f64, off: f64) -> Result<[f64; 2], RegimeError> {
+    halve([on, off], Width::Relative(tolerance::ROOT_WIDTH.value), |rpm| Ok(!stays(machine, rpm)?))
 }
 
 /// The long run from `motion`, with where it ended; up to `longer` times as long where it settles slowly.
