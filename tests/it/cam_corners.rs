@@ -191,7 +191,7 @@ fn laws_are_continued_past_any_corner() {
 
 #[test]
 fn the_cam_document_lists_segments_and_corners() {
-    let output = corner_impact(&["cam", "--json", &law_file("program.toml")]);
+    let output = corner_impact(["cam", "--json", &law_file("program.toml")]);
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     let document: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(document["schema"], "corner-impact/cam/1");
@@ -218,7 +218,7 @@ fn the_cam_document_lists_segments_and_corners() {
         );
     }
     assert_eq!(document["lift_m"][1], cam.top());
-    let few = corner_impact(&["cam", "--json", "--order", "2", &law_file("program.toml")]);
+    let few = corner_impact(["cam", "--json", "--order", "2", &law_file("program.toml")]);
     let few: Value = serde_json::from_slice(&few.stdout).unwrap();
     assert_eq!((few["corners"].as_array().unwrap().len(), &few["highest_order"]), (4, &2.into()));
 }
@@ -226,7 +226,7 @@ fn the_cam_document_lists_segments_and_corners() {
 #[test]
 fn the_page_fits_and_counts_what_it_does_not_list() {
     let page = |name: &str| {
-        let output = corner_impact(&["cam", &law_file(name)]);
+        let output = corner_impact(["cam", &law_file(name)]);
         assert!(output.status.code() == Some(0) && output.stderr.is_empty());
         String::from_utf8(output.stdout).unwrap()
     };
