@@ -3,8 +3,8 @@
 //! | method | asks for | guarantees |
 //! |---|---|---|
 //! | [`halve`] | a yes or no that differs at the ends | a bracket as narrow as was asked for, with one change in it; bisection |
-//! | [`regula_falsi`] | signs that differ at the ends | the same, in fewer steps where the function is smooth (Dowell and Jarratt 1971) |
-//! | [`secants`] | two guesses close by | nothing: that the last point is a root is for the caller to see |
+//! | `regula_falsi` | signs that differ at the ends | the same, in fewer steps where the function is smooth (Dowell and Jarratt 1971) |
+//! | `secants` | two guesses close by | nothing: that the last point is a root is for the caller to see |
 //!
 //! The event loop has methods of its own: a contact takes two or three of Halley's steps inside a certified bracket, with the
 //! cam and the follower evaluated once for value, slope and curvature, and a closure would cost as much as a step. So has

@@ -22,7 +22,7 @@ pub struct LocalOutcome {
     pub fixed_points: Vec<PeriodicOrbit>,
     /// The orbit LR, admissible or not; none where mu is 0 or where it is not alone.
     pub period_two: Option<PeriodicOrbit>,
-    /// Every admissible periodic orbit of [`LONGEST_WORD`] steps or fewer, fixed points included.
+    /// Every admissible periodic orbit of `LONGEST_WORD` steps or fewer, fixed points included.
     pub orbits: Vec<PeriodicOrbit>,
     /// Where motions end, each kind once; first the one that x = 0 has, the state of the corner impact.
     pub fates: Vec<Fate>,
