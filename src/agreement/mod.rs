@@ -212,9 +212,7 @@ fn pairs<T>(items: &[T]) -> impl Iterator<Item = (&T, &T)> {
 /// The pairs of routes that one quantity was compared by.
 #[derive(Clone, Debug)]
 pub(crate) struct Pairs<'a> {
-    /// Which.
     pub quantity: Quantity,
-    /// Every pair.
     pub all: Vec<&'a Agreement>,
     /// The pair that is nearest to its bound, or beyond; what is not a number disagrees, and comes first.
     pub closest: &'a Agreement,

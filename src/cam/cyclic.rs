@@ -8,11 +8,9 @@ use nalgebra::{Cholesky, Const, SMatrix, SVector};
 /// A system being set up, one equation a knot.
 #[derive(Clone, Debug)]
 pub(super) struct Cyclic<const K: usize> {
-    /// D_i, symmetric.
     pub diagonal: Vec<SMatrix<f64, K, K>>,
     /// N_i, between i and i + 1.
     pub next: Vec<SMatrix<f64, K, K>>,
-    /// r_i.
     pub right: Vec<SVector<f64, K>>,
 }
 

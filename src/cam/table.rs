@@ -21,7 +21,6 @@ struct Gap {
     value: f64,
     /// In units of the mean gap, so that its powers stay in range.
     width: f64,
-    /// Rise over width.
     slope: f64,
 }
 

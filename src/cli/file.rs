@@ -31,7 +31,7 @@ impl FileError {
     }
 
     /// Whether it is standard output, and whoever read that has had enough.
-    pub fn is_unread(&self) -> bool {
+    pub(crate) fn is_unread(&self) -> bool {
         self.standard && self.kind() == io::ErrorKind::BrokenPipe
     }
 
@@ -91,7 +91,7 @@ impl<'a> Output<'a> {
     }
 
     /// Begins to write a file of that name, whatever it is.
-    pub fn file(path: &Path) -> Result<Output<'static>, FileError> {
+    pub(crate) fn file(path: &Path) -> Result<Output<'static>, FileError> {
         Ok(Output { path: path.to_owned(), sink: begin(path)? })
     }
 

@@ -15,7 +15,6 @@ pub enum LocateError {
     /// The model says nothing about where to look, or something impossible.
     #[error("{0}")]
     Model(#[from] ModelError),
-    /// Nothing in range.
     #[error("{}", .0)]
     NotFound(#[source] Box<NotFound>),
     /// The only candidate touches the corner without relative velocity.

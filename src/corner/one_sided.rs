@@ -68,7 +68,6 @@ struct Stretch {
     start: State,
     /// The angle turned by each flight, rad, and the impact that it ends at.
     flights: Vec<(f64, usize)>,
-    /// The second section.
     goal: Goal,
     end: State,
     /// `c' - v-` and `v-` of the impact that the perturbations are measured by, m/s.
@@ -77,7 +76,6 @@ struct Stretch {
 }
 
 impl Stretch {
-    /// The whole period.
     fn whole(at: &CornerImpact) -> Self {
         let section = at.section_angle();
         Self {

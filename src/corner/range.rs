@@ -53,7 +53,6 @@ pub enum RangeError {
         PeriodEquation::MOST_RADIANS
     )]
     TooWide { low: f64, high: f64, radians: f64 },
-    /// Overflow.
     #[error("{low}:{high} rpm: the follower's motion overflows a double: check the model's magnitudes")]
     NotFinite { low: f64, high: f64 },
 }

@@ -49,9 +49,7 @@ pub(super) struct Change {
     pub period: f64,
     /// Of M in `y' = M y + f`.
     pub matrix: Matrix2<f64>,
-    /// Of f.
     pub force: Vector2<f64>,
-    /// Of r.
     pub restitution: f64,
     /// Of the lift at each impact.
     pub lifts: Vec<LiftChange>,

@@ -8,7 +8,7 @@ use super::layout::{LARGEST, widened};
 const CELLS: [usize; 2] = [1800, 1200];
 
 /// How many shades a cell may have.
-pub const SHADES: u8 = 5;
+pub(crate) const SHADES: u8 = 5;
 
 /// How many points are kept before a range is chosen for them.
 const KEPT: usize = 4096;
@@ -64,7 +64,7 @@ impl Density {
     }
 
     /// Counts every cell that the straight line between two points runs through; of a long line `most` of them, evenly.
-    pub fn join(&mut self, from: [f64; 2], to: [f64; 2], most: usize) {
+    pub(crate) fn join(&mut self, from: [f64; 2], to: [f64; 2], most: usize) {
         let wide = (to[0] - from[0]).abs() / (self.x[1] - self.x[0]) * self.columns as f64;
         let high = (to[1] - from[1]).abs() / (self.y[1] - self.y[0]) * self.rows as f64;
         let steps = wide.max(high).min(most as f64).max(1.0).ceil();
@@ -75,12 +75,11 @@ impl Density {
     }
 
     /// The ranges that it covers, across and up.
-    pub fn ranges(&self) -> [[f64; 2]; 2] {
+    pub(crate) fn ranges(&self) -> [[f64; 2]; 2] {
         [self.x, self.y]
     }
 
-    /// Columns and rows.
-    pub fn cells(&self) -> [usize; 2] {
+    pub(crate) fn cells(&self) -> [usize; 2] {
         [self.columns, self.rows]
     }
 
@@ -105,7 +104,7 @@ impl Density {
 
     /// A shade for each cell, rows from below: 0 for none, else 1 to [`SHADES`] with the logarithm of the count. With
     /// `spread`, a point also shades the eight cells around it, so that single points are still seen in print.
-    pub fn shades(&self, spread: bool) -> Vec<u8> {
+    pub(crate) fn shades(&self, spread: bool) -> Vec<u8> {
         // How many cells have each count: sorted, they would take as much memory as the grid.
         let mut cells = vec![0_usize; usize::from(u16::MAX) + 1];
         self.counts.iter().for_each(|count| cells[usize::from(*count)] += 1);

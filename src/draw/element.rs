@@ -51,7 +51,7 @@ pub(super) fn fill(colour: Colour) -> String {
 }
 
 /// Text that XML takes for text; characters that it has no place for are left out.
-pub fn escaped(text: &str) -> String {
+pub(crate) fn escaped(text: &str) -> String {
     let mut escaped = String::new();
     for letter in text.chars() {
         match letter {

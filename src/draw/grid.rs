@@ -26,7 +26,6 @@ pub(super) enum Grid {
     Dots {
         /// By shade, the faintest first: the middle of each, in tenths of a unit.
         at: [Vec<[i64; 2]>; SHADES as usize],
-        /// Their diameter.
         size: f64,
     },
 }

@@ -12,11 +12,11 @@ pub const WIDTH: f64 = 720.0;
 /// Height of most letters.
 pub const TEXT: f64 = 12.5;
 /// Height of the title's letters.
-pub const TITLE: f64 = 15.0;
+pub(crate) const TITLE: f64 = 15.0;
 /// Width of a sample in a legend.
-pub const SAMPLE: f64 = 24.0;
+pub(crate) const SAMPLE: f64 = 24.0;
 /// Values of this size and above are not drawn: differences of them would overflow.
-pub const LARGEST: f64 = 1e300;
+pub(crate) const LARGEST: f64 = 1e300;
 
 const LINE: f64 = 16.0;
 const EDGE: f64 = 12.0;
@@ -36,8 +36,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Its right edge.
-    pub fn right(&self) -> f64 {
+    pub(crate) fn right(&self) -> f64 {
         self.left + self.width
     }
 
@@ -120,7 +119,7 @@ pub fn width(text: &str, size: f64) -> f64 {
 }
 
 /// A range with room beside it, a share of its span; one that is a single value is given a span.
-pub fn widened([low, high]: [f64; 2], room: f64) -> [f64; 2] {
+pub(crate) fn widened([low, high]: [f64; 2], room: f64) -> [f64; 2] {
     let size = low.abs().max(high.abs());
     if high - low > tolerance::DRAWN_SPAN.value * size {
         let room = room * (high - low);
@@ -131,7 +130,7 @@ pub fn widened([low, high]: [f64; 2], room: f64) -> [f64; 2] {
 }
 
 /// The share of a range at which a value lies; not a number where there is nothing to draw.
-pub fn share(value: f64, [low, high]: [f64; 2]) -> f64 {
+pub(crate) fn share(value: f64, [low, high]: [f64; 2]) -> f64 {
     if value.abs() < LARGEST { (value - low) / (high - low) } else { f64::NAN }
 }
 

@@ -75,7 +75,7 @@ impl Axis {
     }
 
     /// The vertical axis with units as long as those of the horizontal one; its frame is as high as that makes it.
-    pub fn to_scale(self) -> Self {
+    pub(crate) fn to_scale(self) -> Self {
         Self { to_scale: true, ..self }
     }
 }
@@ -207,20 +207,30 @@ impl Series {
 #[expect(missing_docs, reason = "points, stroke and marker are what their types say")]
 pub enum Data {
     /// Points joined in order; what is not a number breaks the line.
-    Line { points: Vec<[f64; 2]>, stroke: Stroke },
+    Line {
+        points: Vec<[f64; 2]>,
+        stroke: Stroke,
+    },
     /// Points joined in order, and what lies below them filled down to the frame.
-    Area { points: Vec<[f64; 2]>, stroke: Stroke },
+    Area {
+        points: Vec<[f64; 2]>,
+        stroke: Stroke,
+    },
     /// A line with the head of an arrow at the end of each of its runs.
-    Arrow { points: Vec<[f64; 2]>, stroke: Stroke },
-    /// One marker each.
-    Points { points: Vec<[f64; 2]>, marker: Marker },
+    Arrow {
+        points: Vec<[f64; 2]>,
+        stroke: Stroke,
+    },
+    Points {
+        points: Vec<[f64; 2]>,
+        marker: Marker,
+    },
     /// Words at points, over whatever else is there.
     Words(Vec<Word>),
     /// More points than there is paper, counted on a grid.
     Density(Density),
     /// Parts of the plane, as the cells of a grid.
     Region {
-        /// The cells.
         cells: Density,
         /// How much of the colour they have, up to 1: in grey print regions are told apart by it.
         strength: f64,
@@ -305,8 +315,7 @@ pub enum Colour {
 }
 
 impl Colour {
-    /// Every colour.
-    pub const ALL: [Self; 6] = [Self::Ink, Self::Grey, Self::Blue, Self::Vermilion, Self::Green, Self::Purple];
+    pub(crate) const ALL: [Self; 6] = [Self::Ink, Self::Grey, Self::Blue, Self::Vermilion, Self::Green, Self::Purple];
 
     /// Its class in the SVG, its hex value on white paper, and on a dark screen.
     pub(crate) const fn shades(self) -> (&'static str, &'static str, &'static str) {

@@ -158,7 +158,6 @@ fn circles(pieces: &[Piece]) -> Vec<Series> {
     series
 }
 
-/// Any other cam.
 fn segments(pieces: &[Piece]) -> Vec<Series> {
     if pieces.len() > MOST {
         let points = pieces.iter().flat_map(|piece| piece.points.iter().copied());

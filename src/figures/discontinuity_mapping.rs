@@ -25,7 +25,6 @@ pub(crate) const DISCONTINUITY_MAPPING: Entry = Entry {
     },
 };
 
-/// Seconds to milliseconds.
 const MILLI: f64 = 1e3;
 
 fn mapping(shown: &Composition, near: &Neighbour) -> Panel {

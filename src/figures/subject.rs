@@ -45,9 +45,9 @@ pub struct Effort {
 
 impl Effort {
     /// Of a report above detachment: a follower that chatters has forgotten its start once it has come to rest.
-    pub const SLOW: Self = Self { speeds: 800, transient: 40, record: 5 };
+    pub(crate) const SLOW: Self = Self { speeds: 800, transient: 40, record: 5 };
     /// Of a report around the corner impact.
-    pub const FAST: Self = Self { speeds: 480, transient: 300, record: 150 };
+    pub(crate) const FAST: Self = Self { speeds: 480, transient: 300, record: 150 };
 }
 
 /// The speeds that are shown, rpm, or why there are none.
@@ -81,7 +81,7 @@ pub struct Fast {
 
 impl Shown {
     /// The paper's speeds.
-    pub const PAPERS: (Slow, Fast) = (
+    pub(crate) const PAPERS: (Slow, Fast) = (
         Slow { chattering: 183.0, range: [115.0, 200.0], interrupted: 175.0 },
         Fast { range: [660.0, 750.0], beyond: 670.0 },
     );
@@ -127,7 +127,7 @@ impl Subject {
     }
 
     /// A model with what `verify` found for it, or why that found nothing.
-    pub fn with(model: &Model, findings: Result<Verification, String>) -> Result<Self, ModelError> {
+    pub(crate) fn with(model: &Model, findings: Result<Verification, String>) -> Result<Self, ModelError> {
         let cam = Cam::new(model)?;
         let paper = model.is_the_papers()?;
         let [_, fastest] = usual_speeds(model);

@@ -27,7 +27,6 @@ pub enum Spline {
     Quintic,
 }
 
-/// One measured lift.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row {
     /// Cam angle, degrees.

@@ -18,7 +18,6 @@ impl Paged for CamSheet {
     }
 }
 
-/// Segments and corners.
 pub(crate) fn parts(sheet: &CamSheet) -> Vec<Block> {
     [segments(sheet), corners(sheet)].concat()
 }

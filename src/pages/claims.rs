@@ -5,7 +5,7 @@ use crate::show::block::{Block, Column, Mark, Section, Span, Table, Words, words
 use crate::show::words::mark;
 
 /// The page for a terminal.
-pub fn terminal(found: &Claims) -> Vec<Block> {
+pub(crate) fn terminal(found: &Claims) -> Vec<Block> {
     let title = format!("What the paper states, held against {}", found.model);
     let mut blocks = vec![Block::Paragraph(0, (Mark::Heading, title.as_str()).into())];
     for (verdict, held) in found.groups() {

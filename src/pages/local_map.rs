@@ -30,7 +30,6 @@ pub(crate) fn conditions(found: &Verification) -> Vec<(Words, Words)> {
     nearest.into_iter().chain(failing).collect()
 }
 
-/// All conditions.
 pub(crate) fn every_condition(found: &Verification) -> Table {
     let (left, numeric) = (|head| Column::left(head, 2, 0), |head| Column::right(head, 0));
     let mut columns = vec![left("looked at"), numeric("value"), numeric("distance from failing")];

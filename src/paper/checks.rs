@@ -100,12 +100,12 @@ pub fn find(id: &str) -> Option<Check<'_>> {
 
 impl Check<'_> {
     /// Whether another model than the paper's leaves it open.
-    pub fn is_about_the_papers_model(self) -> bool {
+    pub(crate) fn is_about_the_papers_model(self) -> bool {
         matches!(self, Self::Number(_) | Self::Paper(..))
     }
 
     /// Decides the statement. What no check comes to is known by reading alone.
-    pub fn run(self, context: &Context<'_>) -> Found {
+    pub(crate) fn run(self, context: &Context<'_>) -> Found {
         let (known, decision) = match self {
             _ if self.is_about_the_papers_model() && !context.is_paper => {
                 (Known::Read, Err("about the paper's follower and cam; this model has others".into()))

@@ -18,11 +18,9 @@ const EQUATIONS: &str = include_str!("../../golden/derived/printed_equations.jso
 pub struct Context<'a> {
     pub(super) model: &'a Model,
     pub(super) cam: &'a Cam,
-    /// Without programs outside.
     pub(super) findings: &'a Verification,
     /// Whether follower and cam are the paper's.
     pub(super) is_paper: bool,
-    /// By label.
     pub(super) equations: BTreeMap<String, Equation>,
 }
 

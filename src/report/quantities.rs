@@ -39,7 +39,7 @@ const KNOWN: [(&str, &str, &str, &str); 14] = [
 ];
 
 /// Every number of the model in the order of its file, then what follows from them.
-pub fn quantities(model: &Model) -> Vec<Quantity> {
+pub(crate) fn quantities(model: &Model) -> Vec<Quantity> {
     let place = |field: &str| KNOWN.iter().position(|(path, ..)| *path == field);
     let mut numbers: Vec<(&str, f64)> = model.numbers().collect();
     // Those of the table in its order, the others after them as they come.

@@ -76,13 +76,13 @@ pub(crate) use words;
 
 impl Words {
     /// Puts more words behind these.
-    pub fn push(&mut self, more: impl Into<Self>) {
+    pub(crate) fn push(&mut self, more: impl Into<Self>) {
         self.0.extend(more.into().0);
     }
 
     /// A sentence: each `{}` is the next of the parts, a letter of mathematics stands between two underscores with its side
     /// behind a `^`, and what is typed between two backticks.
-    pub fn prose(sentence: &'static str, parts: impl IntoIterator<Item = Self>) -> Self {
+    pub(crate) fn prose(sentence: &'static str, parts: impl IntoIterator<Item = Self>) -> Self {
         let (mut prose, mut parts) = (Self::default(), parts.into_iter());
         for (place, text) in sentence.split('`').enumerate() {
             if place % 2 == 1 {
@@ -105,7 +105,7 @@ impl Words {
     }
 
     /// Words with others between each two of them.
-    pub fn joined(all: impl IntoIterator<Item = Self>, between: &str) -> Self {
+    pub(crate) fn joined(all: impl IntoIterator<Item = Self>, between: &str) -> Self {
         let mut joined = Self::default();
         for (index, words) in all.into_iter().enumerate() {
             joined.push(if index > 0 { between } else { "" });
@@ -115,7 +115,7 @@ impl Words {
     }
 
     /// Whether there is nothing to show.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 }
@@ -201,7 +201,7 @@ pub enum Block {
 
 impl Block {
     /// A paragraph that is indented as most are.
-    pub fn paragraph(words: impl Into<Words>) -> Self {
+    pub(crate) fn paragraph(words: impl Into<Words>) -> Self {
         Self::Paragraph(2, words.into())
     }
 }
@@ -232,12 +232,12 @@ pub struct Column {
 
 impl Column {
     /// Cells that begin under each other.
-    pub fn left(head: impl Into<Words>, gap: usize, least: usize) -> Self {
+    pub(crate) fn left(head: impl Into<Words>, gap: usize, least: usize) -> Self {
         Self { head: head.into(), gap, least, left: true }
     }
 
     /// Cells that end under each other.
-    pub fn right(head: impl Into<Words>, least: usize) -> Self {
+    pub(crate) fn right(head: impl Into<Words>, least: usize) -> Self {
         Self { head: head.into(), gap: 0, least, left: false }
     }
 }
@@ -267,17 +267,16 @@ pub struct Table {
 
 impl Table {
     /// A table without rows.
-    pub fn new(label: &str, columns: impl Into<Vec<Column>>) -> Self {
+    pub(crate) fn new(label: &str, columns: impl Into<Vec<Column>>) -> Self {
         Self { label: label.into(), columns: columns.into(), rows: Vec::new(), repeated: None }
     }
 
-    /// Appends a row.
-    pub fn row(&mut self, cells: impl Into<Vec<Words>>) {
+    pub(crate) fn row(&mut self, cells: impl Into<Vec<Words>>) {
         self.rows.push(Row { cells: cells.into(), is_bad: false });
     }
 
     /// Appends a row that says what should not be, where it is so.
-    pub fn row_bad_where(&mut self, is_bad: bool, cells: impl Into<Vec<Words>>) {
+    pub(crate) fn row_bad_where(&mut self, is_bad: bool, cells: impl Into<Vec<Words>>) {
         self.rows.push(Row { cells: cells.into(), is_bad });
     }
 }

@@ -3,7 +3,7 @@
 use crate::model::Model;
 
 /// `corner-impact NAME MODEL REST`, without a model file where the model is built in.
-pub fn command(name: &str, model: &Model, rest: &str) -> String {
+pub(crate) fn command(name: &str, model: &Model, rest: &str) -> String {
     let mut words = format!("corner-impact {name}");
     if let Some(path) = model.path() {
         words = format!("{words} {}", shell_word(&path.to_string_lossy()));

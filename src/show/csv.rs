@@ -12,11 +12,11 @@ use crate::simulate::{Event, Machine, Motion};
 use crate::study::basins::{Basins, Ending};
 
 /// The columns of a run's events.
-pub const EVENTS: &str =
+pub(crate) const EVENTS: &str =
     "revolution,time_s,cam_angle_rad,event,position_m,velocity_before_m_s,velocity_after_m_s,cam_velocity_m_s\n";
 
 /// Appends an event of a run at `angular_velocity`, rad/s, that started at `start_angle`, rad.
-pub fn event(line: &mut String, event: &Event, start_angle: f64, angular_velocity: f64) {
+pub(crate) fn event(line: &mut String, event: &Event, start_angle: f64, angular_velocity: f64) {
     let Event { revolution, cam_angle, position, velocity_before, velocity_after, cam_velocity, .. } = event;
     let (time, kind) = (event.turned_since(start_angle) / angular_velocity, event.kind.name());
     // Writing to a string does not fail.
@@ -27,17 +27,17 @@ pub fn event(line: &mut String, event: &Event, start_angle: f64, angular_velocit
 }
 
 /// The columns of a run's states at one angle.
-pub const STROBE: &str = "revolution,position_m,velocity_m_s,gap_m,contact\n";
+pub(crate) const STROBE: &str = "revolution,position_m,velocity_m_s,gap_m,contact\n";
 
 /// Appends the state of a run at a section.
-pub fn strobe(line: &mut String, machine: &Machine, motion: &Motion) {
+pub(crate) fn strobe(line: &mut String, machine: &Machine, motion: &Motion) {
     let State { position, velocity } = motion.state;
     let (gap, contact) = (machine.gap(motion), motion.contact);
     let _ = writeln!(line, "{},{position},{velocity},{gap},{contact}", motion.revolution);
 }
 
 /// The columns of a diagram.
-pub fn diagram(sweep: &Sweep) -> String {
+pub(crate) fn diagram(sweep: &Sweep) -> String {
     let seen = match sweep.section {
         Section::Impacts => "cam_angle_rad,event,position_m,velocity_before_m_s,velocity_after_m_s",
         Section::Strobe(_) => "position_m,velocity_m_s",
@@ -47,7 +47,7 @@ pub fn diagram(sweep: &Sweep) -> String {
 
 /// Lines of a diagram, as a worker makes them.
 #[derive(Debug, Default)]
-pub struct Lines(pub String);
+pub(crate) struct Lines(pub String);
 
 impl Lines {
     /// Characters after which lines are sent on.
@@ -88,7 +88,7 @@ fn multipliers([one, two]: [Eigenvalue; 2]) -> String {
 }
 
 /// A line for each start, row by row; `ending` is empty where the start is below the cam.
-pub fn basins(basins: &Basins) -> String {
+pub(crate) fn basins(basins: &Basins) -> String {
     let mut lines = String::from("position_m,velocity_m_s,ending,part,revolutions,impacts\n");
     for (index, part) in basins.cells.iter().enumerate() {
         let State { position, velocity } = basins.grid.start(index);
@@ -103,7 +103,7 @@ pub fn basins(basins: &Basins) -> String {
 
 /// Every orbit of every branch: of its impacts the first, where the state is that right after it; of an orbit without any,
 /// the state at angle 0.
-pub fn branches(parameter: &str, branches: &[Branch]) -> String {
+pub(crate) fn branches(parameter: &str, branches: &[Branch]) -> String {
     let mut lines = String::from(
         "rpm,parameter,value,revolutions,impacts,cam_angle_rad,position_m,velocity_m_s,multiplier_1_re,multiplier_1_im,\
          multiplier_2_re,multiplier_2_im,stable,special,branch,jump_order,bracket_low,bracket_high,special_residual\n",
@@ -128,7 +128,7 @@ pub fn branches(parameter: &str, branches: &[Branch]) -> String {
 }
 
 /// Every corner impact of every curve.
-pub fn curves(parameter: &str, curves: &[ImpactCurve]) -> String {
+pub(crate) fn curves(parameter: &str, curves: &[ImpactCurve]) -> String {
     let mut lines = String::from(
         "rpm,parameter,value,revolutions,impacts,cam_angle_rad,jump_order,scenario,multiplier_minus_1_re,\
          multiplier_minus_1_im,multiplier_minus_2_re,multiplier_minus_2_im,multiplier_plus_1_re,multiplier_plus_1_im,\

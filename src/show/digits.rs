@@ -27,7 +27,7 @@ pub enum Digits {
 
 impl Digits {
     /// As a terminal and a file of text have it: `-1.5e-9`.
-    pub fn text(self, value: f64) -> String {
+    pub(crate) fn text(self, value: f64) -> String {
         match self {
             _ if !value.is_finite() => format!("{value}"),
             // Rounding's rest of a zero, or its sign, tells nothing.
@@ -48,7 +48,7 @@ impl Digits {
     }
 
     /// As a page for a browser has it, with all digits in the value of a `data` element.
-    pub fn markup(self, value: f64) -> Markup {
+    pub(crate) fn markup(self, value: f64) -> Markup {
         html! { @if value.is_finite() { data value=(value) { (typeset(&self.typed(value))) } } @else { (value) } }
     }
 

@@ -6,7 +6,7 @@ use crate::show::block::{Block, Column, Mark, Span, Symbol, Table, Words};
 use crate::show::digits::{Digits, typeset};
 
 /// Blocks one after the other.
-pub fn blocks(blocks: &[Block]) -> Markup {
+pub(crate) fn blocks(blocks: &[Block]) -> Markup {
     html! { @for block in blocks { (self::block(block)) } }
 }
 
@@ -31,7 +31,7 @@ fn block(block: &Block) -> Markup {
 }
 
 /// A block that may be wider than the page, in a box that scrolls by itself.
-pub fn wide(label: &str, body: &Markup) -> Markup {
+pub(crate) fn wide(label: &str, body: &Markup) -> Markup {
     html! { div.wide role="region" aria-label=(label) tabindex="0" { (body) } }
 }
 
@@ -62,7 +62,7 @@ fn table(table: &Table) -> Markup {
 }
 
 /// Words as a browser has them.
-pub fn words(words: &Words) -> Markup {
+pub(crate) fn words(words: &Words) -> Markup {
     html! { @for span in &words.0 { (self::span(span)) } }
 }
 

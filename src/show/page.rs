@@ -12,7 +12,7 @@ use textwrap::{Options, WordSeparator, WordSplitter, WrapAlgorithm};
 use crate::show::block::{Block, Mark, Span, Table, Words};
 
 /// Columns of a page where nothing says how many there are.
-pub const WIDTH: usize = 100;
+pub(crate) const WIDTH: usize = 100;
 
 /// What ends a mark.
 const RESET: &str = "\x1b[0m";
@@ -80,7 +80,7 @@ pub trait Paged {
 
 impl Page {
     /// A page of `blocks`.
-    pub fn of(width: usize, blocks: &[Block]) -> Result<Self, fmt::Error> {
+    pub(crate) fn of(width: usize, blocks: &[Block]) -> Result<Self, fmt::Error> {
         let mut page = Self { width, text: String::new(), line: 0 };
         page.blocks(blocks)?;
         Ok(page)
@@ -138,20 +138,19 @@ impl Page {
         Ok(())
     }
 
-    /// The text alone.
-    pub fn plain(&self) -> String {
+    pub(crate) fn plain(&self) -> String {
         let codes = Mark::ALL.map(Mark::codes).into_iter().filter(|codes| !codes.is_empty());
         codes.chain([RESET]).fold(self.text.clone(), |text, code| text.replace(code, ""))
     }
 
     /// The text with escape codes around what is marked.
-    pub fn coloured(&self) -> &str {
+    pub(crate) fn coloured(&self) -> &str {
         &self.text
     }
 }
 
 /// Words as a terminal has them.
-pub fn text(words: &Words) -> String {
+pub(crate) fn text(words: &Words) -> String {
     let of = |span: &Span| match span {
         Span::Text(text) | Span::Code(text) => text.clone(),
         Span::Number(value, digits) | Span::Against(value, _, digits) => digits.text(*value),

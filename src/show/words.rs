@@ -16,12 +16,12 @@ use crate::study::basins::Ending;
 use crate::study::speeds::{Regime, Settled};
 
 /// A route's name.
-pub fn route(name: RouteName) -> String {
+pub(crate) fn route(name: RouteName) -> String {
     spoken(&name.to_string())
 }
 
 /// A quantity as the paper writes it; on a terminal as documents have it.
-pub fn quantity(quantity: Quantity) -> Words {
+pub(crate) fn quantity(quantity: Quantity) -> Words {
     let (name, side) = quantity.parts();
     let (letter, above) = match quantity {
         Quantity::Period => ("T", "∗"),
@@ -40,7 +40,7 @@ pub fn quantity(quantity: Quantity) -> Words {
 }
 
 /// A side as the paper marks it.
-pub fn sign(side: Side) -> &'static str {
+pub(crate) fn sign(side: Side) -> &'static str {
     match side {
         Side::Minus => "\u{2212}",
         Side::Plus => "+",
@@ -48,7 +48,7 @@ pub fn sign(side: Side) -> &'static str {
 }
 
 /// The decimals that two values share.
-pub fn shared(decimals: Option<u32>) -> String {
+pub(crate) fn shared(decimals: Option<u32>) -> String {
     match decimals {
         Some(1) => "1 decimal".into(),
         Some(decimals) => format!("{decimals} decimals"),
@@ -57,17 +57,17 @@ pub fn shared(decimals: Option<u32>) -> String {
 }
 
 /// A name with spaces for its hyphens and underscores.
-pub fn spoken(name: &str) -> String {
+pub(crate) fn spoken(name: &str) -> String {
     name.replace(['_', '-'], " ")
 }
 
 /// A verdict of the ledger, standing out as what it is.
-pub fn verdict(verdict: Verdict) -> Words {
+pub(crate) fn verdict(verdict: Verdict) -> Words {
     (mark(verdict), verdict.to_string().as_str()).into()
 }
 
 /// What a verdict of the ledger is.
-pub fn mark(verdict: Verdict) -> Mark {
+pub(crate) fn mark(verdict: Verdict) -> Mark {
     match verdict {
         Verdict::Holds => Mark::Good,
         Verdict::Misprint => Mark::Doubtful,
@@ -77,7 +77,7 @@ pub fn mark(verdict: Verdict) -> Mark {
 }
 
 /// What a border collision does.
-pub fn meaning(scenario: Scenario) -> &'static str {
+pub(crate) fn meaning(scenario: Scenario) -> &'static str {
     match scenario {
         Scenario::Persistence => "the fixed point crosses from one side to the other and lives on",
         Scenario::NonsmoothFold => {
@@ -89,13 +89,12 @@ pub fn meaning(scenario: Scenario) -> &'static str {
     }
 }
 
-/// Stable or not.
-pub fn stability(stable: bool) -> &'static str {
+pub(crate) fn stability(stable: bool) -> &'static str {
     if stable { "stable" } else { "unstable" }
 }
 
 /// Speeds on one side of that of the corner impact, or that speed.
-pub fn speeds(speeds: Option<Speeds>) -> &'static str {
+pub(crate) fn speeds(speeds: Option<Speeds>) -> &'static str {
     match speeds {
         Some(Speeds::Faster) => "faster than omega*",
         Some(Speeds::Slower) => "slower than omega*",
@@ -104,7 +103,7 @@ pub fn speeds(speeds: Option<Speeds>) -> &'static str {
 }
 
 /// Where the impact is, on a side of the corner.
-pub fn side(side: Side) -> &'static str {
+pub(crate) fn side(side: Side) -> &'static str {
     match side {
         Side::Minus => "impact before the corner",
         Side::Plus => "impact after the corner",
@@ -112,7 +111,7 @@ pub fn side(side: Side) -> &'static str {
 }
 
 /// What rests on a condition.
-pub fn decides(decides: Decides) -> &'static str {
+pub(crate) fn decides(decides: Decides) -> &'static str {
     match decides {
         Decides::Classification => "classification",
         Decides::Stability => "stability",
@@ -121,7 +120,7 @@ pub fn decides(decides: Decides) -> &'static str {
 }
 
 /// What a prediction of the local map is of.
-pub fn compared(compared: Compared) -> &'static str {
+pub(crate) fn compared(compared: Compared) -> &'static str {
     match compared {
         Compared::OneRevolution => "a turn from x*",
         Compared::FixedPointMinus => "fixed point minus",
@@ -130,7 +129,7 @@ pub fn compared(compared: Compared) -> &'static str {
 }
 
 /// What ends the range of a prediction, behind where it ends.
-pub fn ends(ends: Ends) -> &'static str {
+pub(crate) fn ends(ends: Ends) -> &'static str {
     match ends {
         Ends::Tenth => "",
         Ends::OtherMotion => ", where the real motion ends",
@@ -139,7 +138,7 @@ pub fn ends(ends: Ends) -> &'static str {
 }
 
 /// Where motions of the local map end.
-pub fn end(end: &End) -> Words {
+pub(crate) fn end(end: &End) -> Words {
     let growth = |what: &str, value, error| {
         let four = Digits::Fixed(4);
         words![what, ", Lyapunov exponent ", (value, four), " +- ", (error, four), " a turn"]
@@ -155,7 +154,7 @@ pub fn end(end: &End) -> Words {
 }
 
 /// What the follower does at a speed.
-pub fn regime(regime: Regime) -> &'static str {
+pub(crate) fn regime(regime: Regime) -> &'static str {
     match regime {
         Regime::OnCam => "stays on the cam",
         Regime::Chattering => "chatters and sticks",
@@ -166,13 +165,12 @@ pub fn regime(regime: Regime) -> &'static str {
     }
 }
 
-/// So many things.
-pub fn many(count: u64, what: &str) -> String {
+pub(crate) fn many(count: u64, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
 /// What the long run at a speed is.
-pub fn motion(settled: &Settled) -> String {
+pub(crate) fn motion(settled: &Settled) -> String {
     let turns = |n| if n == 1 { "a revolution".to_owned() } else { many(n, "revolution") };
     let name = regime(settled.regime);
     match (settled.regime, settled.period()) {
@@ -184,7 +182,7 @@ pub fn motion(settled: &Settled) -> String {
 }
 
 /// What starts end on, in a legend.
-pub fn ending(ending: &Ending) -> String {
+pub(crate) fn ending(ending: &Ending) -> String {
     match ending {
         Ending::Orbit(orbit) => {
             format!("{} in {}", many(orbit.impacts().count() as u64, "impact"), many(orbit.revolutions, "revolution"))
@@ -196,12 +194,12 @@ pub fn ending(ending: &Ending) -> String {
 }
 
 /// A letter with what is below and above it, for a browser, and as a terminal writes it.
-pub fn symbol(plain: &str, letter: &'static str, below: &str, above: &'static str) -> Symbol {
+pub(crate) fn symbol(plain: &str, letter: &'static str, below: &str, above: &'static str) -> Symbol {
     Symbol { plain: plain.into(), letter, below: below.into(), above }
 }
 
 /// An entry of a map, such as `A12`, with its indices and its side.
-pub fn entry(name: &str, side: Side) -> Symbol {
+pub(crate) fn entry(name: &str, side: Side) -> Symbol {
     let letter = if name.starts_with('A') { "A" } else { "B" };
     symbol(name, letter, name.get(1..).unwrap_or_default(), sign(side))
 }

@@ -498,9 +498,7 @@ fn no_progress(motion: &Motion, turn: f64) -> SimulateError {
 
 /// What one step of the loop came to.
 enum Step {
-    /// Somewhere further on.
     Moved,
-    /// Past an event.
     Event,
     /// At the end of the run, state and gap as they are there.
     Reached,

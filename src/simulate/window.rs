@@ -50,17 +50,34 @@ pub(super) struct Window<'a, T> {
 /// What became of a flight over a window.
 pub(super) enum Passage {
     /// No contact up to the end.
-    Free { state: State, gap: Option<f64> },
+    Free {
+        state: State,
+        gap: Option<f64>,
+    },
     /// None up to a time, s, before the end.
-    Advanced { time: f64, state: State, gap: Option<f64> },
+    Advanced {
+        time: f64,
+        state: State,
+        gap: Option<f64>,
+    },
     /// The first contact, s after the start, with the velocity that it is met with.
-    Contact { time: f64, velocity: f64, lift: Lift },
+    Contact {
+        time: f64,
+        velocity: f64,
+        lift: Lift,
+    },
     /// At rest on the cam with nothing that would lift the follower off it.
-    Resting { time: f64 },
-    /// Inside the cam.
-    Below { depth: f64, time: f64 },
+    Resting {
+        time: f64,
+    },
+    Below {
+        depth: f64,
+        time: f64,
+    },
     /// More steps than a window may take; s after the start.
-    NoProgress { time: f64 },
+    NoProgress {
+        time: f64,
+    },
     /// Something is not a number.
     NotFinite,
 }

@@ -30,7 +30,6 @@ pub(super) enum Cut {
     Type { side: usize, multiplier: f64 },
 }
 
-/// A cut, located.
 pub(super) struct Located {
     /// The step to it.
     pub(super) step: f64,

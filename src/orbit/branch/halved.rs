@@ -10,7 +10,6 @@ use crate::tolerance;
 
 /// The flip of an orbit of half the period.
 pub(super) struct Flipped {
-    /// Of the parameter.
     pub(super) value: f64,
     /// The short orbit, gone round twice.
     pub(super) cycle: Cycle,
