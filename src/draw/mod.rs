@@ -75,7 +75,7 @@ impl Axis {
     }
 
     /// The vertical axis with units as long as those of the horizontal one; its frame is as high as that makes it.
-    pub(crate) fn to_scale(self) -> Self {
+    pub(crate) fn scaled(self) -> Self {
         Self { to_scale: true, ..self }
     }
 }

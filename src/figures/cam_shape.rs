@@ -142,7 +142,7 @@ fn figure(title: &str, cam: &Cam, outline: &Outline) -> Figure {
     ]);
     let reach = 1.7 * farthest;
     let x = Axis::new("from the axis, across", "m").over([-reach, reach]);
-    let y = Axis::new("from the axis, along the follower", "m").over([-1.12 * farthest, 1.3 * farthest]).to_scale();
+    let y = Axis::new("from the axis, along the follower", "m").over([-1.12 * farthest, 1.3 * farthest]).scaled();
     Figure::new(title, x, vec![Panel::new(y, 0.6, series)])
 }
 
