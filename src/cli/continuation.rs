@@ -12,7 +12,7 @@ use crate::orbit::branch::Following;
 use crate::orbit::{Parameter, Search};
 use crate::pages;
 use crate::show::csv;
-use crate::study::branches::branches;
+use crate::study::continuation::branches;
 
 /// Follows the orbits of one speed through a parameter, round folds and through corners.
 #[derive(clap::Args)]

@@ -1,9 +1,9 @@
 //! One module per question that a user can ask.
 
 pub mod basins;
-pub mod branches;
 pub mod cam;
 pub mod compared;
+pub mod continuation;
 pub mod curve;
 pub mod diagram;
 pub mod locate;
