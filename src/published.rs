@@ -119,7 +119,7 @@ static FINDINGS: [Finding; 20] = [
     Finding {
         quantity: Quantity::Eigenvalues(Minus),
         verdict: Verdict::Misprint,
-        note: "1.00515 rounds to 1.0051, printed 1.0052",
+        note: "1.005147 rounds to 1.0051, printed 1.0052",
     },
     Finding {
         quantity: Quantity::Eigenvalues(Plus),
