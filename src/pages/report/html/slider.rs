@@ -44,7 +44,7 @@ fn player(through: &ThroughEntry) -> Markup {
     html! {
         p {
             "Move the speed through that of the corner impact. Shown is every orbit with one impact a revolution, stable or not, and "
-            "what a run does that came there from faster speeds."
+            "what the runs do that came there from faster and from slower speeds."
         }
         noscript { p { "Moving the speed needs JavaScript. The table below has the same orbits, and the figures the same pictures." } }
         div.player id="player" hidden {
