@@ -24,9 +24,9 @@ pub struct Subject {
     pub findings: Result<Verification, String>,
     /// The speeds that are shown.
     pub shown: Shown,
-    /// How fine the sweep above detachment is: [`Effort::SLOW`].
+    /// How fine the sweep above detachment is: `Effort::SLOW`.
     pub slow_effort: Effort,
-    /// How fine the sweeps around the corner impact are: [`Effort::FAST`].
+    /// How fine the sweeps around the corner impact are: `Effort::FAST`.
     pub fast_effort: Effort,
     /// The branches over the fast ones, once they have been followed: more than one figure shows them.
     pub(crate) followed: OnceLock<Result<Vec<Branch>, String>>,

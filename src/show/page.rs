@@ -1,6 +1,6 @@
 //! Blocks on a terminal: text in lines that fit, and marks on words that stand out.
 //!
-//! How a mark looks only [`Page::coloured`] tells; [`Page::plain`] leaves it out, and a mark adds nothing that the words do
+//! How a mark looks only `Page::coloured` tells; `Page::plain` leaves it out, and a mark adds nothing that the words do
 //! not say. Where lines break is textwrap's business. Tables are laid out here: comfy-table, which would do it too, folds
 //! cells where there is no room, but breaks numbers with them, and has no way to go on row by row.
 
