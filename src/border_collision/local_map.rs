@@ -90,11 +90,7 @@ impl LocalMap {
 
     /// `x -> A_W x + B_W mu`: the maps of a word's letters one after the other, wherever x is.
     pub fn along(&self, word: &Word) -> SideMap {
-        let start = SideMap { a: Matrix2::identity(), b: Vector2::zeros() };
-        word.sides().iter().fold(start, |sum, side| {
-            let SideMap { a, b } = self.of(*side);
-            SideMap { a: a * sum.a, b: a * sum.b + b }
-        })
+        word.sides().iter().fold(SideMap::IDENTITY, |first, side| self.of(*side).after(&first))
     }
 
     /// The orbit that repeats `word`; `None` where `det(I - A_W)` is zero to rounding, so that there is none or too many.

@@ -50,6 +50,13 @@ document!(Corner as it {
     curvature_after: it.plus.curvature,
 });
 
+impl Corner {
+    /// Lift and derivatives of the law of one side.
+    pub fn lift(&self, side: Side) -> Lift {
+        if side == Side::Minus { self.minus } else { self.plus }
+    }
+}
+
 impl Cam {
     /// The corners, in order of angle, whatever derivative jumps.
     pub fn corners(&self) -> Vec<Corner> {

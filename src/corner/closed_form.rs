@@ -11,7 +11,7 @@ use nalgebra::{Matrix2, Vector2};
 use super::corner_impact::CornerImpact;
 use super::map::{CornerMap, Route, RouteName, SideMap};
 use crate::bracket::secants;
-use crate::cam::{Lift, Side};
+use crate::cam::Lift;
 use crate::model::{Follower, Model};
 use crate::tolerance;
 
@@ -25,14 +25,8 @@ pub struct NoFixedPoint {
 
 /// The map by eq:Px and eq:PT.
 pub fn route(model: &Model, at: &CornerImpact) -> Route {
-    let side = |side| {
-        let lift = match side {
-            Side::Minus => &at.corner.minus,
-            Side::Plus => &at.corner.plus,
-        };
-        Ok::<_, std::convert::Infallible>(side_map(&model.follower, at.period, at.velocity_before, lift))
-    };
-    let Ok(map) = CornerMap::try_from_sides(side);
+    let side = |side| side_map(&model.follower, at.period, at.velocity_before, &at.corner.lift(side));
+    let map = CornerMap::of_each(side);
     Route { name: RouteName::ClosedForm, map, uncertainty: None }
 }
 

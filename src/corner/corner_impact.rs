@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector2;
 
+use super::map::Sides;
 use crate::cam::{Corner, Lift, Side};
 use crate::flight::State;
 use crate::model::Follower;
@@ -55,8 +56,8 @@ impl CornerImpact {
     }
 
     /// c'' before and after the corner, m/s^2.
-    pub fn cam_acceleration(&self) -> [f64; 2] {
-        [self.corner.minus, self.corner.plus].map(|lift| lift.curvature * self.angular_velocity().powi(2))
+    pub fn cam_acceleration(&self) -> Sides<f64> {
+        Sides::of_each(|side| self.corner.lift(side).curvature * self.angular_velocity().powi(2))
     }
 
     /// Whether it is the paper's: one impact in one revolution, at a corner of acceleration or a smoother one.
@@ -91,10 +92,7 @@ impl CornerImpact {
     /// The lift at a impact; at the corner, that of `side`.
     pub fn lift(&self, machine: &Machine, impact: usize, side: Side) -> Lift {
         if impact == self.impact {
-            return match side {
-                Side::Minus => self.corner.minus,
-                Side::Plus => self.corner.plus,
-            };
+            return self.corner.lift(side);
         }
         let Impact { segment, cam_angle, .. } = self.cycle.impacts[impact];
         machine.cam().segments()[segment].law.lift(cam_angle)

@@ -5,7 +5,7 @@ use nalgebra::{Matrix2, Vector2};
 use serde::Deserialize;
 use serde_json::json;
 
-use super::map::{CornerMap, Route, RouteName, SideMap, Uncertainty};
+use super::map::{Route, RouteName, SideMap, Sides, Uncertainty};
 use crate::model::{ArcsProfile, CamProfile, Follower, Model, Study};
 use crate::python::{self, PythonError};
 
@@ -40,9 +40,9 @@ pub fn know(model: &Model) -> bool {
 /// Runs one of them on a model whose study range is `study`.
 pub fn run(program: Program, model: &Model, study: Study) -> Result<Outside, PythonError> {
     let answer: Answer = python::run(program.script, &numbers(model, study))?;
-    let map = answer.map.map();
+    let map = answer.map.map(Matrices::map);
     let uncertainty = answer.standard_error.map(|error| Uncertainty::Fit {
-        standard: error.map(),
+        standard: error.map(Matrices::map),
         systematic: None,
         condition_number: answer.condition_number.unwrap_or(f64::NAN),
     });
@@ -98,31 +98,24 @@ struct Answer {
     period_s: Number,
     x_star: [Number; 2],
     #[serde(flatten)]
-    map: Sides,
-    standard_error: Option<Sides>,
+    map: Sides<Matrices>,
+    standard_error: Option<Sides<Matrices>>,
     condition_number: Option<f64>,
 }
 
 #[derive(Deserialize)]
-struct Sides {
-    minus: Side,
-    plus: Side,
-}
-
-#[derive(Deserialize)]
-struct Side {
+struct Matrices {
     #[serde(rename = "A")]
     a: [[Number; 2]; 2],
     #[serde(rename = "B")]
     b: [Number; 2],
 }
 
-impl Sides {
-    fn map(&self) -> CornerMap {
-        let side = |side: &Side| SideMap {
-            a: Matrix2::from_fn(|row, column| side.a[row][column].value()),
-            b: Vector2::from_fn(|row, _| side.b[row].value()),
-        };
-        CornerMap { minus: side(&self.minus), plus: side(&self.plus) }
+impl Matrices {
+    fn map(&self) -> SideMap {
+        SideMap {
+            a: Matrix2::from_fn(|row, column| self.a[row][column].value()),
+            b: Vector2::from_fn(|row, _| self.b[row].value()),
+        }
     }
 }

@@ -12,7 +12,7 @@ use nalgebra::{Matrix2, Vector2, Vector3};
 
 use super::corner_impact::CornerImpact;
 use super::extrapolation::{Powers, extrapolate};
-use super::map::{CornerMap, Route, RouteName, SideMap, Uncertainty};
+use super::map::{Route, RouteName, SideMap, Sides, Uncertainty};
 use super::one_sided::{OneSidedMap, SampleError};
 use super::varied::Varied;
 use crate::cam::{Cam, Side};
@@ -25,13 +25,9 @@ pub fn route(model: &Model, cam: &Cam, at: &CornerImpact) -> Result<Route, Sampl
 
 /// The same with B by any number of the model.
 pub fn route_by(model: &Model, cam: &Cam, at: &CornerImpact, varied: &Varied) -> Result<Route, SampleError> {
-    let (minus, minus_error) = side_map(model, cam, at, Side::Minus, varied)?;
-    let (plus, plus_error) = side_map(model, cam, at, Side::Plus, varied)?;
-    Ok(Route {
-        name: RouteName::FiniteDifference,
-        map: CornerMap { minus, plus },
-        uncertainty: Some(Uncertainty::Extrapolation(CornerMap { minus: minus_error, plus: plus_error })),
-    })
+    let found = Sides::try_of_each(|side| side_map(model, cam, at, side, varied))?;
+    let uncertainty = Some(Uncertainty::Extrapolation(found.map(|(_, error)| *error)));
+    Ok(Route { name: RouteName::FiniteDifference, map: found.map(|(map, _)| *map), uncertainty })
 }
 
 /// One side's map, and the error of each entry: of several impacts over the whole period and impact by impact, each entry
@@ -99,13 +95,11 @@ fn by_impacts(model: &Model, cam: &Cam, at: &CornerImpact, side: Side, varied: &
 impl Parts {
     /// The map of the period, and what the errors of the parts make of it to first order.
     fn product(&self) -> Known {
-        let none = SideMap { a: Matrix2::zeros(), b: Vector2::zeros() };
-        let (mut all, mut off) = (SideMap { a: Matrix2::identity(), ..none }, none);
+        let (mut all, mut off) = (SideMap::IDENTITY, SideMap::ZERO);
         for ((next, error), after) in self.parts.iter().zip(&self.after) {
-            // dx'' = A' (A dx + B dp) + B' dp
             off.a += after.abs() * error.a * all.a.abs();
             off.b += after.abs() * (error.a * all.b.abs() + error.b);
-            all = SideMap { a: next.a * all.a, b: next.a * all.b + next.b };
+            all = next.after(&all);
         }
         (all, off)
     }

@@ -11,10 +11,10 @@ use faer::{Conj, Mat};
 use nalgebra::{Matrix2, Vector2, Vector3};
 
 use super::corner_impact::CornerImpact;
-use super::map::{CornerMap, Route, RouteName, SideMap, Uncertainty};
+use super::map::{Route, RouteName, SideMap, Sides, Uncertainty};
 use super::one_sided::{OneSidedMap, SampleError};
 use super::varied::Varied;
-use crate::cam::{Cam, Side};
+use crate::cam::Cam;
 use crate::model::Model;
 use crate::tolerance;
 
@@ -35,17 +35,13 @@ pub fn route(model: &Model, cam: &Cam, at: &CornerImpact) -> Result<Route, Sampl
 
 /// The same with B by any number of the model.
 pub fn route_by(model: &Model, cam: &Cam, at: &CornerImpact, varied: &Varied) -> Result<Route, SampleError> {
-    let minus = side_map(&OneSidedMap::by(model, cam, at, Side::Minus, varied)?)?;
-    let plus = side_map(&OneSidedMap::by(model, cam, at, Side::Plus, varied)?)?;
-    Ok(Route {
-        name: RouteName::LeastSquares,
-        map: CornerMap { minus: minus.value, plus: plus.value },
-        uncertainty: Some(Uncertainty::Fit {
-            standard: CornerMap { minus: minus.standard_error, plus: plus.standard_error },
-            systematic: Some(CornerMap { minus: minus.systematic_error, plus: plus.systematic_error }),
-            condition_number: minus.condition_number.max(plus.condition_number),
-        }),
-    })
+    let fits = Sides::try_of_each(|side| side_map(&OneSidedMap::by(model, cam, at, side, varied)?))?;
+    let uncertainty = Uncertainty::Fit {
+        standard: fits.map(|fit| fit.standard_error),
+        systematic: Some(fits.map(|fit| fit.systematic_error)),
+        condition_number: fits.minus.condition_number.max(fits.plus.condition_number),
+    };
+    Ok(Route { name: RouteName::LeastSquares, map: fits.map(|fit| fit.value), uncertainty: Some(uncertainty) })
 }
 
 struct SideFit {

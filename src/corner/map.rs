@@ -1,7 +1,7 @@
 //! The piecewise-linear map at a corner impact, and what a route says of it.
 
 use nalgebra::{Matrix2, RowVector2, Vector2};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::cam::Side;
 pub use crate::orbit::Eigenvalue;
@@ -17,6 +17,16 @@ pub struct SideMap {
 }
 
 impl SideMap {
+    /// The map that moves nothing and adds nothing; a sum begins with it.
+    pub(crate) const IDENTITY: Self = Self { a: Matrix2::new(1.0, 0.0, 0.0, 1.0), ..Self::ZERO };
+    /// The map to 0.
+    pub(crate) const ZERO: Self = Self { a: Matrix2::new(0.0, 0.0, 0.0, 0.0), b: Vector2::new(0.0, 0.0) };
+
+    /// This map after another one, with the same number: `x -> A (A' x + B' p) + B p`.
+    pub(crate) fn after(&self, first: &Self) -> Self {
+        Self { a: self.a * first.a, b: self.a * first.b + self.b }
+    }
+
     /// A by rows, then B.
     pub fn entries(&self) -> [f64; 6] {
         [self.a[(0, 0)], self.a[(0, 1)], self.a[(1, 0)], self.a[(1, 1)], self.b[0], self.b[1]]
@@ -37,38 +47,44 @@ pub(crate) fn rows(matrix: &Matrix2<f64>) -> [[f64; 2]; 2] {
     matrix.transpose().into()
 }
 
-/// Something of either side.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub(crate) struct Sides<T> {
-    /// Impacts before the corner.
+/// Something of either side: `minus` for impacts before the corner, `plus` for impacts after it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Sides<T> {
+    /// With c'' before the corner.
     pub minus: T,
-    /// Impacts after the corner.
+    /// With c'' after the corner.
     pub plus: T,
 }
 
-/// Both sides of the map, eq:pwlf. `minus` holds for impacts before the corner, `plus` for impacts after it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct CornerMap {
-    /// With c'' before the corner.
-    pub minus: SideMap,
-    /// With c'' after the corner.
-    pub plus: SideMap,
-}
+impl<T> Sides<T> {
+    /// Both sides from one function of the side.
+    pub fn of_each(of: impl Fn(Side) -> T) -> Self {
+        Self { minus: of(Side::Minus), plus: of(Side::Plus) }
+    }
 
-impl CornerMap {
-    /// The map of one side.
-    pub fn of(&self, side: Side) -> &SideMap {
+    /// Both sides from a function that may fail.
+    pub fn try_of_each<E>(mut of: impl FnMut(Side) -> Result<T, E>) -> Result<Self, E> {
+        Ok(Self { minus: of(Side::Minus)?, plus: of(Side::Plus)? })
+    }
+
+    /// What is of one side.
+    pub fn of(&self, side: Side) -> &T {
         match side {
             Side::Minus => &self.minus,
             Side::Plus => &self.plus,
         }
     }
 
-    /// Both sides from one function of the side.
-    pub fn try_from_sides<E>(mut side: impl FnMut(Side) -> Result<SideMap, E>) -> Result<Self, E> {
-        Ok(Self { minus: side(Side::Minus)?, plus: side(Side::Plus)? })
+    /// What follows for either side.
+    pub fn map<U>(&self, of: impl Fn(&T) -> U) -> Sides<U> {
+        Sides { minus: of(&self.minus), plus: of(&self.plus) }
     }
+}
 
+/// Both sides of the map, eq:pwlf.
+pub type CornerMap = Sides<SideMap>;
+
+impl CornerMap {
     /// `C = h (A+ - A-)`, h = [1 0].
     pub fn c(&self) -> RowVector2<f64> {
         let jump = self.plus.a - self.minus.a;

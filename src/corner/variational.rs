@@ -14,7 +14,7 @@
 use nalgebra::{Matrix2, Matrix2x3, RowVector2, SMatrix, Vector2};
 
 use super::corner_impact::CornerImpact;
-use super::map::{CornerMap, Route, RouteName, SideMap, Uncertainty};
+use super::map::{CornerMap, Route, RouteName, SideMap, Sides, Uncertainty};
 use super::varied::{Change, LiftChange, NoChange, Varied};
 use crate::cam::{Cam, Side};
 use crate::flight::State;
@@ -25,9 +25,7 @@ use crate::simulate::Machine;
 /// The map with B by the period.
 pub fn route(model: &Model, cam: &Cam, at: &CornerImpact) -> Route {
     let around = Around::new(model, cam, at);
-    let Ok(map) = CornerMap::try_from_sides(|side| {
-        Ok::<_, std::convert::Infallible>(around.side_map(side, &Change::of_period(at.cycle.impacts.len())))
-    });
+    let map = CornerMap::of_each(|side| around.side_map(side, &Change::of_period(at.cycle.impacts.len())));
     Route { name: RouteName::Variational, map, uncertainty: None }
 }
 
@@ -35,14 +33,10 @@ pub fn route(model: &Model, cam: &Cam, at: &CornerImpact) -> Route {
 /// differentiated by.
 pub fn route_by(model: &Model, cam: &Cam, at: &CornerImpact, varied: &Varied) -> Result<Route, NoChange> {
     let around = Around::new(model, cam, at);
-    let mut error = CornerMap { minus: nothing(), plus: nothing() };
-    let map = CornerMap::try_from_sides(|side| {
+    let found = Sides::try_of_each(|side| {
         let change = Change::new(model, at, varied, side)?;
         let map = around.side_map(side, &change);
-        let off = match side {
-            Side::Minus => &mut error.minus,
-            Side::Plus => &mut error.plus,
-        };
+        let mut off = SideMap::ZERO;
         for (impact, uncertain) in change.lift_errors.iter().enumerate() {
             for moved in [LiftChange { slope: 0.0, ..*uncertain }, LiftChange { value: 0.0, ..*uncertain }] {
                 let mut other = change.clone();
@@ -51,8 +45,9 @@ pub fn route_by(model: &Model, cam: &Cam, at: &CornerImpact, varied: &Varied) ->
                 off.b += (around.side_map(side, &other).b - map.b).abs();
             }
         }
-        Ok::<_, NoChange>(map)
+        Ok::<_, NoChange>((map, off))
     })?;
+    let (map, error) = (found.map(|(map, _)| *map), found.map(|(_, off)| *off));
     let uncertainty = matches!(varied, Varied::Number(_)).then_some(Uncertainty::Extrapolation(error));
     Ok(Route { name: RouteName::Variational, map, uncertainty })
 }
@@ -63,10 +58,6 @@ pub fn gap_at_corner(model: &Model, cam: &Cam, at: &CornerImpact) -> (RowVector2
     let around = Around::new(model, cam, at);
     let gap = around.go(at.side, &Change::of_period(at.cycle.impacts.len()), true);
     (RowVector2::new(gap[(0, 0)], gap[(0, 1)]), gap[(0, 2)])
-}
-
-fn nothing() -> SideMap {
-    SideMap { a: Matrix2::zeros(), b: Vector2::zeros() }
 }
 
 /// The orbit and what turns along it.

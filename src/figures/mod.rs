@@ -34,7 +34,7 @@ pub use local_map::{NextToCorner, Ray};
 pub use phase_plane::phase_plane;
 pub use section::Crossings;
 pub use subject::{Effort, Fast, Shown, Slow, Subject};
-pub use through_corner::{ThroughCorner, through_corner};
+pub use through_corner::through_corner;
 pub use trace::{Run, time_trace};
 
 /// Every figure of the report, in the paper's order.

@@ -1,6 +1,7 @@
 //! One machine at speeds on either side of its corner impact: the orbits of one impact a revolution, stable or not, and
 //! what runs settle on while the speed falls and while it rises.
 
+use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
 use rayon::prelude::*;
@@ -8,7 +9,6 @@ use serde::Serialize;
 
 use crate::cam::{Cam, Lift};
 use crate::corner::CornerImpact;
-use crate::figures::cam_shape::Outline;
 use crate::model::Model;
 use crate::orbit::{Course, Cycle, Eigenvalue, PeriodicOrbit, Search, search};
 use crate::section::trace;
@@ -27,23 +27,10 @@ const SAMPLES: u32 = 72;
 /// Samples of the cam: four to a degree.
 const CAM_SAMPLES: usize = 1440;
 
-/// What there is at speeds on either side of a corner impact.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ThroughCorner {
-    /// The cam, four times a degree and on both sides of every corner: angle, rad, and lift with its derivatives.
-    pub cam: Vec<(f64, Lift)>,
-    /// Added to the lift where the cam is drawn as a shape, m: as in its [`Outline`].
-    pub drawn_on: f64,
-    /// By rising speed; the one at the corner impact among them.
-    pub moments: Vec<Moment>,
-    /// Index of the moment at the corner impact.
-    pub at_corner: usize,
-}
-
 /// One speed.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Moment {
-    /// rpm.
+    /// The speed.
     pub rpm: f64,
     /// Every orbit of one impact a revolution. At the corner impact the one orbit stands twice: as the law before the corner
     /// has it and as the law after it.
@@ -68,43 +55,90 @@ pub enum Place {
 
 named!(Place);
 
-/// An orbit and one revolution of it.
-#[derive(Clone, Debug, PartialEq)]
+/// An orbit at one speed, with its impact.
+#[derive(Clone, Debug, Serialize)]
+#[expect(missing_docs, reason = "names carry what a number is, and its unit")]
 pub struct Shown {
-    /// Where its impact is.
+    /// Where the impact is, seen from the corner.
     pub place: Place,
-    /// The impact.
-    pub impact: Event,
-    /// Of the orbit.
-    pub multipliers: [Eigenvalue; 2],
-    /// Whether both are inside the unit circle.
     pub stable: bool,
-    /// Cam angle, rad, from 0 to 2 pi, and position of the follower, m, the impact among them.
+    /// Cam angle of the impact.
+    pub angle_deg: f64,
+    /// That angle less the corner's.
+    pub from_corner_deg: f64,
+    pub position_m: f64,
+    pub velocity_before_m_s: f64,
+    pub velocity_after_m_s: f64,
+    pub multipliers: [Eigenvalue; 2],
+    /// The larger modulus of the two.
+    pub modulus: f64,
+    /// One revolution: cam angle, deg, from 0 to 360, and position, m, the impact among them.
     pub path: Vec<[f64; 2]>,
 }
 
 impl Shown {
-    fn new(place: Place, impact: Event, orbit: &PeriodicOrbit, path: Vec<[f64; 2]>) -> Self {
-        Self { place, impact, multipliers: orbit.multipliers(), stable: orbit.is_stable(), path }
+    fn new(place: Place, impact: &Event, corner: f64, orbit: &PeriodicOrbit, path: Vec<[f64; 2]>) -> Self {
+        let (angle_deg, multipliers) = (impact.cam_angle.to_degrees(), orbit.multipliers());
+        Self {
+            place,
+            stable: orbit.is_stable(),
+            angle_deg,
+            from_corner_deg: (angle_deg - corner.to_degrees() + 540.0).rem_euclid(360.0) - 180.0,
+            position_m: impact.position,
+            velocity_before_m_s: impact.velocity_before,
+            velocity_after_m_s: impact.velocity_after,
+            multipliers,
+            modulus: multipliers.iter().fold(0.0_f64, |largest, multiplier| largest.max(multiplier.modulus())),
+            path,
+        }
     }
 }
 
 /// What a run settles on.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Run {
-    /// Cam angles of its impacts, rad.
-    pub impacts: Vec<f64>,
-    /// Revolutions that these were counted over.
-    pub revolutions: u64,
-    /// A few of its revolutions: cam angle, rad, and position of the follower, m; impacts are among them.
+    /// Cam angles of its impacts to a tenth of a degree, each once.
+    pub impacts_deg: Vec<f64>,
+    /// In words.
+    pub words: String,
+    /// Some of its revolutions: cam angle, deg, and position, m, impacts among them; none of a run with rising speed.
     pub paths: Vec<Vec<[f64; 2]>>,
 }
 
-/// Every orbit of one impact a revolution at speeds around `at`, and what runs settle on there; `None` where the corner
-/// impact is not one of those.
+impl Run {
+    /// Different places of impact that are still told one by one.
+    const TOLD: usize = 4;
+
+    /// A run with its impacts, rad, in some revolutions.
+    fn new(impacts: &[f64], revolutions: u64, paths: Vec<Vec<[f64; 2]>>) -> Self {
+        const ROUND: i64 = 3600;
+        let tenth = |angle: &f64| ((angle.to_degrees() * 10.0).round() as i64).rem_euclid(ROUND);
+        let tenths: BTreeSet<i64> = impacts.iter().map(tenth).collect();
+        let impacts_deg: Vec<f64> = tenths.into_iter().map(|tenth| tenth as f64 / 10.0).collect();
+        let words = match impacts_deg.as_slice() {
+            [] => "no impact: it stays on the cam, or clear of it".to_owned(),
+            [angle] => format!("all its impacts at {angle}°"),
+            angles if angles.len() <= Self::TOLD => {
+                let angles: Vec<String> = angles.iter().map(|angle| format!("{angle}°")).collect();
+                format!("impacts at {}", angles.join(", "))
+            }
+            angles => {
+                format!("impacts at {} angles, to a tenth of a degree, in {revolutions} revolutions", angles.len())
+            }
+        };
+        Self { impacts_deg, words, paths }
+    }
+}
+
+/// Every orbit of one impact a revolution at speeds around `at`, and what runs settle on there, by rising speed, and the index
+/// of the corner impact's own speed; `None` where the corner impact is not one of those.
 ///
 /// An error where a run cannot go on.
-pub fn through_corner(model: &Model, cam: &Cam, at: &CornerImpact) -> Result<Option<ThroughCorner>, SimulateError> {
+pub fn through_corner(
+    model: &Model,
+    cam: &Cam,
+    at: &CornerImpact,
+) -> Result<Option<(Vec<Moment>, usize)>, SimulateError> {
     if !at.is_simple() {
         return Ok(None);
     }
@@ -118,14 +152,14 @@ pub fn through_corner(model: &Model, cam: &Cam, at: &CornerImpact) -> Result<Opt
             if index == at_corner { Ok(on_corner(&machine, at)) } else { orbits(&machine, at) }
         })
         .collect();
-    let falling = || runs(&machine, speeds.iter().rev());
-    let rising = || runs(&machine, speeds.iter());
+    let falling = || runs(&machine, speeds.iter().rev(), DRAWN);
+    let rising = || runs(&machine, speeds.iter(), 0);
     let (slowing, speeding) = rayon::join(falling, rising);
     let (slowing, speeding) = (slowing?.into_iter().rev(), speeding?.into_iter());
     let found = speeds.iter().zip(orbits?).zip(slowing.zip(speeding));
     let moments =
         found.map(|((rpm, orbits), (slowing, speeding))| Moment { rpm: *rpm, orbits, slowing, speeding }).collect();
-    Ok(Some(ThroughCorner { cam: profile(cam), drawn_on: Outline::new(cam).added, moments, at_corner }))
+    Ok(Some((moments, at_corner)))
 }
 
 /// The speeds, rpm, rising, densest at the corner impact, and the index of that.
@@ -162,7 +196,7 @@ fn orbits(machine: &Machine, at: &CornerImpact) -> Result<Vec<Shown>, SimulateEr
             segment if segment == after => Place::After,
             _ => Place::Elsewhere,
         };
-        Some(Shown::new(place, impact, orbit, path(machine, cycle)))
+        Some(Shown::new(place, &impact, at.corner.angle, orbit, path(machine, cycle)))
     };
     Ok(found.iter().filter_map(shown).collect())
 }
@@ -181,7 +215,7 @@ fn on_corner(machine: &Machine, at: &CornerImpact) -> Vec<Shown> {
         }
         let orbit = PeriodicOrbit::of_cycle(machine, cycle, at.residual);
         let impact = Event { cam_angle: at.corner.angle, position: lift.value, ..orbit.events[0] };
-        Shown::new(place, impact, &orbit, path(machine, &at.cycle))
+        Shown::new(place, &impact, at.corner.angle, &orbit, path(machine, &at.cycle))
     };
     sides(machine, at).into_iter().zip(lifts).zip(names).map(shown).collect()
 }
@@ -196,11 +230,12 @@ fn path(machine: &Machine, cycle: &Cycle) -> Vec<[f64; 2]> {
     let (before, after): (Vec<f64>, Vec<f64>) = angles.partition(|angle| *angle < turned);
     let before = before.into_iter().map(|angle| [angle, position(angle - turned + TAU)]);
     let after = after.into_iter().filter(|angle| *angle > turned).map(|angle| [angle, position(angle - turned)]);
-    before.chain([[turned, leaving.position]]).chain(after).collect()
+    let all = before.chain([[turned, leaving.position]]).chain(after);
+    all.map(|[angle, position]| [angle.to_degrees(), position]).collect()
 }
 
-/// What a run settles on at each of `speeds` in turn, each begun where the one before it ended.
-fn runs<'a>(machine: &Machine, speeds: impl Iterator<Item = &'a f64>) -> Result<Vec<Run>, SimulateError> {
+/// What a run settles on at each of `speeds` in turn, each begun where the one before it ended, with so many revolutions of it.
+fn runs<'a>(machine: &Machine, speeds: impl Iterator<Item = &'a f64>, drawn: u64) -> Result<Vec<Run>, SimulateError> {
     let mut motion: Option<Motion> = None;
     let mut runs = Vec::new();
     for rpm in speeds {
@@ -210,33 +245,33 @@ fn runs<'a>(machine: &Machine, speeds: impl Iterator<Item = &'a f64>) -> Result<
             Some(motion) => machine.resume(motion)?,
         };
         machine.revolve(&mut run, SETTLING)?;
-        let (drawn, mut impacts) = (run, Vec::new());
+        let (paths, mut impacts) = (paths(&machine, run, drawn)?, Vec::new());
         machine.watch(&mut run, RECORDED, |event| {
             if event.kind == EventKind::Impact {
                 impacts.push(event.cam_angle);
             }
         })?;
-        runs.push(Run { impacts, revolutions: RECORDED, paths: paths(&machine, drawn)? });
+        runs.push(Run::new(&impacts, RECORDED, paths));
         motion = Some(run);
     }
     Ok(runs)
 }
 
-/// Revolutions of a run that begins at angle 0.
-fn paths(machine: &Machine, motion: Motion) -> Result<Vec<Vec<[f64; 2]>>, SimulateError> {
-    let (samples, _) = trace(machine, motion, DRAWN, SAMPLES)?;
+/// So many revolutions of a run that begins at angle 0.
+fn paths(machine: &Machine, motion: Motion, drawn: u64) -> Result<Vec<Vec<[f64; 2]>>, SimulateError> {
+    let (samples, _) = trace(machine, motion, drawn, SAMPLES)?;
     let begun = motion.revolution as f64 * TAU;
     let mut paths = Vec::new();
-    for turn in 0..DRAWN {
+    for turn in 0..drawn {
         let (from, to) = (begun + turn as f64 * TAU, begun + (turn + 1) as f64 * TAU);
         let inside = samples.iter().filter(|sample| (from..=to).contains(&sample.turned));
-        paths.push(inside.map(|sample| [sample.turned - from, sample.state.position]).collect());
+        paths.push(inside.map(|sample| [(sample.turned - from).to_degrees(), sample.state.position]).collect());
     }
     Ok(paths)
 }
 
-/// The cam four times a degree, and on both sides of every corner.
-fn profile(cam: &Cam) -> Vec<(f64, Lift)> {
+/// The cam four times a degree, and on both sides of every corner: angle, rad, and lift with its derivatives.
+pub(crate) fn profile(cam: &Cam) -> Vec<(f64, Lift)> {
     let mut points = Vec::new();
     for segment in cam.segments() {
         points.push((segment.start, segment.law.lift(segment.start)));

@@ -29,7 +29,7 @@ impl Paged for Verification {
 /// Where the corner impact is.
 pub(crate) fn orbit(found: &Verification) -> Vec<Block> {
     let at = &found.at;
-    let (state, [before, after]) = (at.x_star(), at.cam_acceleration());
+    let (state, acceleration) = (at.x_star(), at.cam_acceleration());
     let significant = |value, digits| words![(value, Digits::Significant(digits))];
     let fixed = |value, places| words![(value, Digits::Fixed(places))];
     let degrees = |angle: f64| fixed(angle.to_degrees(), 6);
@@ -42,8 +42,8 @@ pub(crate) fn orbit(found: &Verification) -> Vec<Block> {
         "at cam angle {} deg, where c'' jumps from {} to {} m/s^2{}_q_ = {} m, _v_ = {} before and {} after, c' = {} m/s",
         [
             degrees(at.corner.angle),
-            fixed(before, 4),
-            fixed(after, 4),
+            fixed(acceleration.minus, 4),
+            fixed(acceleration.plus, 4),
             Span::Break.into(),
             fixed(at.corner.plus.value, 9),
             fixed(at.velocity_before, 6),

@@ -7,12 +7,12 @@ use serde::Serialize;
 
 use crate::agreement::by_quantity;
 use crate::cam::{Cam, Jet, Side};
-use crate::figures::{Plate, Subject, corner_marks, plates, through_corner};
+use crate::figures::{Plate, Subject, plates, through_corner};
 use crate::model::{Model, ModelError};
 use crate::paper::{Claims, Context, LedgerError};
 use crate::progress::Watch;
 use crate::report::quantities::{Quantity, quantities};
-use crate::report::through::ThroughEntry;
+use crate::report::through::ThroughCorner;
 use crate::show::command::command;
 use crate::show::words;
 use crate::study::cam::CamSheet;
@@ -31,7 +31,7 @@ pub struct Report {
     /// The corner impact and its map by every route, or why there is none.
     pub verification: Result<Verification, String>,
     /// The motion at speeds on either side of the corner impact, or why there is none.
-    pub through: Result<ThroughEntry, String>,
+    pub through: Result<ThroughCorner, String>,
     /// The paper's statements, where the model is the paper's.
     pub claims: Option<Claims>,
     /// What the follower does at other speeds, or why that is not known.
@@ -183,10 +183,10 @@ impl Report {
 }
 
 /// The motion on either side of the corner impact, or why there is none.
-fn through(model: &Model, cam: &Cam, found: &Verification) -> Result<ThroughEntry, String> {
+fn through(model: &Model, cam: &Cam, found: &Verification) -> Result<ThroughCorner, String> {
     match through_corner(model, cam, &found.at) {
-        Ok(Some(through)) => {
-            ThroughEntry::new(&through, found.at.corner.angle, &corner_marks(cam)).map_err(|error| error.to_string())
+        Ok(Some(found_there)) => {
+            ThroughCorner::new(found_there, cam, found.at.corner.angle).map_err(|error| error.to_string())
         }
         Ok(None) => Err("the corner impact is not one of an orbit with one impact a revolution".to_owned()),
         Err(error) => Err(format!("a run cannot go on: {error}")),

@@ -1,16 +1,13 @@
 //! The motion at speeds on either side of the corner impact, as a document: what the slider of the page shows. Numbers are
 //! rounded to what a picture or its readout can show.
 
-use std::collections::BTreeSet;
-
 use serde::Serialize;
 
+use crate::cam::{Cam, Lift};
 use crate::draw::ticks::{ticks, unit};
 use crate::draw::{Spacing, extent};
-use crate::figures::through_corner::{Moment, Place, Run, Shown};
-use crate::figures::{CornerMark, ThroughCorner};
-use crate::orbit::Eigenvalue;
-use crate::simulate::Event;
+use crate::figures::through_corner::{Moment, Place, Shown, profile};
+use crate::figures::{CornerMark, Outline, corner_marks};
 
 /// Why there is nothing to show.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -22,7 +19,7 @@ pub struct NotFinite {
 
 /// What the slider shows.
 #[derive(Clone, Debug, Serialize)]
-pub struct ThroughEntry {
+pub struct ThroughCorner {
     /// How finely its numbers are told.
     pub places: Places,
     /// Letter of the corner, or its angle.
@@ -42,7 +39,7 @@ pub struct ThroughEntry {
     /// Corners that have a label: angle, deg, and label.
     pub corners: Vec<(f64, String)>,
     /// By rising speed.
-    pub frames: Vec<FrameEntry>,
+    pub frames: Vec<Moment>,
 }
 
 /// The axes.
@@ -71,51 +68,6 @@ pub struct AxisEntry {
     pub unit: String,
     /// Where ticks stand, and their labels.
     pub ticks: Vec<(f64, String)>,
-}
-
-/// One speed.
-#[derive(Clone, Debug, Serialize)]
-pub struct FrameEntry {
-    /// The speed.
-    pub rpm: f64,
-    /// Orbits of one impact a revolution.
-    pub orbits: Vec<OrbitFrame>,
-    /// What a run settles on that came from faster speeds.
-    pub slowing: RunFrame,
-    /// What a run settles on that came from slower speeds.
-    pub speeding: RunFrame,
-}
-
-/// An orbit at one speed, with its impact.
-#[derive(Clone, Debug, Serialize)]
-#[expect(missing_docs, reason = "names carry what a number is, and its unit")]
-pub struct OrbitFrame {
-    /// `before`, `after` or `elsewhere`: where the impact is, seen from the corner.
-    pub place: Place,
-    pub stable: bool,
-    /// Cam angle of the impact.
-    pub angle_deg: f64,
-    /// That angle less the corner's.
-    pub from_corner_deg: f64,
-    pub position_m: f64,
-    pub velocity_before_m_s: f64,
-    pub velocity_after_m_s: f64,
-    pub multipliers: [Eigenvalue; 2],
-    /// The larger modulus of the two.
-    pub modulus: f64,
-    /// One revolution: cam angle, deg, and position, m.
-    pub path: Vec<[f64; 2]>,
-}
-
-/// What a run settles on.
-#[derive(Clone, Debug, Serialize)]
-pub struct RunFrame {
-    /// Cam angles of its impacts, deg, each once.
-    pub impacts_deg: Vec<f64>,
-    /// In words.
-    pub words: String,
-    /// Some of its revolutions: cam angle, deg, and position, m.
-    pub paths: Vec<Vec<[f64; 2]>>,
 }
 
 /// Places after the point of an angle in degrees, and of one that is only drawn.
@@ -147,21 +99,58 @@ pub struct Places {
 }
 
 impl Places {
-    fn new(through: &ThroughCorner) -> Self {
-        let span = |values: [f64; 2]| values[1] - values[0];
-        let lifts = || through.cam.iter().map(|(_, lift)| lift);
-        let impacts = through.moments.iter().flat_map(|moment| &moment.orbits).map(|orbit| &orbit.impact);
-        let fastest = impacts
-            .fold(0.0_f64, |most, impact| most.max(impact.velocity_before.abs()).max(impact.velocity_after.abs()));
-        let steps = through.moments.windows(2).map(|pair| pair[1].rpm - pair[0].rpm);
+    fn new(moments: &[Moment], cam: &[(f64, Lift)]) -> Self {
+        let span = |of: fn(&Lift) -> f64| {
+            let [low, high] = extent(cam.iter().map(|(_, lift)| of(lift)));
+            high - low
+        };
+        let orbits = moments.iter().flat_map(|moment| &moment.orbits);
+        let velocities = orbits.flat_map(|orbit| [orbit.velocity_before_m_s, orbit.velocity_after_m_s]);
+        let steps = moments.windows(2).map(|pair| pair[1].rpm - pair[0].rpm);
         Self {
             speed: of_extent(steps.fold(f64::INFINITY, f64::min), 1).max(2),
-            position: of_extent(span(extent(lifts().map(|lift| lift.value))), POSITION),
-            velocity: of_extent(fastest, VELOCITY),
-            acceleration: of_extent(span(extent(lifts().map(|lift| lift.curvature))), ACCELERATION),
+            position: of_extent(span(|lift| lift.value), POSITION),
+            velocity: of_extent(velocities.fold(0.0_f64, |most, velocity| most.max(velocity.abs())), VELOCITY),
+            acceleration: of_extent(span(|lift| lift.curvature), ACCELERATION),
             angle: ANGLE,
             multiplier: MULTIPLIER,
         }
+    }
+
+    /// Rounds every number of a speed; whether all of them are finite.
+    fn round(&self, moment: &mut Moment) -> bool {
+        let numbers = moment.orbits.iter_mut().flat_map(|orbit| self.numbers(orbit));
+        let mut finite = true;
+        for (number, places) in numbers.chain([(&mut moment.rpm, self.speed)]) {
+            finite &= number.is_finite();
+            *number = rounded(*number, places);
+        }
+        let orbits = moment.orbits.iter_mut().map(|orbit| &mut orbit.path);
+        for path in orbits.chain(&mut moment.slowing.paths) {
+            for [angle, position] in path.iter_mut() {
+                finite &= angle.is_finite() && position.is_finite();
+                (*angle, *position) = (rounded(*angle, DRAWN_ANGLE), rounded(*position, self.position));
+            }
+            path.dedup();
+        }
+        finite
+    }
+
+    /// The numbers of an orbit, each with its places.
+    fn numbers<'a>(&self, orbit: &'a mut Shown) -> [(&'a mut f64, i32); 10] {
+        let [one, other] = &mut orbit.multipliers;
+        [
+            (&mut orbit.angle_deg, ANGLE),
+            (&mut orbit.from_corner_deg, ANGLE),
+            (&mut orbit.position_m, self.position),
+            (&mut orbit.velocity_before_m_s, self.velocity),
+            (&mut orbit.velocity_after_m_s, self.velocity),
+            (&mut one.re, MULTIPLIER),
+            (&mut one.im, MULTIPLIER),
+            (&mut other.re, MULTIPLIER),
+            (&mut other.im, MULTIPLIER),
+            (&mut orbit.modulus, MULTIPLIER),
+        ]
     }
 }
 
@@ -180,33 +169,24 @@ fn rounded(value: f64, places: i32) -> f64 {
     (value * scale).round() / scale + 0.0
 }
 
-fn path(points: &[[f64; 2]], places: Places) -> Vec<[f64; 2]> {
-    let drawn =
-        |[angle, position]: [f64; 2]| [rounded(angle.to_degrees(), DRAWN_ANGLE), rounded(position, places.position)];
-    let mut path: Vec<[f64; 2]> = points.iter().copied().map(drawn).collect();
-    path.dedup();
-    path
-}
-
-impl ThroughEntry {
-    /// What was computed, with the labels of the cam's corners.
+impl ThroughCorner {
+    /// The motions `frames` of a machine by rising speed, of which that of index `at_corner` has its impact at `corner`, rad.
     ///
     /// An error where a number is not finite: the page's data have no way to write one.
-    pub fn new(through: &ThroughCorner, corner: f64, marks: &[CornerMark]) -> Result<Self, NotFinite> {
-        if let Some(moment) = through.moments.iter().find(|moment| !is_finite(moment)) {
-            return Err(NotFinite { rpm: moment.rpm });
+    pub fn new((mut frames, at_corner): (Vec<Moment>, usize), cam: &Cam, corner: f64) -> Result<Self, NotFinite> {
+        let (corner_deg, profile, marks) = (corner.to_degrees(), profile(cam), corner_marks(cam));
+        let places = Places::new(&frames, &profile);
+        for moment in &mut frames {
+            let rpm = moment.rpm;
+            if !places.round(moment) {
+                return Err(NotFinite { rpm });
+            }
         }
-        let (corner_deg, places) = (corner.to_degrees(), Places::new(through));
-        let frames: Vec<FrameEntry> =
-            through.moments.iter().map(|moment| FrameEntry::new(moment, corner_deg, places)).collect();
-        let cam: Vec<[f64; 3]> = through
-            .cam
-            .iter()
-            .map(|(angle, lift)| {
-                let angle = rounded(angle.to_degrees(), ANGLE);
-                [angle, rounded(lift.value, places.position), rounded(lift.curvature, places.acceleration)]
-            })
-            .collect();
+        let told = |(angle, lift): &(f64, Lift)| {
+            let angle = rounded(angle.to_degrees(), ANGLE);
+            [angle, rounded(lift.value, places.position), rounded(lift.curvature, places.acceleration)]
+        };
+        let (cam, drawn_on_m): (Vec<[f64; 3]>, f64) = (profile.iter().map(told).collect(), Outline::new(cam).added);
         // Not every corner has a label of its own.
         let unnamed = CornerMark { angle_rad: corner, name: String::new() };
         let hit = marks.iter().find(|mark| mark.angle_rad == corner).unwrap_or(&unnamed);
@@ -215,90 +195,15 @@ impl ThroughEntry {
             places,
             corner: hit.label(),
             corner_deg: rounded(corner_deg, ANGLE),
-            at_corner: through.at_corner,
+            at_corner,
             axes: Axes::new(&frames, &cam, corner_deg),
-            drawn_on_m: through.drawn_on,
-            drawn_radius_m: high + through.drawn_on,
+            drawn_on_m,
+            drawn_radius_m: high + drawn_on_m,
             corners: marks.iter().map(|mark| (rounded(mark.angle_rad.to_degrees(), ANGLE), mark.label())).collect(),
             cam,
             frames,
         })
     }
-}
-
-impl FrameEntry {
-    fn new(moment: &Moment, corner_deg: f64, places: Places) -> Self {
-        Self {
-            rpm: rounded(moment.rpm, places.speed),
-            orbits: moment.orbits.iter().map(|orbit| OrbitFrame::new(orbit, corner_deg, places)).collect(),
-            slowing: RunFrame::new(&moment.slowing, Some(places)),
-            speeding: RunFrame::new(&moment.speeding, None),
-        }
-    }
-}
-
-impl OrbitFrame {
-    fn new(shown: &Shown, corner_deg: f64, places: Places) -> Self {
-        let Shown { place, impact, multipliers, stable, path: points } = shown;
-        let angle = impact.cam_angle.to_degrees();
-        let modulus = multipliers.iter().fold(0.0_f64, |largest, multiplier| largest.max(multiplier.modulus()));
-        Self {
-            place: *place,
-            stable: *stable,
-            angle_deg: rounded(angle, ANGLE),
-            from_corner_deg: rounded((angle - corner_deg + 540.0).rem_euclid(360.0) - 180.0, ANGLE),
-            position_m: rounded(impact.position, places.position),
-            velocity_before_m_s: rounded(impact.velocity_before, places.velocity),
-            velocity_after_m_s: rounded(impact.velocity_after, places.velocity),
-            multipliers: multipliers.map(|multiplier| Eigenvalue {
-                re: rounded(multiplier.re, MULTIPLIER),
-                im: rounded(multiplier.im, MULTIPLIER),
-            }),
-            modulus: rounded(modulus, MULTIPLIER),
-            path: path(points, places),
-        }
-    }
-}
-
-impl RunFrame {
-    /// Different places of impact that are still told one by one.
-    const TOLD: usize = 4;
-
-    /// With its paths where their places are given.
-    fn new(run: &Run, places: Option<Places>) -> Self {
-        const ROUND: i64 = 3600;
-        let tenth = |angle: &f64| ((angle.to_degrees() * 10.0).round() as i64).rem_euclid(ROUND);
-        let tenths: BTreeSet<i64> = run.impacts.iter().map(tenth).collect();
-        let impacts_deg: Vec<f64> = tenths.into_iter().map(|tenth| rounded(tenth as f64 / 10.0, DRAWN_ANGLE)).collect();
-        let words = match impacts_deg.as_slice() {
-            [] => "no impact: it stays on the cam, or clear of it".to_owned(),
-            [angle] => format!("all its impacts at {angle}°"),
-            angles if angles.len() <= Self::TOLD => {
-                let angles: Vec<String> = angles.iter().map(|angle| format!("{angle}°")).collect();
-                format!("impacts at {}", angles.join(", "))
-            }
-            angles => format!(
-                "impacts at {} angles, to a tenth of a degree, in {} revolutions",
-                angles.len(),
-                run.revolutions
-            ),
-        };
-        let drawn = |places| run.paths.iter().map(|points| path(points, places)).collect();
-        let paths = places.map(drawn).unwrap_or_default();
-        Self { impacts_deg, words, paths }
-    }
-}
-
-fn is_finite(moment: &Moment) -> bool {
-    let orbit = |orbit: &Shown| {
-        let [one, other] = orbit.multipliers;
-        let Event { cam_angle, position, velocity_before, velocity_after, .. } = orbit.impact;
-        let numbers = [cam_angle, position, velocity_before, velocity_after, one.re, one.im, other.re, other.im];
-        numbers.iter().chain(orbit.path.iter().flatten()).all(|number| number.is_finite())
-    };
-    let run =
-        |run: &Run| run.impacts.iter().chain(run.paths.iter().flatten().flatten()).all(|number| number.is_finite());
-    moment.rpm.is_finite() && moment.orbits.iter().all(orbit) && run(&moment.slowing) && run(&moment.speeding)
 }
 
 impl AxisEntry {
@@ -319,7 +224,7 @@ impl AxisEntry {
 }
 
 impl Axes {
-    fn new(frames: &[FrameEntry], cam: &[[f64; 3]], corner_deg: f64) -> Self {
+    fn new(frames: &[Moment], cam: &[[f64; 3]], corner_deg: f64) -> Self {
         let orbits = || frames.iter().flat_map(|frame| &frame.orbits);
         let of_orbits = orbits().flat_map(|orbit| &orbit.path);
         let of_runs = frames.iter().flat_map(|frame| frame.slowing.paths.iter().flatten());

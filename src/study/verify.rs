@@ -15,7 +15,7 @@ use crate::border_collision::{
 use crate::cam::{Cam, Side};
 use crate::corner::border::border;
 use crate::corner::external::{self, Outside, PROGRAMS, Program};
-use crate::corner::map::{RouteName, Sides};
+use crate::corner::map::{RouteName, SideMap};
 use crate::corner::{self, CornerImpact, CornerMap, LocateError, Route};
 use crate::corner::{closed_form, simulated_orbit};
 use crate::model::Model;
@@ -67,10 +67,7 @@ document!(Verification as found {
     other_corner_impacts: found.others.iter().map(Place).collect::<Vec<_>>(),
     routes: found.routes.iter().map(|route| (route.name, route)).collect::<BTreeMap<_, _>>(),
     agreement: found.comparisons,
-    eigenvalues: Sides {
-        minus: found.map.minus.eigenvalues(),
-        plus: found.map.plus.eigenvalues(),
-    },
+    eigenvalues: found.map.map(SideMap::eigenvalues),
     normal_form: found.normal_form.as_ref().ok(),
     classification: found.classification.as_ref().ok(),
     refusal: found.classification.as_ref().err().map(Refusal::to_string),
@@ -98,7 +95,7 @@ document!(Whole<'_> as it {
     velocity_before_m_s: it.0.velocity_before,
     velocity_after_m_s: it.0.velocity_after,
     cam_velocity_m_s: it.0.cam_velocity,
-    cam_acceleration_m_s2: Sides { minus: it.0.cam_acceleration()[0], plus: it.0.cam_acceleration()[1] },
+    cam_acceleration_m_s2: it.0.cam_acceleration(),
 });
 
 /// A corner impact by its place alone.

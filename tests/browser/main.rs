@@ -6,11 +6,12 @@ mod devtools;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
+use corner_impact::figures::through_corner::Moment;
 use corner_impact::model::Model;
 use corner_impact::pages::report::html;
 use corner_impact::progress::Unwatched;
 use corner_impact::report::Report;
-use corner_impact::report::through::{FrameEntry, ThroughEntry};
+use corner_impact::report::through::ThroughCorner;
 use corner_impact::study::verify::External;
 use devtools::Page;
 use serde_json::Value;
@@ -37,7 +38,7 @@ fn written() -> &'static Written {
     })
 }
 
-fn through() -> &'static ThroughEntry {
+fn through() -> &'static ThroughCorner {
     written().dossier.through.as_ref().unwrap()
 }
 
@@ -123,7 +124,7 @@ fn lines(page: &mut Page) -> Vec<f64> {
     ))
 }
 
-fn drawn_lines(frame: &FrameEntry) -> Vec<f64> {
+fn drawn_lines(frame: &Moment) -> Vec<f64> {
     let runs = frame.slowing.paths.iter().map(|path| path.len() as f64);
     runs.chain(frame.orbits.iter().map(|orbit| orbit.path.len() as f64)).collect()
 }

@@ -6,14 +6,13 @@ use std::sync::OnceLock;
 
 use crate::common;
 use corner_impact::border_collision::feigin::Speeds;
-use corner_impact::figures::corner_marks;
 use corner_impact::figures::through_corner::{Moment, Place, Shown, through_corner};
 use corner_impact::model::{Model, OSORIO_2008};
 use corner_impact::orbit::eigenvalues;
 use corner_impact::pages::report::html;
 use corner_impact::progress::Unwatched;
 use corner_impact::report::Report;
-use corner_impact::report::through::ThroughEntry;
+use corner_impact::report::through::ThroughCorner;
 use corner_impact::section::StroboscopicMap;
 use corner_impact::simulate::{Machine, angular_velocity};
 use corner_impact::study::verify::{External, verify};
@@ -261,12 +260,12 @@ fn orbits_on_either_side_are_those_of_the_classification() {
         let Ok(kind) = &findings.classification else { continue };
         checked += 1;
         let cam = common::cam(&model);
-        let through = through_corner(&model, &cam, &findings.at).unwrap().unwrap();
-        let [slower, faster] = [&through.moments[through.at_corner - 1], &through.moments[through.at_corner + 1]];
+        let (moments, at_corner) = through_corner(&model, &cam, &findings.at).unwrap().unwrap();
+        let [slower, faster] = [&moments[at_corner - 1], &moments[at_corner + 1]];
         for (place, side) in [(Place::Before, &kind.minus), (Place::After, &kind.plus)] {
             let of = |moment: &Moment| {
                 // Another orbit on the same segment, far from the corner, is none of the local map's.
-                let beside = |orbit: &&Shown| (orbit.impact.cam_angle - findings.at.corner.angle).abs() < 0.05;
+                let beside = |orbit: &&Shown| orbit.from_corner_deg.to_radians().abs() < 0.05;
                 let here = moment.orbits.iter().filter(|orbit| orbit.place == place).filter(beside);
                 here.map(|orbit| orbit.stable).collect::<Vec<_>>()
             };
@@ -278,7 +277,7 @@ fn orbits_on_either_side_are_those_of_the_classification() {
             assert_eq!(of(faster), expected(on_faster), "{} {place:?} faster", file.display());
             assert_eq!(of(slower), expected(on_slower), "{} {place:?} slower", file.display());
             // At the corner impact the multipliers are the eigenvalues of that side's matrix.
-            let at = through.moments[through.at_corner].orbits.iter().find(|orbit| orbit.place == place).unwrap();
+            let at = moments[at_corner].orbits.iter().find(|orbit| orbit.place == place).unwrap();
             let map = &findings.map;
             let matrix = if place == Place::Before { map.minus.a } else { map.plus.a };
             for (one, other) in at.multipliers.iter().zip(eigenvalues(&matrix)) {
@@ -303,8 +302,7 @@ fn the_slider_shows_a_machine_of_any_size() {
     }
     let shown = |model: &Model| {
         let (cam, at) = (common::cam(model), verify(model, External::LeftOut).unwrap().at);
-        let through = through_corner(model, &cam, &at).unwrap().unwrap();
-        ThroughEntry::new(&through, at.corner.angle, &corner_marks(&cam)).unwrap()
+        ThroughCorner::new(through_corner(model, &cam, &at).unwrap().unwrap(), &cam, at.corner.angle).unwrap()
     };
     let (large, small) = (shown(&model), shown(&small));
     assert_eq!((large.corner.as_str(), small.corner.as_str()), ("P", "P"));
@@ -356,16 +354,16 @@ fn drawn_orbits_are_those_of_the_simulator() {
     let model = common::osorio();
     let cam = common::cam(&model);
     let findings = verify(&model, External::LeftOut).unwrap();
-    let through = through_corner(&model, &cam, &findings.at).unwrap().unwrap();
+    let (moments, at_corner) = through_corner(&model, &cam, &findings.at).unwrap().unwrap();
     let machine = Machine::new(cam, &model.follower, 1.0);
     let mut checked = 0;
-    for moment in through.moments.iter().skip(through.at_corner + 1).step_by(10) {
+    for moment in moments.iter().skip(at_corner + 1).step_by(10) {
         let machine = machine.at_speed(angular_velocity(moment.rpm));
         assert_eq!(moment.orbits.len(), 2, "{}", moment.rpm);
         for orbit in &moment.orbits {
-            let guess = machine
-                .start_on_cam(orbit.impact.cam_angle, orbit.impact.velocity_after - orbit.impact.cam_velocity)
-                .unwrap();
+            let angle = orbit.angle_deg.to_radians();
+            let cam_velocity = machine.angular_velocity() * machine.cam().lift(angle).slope;
+            let guess = machine.start_on_cam(angle, orbit.velocity_after_m_s - cam_velocity).unwrap();
             let map = StroboscopicMap { machine: machine.clone(), cam_angle: 0.0 };
             let mut motion = guess;
             let goal = motion.next(0.0);
@@ -379,21 +377,16 @@ fn drawn_orbits_are_those_of_the_simulator() {
             }
             checked += 1;
             if orbit.stable {
-                let run = moment.slowing.impacts.last().unwrap();
-                assert!(
-                    (run - orbit.impact.cam_angle).abs() < 1e-3,
-                    "{}: {run} {}",
-                    moment.rpm,
-                    orbit.impact.cam_angle
-                );
+                let run = moment.slowing.impacts_deg.last().unwrap();
+                assert!((run.to_radians() - angle).abs() < 1e-3, "{}: {run} {}", moment.rpm, orbit.angle_deg);
             }
         }
     }
     assert!(checked >= 18, "{checked}");
     // Slower there is no such orbit; a run has other impacts, once it is far enough not to dwell where the orbit was.
-    for moment in &through.moments[..through.at_corner] {
+    for moment in &moments[..at_corner] {
         assert!(moment.orbits.is_empty(), "{}", moment.rpm);
         let near = findings.at.speed_rpm() - moment.rpm < 1.0;
-        assert!(near || moment.slowing.impacts.len() > 24, "{}", moment.rpm);
+        assert!(near || moment.slowing.impacts_deg.len() > 24, "{}", moment.rpm);
     }
 }

@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use crate::pages::report::html::{HtmlError, json, left, numeric};
 use crate::report::Report;
-use crate::report::through::ThroughEntry;
+use crate::report::through::ThroughCorner;
 use crate::show::block::{Block, Section, Span, Table, Words, words};
 use crate::show::digits::Digits;
 use crate::show::html::wide;
@@ -26,12 +26,12 @@ pub(crate) fn section(report: &Report) -> Result<Section, HtmlError> {
 }
 
 /// What the script reads.
-fn data(through: &ThroughEntry) -> Result<Markup, HtmlError> {
+fn data(through: &ThroughCorner) -> Result<Markup, HtmlError> {
     let data = serde_json::to_string(through)?;
     Ok(html! { script type="application/json" id="through-data" { (json(&data)) } })
 }
 
-fn player(through: &ThroughEntry) -> Markup {
+fn player(through: &ThroughCorner) -> Markup {
     let last = through.frames.len().saturating_sub(1);
     let panel = |id: &str, title: &str, what: Markup| {
         html! {
@@ -82,7 +82,7 @@ fn player(through: &ThroughEntry) -> Markup {
     }
 }
 
-fn table(through: &ThroughEntry) -> Table {
+fn table(through: &ThroughCorner) -> Table {
     let columns = [
         numeric("rpm"),
         left("orbit"),
