@@ -1,6 +1,7 @@
 //! Corner impacts of orbits with several impacts: where the branches of a range of speeds pass a corner.
 //!
-//! Branches are found by searches at some speeds, which may miss orbits: what is yielded here need not be all.
+//! Branches are found by searches at the speeds of a grid, which may miss orbits: what is yielded here need not be all. But it
+//! is the same whatever the range: of a part of a range, it is the part.
 
 use std::f64::consts::TAU;
 
@@ -8,12 +9,15 @@ use super::confirm::Candidate;
 use super::period_equation::at_corner;
 use crate::cam::{Cam, Side};
 use crate::model::{Model, Study};
-use crate::orbit::branch::{BranchPoint, Kind, corner_impacts, find_branches};
+use crate::orbit::branch::{BranchPoint, Kind, corner_impacts};
 use crate::orbit::{Course, Impact, Search};
+use crate::tolerance;
 
-/// Impacts in a revolution of the orbits that are looked at: with more a follower is about to chatter, and its last hops
-/// are too short for the cam to be continued past a corner among them, as the estimators need.
+/// Impacts in a revolution of the orbits that are looked at: with more a follower is about to chatter.
 pub const MOST_IMPACTS: usize = 12;
+/// How near on the cam to the impact on the corner another one may be, rad: the estimators continue the cam past the corner by
+/// less than half of that, and try reaches down to twice the least by halving.
+pub const NEAREST_OTHER: f64 = 4.0 * tolerance::LEAST_REACH.value;
 
 /// The corner impacts, and what was looked at.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -30,12 +34,12 @@ pub struct Candidates {
 /// The corner impacts over a range of speeds of orbits of several impacts in `revolutions`.
 pub fn candidates(model: &Model, cam: &Cam, range: Study, revolutions: u64) -> Candidates {
     let wanted = Search { revolutions, impacts: None };
-    match find_branches(model, [range.rpm_min, range.rpm_max], &wanted) {
+    match corner_impacts(model, [range.rpm_min, range.rpm_max], &wanted) {
         Ok(found) => Candidates {
-            list: corner_impacts(&found.branches).iter().filter_map(|point| candidate(cam, point)).collect(),
+            list: found.points.iter().filter_map(|point| candidate(cam, point)).collect(),
             speeds: found.speeds,
-            branches: found.branches.len(),
-            failed: found.failed,
+            branches: found.branches,
+            failed: found.failed.map(|error| error.to_string()),
         },
         Err(error) => Candidates { failed: Some(error.to_string()), ..Candidates::default() },
     }
@@ -48,7 +52,9 @@ fn candidate(cam: &Cam, point: &BranchPoint) -> Option<Candidate> {
     else {
         return None;
     };
-    if cycle.impacts.len() < 2 || cycle.impacts.len() > MOST_IMPACTS * cycle.revolutions as usize {
+    let chatters =
+        cycle.impacts.len() > MOST_IMPACTS * cycle.revolutions as usize || cycle.nearest_other(impact) < NEAREST_OTHER;
+    if cycle.impacts.len() < 2 || chatters {
         return None;
     }
     let corner = *cam.corners().iter().find(|corner| corner.segment == segment)?;

@@ -11,7 +11,7 @@ use nalgebra::{Vector2, Vector3};
 
 use super::corner_impact::CornerImpact;
 use super::varied::{NoChange, Varied, value_of};
-use crate::cam::{Cam, Corner, Side, apart};
+use crate::cam::{Cam, Corner, Side};
 use crate::flight::State;
 use crate::model::Model;
 use crate::orbit::{Family, Parameter};
@@ -195,7 +195,7 @@ impl<'a> OneSidedMap<'a> {
         };
         let mut reach = Self::REACH;
         let cam = loop {
-            let clear = nearest_other(at) >= 2.0 * reach;
+            let clear = at.cycle.nearest_other(at.impact) >= 2.0 * reach;
             if let Some(continued) = whole.continued(&at.corner, side, reach).filter(|_| clear) {
                 break continued;
             }
@@ -339,10 +339,4 @@ impl<'a> OneSidedMap<'a> {
         }
         Some(past_corner)
     }
-}
-
-/// How near to the corner another impact of the orbit is, rad.
-fn nearest_other(at: &CornerImpact) -> f64 {
-    let others = at.cycle.impacts.iter().enumerate().filter(|(index, _)| *index != at.impact);
-    others.fold(f64::INFINITY, |least, (_, impact)| least.min(apart(impact.cam_angle, at.corner.angle)))
 }

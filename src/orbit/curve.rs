@@ -44,21 +44,6 @@ pub struct CurvePoint {
     pub steps: usize,
 }
 
-/// The unit tangent at `unknowns` that goes on along `along`.
-pub fn tangent<E: Equations>(
-    equations: &E,
-    unknowns: &DVector<f64>,
-    along: &DVector<f64>,
-) -> Result<DVector<f64>, NoPoint<E::Error>> {
-    let jacobian = equations.jacobian(unknowns)?;
-    // [J; along] t = (0, 1): the tangent, as long as it is not across `along`.
-    let count = unknowns.len();
-    let right = DVector::from_fn(count, |row, _| if row + 1 == count { 1.0 } else { 0.0 });
-    let solved = bordered(jacobian, along).lu().solve(&right).ok_or(NoPoint::NotClosed)?;
-    let length = solved.norm();
-    if length.is_finite() && length > 0.0 { Ok(solved / length) } else { Err(NoPoint::NotClosed) }
-}
-
 /// A tangent at `unknowns` where none is known, of either sign.
 pub fn first_tangent<E: Equations>(equations: &E, unknowns: &DVector<f64>) -> Result<DVector<f64>, NoPoint<E::Error>> {
     let jacobian = equations.jacobian(unknowns)?;
@@ -88,8 +73,8 @@ pub fn step<E: Equations>(
         let residual = equations.residual(&unknowns)?;
         let off_plane = along.dot(&(&unknowns - from)) - step;
         let right = -residual.push(off_plane);
-        let correction =
-            bordered(equations.jacobian(&unknowns)?, along).lu().solve(&right).ok_or(NoPoint::NotClosed)?;
+        let matrix = bordered(equations.jacobian(&unknowns)?, along).lu();
+        let correction = matrix.solve(&right).ok_or(NoPoint::NotClosed)?;
         let length = correction.norm();
         // Away from the solution, or twice as far as the step itself.
         if !(length < 2.0 * last.min(step.abs().max(tolerance::CYCLE_CLOSED.value) * 4.0)) {
@@ -98,8 +83,15 @@ pub fn step<E: Equations>(
         unknowns += correction;
         // The next correction would be of the size of this one's square.
         if length <= tolerance::CYCLE_CLOSED.value {
-            let tangent = tangent(equations, &unknowns, along)?;
-            return Ok(CurvePoint { unknowns, tangent, steps });
+            // [J; along] t = (0, 1): the tangent, as long as it is not across `along`. J is that of before a correction which
+            // turns it no further than it is long.
+            let across = DVector::from_fn(unknowns.len(), |row, _| f64::from(row + 1 == unknowns.len()));
+            let tangent = matrix.solve(&across).ok_or(NoPoint::NotClosed)?;
+            let length = tangent.norm();
+            let is_some = length.is_finite() && length > 0.0;
+            return is_some
+                .then(|| CurvePoint { unknowns, tangent: tangent / length, steps })
+                .ok_or(NoPoint::NotClosed);
         }
         last = length;
     }

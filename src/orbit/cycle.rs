@@ -16,7 +16,7 @@ use std::f64::consts::TAU;
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
 use super::chain::{self, Link};
-use crate::cam::Lift;
+use crate::cam::{Lift, apart};
 use crate::flight::State;
 use crate::impact::{ImpactRates, rebound};
 use crate::simulate::{Event, EventKind, Machine};
@@ -93,6 +93,13 @@ impl Cycle {
         let (from, to) = (&self.impacts[index], &self.impacts[next]);
         let later = if next == 0 { self.revolutions as f64 } else { 0.0 };
         (later + to.revolution as f64 - from.revolution as f64) * TAU + (to.cam_angle - from.cam_angle)
+    }
+
+    /// How near on the cam another impact is to one, rad.
+    pub fn nearest_other(&self, impact: usize) -> f64 {
+        let others = self.impacts.iter().enumerate().filter(|(index, _)| *index != impact);
+        let near = |other: &Impact| apart(other.cam_angle, self.impacts[impact].cam_angle);
+        others.fold(f64::INFINITY, |least, (_, other)| least.min(near(other)))
     }
 
     /// The state right after an impact, and the time of the flight that begins there, s.

@@ -111,6 +111,13 @@ impl Cycle {
         (even && later && one.segment == two.segment).then_some(impact + half)
     }
 
+    /// The same motion over twice as many revolutions.
+    pub fn twice(&self) -> Self {
+        let later = |impact: &Impact| Impact { revolution: impact.revolution + self.revolutions as i64, ..*impact };
+        let impacts = self.impacts.iter().copied().chain(self.impacts.iter().map(later));
+        Self { revolutions: 2 * self.revolutions, impacts: impacts.collect() }
+    }
+
     /// The same motion over as few revolutions as it repeats after.
     pub fn shortest(self) -> Self {
         let cycle = self.in_order();

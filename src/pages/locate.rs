@@ -1,8 +1,9 @@
 //! The page of `locate`: the corner impacts of a range of speeds, and what happens at each.
 
 use crate::border_collision::Classification;
-use crate::corner::candidates::MOST_IMPACTS;
+use crate::corner::candidates::{MOST_IMPACTS, NEAREST_OTHER};
 use crate::corner::period_equation::PeriodEquation;
+use crate::orbit::branch::GRID_RATIO;
 use crate::show::Paged;
 use crate::show::block::{Block, Column, Mark, Table, Words, words};
 use crate::show::digits::Digits;
@@ -122,11 +123,16 @@ fn searched(found: &Located) -> String {
     } else {
         format!(
             "{corners} corner(s) of the cam. Orbits of one impact: where one equation changes its sign between two of {} samples \
-             or more; two roots between the same two are missed. Orbits of several impacts: those on branches that a search finds at {} speeds ({} of them), of up to {MOST_IMPACTS} impacts a revolution; \
-             there may be others. Orbits on which the follower sticks forget where they hit: they are left out.",
+             or more; two roots between the same two are missed. Orbits of several impacts: those on branches through what a search \
+             finds at {} speeds, each {:.0} % faster than the one before, and through what branches off there with twice the period \
+             ({} stretches of branches); of up to {MOST_IMPACTS} impacts a revolution, none of them within {:.2} deg of the one on \
+             the corner. There may be others, but a part of the range has the same. Orbits on which the follower sticks forget \
+             where they hit: they are left out.",
             PeriodEquation::SAMPLES[0],
             searched.speeds.len(),
-            searched.branches
+            100.0 * (GRID_RATIO - 1.0),
+            searched.branches,
+            NEAREST_OTHER.to_degrees(),
         )
     };
     if let Some(error) = &searched.failed {

@@ -3,7 +3,7 @@
 use super::{StudyError, inside};
 use crate::border_collision::{AtCorner, ImpactCurve};
 use crate::model::Model;
-use crate::orbit::branch::{Branch, Following, corner_impacts, find_branches};
+use crate::orbit::branch::{Branch, Following, corner_impacts};
 use crate::orbit::{Parameter, Search};
 use crate::progress::Watch;
 
@@ -29,7 +29,7 @@ pub fn curves(
     }
     let own = inside(model, rpm[0], following)?;
     watch.at("looking for corner impacts of the model", 0, 0);
-    let corners = corner_impacts(&find_branches(model, rpm, wanted)?.branches);
+    let corners = corner_impacts(model, rpm, wanted)?.points;
     let mut curves = Vec::new();
     for (index, corner) in corners.iter().enumerate() {
         watch.at("following the corner impacts found", index as u64, corners.len() as u64);

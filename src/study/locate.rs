@@ -17,6 +17,7 @@ use crate::corner::range::{FoundCornerImpacts, RangeError, find_corner_impacts};
 use crate::corner::{CornerImpact, CornerMap, variational};
 use crate::known::Known;
 use crate::model::{Model, ModelError, Study};
+use crate::orbit::branch::GRID_RATIO;
 use crate::study::ModelLabel;
 use crate::study::compared::{self, Log, Skipped, compare_borders};
 
@@ -56,6 +57,7 @@ struct Searched<'a>(&'a FoundCornerImpacts);
 document!(Searched<'_> as it {
     corners_rad: it.0.corners.iter().map(|corner| corner.angle).collect::<Vec<_>>(),
     speeds_rpm: it.0.searched.speeds,
+    speed_ratio: GRID_RATIO,
     branches: it.0.searched.branches,
     failed: it.0.searched.failed,
 });

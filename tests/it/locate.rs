@@ -4,7 +4,7 @@ use std::process::Output;
 
 use crate::common;
 use corner_impact::border_collision::feigin::Scenario;
-use corner_impact::corner::range::RangeError;
+use corner_impact::corner::range::{self, RangeError};
 use corner_impact::model::{Model, Study};
 use corner_impact::study::locate::{Happens, LocateError, Located};
 use serde_json::Value;
@@ -241,7 +241,7 @@ fn the_page_says_what_was_looked_at() {
     assert!(page.contains("634.331399 rpm") && page.contains("would come out of the cam"), "{page}");
     let words = page.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(words.contains("4096 samples or more; two roots between the same two are missed"), "{page}");
-    assert!(words.contains("there may be others"), "{page}");
+    assert!(words.contains("each 2 % faster than the one before") && words.contains("There may be others"), "{page}");
     assert!(page.lines().all(|line| line.chars().count() <= 100), "{page}");
 }
 
@@ -255,6 +255,56 @@ fn a_disagreement_is_said_and_ends_with_1() {
     (found.found[0].agrees, found.agrees) = (false, false);
     let page = found.text().unwrap();
     assert!(!found.agrees && page.contains("DISAGREE. A_plus: "), "{page}");
+}
+
+/// Speed, corner and number of impacts of each corner impact of a range.
+fn met(model: &Model, [low, high]: [f64; 2], revolutions: u64) -> Vec<(f64, f64, usize)> {
+    let range = Study { rpm_min: low, rpm_max: high };
+    let found = range::find_corner_impacts(model, &common::cam(model), range, revolutions).unwrap().found;
+    found.iter().map(|at| (at.speed_rpm(), at.corner.angle, at.cycle.impacts.len())).collect()
+}
+
+/// The parts of a range, together, have what the whole has.
+#[track_caller]
+fn parts_are_the_whole(model: &Model, range: [f64; 2], revolutions: u64, least: usize) {
+    let whole = met(model, range, revolutions);
+    assert!(whole.len() >= least, "{}: {whole:?}", model.name);
+    for count in [2, 4, 8] {
+        let end = |index: i32| range[0] + (range[1] - range[0]) * f64::from(index) / f64::from(count);
+        let parts: Vec<_> = (0..count).flat_map(|i| met(model, [end(i), end(i + 1)], revolutions)).collect();
+        assert_eq!(whole.len(), parts.len(), "{} in {count}: {whole:?} {parts:?}", model.name);
+        for (one, other) in whole.iter().zip(&parts) {
+            assert!((one.0 - other.0).abs() <= 1e-9 * one.0, "{} in {count}: {one:?} {other:?}", model.name);
+            assert_eq!((one.1, one.2), (other.1, other.2), "{} in {count}", model.name);
+        }
+    }
+}
+
+#[test]
+fn a_part_of_a_range_has_its_part_of_the_corner_impacts() {
+    parts_are_the_whole(&common::osorio(), [600.0, 760.0], 1, 2);
+    parts_are_the_whole(&common::tutorial("own.toml"), [1290.0, 1380.0], 1, 5);
+}
+
+/// One model of each kind of cam that has corners, and orbits that repeat after two revolutions.
+#[test]
+#[ignore = "slow"]
+fn parts_of_ranges_have_their_parts_of_the_corner_impacts() {
+    for (name, range, revolutions, least) in [
+        ("osorio-2008", [690.0, 760.0], 4, 8),
+        ("damped-light", [560.0, 760.0], 1, 2),
+        ("persistence", [450.0, 600.0], 2, 2),
+        ("nonsmooth-flip", [800.0, 950.0], 4, 4),
+        ("laws/program", [1700.0, 2500.0], 1, 10),
+        ("laws/polynomial", [300.0, 800.0], 1, 20),
+        ("laws/rectified-sine", [4.0, 20.0], 1, 4),
+        ("laws/table-cubic", [600.0, 700.0], 1, 40),
+        ("laws/table-quintic", [650.0, 700.0], 1, 40),
+        ("ballistic", [300.0, 400.0], 2, 1),
+    ] {
+        let file = format!("{}/models/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        parts_are_the_whole(&common::read(file.as_ref()), range, revolutions, least);
+    }
 }
 
 #[test]

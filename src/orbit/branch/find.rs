@@ -1,65 +1,187 @@
-//! The branches of a range of speeds: those through every orbit that is found at a few of them, each once.
+//! The branches through given orbits and what branches off from them; those of a range of speeds, and the corner impacts on
+//! them, of which a range has those of any wider one.
+//!
+//! Orbits are looked for at speeds of a grid, which is the same for every range, as are its cells. The corner impacts of a cell
+//! are those that searches and branches come upon in a window around it, whatever range the cell is asked for in: a range is
+//! cut out of whole cells.
+
+use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::{Branch, BranchPoint, Following, Kind};
+use super::{Branch, BranchPoint, Following, Kind, doubled};
 use crate::cam::Cam;
 use crate::model::Model;
-use crate::orbit::{FamilyError, Parameter, Search, search};
-use crate::simulate::{Machine, angular_velocity};
+use crate::orbit::{Family, FamilyError, OrbitError, Parameter, PeriodicOrbit, Search, search};
+use crate::progress::{Unwatched, Watch};
+use crate::simulate::{Machine, SimulateError, angular_velocity};
 use crate::tolerance;
 
-/// Speeds at which orbits are looked for, evenly over the range, its ends left out.
-const SPEEDS: usize = 16;
+/// How much faster each speed of the grid is than the one before it.
+pub const GRID_RATIO: f64 = 1.02;
+/// Speeds of the grid in a cell.
+const CELL: i32 = 8;
+/// Speeds of the grid that a cell's window has beyond either end of the cell: a branch that no search meets in the cell may
+/// still be met there.
+const MARGIN: i32 = 2;
 /// The longest step along a branch.
 const STEP: f64 = 0.02;
 /// Points of a branch in either direction: beyond, it winds through ever more impacts.
 const MOST_POINTS: usize = 1000;
 
-/// The branches of a range of speeds, and how they were looked for.
+/// Branches, and whether all could be followed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FoundBranches {
     /// Those that were found, each once.
     pub branches: Vec<Branch>,
+    /// The first search or branch that ended with an error, if any did.
+    pub failed: Option<OrbitError>,
+}
+
+impl FoundBranches {
+    /// Follows the branch through each orbit, at its value of what is followed, that is on none yet.
+    pub fn follow<'a>(
+        &mut self,
+        family: &Family,
+        following: &Following,
+        orbits: impl IntoIterator<Item = (f64, &'a PeriodicOrbit)>,
+        watch: &dyn Watch,
+    ) {
+        for (value, orbit) in orbits {
+            watch.at("following branches of orbits", self.branches.len() as u64, 0);
+            if self.branches.iter().any(|branch| branch.holds(value, orbit)) {
+                continue;
+            }
+            match Branch::at(family, value, orbit, following) {
+                Ok(branch) => self.branches.push(branch),
+                Err(error) => self.fail(error),
+            }
+        }
+    }
+
+    /// Follows what branches off from `branches` with twice the period: at each flip, graze and corner impact.
+    pub fn follow_doubled(&mut self, family: &Family, following: &Following, branches: &[Branch], watch: &dyn Watch) {
+        let special = |branch: &Branch, index: &usize| branch.points[*index].special.is_some();
+        for branch in branches {
+            let at = (0..branch.points.len()).filter(|index| special(branch, index));
+            for (value, orbit) in at.filter_map(|index| doubled::at(family, branch, index, following)) {
+                self.follow(family, following, [(value, &orbit)], watch);
+            }
+        }
+    }
+
+    fn fail(&mut self, error: impl Into<OrbitError>) {
+        self.failed.get_or_insert(error.into());
+    }
+}
+
+/// The corner impacts on the branches of a range of speeds, and how they were looked for.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MetCorners {
+    /// By rising speed, each once.
+    pub points: Vec<BranchPoint>,
     /// Speeds at which orbits were searched for, rpm.
     pub speeds: Vec<f64>,
+    /// Branches that were followed, each as often as there are windows that it passes.
+    pub branches: usize,
     /// The first search or branch that ended with an error, if any did.
-    pub failed: Option<String>,
+    pub failed: Option<OrbitError>,
+}
+
+/// Where the step `index` of the grid begins, rpm; its speed is half-way to the next one.
+fn grid(index: f64) -> f64 {
+    GRID_RATIO.powf(index)
+}
+
+/// The step of the grid that a speed, rpm, is in.
+fn step_at(rpm: f64) -> i32 {
+    (rpm.ln() / GRID_RATIO.ln()).floor() as i32
+}
+
+/// What searches came to at speeds, rpm, of the grid.
+struct Searched<'a> {
+    model: &'a Model,
+    speeds: Vec<f64>,
+    /// For each number of revolutions, of which each is twice the one before it, what was found at each speed.
+    orbits: Vec<Vec<Result<Vec<PeriodicOrbit>, SimulateError>>>,
+}
+
+impl<'a> Searched<'a> {
+    /// At the speeds in `steps`, for the orbits that are wanted and those that they may have branched off from: of half as many
+    /// revolutions, again and again.
+    fn at(model: &'a Model, steps: Range<i32>, wanted: &Search) -> Result<Self, FamilyError> {
+        let machine = Machine::new(Cam::new(model)?, &model.follower, angular_velocity(1.0));
+        let speeds: Vec<f64> = steps.map(|step| grid(f64::from(step) + 0.5)).collect();
+        let at = |wanted: Search| {
+            let searches = speeds.par_iter().map(|rpm| search(&machine.at_speed(angular_velocity(*rpm)), &wanted));
+            searches.collect()
+        };
+        let halvings = wanted.revolutions.trailing_zeros();
+        let halved =
+            (1..=halvings).rev().map(|times| Search { revolutions: wanted.revolutions >> times, impacts: None });
+        let orbits = halved.chain([*wanted]).map(at).collect();
+        Ok(Self { model, speeds, orbits })
+    }
+
+    /// The branches of the wanted orbits between two speeds, rpm.
+    fn branches(&self, range: [f64; 2]) -> FoundBranches {
+        let parameter = Parameter::Speed;
+        let mut all = FoundBranches::default();
+        let family = match Family::new(self.model, range[0], vec![parameter.clone()]) {
+            Ok(family) => family,
+            Err(error) => return FoundBranches { failed: Some(error.into()), ..all },
+        };
+        let following = Following { parameter, range, longest_step: STEP, most_points: MOST_POINTS };
+        for orbits in &self.orbits {
+            let shorter = std::mem::take(&mut all.branches);
+            for (rpm, orbits) in self.speeds.iter().zip(orbits) {
+                match orbits {
+                    _ if !(range[0]..=range[1]).contains(rpm) => {}
+                    Ok(orbits) => {
+                        let orbits = orbits.iter().map(|orbit| (*rpm, orbit));
+                        all.follow(&family, &following, orbits, &Unwatched);
+                    }
+                    Err(error) => all.fail(*error),
+                }
+            }
+            all.follow_doubled(&family, &following, &shorter, &Unwatched);
+        }
+        all
+    }
 }
 
 /// The branches of `model` over `range`, rpm, of orbits of `wanted.revolutions` that have `wanted.impacts` where they were
 /// found.
 ///
-/// Found by searches at a few speeds: a branch that none of these meets is missing.
+/// Found by searches at the speeds of the grid that are in the range: a branch that none of these meets is missing.
 pub fn find_branches(model: &Model, range: [f64; 2], wanted: &Search) -> Result<FoundBranches, FamilyError> {
-    let machine = Machine::new(Cam::new(model)?, &model.follower, angular_velocity(range[0]));
-    let following = Following { parameter: Parameter::Speed, range, longest_step: STEP, most_points: MOST_POINTS };
-    let speed = |index: usize| range[0] + (range[1] - range[0]) * (index as f64 + 0.5) / SPEEDS as f64;
-    let mut all = FoundBranches { speeds: (0..SPEEDS).map(speed).collect(), ..FoundBranches::default() };
-    let searches = all.speeds.par_iter().map(|rpm| search(&machine.at_speed(angular_velocity(*rpm)), wanted));
-    let found: Vec<_> = searches.collect();
-    for (rpm, orbits) in all.speeds.clone().into_iter().zip(found) {
-        let orbits = orbits.unwrap_or_else(|error| {
-            all.failed.get_or_insert(error.to_string());
-            Vec::new()
-        });
-        for orbit in orbits {
-            if all.branches.iter().any(|branch| branch.holds(rpm, &orbit)) {
-                continue;
-            }
-            match Branch::through(model, rpm, &orbit, &following) {
-                Ok(branch) => all.branches.push(branch),
-                Err(error) => {
-                    all.failed.get_or_insert(error.to_string());
-                }
-            }
-        }
+    Ok(Searched::at(model, step_at(range[0])..step_at(range[1]) + 1, wanted)?.branches(range))
+}
+
+/// The corner impacts between two speeds, rpm, of orbits of `wanted.revolutions` that have `wanted.impacts` where they were
+/// found: those of any wider range that are in this one.
+pub fn corner_impacts(model: &Model, range: [f64; 2], wanted: &Search) -> Result<MetCorners, FamilyError> {
+    let [first, last] = range.map(|rpm| step_at(rpm).div_euclid(CELL));
+    let searched = Searched::at(model, CELL * first - MARGIN..CELL * (last + 1) + MARGIN, wanted)?;
+    let of_cell = |cell: i32| {
+        let window = [CELL * cell - MARGIN, CELL * (cell + 1) + MARGIN];
+        let found = searched.branches(window.map(|step| grid(f64::from(step))));
+        let mut points = corners_on(&found.branches);
+        points.retain(|point| step_at(point.rpm).div_euclid(CELL) == cell);
+        (points, found)
+    };
+    let cells: Vec<_> = (first..=last).into_par_iter().map(of_cell).collect();
+    let mut all = MetCorners { speeds: searched.speeds, ..MetCorners::default() };
+    for (points, found) in cells {
+        all.points.extend(points.into_iter().filter(|point| range[0] <= point.rpm && point.rpm <= range[1]));
+        all.branches += found.branches.len();
+        all.failed = all.failed.or(found.failed);
     }
     Ok(all)
 }
 
 /// The corner impacts on `branches`, each once, by rising speed.
-pub fn corner_impacts(branches: &[Branch]) -> Vec<BranchPoint> {
+fn corners_on(branches: &[Branch]) -> Vec<BranchPoint> {
     let is_corner =
         |point: &&BranchPoint| matches!(point.special, Some(special) if matches!(special.kind, Kind::Corner { .. }));
     let mut found: Vec<BranchPoint> = Vec::new();

@@ -7,7 +7,8 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | `find` | every branch of a range of speeds that a search comes upon |
+//! | `find` | the branches through given orbits and what branches off; those of a range of speeds, and its corner impacts |
+//! | `doubled` | orbits of twice the period next to a special point |
 //! | `follow` | one direction of a branch, step by step; `chatter` where the follower sticks |
 //! | `problem` | the equations, with numbers of the model free, or an impact pinned to a corner |
 //! | `cut`, `gap`, `halved` | what a step passes, and where: corners, folds, flips; grazes; the end of a doubled period |
@@ -16,6 +17,7 @@
 
 mod chatter;
 mod cut;
+mod doubled;
 mod find;
 mod follow;
 mod gap;
@@ -28,7 +30,7 @@ use nalgebra::Matrix2;
 
 use super::{Family, OrbitError, Parameter, PeriodicOrbit};
 use crate::model::Model;
-pub(crate) use find::{corner_impacts, find_branches};
+pub(crate) use find::{GRID_RATIO, corner_impacts, find_branches};
 pub(crate) use problem::Pinned;
 pub use special::Kind;
 pub(crate) use special::Special;
@@ -129,15 +131,20 @@ impl Branch {
     /// The branch through `orbit`, an orbit of `model` at `rpm`.
     pub fn through(model: &Model, rpm: f64, orbit: &PeriodicOrbit, following: &Following) -> Result<Self, OrbitError> {
         let family = Family::new(model, rpm, vec![following.parameter.clone()])?;
-        let value = following.parameter.value(model, rpm).unwrap_or(f64::NAN);
+        Self::at(&family, following.parameter.value(model, rpm).unwrap_or(f64::NAN), orbit, following)
+    }
+
+    /// The branch through `orbit`, of the machine that has `value` of what is followed, the one free number of `family`.
+    fn at(family: &Family, value: f64, orbit: &PeriodicOrbit, following: &Following) -> Result<Self, OrbitError> {
+        let (_, rpm) = family.machine(&[value])?;
         let spans = [following.range[1] - following.range[0]];
         let halves = [-1.0, 1.0].map(|direction| match &orbit.course {
             super::Course::Impacts(cycle) => {
                 let start = follow::Start { cycle, values: &[value], spans: &spans, pinned: None };
-                follow::half(&family, &start, following, direction)
+                follow::half(family, &start, following, direction)
             }
             super::Course::Sticking(anchor) => {
-                chatter::half(&family, value, (*anchor, orbit.revolutions), following, direction)
+                chatter::half(family, value, (*anchor, orbit.revolutions), following, direction)
             }
             super::Course::Free => Ok((Vec::new(), End::Clear)),
         });
