@@ -21,6 +21,7 @@ use crate::study::continuation::branches;
     after_help = "Examples:\n\
     \x20 corner-impact continue --from-rpm 700 --parameter rpm=660:760\n\
     \x20 corner-impact continue --from-rpm 700 --parameter restitution=0.5:0.95 --out branches.svg\n\
+    \x20 corner-impact continue --from-rpm 738 --parameter rpm=735:745 --all\n\
     \n\
     Prints the table; what each branch passes and where it ends goes to standard error.\n\
     Exit code: 0 done, 2 bad model file, usage or file, or nothing to follow."
@@ -46,6 +47,10 @@ pub(super) struct Arguments {
     /// Orbits after which a branch is given up, in either direction.
     #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     points: u32,
+    /// Follow also what branches off with twice the period at flips, grazes and corner impacts, and from that again, so many
+    /// times in all.
+    #[arg(long, value_name = "DOUBLINGS", num_args = 0..=1, require_equals = true, default_value_t = 0, default_missing_value = "3", value_parser = clap::value_parser!(u32).range(0..=10))]
+    all: u32,
     /// A table (.csv, or - for standard output) or a picture (.svg, .png).
     #[arg(long, value_name = "FILE", default_value = "-", value_parser = picture_or_table)]
     out: PathBuf,
@@ -66,7 +71,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     };
     let target = Target::create(&arguments.out, &mut *session.out)?;
     let wanted = Search { revolutions: arguments.revolutions, impacts: arguments.impacts };
-    let found = watched("", |watch| branches(&model, arguments.from_rpm, &wanted, following, watch))?;
+    let found = watched("", |watch| branches(&model, arguments.from_rpm, &wanted, following, arguments.all, watch))?;
     let name = found.following.parameter.name();
     for (index, branch) in found.branches.iter().enumerate() {
         // Nobody is left to tell where standard error is closed.
@@ -75,7 +80,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let table = |table: &mut dyn Write| Ok(table.write_all(csv::branches(name, &found.branches).as_bytes())?);
     target.fill(table, || {
         let settled = watched("", |watch| found.settled(arguments.runs, watch))?;
-        Ok(branches_figure(&found.title(), (name, *range), &found.branches, settled, &corners))
+        Ok(branches_figure(&found.title(), (name, *range), &found.branches, &settled, &corners))
     })?;
     Ok(Exit::Agrees)
 }

@@ -10,8 +10,10 @@ mod places;
 
 use std::ops::ControlFlow;
 
+use crate::cam::apart;
 use crate::flight::State;
 use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError, Unobserved};
+use crate::tolerance;
 pub use growth::{Exponent, exponent, growth, growth_and_error};
 pub use pipeline::{Block, Counted, Tally};
 pub use places::Places;
@@ -136,6 +138,13 @@ pub fn settled_impacts(machine: &Machine, transient: u64, record: u64) -> Result
         }
     })?;
     Ok(angles)
+}
+
+/// After how many impacts their places on the cam, rad, recur, as far as a picture can show; `None` where they do not, as often
+/// as there are impacts for.
+pub(crate) fn recurrence(angles: &[f64]) -> Option<usize> {
+    let near = |(one, other): (&f64, &f64)| apart(*one, *other).to_degrees() <= tolerance::DRAWN_DEGREES.value;
+    (1..=angles.len() / 2).find(|period| angles.iter().zip(&angles[*period..]).all(near))
 }
 
 /// An event, or the state on the section.

@@ -20,11 +20,24 @@ pub(super) fn stroked(out: &mut impl Write, path: &str, how: Stroke, colour: Col
 }
 
 pub(super) fn markers(out: &mut impl Write, points: &[[f64; 2]], marker: Marker, colour: Colour) -> fmt::Result {
-    let shape = match marker {
-        Marker::Dot | Marker::Disc => "h0",
-        Marker::SmallRing => "m-1.4 0a1.4 1.4 0 1 0 2.8 0a1.4 1.4 0 1 0 -2.8 0z",
-        Marker::Ring => "m-2.4 0a2.4 2.4 0 1 0 4.8 0a2.4 2.4 0 1 0 -4.8 0z",
-        Marker::Below => "m0 1.5l3.2 5.5h-6.4z",
+    /// More markers than this are small, or they would hide what they mark.
+    const MANY: usize = 40;
+    let small = points.len() > MANY;
+    let shape = match (marker, small) {
+        (Marker::Dot | Marker::Disc, _) => "h0",
+        (Marker::Ring, false) => "m-2.7 0a2.7 2.7 0 1 0 5.4 0a2.7 2.7 0 1 0 -5.4 0z",
+        (Marker::Ring, true) => "m-1.4 0a1.4 1.4 0 1 0 2.8 0a1.4 1.4 0 1 0 -2.8 0z",
+        (Marker::Square, false) => "m-2.5 -2.5h5v5h-5z",
+        (Marker::Square, true) => "m-1.3 -1.3h2.6v2.6h-2.6z",
+        (Marker::Diamond, false) => "m0 -3.7l3.7 3.7l-3.7 3.7l-3.7 -3.7z",
+        (Marker::Diamond, true) => "m0 -2l2 2l-2 2l-2 -2z",
+        (Marker::Triangle, false) => "m0 -3.7l3.6 6.2h-7.2z",
+        (Marker::Triangle, true) => "m0 -2l2 3.4h-4z",
+        (Marker::Cross, false) => "m-2.7 -2.7l5.4 5.4m0 -5.4l-5.4 5.4",
+        (Marker::Cross, true) => "m-1.4 -1.4l2.8 2.8m0 -2.8l-2.8 2.8",
+        (Marker::Plus, false) => "m-3.4 0h6.8m-3.4 -3.4v6.8",
+        (Marker::Plus, true) => "m-1.8 0h3.6m-1.8 -1.8v3.6",
+        (Marker::Below, _) => "m0 1.5l3.2 5.5h-6.4z",
     };
     let mut path = String::new();
     for [x, y] in points {
@@ -34,8 +47,10 @@ pub(super) fn markers(out: &mut impl Write, points: &[[f64; 2]], marker: Marker,
     match marker {
         Marker::Dot => writeln!(out, r#"<path d="{path}" stroke-width="3.4" stroke-linecap="round" {stroke}/>"#),
         Marker::Disc => writeln!(out, r#"<path d="{path}" stroke-width="6.4" stroke-linecap="round" {stroke}/>"#),
-        Marker::SmallRing => writeln!(out, r#"<path d="{path}" fill="none" stroke-width="0.6" {stroke}/>"#),
-        Marker::Ring => writeln!(out, r#"<path d="{path}" fill="none" stroke-width="1" {stroke}/>"#),
+        Marker::Ring | Marker::Square | Marker::Diamond | Marker::Triangle | Marker::Cross | Marker::Plus => {
+            let width = if small { 0.7 } else { 1.2 };
+            writeln!(out, r#"<path d="{path}" fill="none" stroke-width="{width}" {stroke}/>"#)
+        }
         Marker::Below => writeln!(out, r#"<path d="{path}" {fill}/>"#),
     }
 }

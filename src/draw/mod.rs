@@ -293,10 +293,18 @@ pub enum Marker {
     Dot,
     /// A disc.
     Disc,
-    /// An open circle.
+    /// An open circle; this and the next are small where there are many.
     Ring,
-    /// A small open circle.
-    SmallRing,
+    /// An open square.
+    Square,
+    /// An open square on its tip.
+    Diamond,
+    /// An open triangle.
+    Triangle,
+    /// Two strokes, across.
+    Cross,
+    /// Two strokes, one upright.
+    Plus,
     /// A triangle, its tip at the point, standing below it.
     Below,
 }

@@ -1,9 +1,11 @@
-//! Branches of orbits over the brute-force diagram: stable unbroken, unstable broken, special points marked.
+//! Branches of orbits over the brute-force diagram: stable unbroken, unstable broken, each kind of special point marked by a
+//! shape of its own, and what runs settle on behind them: told apart without colours.
 
 use crate::border_collision::feigin::Scenario;
-use crate::draw::{Axis, BREAK, Colour, Data, Density, Figure, Marker, Panel, Series};
+use crate::diagram::recurrence;
+use crate::draw::{Axis, BREAK, Colour, Data, Figure, Marker, Panel, Series};
 use crate::figures::cam::{CornerMark, corner_marks};
-use crate::figures::impacts::{WHOLE_CAM, impact_angles, shown_impacts};
+use crate::figures::impacts::{WHOLE_CAM, cloud, impact_angles, shown_impacts};
 use crate::figures::{Entry, Fast, SPEED, Subject, by_stability, drawn};
 use crate::orbit::branch::{Branch, BranchPoint, Kind, find_branches};
 use crate::orbit::{Course, Search};
@@ -19,11 +21,10 @@ pub(crate) const FAST_IMPACTS: Entry = Entry {
     },
     draw: |subject, title| {
         let range = subject.shown.fast.clone()?.range;
-        let mut runs = Density::new(range, WHOLE_CAM);
-        subject.fast_runs(range, false)?.iter().for_each(|[rpm, angle]| runs.push(*rpm, angle.to_degrees()));
-        let shown = shown_impacts(&runs);
+        let runs = subject.fast_runs(range, false)?;
+        let shown = shown_impacts(&cloud(range, &runs));
         let corners = corner_marks(&subject.cam);
-        let mut figure = branches_figure(title, ("rpm", range), subject.branches()?, Some(runs), &corners);
+        let mut figure = branches_figure(title, ("rpm", range), subject.branches()?, &runs, &corners);
         if let Some(panel) = figure.panels.first_mut() {
             panel.y.range = shown.or(panel.y.range);
         }
@@ -35,24 +36,22 @@ pub(crate) const FAST_IMPACTS: Entry = Entry {
             None => "",
         };
         let caption = format!(
-            "Where impacts fall on the cam: grey is what runs with rising and with falling speed settle on, lines are the \
-             orbits of one impact in one revolution and of two in two, stable unbroken and unstable broken.{end}",
+            "Where impacts fall on the cam: grey is what runs with rising and with falling speed settle on, broad where it \
+             repeats; lines are the orbits of one impact in one revolution and of two in two, stable unbroken and unstable \
+             broken.{end}",
         );
         drawn(figure, caption)
     },
 };
 
-/// More points than this of one kind are small, or they would hide the branch.
-const MANY: usize = 40;
-
-/// The kinds of point that are marked, with name and colour.
-const MARKED: [(&str, Colour); 6] = [
-    ("corner impact", Colour::Ink),
-    ("fold", Colour::Vermilion),
-    ("flip", Colour::Purple),
-    ("graze", Colour::Green),
-    ("chatter, detachment", Colour::Blue),
-    ("branching", Colour::Grey),
+/// The kinds of point that are marked, with name, colour and shape.
+const MARKED: [(&str, Colour, Marker); 6] = [
+    ("corner impact", Colour::Ink, Marker::Ring),
+    ("fold", Colour::Ink, Marker::Square),
+    ("flip", Colour::Purple, Marker::Diamond),
+    ("graze", Colour::Green, Marker::Triangle),
+    ("chatter, detachment", Colour::Ink, Marker::Cross),
+    ("branching", Colour::Ink, Marker::Plus),
 ];
 
 fn mark(kind: &Kind) -> usize {
@@ -68,32 +67,48 @@ fn mark(kind: &Kind) -> usize {
     }
 }
 
-/// Impact phases along branches against the parameter of this name over its range, above what runs settle on: the parameter
-/// across, impact phases in degrees up.
+/// Impact phases along branches against the parameter of this name over its range, above what runs settle on, by rising value of the
+/// parameter: the parameter across, impact phases in degrees up.
 pub fn branches_figure(
     title: &str,
     (name, range): (&str, [f64; 2]),
     branches: &[Branch],
-    settled: Option<Density>,
+    settled: &[[f64; 2]],
     corners: &[CornerMark],
 ) -> Figure {
-    let runs = settled.map(|density| Series::new("runs", Colour::Grey, Data::Density(density)));
-    let mut series: Vec<Series> = runs.into_iter().collect();
+    let (repeating, others) = by_recurrence(settled);
+    let repeating = repeating.into_iter().map(|[value, angle]| [value, angle.to_degrees()]);
+    let repeating = Series::points("runs that repeat", Colour::Grey, Marker::Dot, repeating).if_any();
+    let others = (!others.is_empty()).then(|| cloud(range, &others));
+    let others = others.map(|cloud| Series::new("other runs", Colour::Grey, Data::Density(cloud)));
+    let mut series: Vec<Series> = repeating.into_iter().chain(others).collect();
     series.extend(by_stability(["stable", "unstable"], |stable| lines(branches, stable)));
     let points = || branches.iter().flat_map(|branch| &branch.points);
     let sticking = points().filter(|point| matches!(point.orbit.course, Course::Sticking(_)));
     let sticking =
         sticking.flat_map(|point| point.orbit.impacts().map(|impact| [point.value, impact.cam_angle.to_degrees()]));
     series.extend(Series::points("stable, sticking", Colour::Blue, Marker::Dot, sticking).if_any());
-    for (which, (label, colour)) in MARKED.into_iter().enumerate() {
-        let points: Vec<[f64; 2]> = points().filter_map(|point| place(point, which)).collect();
-        let marker = if points.len() > MANY { Marker::SmallRing } else { Marker::Ring };
+    for (which, (label, colour, marker)) in MARKED.into_iter().enumerate() {
+        let points = points().filter_map(|point| place(point, which));
         series.extend(Series::points(label, colour, marker, points).if_any());
     }
     let [label, unit] = if name == "rpm" { SPEED } else { [name, ""] };
     let panel = Panel::new(impact_angles().over(WHOLE_CAM), 0.52, series);
     let panel = Panel { marks: corners.iter().map(CornerMark::mark).collect(), ..panel };
     Figure::new(title, Axis::new(label, unit).over(range), vec![panel])
+}
+
+/// The impacts of runs at values at which they recur, each once, and those at the others.
+fn by_recurrence(settled: &[[f64; 2]]) -> (Vec<[f64; 2]>, Vec<[f64; 2]>) {
+    let (mut repeating, mut others) = (Vec::new(), Vec::new());
+    for run in settled.chunk_by(|[one, _], [other, _]| one == other) {
+        let angles: Vec<f64> = run.iter().map(|[_, angle]| *angle).collect();
+        match recurrence(&angles) {
+            Some(period) => repeating.extend(&run[..period]),
+            None => others.extend(run),
+        }
+    }
+    (repeating, others)
 }
 
 /// Where a special point of one of the marked kinds is drawn: at the impact that it is about, or the first.

@@ -17,8 +17,7 @@ pub(crate) const SLOW_IMPACTS: Entry = Entry {
     },
     draw: |subject, title| {
         let range = subject.shown.slow.clone()?.range;
-        let mut points = Density::new(range, WHOLE_CAM);
-        subject.slow_impacts(range)?.iter().for_each(|[rpm, angle]| points.push(*rpm, angle.to_degrees()));
+        let points = cloud(range, &subject.slow_impacts(range)?);
         let corners = corner_marks(&subject.cam);
         let lines = match (subject.cam.corners().len(), corners.len()) {
             (0, _) => "The cam has no corner.",
@@ -55,6 +54,13 @@ pub fn impact_diagram(title: &str, points: Density, corners: &[CornerMark], expo
 pub fn strobe_diagram(title: &str, points: Density, exponents: Option<&[[f64; 2]]>) -> Figure {
     let shown = points.extent().map(|extent| widened(extent, 0.02));
     figure(title, points, position(), shown, exponents)
+}
+
+/// Impacts, each a value of what is drawn across and a cam angle, rad, as a cloud over a range of values.
+pub(crate) fn cloud(range: [f64; 2], impacts: &[[f64; 2]]) -> Density {
+    let mut cloud = Density::new(range, WHOLE_CAM);
+    impacts.iter().for_each(|[value, angle]| cloud.push(*value, angle.to_degrees()));
+    cloud
 }
 
 /// The axis of impact phases.

@@ -2,9 +2,8 @@
 
 use super::{StudyError, inside, machine};
 use crate::diagram::settled_impacts;
-use crate::draw::Density;
 use crate::model::Model;
-use crate::orbit::branch::{Branch, Following};
+use crate::orbit::branch::{Branch, Following, FoundBranches, doubled};
 use crate::orbit::{Family, Parameter, Search, search};
 use crate::progress::Watch;
 
@@ -19,12 +18,14 @@ pub struct Branches<'a> {
     pub branches: Vec<Branch>,
 }
 
-/// Follows the orbits that a search finds at `from_rpm`.
+/// Follows the orbits that a search finds at `from_rpm`, and what branches off from them with twice the period, so many times
+/// over.
 pub fn branches<'a>(
     model: &'a Model,
     from_rpm: f64,
     wanted: &Search,
     following: Following,
+    doublings: u32,
     watch: &dyn Watch,
 ) -> Result<Branches<'a>, StudyError> {
     let value = inside(model, from_rpm, &following)?;
@@ -35,37 +36,35 @@ pub fn branches<'a>(
         let (file, revolutions) = (model.file().to_string(), wanted.revolutions);
         return Err(StudyError::NothingToFollow { file, revolutions, rpm: from_rpm });
     }
-    let mut branches: Vec<Branch> = Vec::new();
-    for (index, orbit) in orbits.iter().enumerate() {
-        watch.at("following the orbits found", index as u64, orbits.len() as u64);
-        if !branches.iter().any(|branch| branch.holds(value, orbit)) {
-            branches.push(Branch::through(model, from_rpm, orbit, &following)?);
-        }
+    let family = Family::new(model, from_rpm, vec![following.parameter.clone()])?;
+    let mut found = FoundBranches::default();
+    found.follow(&family, &following, orbits.into_iter().map(|orbit| (value, orbit)), watch);
+    let mut before = 0;
+    for _ in 0..doublings {
+        let longer = doubled(&family, &following, &found.branches[before..]);
+        before = found.branches.len();
+        found.follow(&family, &following, longer, watch);
     }
-    Ok(Branches { model, from_rpm, following, branches })
+    let FoundBranches { branches, failed } = found;
+    failed.map_or(Ok(Branches { model, from_rpm, following, branches }), |error| Err(error.into()))
 }
 
 impl Branches<'_> {
-    /// What runs settle on at `count` values of what changes: phases of impacts in degrees; nothing for none.
-    pub fn settled(&self, count: u32, watch: &dyn Watch) -> Result<Option<Density>, StudyError> {
+    /// What runs settle on at `count` values of what changes, by rising value: the value, and the cam angle of an impact, rad.
+    pub fn settled(&self, count: u32, watch: &dyn Watch) -> Result<Vec<[f64; 2]>, StudyError> {
         const TRANSIENT: u64 = 300;
         const RECORD: u64 = 100;
-        if count == 0 {
-            return Ok(None);
-        }
         let family = Family::new(self.model, self.from_rpm, vec![self.following.parameter.clone()])?;
         let [low, high] = self.following.range;
-        let mut density = Density::new([low, high], [0.0, 360.0]);
+        let mut settled = Vec::new();
         for index in 0..count {
             watch.at("what runs settle on", u64::from(index), u64::from(count));
             let value = low + (high - low) * (f64::from(index) + 0.5) / f64::from(count);
             // The edge of what the model allows has been told already.
             let Ok((machine, _)) = family.machine(&[value]) else { continue };
-            for angle in settled_impacts(&machine, TRANSIENT, RECORD)? {
-                density.push(value, angle.to_degrees());
-            }
+            settled.extend(settled_impacts(&machine, TRANSIENT, RECORD)?.into_iter().map(|angle| [value, angle]));
         }
-        Ok(Some(density))
+        Ok(settled)
     }
 
     /// What a picture of them is called.

@@ -8,9 +8,11 @@ use crate::common;
 use corner_impact::cam::Cam;
 use corner_impact::model::Model;
 use corner_impact::orbit::branch::{Branch, BranchPoint, End, Following, Kind};
-use corner_impact::orbit::{Course, Eigenvalue, Parameter, PeriodicOrbit, Search, eigenvalues, search};
+use corner_impact::orbit::{Course, Eigenvalue, Parameter, PeriodicOrbit, Search, eigenvalues, search, settle};
+use corner_impact::progress::Unwatched;
 use corner_impact::section::StroboscopicMap;
 use corner_impact::simulate::{Event, EventKind, Machine, angular_velocity};
+use corner_impact::study::continuation::branches;
 
 fn machine(model: &Model, rpm: f64) -> Machine {
     Machine::new(Cam::new(model).unwrap(), &model.follower, angular_velocity(rpm))
@@ -330,6 +332,49 @@ fn every_point_of_a_branch_is_an_orbit_of_the_simulator() {
         }
     }
     assert!(seen > 1000, "{seen}");
+}
+
+/// What runs settle on at a speed: an orbit of so many revolutions.
+fn settled_orbit(model: &Model, rpm: f64, revolutions: u64) -> PeriodicOrbit {
+    let machine = machine(model, rpm);
+    let start = machine.start_on_cam(0.0, 0.0).unwrap();
+    let orbit = settle::settled(&machine, start, 3000, revolutions).unwrap().unwrap();
+    assert_eq!(orbit.revolutions, revolutions);
+    orbit
+}
+
+/// At the flip of the paper's orbit, and where the corner impact of another model sheds orbits of two and of four revolutions:
+/// runs settle on what branches off.
+#[test]
+fn what_branches_off_with_twice_the_period_is_followed() {
+    let flip = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/nonsmooth-flip.toml");
+    for (model, from, range, doublings, settles, at) in [
+        (common::osorio(), 700.0, [660.0, 750.0], 1, 739.36, 739.319_780_216_001_6),
+        (common::read(&flip), 890.0, [840.0, 950.0], 2, 878.5, 877.655_930_381_899),
+    ] {
+        let wanted = Search { revolutions: 1, impacts: None };
+        let following = Following { parameter: Parameter::Speed, range, longest_step: 0.02, most_points: 600 };
+        let found = branches(&model, from, &wanted, following, doublings, &Unwatched).unwrap().branches;
+        let revolutions = 1 << doublings;
+        let orbit = settled_orbit(&model, settles, revolutions);
+        let branch = found.iter().find(|branch| branch.holds(settles, &orbit));
+        let branch = branch.unwrap_or_else(|| panic!("{}: {} branches", model.name, found.len()));
+        let begins = [0, branch.points.len() - 1].map(|end| branch.points[end].value);
+        assert!(begins.iter().any(|value| (value - at).abs() < 1e-9 * at), "{begins:?}");
+        let longer =
+            found.iter().filter(|branch| branch.points.iter().any(|point| point.orbit.revolutions == revolutions));
+        for (branch, index) in longer.flat_map(|branch| (0..branch.points.len()).map(move |index| (branch, index))) {
+            if is_ordinary(branch, index) {
+                is_an_orbit(&model, &branch.points[index]);
+            }
+        }
+        // Each branch once: what one holds in its middle no other does.
+        for (index, branch) in found.iter().enumerate() {
+            let middle = &branch.points[branch.points.len() / 2];
+            let others = found.iter().enumerate().filter(|(other, _)| *other != index);
+            assert!(!others.into_iter().any(|(_, other)| other.holds(middle.value, &middle.orbit)), "{}", model.name);
+        }
+    }
 }
 
 /// From an orbit at the other end of a branch, the same special points.

@@ -43,6 +43,24 @@ fn drawn(figure: &Figure) -> String {
     text
 }
 
+/// Without their colours, too.
+#[test]
+fn markers_are_told_apart_by_their_shapes() {
+    let shapes = [Marker::Ring, Marker::Square, Marker::Diamond, Marker::Triangle, Marker::Cross, Marker::Plus];
+    let svg = |marker: Marker, count: usize| {
+        let points = (0..count).map(|index| [index as f64, index as f64]).collect();
+        drawn(&figure(Data::Points { points, marker }))
+    };
+    for count in [2, 100] {
+        let paths = shapes.map(|marker| svg(marker, count));
+        for (index, path) in paths.iter().enumerate() {
+            assert!(paths[..index].iter().all(|other| other != path), "{:?} of {count}", shapes[index]);
+        }
+    }
+    let long = |count: usize| attribute(&svg(Marker::Square, count), "path", "stroke-width").join(" ");
+    assert!(long(100).contains("0.7") && !long(2).contains("0.7"), "many are small: {}", long(100));
+}
+
 fn texts(svg: &str) -> Vec<String> {
     let document = Document::parse(svg).unwrap();
     let texts = document.descendants().filter(|node| node.has_tag_name("text"));

@@ -282,6 +282,16 @@ fn the_branches_end_at_the_corner_impact() {
     assert!(near(OMEGA_STAR, THETA_P.to_degrees()), "{rings:?}");
     // Of the orbit of two impacts the ring is at the one at Q.
     assert!(rings.iter().any(|[rpm, angle]| (rpm - 739.378).abs() < 0.01 && (angle - 160.0).abs() < 1e-5), "{rings:?}");
+    // Runs repeat on the stable line, and nowhere else but by chance of a chaotic run.
+    let stable = series(&figure, 0, "stable");
+    let repeating: Vec<_> =
+        series(&figure, 0, "runs that repeat").into_iter().filter(|[rpm, _]| *rpm > 690.0).collect();
+    let regular = repeating.iter().filter(|[rpm, _]| *rpm < 735.0);
+    assert!(regular.clone().count() > 200, "{}", repeating.len());
+    for [rpm, angle] in regular {
+        let beside = |[x, y]: &[f64; 2]| (x - rpm).abs() < 1.0 && (y - angle).abs() < 0.2;
+        assert!(stable.iter().any(beside), "{rpm} {angle}");
+    }
     // The flip at 739.32 rpm is not the paper's; the stable orbit is lost there.
     let flips = series(&figure, 0, "flip");
     assert!(flips.iter().any(|[rpm, _]| (rpm - 739.32).abs() < 0.01), "{flips:?}");

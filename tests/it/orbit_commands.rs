@@ -138,6 +138,20 @@ fn a_branch_has_the_contracts_columns_and_names_its_points() {
     assert!(account.contains("the end of the range"), "{account}");
 }
 
+#[test]
+fn with_all_orbits_of_twice_the_period_are_in_the_table_too() {
+    let followed = |all: &[&str]| {
+        let line = ["continue", MODEL, "--from-rpm", "738", "--parameter", "rpm=730:745"];
+        Table::new(&done(&[&line, all].concat()).0, BRANCH)
+    };
+    let longest = |table: &Table| table.rows.iter().map(|row| table.number(row, "revolutions") as u64).max();
+    let (alone, once, thrice) = (followed(&[]), followed(&["--all=1"]), followed(&["--all"]));
+    assert_eq!([&alone, &once, &thrice].map(longest), [Some(1), Some(2), Some(8)]);
+    assert_eq!(alone.rows, once.rows[..alone.rows.len()]);
+    // The stable orbit of two revolutions reaches the nose's end.
+    assert!(once.special("corner").iter().any(|rpm| (rpm - 739.377_929_649).abs() < 1e-8));
+}
+
 /// The follower of a cam of two like lobes hits both alike, until that is lost: another branch crosses, of two orbits each
 /// with two unlike impacts.
 #[test]

@@ -9,48 +9,74 @@ use super::problem::{Problem, Units};
 use super::switch::{self, Exit};
 use super::{Branch, Following, Kind};
 use crate::orbit::curve::{self, Equations, NoPoint};
+use crate::orbit::cycle::lift_size;
 use crate::orbit::{Course, Cycle, Family, FamilyError, Impact, PeriodicOrbit};
+use crate::simulate::{Event, Machine};
+use crate::tolerance;
 
 /// How far from the special point the orbit is that is given, of the longest step.
-const FIRST: f64 = 0.02;
+const FIRST: f64 = 0.1;
 
-/// The orbit of twice the period next to a special point of a branch, and the value of what is followed; `None` where there
-/// is none.
-pub(super) fn at(
-    family: &Family,
-    branch: &Branch,
-    index: usize,
-    following: &Following,
-) -> Option<(f64, PeriodicOrbit)> {
-    let at = branch.points.get(index)?;
-    let Course::Impacts(cycle) = &at.orbit.course else { return None };
-    let (machine, _) = family.machine(&[at.value]).ok()?;
-    let exit = match at.special?.kind {
-        Kind::Flip => None,
-        Kind::Corner { impact, segment, .. } => {
-            Some(Exit::Corner { impact, past_end: cycle.impacts[impact].segment != segment })
-        }
-        Kind::Graze { .. } => Some(touch(branch, index, cycle)?),
-        _ => return None,
+/// The orbits of twice the period next to the special points of branches, and the values of what is followed.
+pub fn doubled(family: &Family, following: &Following, branches: &[Branch]) -> Vec<(f64, PeriodicOrbit)> {
+    let points = branches.iter().flat_map(|branch| (0..branch.points.len()).map(move |index| (branch, index)));
+    points.flat_map(|(branch, index)| at(family, following, branch, index)).collect()
+}
+
+/// Those next to one point.
+fn at(family: &Family, following: &Following, branch: &Branch, index: usize) -> Vec<(f64, PeriodicOrbit)> {
+    let point = &branch.points[index];
+    let (Some(special), Course::Impacts(cycle)) = (point.special, &point.orbit.course) else { return Vec::new() };
+    let Ok((machine, _)) = family.machine(&[point.value]) else { return Vec::new() };
+    let exits = match special.kind {
+        Kind::Flip => vec![None],
+        Kind::Corner { segment, .. } => on_corner(cycle, &machine, segment).map(Some).collect(),
+        Kind::Graze { .. } => touch(branch, index, cycle).into_iter().map(Some).collect(),
+        _ => Vec::new(),
     };
-    let twice = cycle.twice();
+    exits.into_iter().filter_map(|exit| beyond(family, following, point.value, &cycle.twice(), exit)).collect()
+}
+
+/// The orbit next to `twice`, one gone round twice, of which one period leaves by `exit`; or by none, at a flip. `None` where
+/// there is none.
+fn beyond(
+    family: &Family,
+    following: &Following,
+    value: f64,
+    twice: &Cycle,
+    exit: Option<Exit>,
+) -> Option<(f64, PeriodicOrbit)> {
+    let (machine, _) = family.machine(&[value]).ok()?;
     let pattern = match exit {
         None => twice.clone(),
-        Some(exit) => switch::beyond(exit, &twice, &machine)?,
+        Some(exit) => switch::beyond(exit, twice, &machine)?,
     };
     let spans = [following.range[1] - following.range[0]];
     let problem = Problem::new(family, &pattern, Units::of(&pattern, &machine), &spans, None);
-    let from = problem.unknowns(&pattern, &machine, &[at.value]);
+    let from = problem.unknowns(&pattern, &machine, &[value]);
     let along = match exit {
         None => apart(&problem, &from),
-        Some(exit) => switch::direction(exit, &twice, &problem, &from),
+        Some(exit) => switch::direction(exit, twice, &problem, &from),
     };
     let point = curve::step(&problem, &from, &along.ok()?, FIRST * following.longest_step).ok()?;
+    // At this value alone Newton's method would as well lead back to the shorter orbit.
     let (cycle, machine, _) = problem.unpack(&point.unknowns).ok()?;
-    let (cycle, residual) = cycle.closed(&machine).ok()?;
+    let residual = cycle.residual(&machine).amax() / lift_size(&machine);
     let is_orbit = matches!(cycle.departure(&machine), Ok(None)) && !cycle.repeats_sooner();
     let value = *problem.values(&point.unknowns).first()?;
     is_orbit.then(|| (value, PeriodicOrbit::of_cycle(&machine, cycle, residual)))
+}
+
+/// The ways over the corner that starts `segment`, one for each impact on it: where branches meet there may be several.
+fn on_corner(cycle: &Cycle, machine: &Machine, segment: usize) -> impl Iterator<Item = Exit> {
+    let segments = machine.cam().segments();
+    let before = (segment + segments.len() - 1) % segments.len();
+    let near = |one: f64, other: f64| (one - other).abs() <= tolerance::SAME_ORBIT.value;
+    cycle.impacts.iter().enumerate().filter_map(move |(impact, Impact { segment: on, cam_angle, .. })| {
+        let past_end = *on == before && near(*cam_angle, segments[before].end);
+        let past_start = *on == segment && near(*cam_angle, segments[segment].start);
+        (past_end || past_start).then_some(Exit::Corner { impact, past_end })
+    })
 }
 
 /// The touch that the orbit at a graze has, from the slowest impact of its neighbour on the branch that has one impact more.
@@ -59,7 +85,7 @@ fn touch(branch: &Branch, index: usize, cycle: &Cycle) -> Option<Exit> {
     let beside = [index.checked_sub(1), index.checked_add(1)].into_iter().flatten();
     let mut beside = beside.filter_map(|index| branch.points.get(index)).map(|point| &point.orbit);
     let more = beside.find(|orbit| orbit.revolutions == cycle.revolutions && orbit.impacts().count() == count + 1)?;
-    let approach = |event: &&crate::simulate::Event| event.cam_velocity - event.velocity_before;
+    let approach = |event: &&Event| event.cam_velocity - event.velocity_before;
     let slowest = more.impacts().min_by(|one, two| approach(one).total_cmp(&approach(two)))?;
     let since = |impact: &Impact| {
         let turns = slowest.revolution as f64 - impact.revolution as f64;

@@ -5,11 +5,12 @@
 //! are those that searches and branches come upon in a window around it, whatever range the cell is asked for in: a range is
 //! cut out of whole cells.
 
+use std::borrow::Borrow;
 use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::{Branch, BranchPoint, Following, Kind, doubled};
+use super::{Branch, BranchPoint, Following, Kind, doubled::doubled};
 use crate::cam::Cam;
 use crate::model::Model;
 use crate::orbit::{Family, FamilyError, OrbitError, Parameter, PeriodicOrbit, Search, search};
@@ -40,14 +41,15 @@ pub struct FoundBranches {
 
 impl FoundBranches {
     /// Follows the branch through each orbit, at its value of what is followed, that is on none yet.
-    pub fn follow<'a>(
+    pub fn follow(
         &mut self,
         family: &Family,
         following: &Following,
-        orbits: impl IntoIterator<Item = (f64, &'a PeriodicOrbit)>,
+        orbits: impl IntoIterator<Item = (f64, impl Borrow<PeriodicOrbit>)>,
         watch: &dyn Watch,
     ) {
         for (value, orbit) in orbits {
+            let orbit = orbit.borrow();
             watch.at("following branches of orbits", self.branches.len() as u64, 0);
             if self.branches.iter().any(|branch| branch.holds(value, orbit)) {
                 continue;
@@ -55,17 +57,6 @@ impl FoundBranches {
             match Branch::at(family, value, orbit, following) {
                 Ok(branch) => self.branches.push(branch),
                 Err(error) => self.fail(error),
-            }
-        }
-    }
-
-    /// Follows what branches off from `branches` with twice the period: at each flip, graze and corner impact.
-    pub fn follow_doubled(&mut self, family: &Family, following: &Following, branches: &[Branch], watch: &dyn Watch) {
-        let special = |branch: &Branch, index: &usize| branch.points[*index].special.is_some();
-        for branch in branches {
-            let at = (0..branch.points.len()).filter(|index| special(branch, index));
-            for (value, orbit) in at.filter_map(|index| doubled::at(family, branch, index, following)) {
-                self.follow(family, following, [(value, &orbit)], watch);
             }
         }
     }
@@ -98,12 +89,15 @@ fn step_at(rpm: f64) -> i32 {
     (rpm.ln() / GRID_RATIO.ln()).floor() as i32
 }
 
+/// What a search at one speed came to.
+type Orbits = Result<Vec<PeriodicOrbit>, SimulateError>;
+
 /// What searches came to at speeds, rpm, of the grid.
 struct Searched<'a> {
     model: &'a Model,
     speeds: Vec<f64>,
-    /// For each number of revolutions, of which each is twice the one before it, what was found at each speed.
-    orbits: Vec<Vec<Result<Vec<PeriodicOrbit>, SimulateError>>>,
+    /// What was looked for, each over twice as many revolutions as the one before it, and what was found at each speed.
+    orbits: Vec<(Search, Vec<Orbits>)>,
 }
 
 impl<'a> Searched<'a> {
@@ -114,7 +108,7 @@ impl<'a> Searched<'a> {
         let speeds: Vec<f64> = steps.map(|step| grid(f64::from(step) + 0.5)).collect();
         let at = |wanted: Search| {
             let searches = speeds.par_iter().map(|rpm| search(&machine.at_speed(angular_velocity(*rpm)), &wanted));
-            searches.collect()
+            (wanted, searches.collect())
         };
         let halvings = wanted.revolutions.trailing_zeros();
         let halved =
@@ -132,7 +126,7 @@ impl<'a> Searched<'a> {
             Err(error) => return FoundBranches { failed: Some(error.into()), ..all },
         };
         let following = Following { parameter, range, longest_step: STEP, most_points: MOST_POINTS };
-        for orbits in &self.orbits {
+        for (wanted, orbits) in &self.orbits {
             let shorter = std::mem::take(&mut all.branches);
             for (rpm, orbits) in self.speeds.iter().zip(orbits) {
                 match orbits {
@@ -144,7 +138,9 @@ impl<'a> Searched<'a> {
                     Err(error) => all.fail(*error),
                 }
             }
-            all.follow_doubled(&family, &following, &shorter, &Unwatched);
+            let is_wanted = |orbit: &PeriodicOrbit| wanted.impacts.is_none_or(|count| orbit.impacts().count() == count);
+            let doubled = doubled(&family, &following, &shorter).into_iter().filter(|(_, orbit)| is_wanted(orbit));
+            all.follow(&family, &following, doubled, &Unwatched);
         }
         all
     }

@@ -30,7 +30,9 @@ use nalgebra::Matrix2;
 
 use super::{Family, OrbitError, Parameter, PeriodicOrbit};
 use crate::model::Model;
-pub(crate) use find::{GRID_RATIO, corner_impacts, find_branches};
+use crate::tolerance;
+pub(crate) use doubled::doubled;
+pub(crate) use find::{FoundBranches, GRID_RATIO, corner_impacts, find_branches};
 pub(crate) use problem::Pinned;
 pub use special::Kind;
 pub(crate) use special::Special;
@@ -231,7 +233,15 @@ impl Branch {
         self.points.windows(2).filter(spans).any(|pair| {
             let nearest =
                 if (pair[0].value - value).abs() < (pair[1].value - value).abs() { &pair[0] } else { &pair[1] };
-            special::is_near(&nearest.orbit, orbit)
+            // No farther than from one point to the next: where branches meet, others are near.
+            let stride = special::apart(&pair[0].orbit, &pair[1].orbit).map_or(f64::INFINITY, |(stride, _)| stride);
+            let reach = (stride + tolerance::SAME_ORBIT.value).min(tolerance::NEIGHBOURING.value);
+            match (&nearest.orbit.course, &orbit.course) {
+                (super::Course::Sticking(_), super::Course::Sticking(_)) => {
+                    nearest.orbit.revolutions == orbit.revolutions
+                }
+                _ => special::apart(&nearest.orbit, orbit).is_some_and(|(apart, _)| apart <= reach),
+            }
         })
     }
 }

@@ -3,7 +3,6 @@
 use std::f64::consts::TAU;
 
 use crate::orbit::{Course, Impact, PeriodicOrbit};
-use crate::tolerance;
 
 /// What changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,46 +68,37 @@ pub struct Special {
     pub residual: f64,
 }
 
-/// Whether two orbits are close enough to be neighbours on one branch.
-pub(super) fn is_near(one: &PeriodicOrbit, other: &PeriodicOrbit) -> bool {
-    match (&one.course, &other.course) {
-        (Course::Impacts(one), Course::Impacts(other)) => {
-            one.revolutions == other.revolutions
-                && one.impacts.len() == other.impacts.len()
-                && (0..one.revolutions).any(|later| {
-                    let other = other.begun_later(later);
-                    let pairs = one.impacts.iter().zip(&other.impacts);
-                    pairs.into_iter().all(|(a, b)| {
-                        a.revolution == b.revolution
-                            && (a.cam_angle - b.cam_angle).abs() < tolerance::NEIGHBOURING.value
-                    })
-                })
-        }
-        (Course::Sticking(_), Course::Sticking(_)) => one.revolutions == other.revolutions,
-        _ => false,
-    }
-}
-
-/// Which impact of one orbit is which of its neighbour's on a branch, by their numbers from angle 0 on; none where the orbits
-/// stick or have different numbers of impacts.
+/// How far two neighbours on a branch are apart, rad, and by how many places the impacts of the other are numbered further on
+/// from angle 0; `None` where they have different numbers of revolutions or impacts, or stick.
 ///
 /// The order in which impacts follow one another stays the same along a branch: the numbers are as many places further on as
 /// moves the impacts least.
-pub(super) fn same_impacts(one: &PeriodicOrbit, other: &PeriodicOrbit) -> Vec<(usize, usize)> {
-    let (Course::Impacts(from), Course::Impacts(to)) = (&one.course, &other.course) else { return Vec::new() };
+pub(super) fn apart(one: &PeriodicOrbit, other: &PeriodicOrbit) -> Option<(f64, usize)> {
+    let (Course::Impacts(from), Course::Impacts(to)) = (&one.course, &other.course) else { return None };
     let count = from.impacts.len();
     if count != to.impacts.len() || from.revolutions != to.revolutions {
-        return Vec::new();
+        return None;
     }
     let period = from.revolutions as f64 * TAU;
     let turned = |impact: &Impact| impact.revolution as f64 * TAU + impact.cam_angle;
     let moved = |further: usize| {
         let pairs = (0..count).map(|index| (&from.impacts[index], &to.impacts[(index + further) % count]));
+        // An orbit may begin with any of its revolutions.
+        let turns = |(here, there): (&Impact, &Impact)| ((turned(there) - turned(here)) / TAU).round();
+        let later = pairs.clone().next().map_or(0.0, turns);
         pairs.fold(0.0_f64, |most, (here, there)| {
-            let apart = (turned(there) - turned(here)).rem_euclid(period);
+            let apart = (turned(there) - turned(here) - later * TAU).rem_euclid(period);
             most.max(apart.min(period - apart))
         })
     };
-    let least = (0..count).min_by(|one, two| moved(*one).total_cmp(&moved(*two)));
-    least.map_or_else(Vec::new, |further| (0..count).map(|index| (index, (index + further) % count)).collect())
+    let all = (0..count).map(|further| (moved(further), further));
+    all.min_by(|one, two| one.0.total_cmp(&two.0))
+}
+
+/// Which impact of one orbit is which of its neighbour's on a branch, by their numbers from angle 0 on; none where they cannot
+/// be told.
+pub(super) fn same_impacts(one: &PeriodicOrbit, other: &PeriodicOrbit) -> Vec<(usize, usize)> {
+    let count = one.impacts().count();
+    let further = apart(one, other).map(|(_, further)| further);
+    further.map_or_else(Vec::new, |further| (0..count).map(|index| (index, (index + further) % count)).collect())
 }
