@@ -23,11 +23,6 @@ impl Polynomial {
         Self { start: self.start + turn, coefficients: self.coefficients.clone() }
     }
 
-    /// The highest power.
-    pub fn degree(&self) -> usize {
-        self.coefficients.len().saturating_sub(1)
-    }
-
     /// Lift and derivatives at `angle`, rad.
     #[inline]
     pub fn lift(&self, angle: f64) -> Lift {

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use super::picture::{Target, picture_or_table};
 use super::start::{parameter, positive, rpm_range};
 use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
-use crate::draw::layout::widened;
+use crate::draw::{extent, layout::widened};
 use crate::figures::curve_figure;
 use crate::orbit::branch::Following;
 use crate::orbit::{Parameter, Search};
@@ -70,8 +70,8 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     target.fill(table, || {
         let title = format!("{}: corner impacts against {name}", model.name);
         let speeds = curves.iter().flat_map(|found| &found.impacts).map(|impact| impact.rpm);
-        let extent = speeds.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], rpm| [low.min(rpm), high.max(rpm)]);
-        let shown = if extent[0] < extent[1] { widened(extent, 0.04) } else { arguments.rpm };
+        let found = extent(speeds);
+        let shown = if found[0] < found[1] { widened(found, 0.04) } else { arguments.rpm };
         Ok(curve_figure(&title, (name, *range, own), shown, &curves))
     })?;
     Ok(Exit::Agrees)

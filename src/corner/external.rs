@@ -2,11 +2,11 @@
 //! integration of its own). Both get the numbers of the model file and nothing else, and find the corner impact themselves.
 
 use nalgebra::{Matrix2, Vector2};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use serde_json::json;
 
 use super::map::{Route, RouteName, SideMap, Sides, Uncertainty};
-use crate::model::{ArcsProfile, CamProfile, Follower, Model, Study};
+use crate::model::{ArcsProfile, CamProfile, Model, Study};
 use crate::python::{self, PythonError};
 
 /// A route outside this program: its name, and its script in `derivations/`.
@@ -55,24 +55,19 @@ pub fn run(program: Program, model: &Model, study: Study) -> Result<Outside, Pyt
 
 /// The numbers of a model file, as its tables name them.
 fn numbers(model: &Model, study: Study) -> serde_json::Value {
-    let Follower { mass, damping, stiffness, gravity, rest_position, restitution } = model.follower;
-    let cam = match model.cam {
-        CamProfile::Arcs(ArcsProfile { base_radius, flank_radius, nose_radius, flank_start_deg, nose_end_deg }) => {
-            json!({
-                "law": "arcs", "base_radius": base_radius, "flank_radius": flank_radius, "nose_radius": nose_radius,
-                "flank_start_deg": flank_start_deg, "nose_end_deg": nose_end_deg,
-            })
-        }
-        _ => json!({}),
+    let cam = match &model.cam {
+        CamProfile::Arcs(profile) => Some(Named { law: model.cam.law(), profile }),
+        _ => None,
     };
-    json!({
-        "follower": {
-            "mass": mass, "damping": damping, "stiffness": stiffness, "gravity": gravity,
-            "rest_position": rest_position, "restitution": restitution,
-        },
-        "cam": cam,
-        "study": { "rpm_min": study.rpm_min, "rpm_max": study.rpm_max },
-    })
+    json!({ "follower": model.follower, "cam": cam, "study": study })
+}
+
+/// The table `[cam]`.
+#[derive(Serialize)]
+struct Named<'a> {
+    law: &'static str,
+    #[serde(flatten)]
+    profile: &'a ArcsProfile,
 }
 
 /// A number, or one with more digits than a double holds, as text.

@@ -206,11 +206,4 @@ mod tests {
         let design = Mat::from_fn(4, 2, |_, _| 1.0);
         assert!(Solver::new(&design).is_err());
     }
-
-    #[test]
-    fn monomials_start_with_the_constant_and_the_three_linear_ones() {
-        let monomials = monomials();
-        assert_eq!(monomials.len(), 35);
-        assert_eq!(monomials[..4], [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]);
-    }
 }

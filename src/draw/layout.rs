@@ -149,15 +149,11 @@ fn known(values: impl IntoIterator<Item = f64>) -> Option<[f64; 2]> {
 fn extent(panel: &Panel, direction: usize) -> Option<[f64; 2]> {
     let drawable = |point: &&[f64; 2]| point.iter().all(|part| part.abs() < LARGEST);
     let extents = panel.series.iter().filter_map(|series| match &series.data {
-        Data::Line { points, .. }
-        | Data::Arrow { points, .. }
-        | Data::Area { points, .. }
-        | Data::Points { points, .. } => known(points.iter().filter(drawable).map(|point| point[direction])),
         Data::Density(density) | Data::Region { cells: density, .. } => {
             (density.occupied() > 0).then(|| density.ranges()[direction])
         }
         // Words stand at what is drawn.
-        Data::Words(_) => None,
+        data => known(data.points()?.iter().filter(drawable).map(|point| point[direction])),
     });
     known(extents.flatten())
 }

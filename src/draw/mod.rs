@@ -130,6 +130,11 @@ pub(crate) fn extent(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
     values.into_iter().fold(none, |[low, high], value| [low.min(value), high.max(value)])
 }
 
+/// Points `[x, y]` in the data's units, one after another.
+pub(crate) trait Points: IntoIterator<Item = [f64; 2]> {}
+
+impl<P: IntoIterator<Item = [f64; 2]>> Points for P {}
+
 /// Data drawn in one way.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Series {
@@ -146,39 +151,19 @@ impl Series {
         Self { label: label.into(), colour, data }
     }
 
-    pub(crate) fn line(
-        label: &str,
-        colour: Colour,
-        stroke: Stroke,
-        points: impl IntoIterator<Item = [f64; 2]>,
-    ) -> Self {
+    pub(crate) fn line(label: &str, colour: Colour, stroke: Stroke, points: impl Points) -> Self {
         Self::new(label, colour, Data::Line { points: points.into_iter().collect(), stroke })
     }
 
-    pub(crate) fn area(
-        label: &str,
-        colour: Colour,
-        stroke: Stroke,
-        points: impl IntoIterator<Item = [f64; 2]>,
-    ) -> Self {
+    pub(crate) fn area(label: &str, colour: Colour, stroke: Stroke, points: impl Points) -> Self {
         Self::new(label, colour, Data::Area { points: points.into_iter().collect(), stroke })
     }
 
-    pub(crate) fn arrow(
-        label: &str,
-        colour: Colour,
-        stroke: Stroke,
-        points: impl IntoIterator<Item = [f64; 2]>,
-    ) -> Self {
+    pub(crate) fn arrow(label: &str, colour: Colour, stroke: Stroke, points: impl Points) -> Self {
         Self::new(label, colour, Data::Arrow { points: points.into_iter().collect(), stroke })
     }
 
-    pub(crate) fn points(
-        label: &str,
-        colour: Colour,
-        marker: Marker,
-        points: impl IntoIterator<Item = [f64; 2]>,
-    ) -> Self {
+    pub(crate) fn points(label: &str, colour: Colour, marker: Marker, points: impl Points) -> Self {
         Self::new(label, colour, Data::Points { points: points.into_iter().collect(), marker })
     }
 
@@ -189,15 +174,11 @@ impl Series {
 
     /// The series, if it has anything: a legend names nothing that is not there.
     pub(crate) fn if_any(self) -> Option<Self> {
-        let any = match &self.data {
-            Data::Line { points, .. }
-            | Data::Area { points, .. }
-            | Data::Arrow { points, .. }
-            | Data::Points { points, .. } => !points.is_empty(),
-            Data::Words(words) => !words.is_empty(),
-            Data::Density(_) | Data::Region { .. } => true,
+        let none = match &self.data {
+            Data::Words(words) => words.is_empty(),
+            data => data.points().is_some_and(<[_]>::is_empty),
         };
-        any.then_some(self)
+        (!none).then_some(self)
     }
 }
 
@@ -235,6 +216,19 @@ pub enum Data {
         /// How much of the colour they have, up to 1: in grey print regions are told apart by it.
         strength: f64,
     },
+}
+
+impl Data {
+    /// The points that are drawn one by one or joined.
+    pub(crate) fn points(&self) -> Option<&[[f64; 2]]> {
+        match self {
+            Self::Line { points, .. }
+            | Self::Area { points, .. }
+            | Self::Arrow { points, .. }
+            | Self::Points { points, .. } => Some(points),
+            Self::Words(_) | Self::Density(_) | Self::Region { .. } => None,
+        }
+    }
 }
 
 /// A word at a point.

@@ -12,6 +12,8 @@ mod table;
 
 use std::path::Path;
 
+use serde::Serialize;
+
 pub use complaint::ModelError;
 use fields::{Allowed, Fields};
 pub use nearest::nearest;
@@ -41,7 +43,7 @@ pub struct Model {
 }
 
 /// `m q'' + b q' + k (q - rest_position) = -m g` while `q > c(theta)`, and Newton's restitution.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Follower {
     /// m, kg, positive.
     pub mass: f64,
@@ -58,7 +60,7 @@ pub struct Follower {
 }
 
 /// The range of speeds in which the corner impact is looked for, rpm.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Study {
     /// Lowest speed, positive.
     pub rpm_min: f64,

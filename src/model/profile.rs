@@ -1,5 +1,7 @@
 //! The `[cam]` table: one entry for every lift law, and the fields of each.
 
+use serde::Serialize;
+
 use super::ModelError;
 use super::fields::{Allowed, Fields};
 use super::table::{self, TableProfile};
@@ -36,7 +38,7 @@ impl CamProfile {
 }
 
 /// Base, flank and nose circles, mirrored about theta = pi. Centres and top radius follow from tangency.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ArcsProfile {
     /// rho0, m.
     pub base_radius: f64,

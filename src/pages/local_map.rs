@@ -31,9 +31,9 @@ pub(crate) fn conditions(found: &Verification) -> Vec<(Words, Words)> {
 }
 
 pub(crate) fn every_condition(found: &Verification) -> Table {
-    let (left, numeric) = (|head| Column::left(head, 2, 0), |head| Column::right(head, 0));
-    let mut columns = vec![left("looked at"), numeric("value"), numeric("distance from failing")];
-    columns.extend(["holds", "decides", "or else"].map(left));
+    let mut columns = vec![Column::words("looked at")];
+    columns.extend(["value", "distance from failing"].map(Column::number));
+    columns.extend(["holds", "decides", "or else"].map(Column::words));
     let mut table = Table::new("Conditions of the classification", columns);
     for condition in &found.conditions {
         let [value, distance] = [(condition.value, Digits::Significant(6)), (condition.distance, Digits::Size)];

@@ -236,6 +236,16 @@ impl Column {
         Self { head: head.into(), gap, least, left: true }
     }
 
+    /// A column of words in the look that most have.
+    pub(crate) fn words(head: impl Into<Words>) -> Self {
+        Self::left(head, 2, 0)
+    }
+
+    /// A column of numbers in the look that most have.
+    pub(crate) fn number(head: impl Into<Words>) -> Self {
+        Self::right(head, 0)
+    }
+
     /// Cells that end under each other.
     pub(crate) fn right(head: impl Into<Words>, least: usize) -> Self {
         Self { head: head.into(), gap: 0, least, left: false }

@@ -1,9 +1,9 @@
 //! What the model is.
 
 use crate::pages::cam;
-use crate::pages::report::html::{HtmlError, left, numeric, plates};
+use crate::pages::report::html::{HtmlError, plates};
 use crate::report::Report;
-use crate::show::block::{Block, Section, Span, Table, Words, words};
+use crate::show::block::{Block, Column, Section, Span, Table, Words, words};
 use crate::show::digits::Digits;
 use crate::show::words::symbol;
 
@@ -29,7 +29,8 @@ pub(crate) fn section(report: &Report) -> Result<Section, HtmlError> {
 }
 
 fn numbers(report: &Report) -> Table {
-    let columns = [left("quantity"), left(""), numeric("value"), left("unit"), left("in the file")];
+    let [quantity, letter, unit, field] = ["quantity", "", "unit", "in the file"].map(Column::words);
+    let columns = [quantity, letter, Column::number("value"), unit, field];
     let mut table = Table::new("Numbers of the model", columns);
     for quantity in &report.model.quantities {
         let (digits, field) = match quantity.field.as_str() {

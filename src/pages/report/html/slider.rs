@@ -2,10 +2,10 @@
 
 use maud::{Markup, html};
 
-use crate::pages::report::html::{HtmlError, json, left, numeric};
+use crate::pages::report::html::{HtmlError, json};
 use crate::report::Report;
 use crate::report::through::ThroughCorner;
-use crate::show::block::{Block, Section, Span, Table, Words, words};
+use crate::show::block::{Block, Column, Section, Span, Table, Words, words};
 use crate::show::digits::Digits;
 use crate::show::html::wide;
 use crate::show::words;
@@ -83,14 +83,9 @@ fn player(through: &ThroughCorner) -> Markup {
 }
 
 fn table(through: &ThroughCorner) -> Table {
-    let columns = [
-        numeric("rpm"),
-        left("orbit"),
-        left("impact"),
-        numeric("at, deg"),
-        numeric("velocity before, m/s"),
-        left("multipliers"),
-    ];
+    let [orbit, impact, multipliers] = ["orbit", "impact", "multipliers"].map(Column::words);
+    let [rpm, angle, velocity] = ["rpm", "at, deg", "velocity before, m/s"].map(Column::number);
+    let columns = [rpm, orbit, impact, angle, velocity, multipliers];
     let mut table = Table::new("Orbits by speed", columns);
     let seven = Digits::Significant(7);
     for frame in &through.frames {
