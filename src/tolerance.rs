@@ -70,6 +70,9 @@ table! {
     CHATTER_REMAINDER = 1e-8, "squared, of the sum: of a turn of 1e-7 rad it leaves 1e-15, the rounding of an angle";
     /// Width at which a bracket around a root is closed.
     ROOT_WIDTH = 4.0 * f64::EPSILON, "of the root: T* is asked for to 1e-14, and a bracket cannot close below two ulps";
+    /// The width at which a box that neither holds a root for certain nor none is left undecided.
+    NARROWEST_BOX = 1e-9, "of the box that is looked through: rounding hides a double root at the root of an ulp, 1e-8, and \
+        narrower boxes would only be more about it";
     /// When relative velocity at the impact counts as none.
     GRAZING = 1e-9, "of the velocities it is the difference of: 1/(v - c') would amplify the rounding of a double to 1e-7, \
         the last size at which five decimals mean anything";

@@ -4,6 +4,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::jet::{Jet, square_root};
 use super::lift::Lift;
+use crate::interval::Number;
 use crate::tolerance;
 
 /// A circle whose centre lies at polar `(distance, direction)` from the cam's axis, met by the ray at angle theta:
@@ -20,30 +21,30 @@ pub struct Arc {
 
 impl Arc {
     /// `w^2 = rho^2 - kappa^2 sin^2(phi)`, factored so that a ray near tangency keeps its digits.
-    fn root_squared(&self, sin: f64) -> f64 {
-        (self.radius - self.distance * sin) * (self.radius + self.distance * sin)
+    fn root_squared<N: Number>(&self, sin: N) -> N {
+        (-(sin * self.distance) + self.radius) * (sin * self.distance + self.radius)
     }
 
     /// Lift and derivatives at `angle`, rad; not a number where the ray misses the circle.
     #[inline]
-    pub fn lift(&self, angle: f64) -> Lift {
+    pub fn lift<N: Number>(&self, angle: N) -> Lift<N> {
         let (sin, cos) = (angle - self.direction).sin_cos();
         self.lift_by(sin, cos, self.root_squared(sin).sqrt())
     }
 
     /// The same from the sine and cosine of phi, and w.
     #[inline]
-    fn lift_by(&self, sin: f64, cos: f64, w: f64) -> Lift {
-        let kappa = self.distance;
+    fn lift_by<N: Number>(&self, sin: N, cos: N, w: N) -> Lift<N> {
+        let kappa = N::from(self.distance);
         // u = w^2 = rho^2 - kappa^2 sin^2 phi, u' = -kappa^2 sin 2 phi, u'' = -2 kappa^2 cos 2 phi, u''' = -4 u'
         let u1 = -kappa * kappa * 2.0 * sin * cos;
-        let u2 = -2.0 * kappa * kappa * (cos - sin) * (cos + sin);
-        let u3 = -4.0 * u1;
-        let half = 0.5 / w;
+        let u2 = kappa * -2.0 * kappa * (cos - sin) * (cos + sin);
+        let u3 = u1 * -4.0;
+        let half = N::from(0.5) / w;
         // u' = 2 w w' gives w' = u'/(2 w), w'' = (u'' - 2 w'^2)/(2 w), w''' = (u''' - 6 w' w'')/(2 w)
         let w1 = u1 * half;
-        let w2 = (u2 - 2.0 * w1 * w1) * half;
-        let w3 = (u3 - 6.0 * w1 * w2) * half;
+        let w2 = (u2 - w1 * 2.0 * w1) * half;
+        let w3 = (u3 - w1 * 6.0 * w2) * half;
         // c = kappa cos phi + w
         Lift { value: kappa * cos + w, slope: -kappa * sin + w1, curvature: -kappa * cos + w2, third: kappa * sin + w3 }
     }

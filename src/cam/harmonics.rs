@@ -2,6 +2,7 @@
 
 use super::jet::Jet;
 use super::lift::Lift;
+use crate::interval::Number;
 use crate::model::HarmonicProfile;
 use crate::tolerance;
 
@@ -21,9 +22,9 @@ struct Term {
 }
 
 /// `cos(k x)`, `sin(k x)` for k = 1, 2, ... by turning `(1, 0)` on by x.
-fn multiples(x: f64) -> impl Iterator<Item = (f64, f64)> {
+fn multiples<N: Number>(x: N) -> impl Iterator<Item = (N, N)> {
     let (sin, cos) = x.sin_cos();
-    let turn = move |&(c, s): &(f64, f64)| Some((c * cos - s * sin, s * cos + c * sin));
+    let turn = move |&(c, s): &(N, N)| Some((c * cos - s * sin, s * cos + c * sin));
     std::iter::successors(Some((cos, sin)), turn)
 }
 
@@ -46,17 +47,17 @@ impl Harmonics {
 
     /// Lift and derivatives at `angle`, rad.
     #[inline]
-    pub fn lift(&self, angle: f64) -> Lift {
-        let mut lift = Lift { value: self.offset, slope: 0.0, curvature: 0.0, third: 0.0 };
+    pub fn lift<N: Number>(&self, angle: N) -> Lift<N> {
+        let mut lift = Lift::constant(self.offset);
         let mut k = 0.0;
         for (term, (cos, sin)) in self.terms.iter().zip(multiples(angle)) {
             k += 1.0;
-            let value = term.cosine * cos + term.sine * sin;
-            let slope = k * (term.sine * cos - term.cosine * sin);
-            lift.value += value;
-            lift.slope += slope;
-            lift.curvature -= k * k * value;
-            lift.third -= k * k * slope;
+            let value = cos * term.cosine + sin * term.sine;
+            let slope = (cos * term.sine - sin * term.cosine) * k;
+            lift.value = lift.value + value;
+            lift.slope = lift.slope + slope;
+            lift.curvature = lift.curvature - value * (k * k);
+            lift.third = lift.third - slope * (k * k);
         }
         lift
     }

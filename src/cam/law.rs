@@ -6,6 +6,7 @@ use super::jet::Jet;
 use super::lift::Lift;
 use super::polynomial::Polynomial;
 use super::sinusoid::Sinusoid;
+use crate::interval::{Interval, Number};
 
 /// A smooth lift law, valid on its segment and some way past its ends.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,8 +50,20 @@ impl Law {
 
     /// Lift and derivatives at `angle`, rad.
     #[inline]
-    pub fn lift(&self, angle: f64) -> Lift {
-        of_law!(self, value => Lift { value: *value, slope: 0.0, curvature: 0.0, third: 0.0 }, law => law.lift(angle))
+    pub fn lift<N: Number>(&self, angle: N) -> Lift<N> {
+        of_law!(self, value => Lift::constant(*value), law => law.lift(angle))
+    }
+
+    /// What certainly holds lift and derivatives over a range of angles, rad; everything where the law does not reach.
+    ///
+    /// The formula fed with a range takes each angle in it for another and gives too much. So each derivative is asked for in the
+    /// middle m as well, from where it cannot get further than the next one takes it: `c(m + x) = c(m) + x c'(...)`.
+    pub fn lift_over(&self, angles: Interval) -> Lift<Interval> {
+        let (whole, middle) = (self.lift(angles), self.lift(Interval::from(angles.middle())));
+        let away = angles - angles.middle();
+        let curvature = whole.curvature.and(middle.curvature + away * whole.third);
+        let slope = whole.slope.and(middle.slope + away * curvature);
+        Lift { value: whole.value.and(middle.value + away * slope), slope, curvature, third: whole.third }
     }
 
     /// `c(from + turn) - c(from)` without cancellation, m.

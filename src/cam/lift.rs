@@ -1,16 +1,25 @@
 //! Lift and derivatives at one angle: what every law gives.
 
 /// Lift and its derivatives with respect to the cam angle: m, m/rad, m/rad^2, m/rad^3.
+///
+/// In doubles, or in intervals that hold them over a range of angles.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Lift {
+pub struct Lift<N = f64> {
     /// c(theta), m.
-    pub value: f64,
+    pub value: N,
     /// dc/dtheta, m/rad.
-    pub slope: f64,
+    pub slope: N,
     /// d^2c/dtheta^2, m/rad^2.
-    pub curvature: f64,
+    pub curvature: N,
     /// d^3c/dtheta^3, m/rad^3.
-    pub third: f64,
+    pub third: N,
+}
+
+impl<N: From<f64>> Lift<N> {
+    /// The same lift everywhere, m.
+    pub fn constant(value: f64) -> Self {
+        Self { value: value.into(), slope: 0.0.into(), curvature: 0.0.into(), third: 0.0.into() }
+    }
 }
 
 impl Lift {

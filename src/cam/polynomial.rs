@@ -2,6 +2,7 @@
 
 use super::jet::Jet;
 use super::lift::Lift;
+use crate::interval::Number;
 use crate::model::MOST_COEFFICIENTS;
 use crate::tolerance;
 
@@ -25,17 +26,17 @@ impl Polynomial {
 
     /// Lift and derivatives at `angle`, rad.
     #[inline]
-    pub fn lift(&self, angle: f64) -> Lift {
+    pub fn lift<N: Number>(&self, angle: N) -> Lift<N> {
         let u = angle - self.start;
         // Horner's scheme, differentiated: the Taylor coefficients c, c', c''/2, c'''/6.
-        let (mut value, mut slope, mut half, mut sixth) = (0.0, 0.0, 0.0, 0.0);
+        let [mut value, mut slope, mut half, mut sixth] = [N::from(0.0); 4];
         for a in self.coefficients.iter().rev() {
             sixth = sixth * u + half;
             half = half * u + slope;
             slope = slope * u + value;
-            value = value * u + a;
+            value = value * u + *a;
         }
-        Lift { value, slope, curvature: 2.0 * half, third: 6.0 * sixth }
+        Lift { value, slope, curvature: half * 2.0, third: sixth * 6.0 }
     }
 
     /// `c(from + turn) - c(from)`, m, exact as `turn` goes to 0.

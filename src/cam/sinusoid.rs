@@ -2,6 +2,7 @@
 
 use super::jet::Jet;
 use super::lift::Lift;
+use crate::interval::Number;
 use crate::tolerance;
 
 /// `c = value + tilt u + sine (phi - sin phi) + cosine (1 - cos phi)`, `phi = frequency u`, `u = theta - start`.
@@ -26,29 +27,29 @@ pub struct Sinusoid {
 impl Sinusoid {
     /// `sin phi`, `cos phi` and `1 - cos phi`.
     #[inline]
-    fn circular(phi: f64) -> (f64, f64, f64) {
-        let (sin, cos) = (0.5 * phi).sin_cos();
+    fn circular<N: Number>(phi: N) -> (N, N, N) {
+        let (sin, cos) = (phi * 0.5).sin_cos();
         // sin phi = 2 s c, 1 - cos phi = 2 s^2
-        let versine = 2.0 * sin * sin;
-        (2.0 * sin * cos, 1.0 - versine, versine)
+        let versine = sin * 2.0 * sin;
+        (sin * 2.0 * cos, -versine + 1.0, versine)
     }
 
     /// Lift and derivatives at `angle`, rad.
     #[inline]
-    pub fn lift(&self, angle: f64) -> Lift {
+    pub fn lift<N: Number>(&self, angle: N) -> Lift<N> {
         let Self { start, value, tilt, sine, cosine, frequency } = *self;
-        let u = angle - start;
-        let phi = frequency * u;
+        let (u, w) = (angle - start, N::from(frequency));
+        let phi = u * frequency;
         let (sin, cos, versine) = Self::circular(phi);
-        let squared = frequency * frequency;
+        let squared = w * w;
         Lift {
-            value: value + tilt * u + sine * (phi - sin) + cosine * versine,
+            value: u * tilt + value + (phi - sin) * sine + versine * cosine,
             // c' = tilt + w (A (1 - cos phi) + B sin phi)
-            slope: tilt + frequency * (sine * versine + cosine * sin),
+            slope: w * (versine * sine + sin * cosine) + tilt,
             // c'' = w^2 (A sin phi + B cos phi)
-            curvature: squared * (sine * sin + cosine * cos),
+            curvature: squared * (sin * sine + cos * cosine),
             // c''' = w^3 (A cos phi - B sin phi)
-            third: squared * frequency * (sine * cos - cosine * sin),
+            third: squared * w * (cos * sine - sin * cosine),
         }
     }
 

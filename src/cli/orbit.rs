@@ -41,6 +41,6 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         Some(state) => Wanted::Near(state, arguments.revolutions),
         None => Wanted::All(Search { revolutions: arguments.revolutions, impacts: arguments.impacts }),
     };
-    let found = watched("looking for periodic orbits", |_| orbits(&model, arguments.rpm, wanted))?;
+    let found = watched("looking for periodic orbits", |watch| orbits(&model, arguments.rpm, wanted, watch))?;
     session.answer(&found, arguments.json)
 }

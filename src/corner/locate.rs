@@ -79,7 +79,7 @@ pub fn locate(model: &Model, cam: &Cam) -> Result<(CornerImpact, Vec<CornerImpac
         model.reject("study.rpm_min", words)
     };
     let (mut found, mut rejected, mut grazing) = (Vec::new(), Vec::new(), None);
-    for (corner, period, verdict) in one_impact(model, cam, &corners, study, 1).map_err(complaint)? {
+    for (corner, period, verdict) in one_impact(model, cam, &corners, study, 1).map_err(complaint)?.0 {
         let (cam_angle, speed_rpm) = (corner.angle, 60.0 / period);
         match verdict {
             Verdict::Orbit(orbit) => found.push(*orbit),

@@ -7,30 +7,35 @@
 //! 0  = v+ s + f p            v- = v+ s' + f s            v+ = (1 + r) c' - r v-,   c' = (2 pi/T) dc/dtheta
 //! ```
 //!
-//! v+ and v- leave the equation `-f p (1 + r s') + r f s^2 - (1 + r) c' s = 0` for T alone. Each of its roots is simulated for
-//! one period on the cam as it is: only an orbit with this one impact, on this corner, that returns to its start counts.
+//! v+ and v- leave the equation of [`OneImpact`] for T alone, whose roots are isolated: none is missed. Each of them is simulated
+//! for one period on the cam as it is: only an orbit with this one impact, on this corner, that returns to its start counts. That
+//! it is one, or none, is proved besides where enclosures can tell.
 
-use std::convert::Infallible;
 use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;
 
 use super::confirm::Candidate;
 use super::corner_impact::{CornerImpact, origin};
-use crate::bracket::{Width, halve};
 use crate::cam::{Cam, Corner, Lift, Side};
 use crate::flight::{Flight, State};
+use crate::interval::Interval;
+use crate::interval::roots::{Isolated, Over, isolate};
 use crate::model::{Follower, Model, Study};
+use crate::orbit::complete::{OneImpact, Standing, Struck, joined};
 use crate::orbit::{Cycle, Impact};
 use crate::simulate::{Event, EventKind, Machine};
 use crate::tolerance;
 
 /// The equation for T at one corner.
 pub struct PeriodEquation<'a> {
+    cam: &'a Cam,
     flight: Flight,
     corner: &'a Corner,
     side: Side,
     revolutions: u64,
     restitution: f64,
+    /// Lift and slope on the corner, of its side; of both where they agree but for rounding.
+    lift: Lift<Interval>,
     /// w0 + zeta, 1/s.
     fastest_rate: f64,
 }
@@ -40,15 +45,18 @@ pub struct PeriodEquation<'a> {
 pub struct Root {
     /// T, s.
     pub period: f64,
-    /// What it was closed in by.
+    /// What it was closed in by: the only root there.
     pub bracket: [f64; 2],
     /// Left side over the sum of its terms' sizes.
     pub residual: f64,
+    /// What it is, as far as enclosures tell.
+    pub standing: Standing,
 }
 
 /// The roots in range.
 pub enum Roots {
-    Some(Vec<Root>),
+    /// All of them, but for some between these periods, s.
+    Some(Vec<Root>, Vec<[f64; 2]>),
     /// The equation holds at every speed.
     All {
         /// The longest period, s.
@@ -63,6 +71,9 @@ pub enum Roots {
     NotFinite,
 }
 
+/// Why a period in which the follower comes back however it leaves is refused.
+pub const RESONANCE: &str = "the flight would need an unbounded velocity: the period is in resonance";
+
 /// What a root is.
 pub enum Verdict {
     /// An orbit of the cam as it is.
@@ -74,25 +85,28 @@ pub enum Verdict {
 }
 
 impl<'a> PeriodEquation<'a> {
-    /// Least samples in a range, and most: beyond them the range is refused, not thinned out.
-    pub const SAMPLES: [f64; 2] = [4096.0, 1e6];
-    /// Samples for each radian or time constant that the follower goes through between the shortest period and the longest.
-    const SAMPLES_PER_RADIAN: f64 = 64.0;
+    /// Boxes of a range after which the rest of it is left undecided: some ten for each root of the widest range.
+    const MOST_BOXES: usize = 1 << 17;
     /// The most radians of the follower's motion, between the shortest period and the longest, that are searched.
-    pub const MOST_RADIANS: f64 = Self::SAMPLES[1] / Self::SAMPLES_PER_RADIAN;
+    pub const MOST_RADIANS: f64 = 15_625.0;
 
     /// One impact in `revolutions`, on `corner` with the velocity of `side`.
-    pub fn new(follower: &Follower, corner: &'a Corner, side: Side, revolutions: u64) -> Self {
+    pub fn new(follower: &Follower, cam: &'a Cam, corner: &'a Corner, side: Side, revolutions: u64) -> Self {
         let fastest_rate = (follower.stiffness / follower.mass).sqrt() + follower.damping / (2.0 * follower.mass);
         let (flight, restitution) = (Flight::new(follower), follower.restitution);
-        Self { flight, corner, side, revolutions, restitution, fastest_rate }
+        let (before, after) = (&cam.segments()[cam.before(corner.segment)], &cam.segments()[corner.segment]);
+        let (minus, plus) = (before.law.lift_over(before.end.into()), after.law.lift_over(after.start.into()));
+        let lift = match (corner.jump_order, side) {
+            (1, Side::Minus) => minus,
+            (1, Side::Plus) => plus,
+            _ => Lift { value: minus.value.hull(plus.value), slope: minus.slope.hull(plus.slope), ..plus },
+        };
+        Self { cam, flight, corner, side, revolutions, restitution, lift, fastest_rate }
     }
 
-    fn lift(&self) -> &Lift {
-        match self.side {
-            Side::Minus => &self.corner.minus,
-            Side::Plus => &self.corner.plus,
-        }
+    fn one_impact(&self) -> OneImpact<'_> {
+        let Self { cam, flight, restitution, revolutions, .. } = self;
+        OneImpact { cam, flight, restitution: *restitution, revolutions: *revolutions }
     }
 
     fn force(&self) -> f64 {
@@ -106,62 +120,61 @@ impl<'a> PeriodEquation<'a> {
 
     /// Whether a follower that rests at the corner stays there: no force, and a cam that does not move.
     pub fn rests(&self) -> bool {
-        self.force() == 0.0 && self.lift().slope == 0.0
+        self.force() == 0.0 && self.slope() == 0.0
+    }
+
+    /// dc/dtheta, m/rad.
+    fn slope(&self) -> f64 {
+        if self.side == Side::Minus { self.corner.minus.slope } else { self.corner.plus.slope }
     }
 
     fn cam_velocity(&self, period: f64) -> f64 {
-        TAU / period * self.lift().slope
+        TAU / period * self.slope()
     }
 
-    /// `-f p (1 + r s') + r f s^2 - (1 + r) c' s`, and the sum of the sizes of its terms.
-    fn evaluate(&self, period: f64) -> (f64, f64) {
-        let response = self.flight.response(self.flight_time(period));
-        let (p, s, s1) = (response.step, response.impulse, response.impulse_rate);
-        let (r, f) = (self.restitution, self.force());
-        let terms = [-f * p, -f * p * r * s1, r * f * s * s, -(1.0 + r) * self.cam_velocity(period) * s];
-        (terms.iter().sum(), terms.iter().map(|term| term.abs()).sum())
-    }
-
-    /// Every sign change over a range of speeds, closed by bisection.
+    /// Every root over a range of speeds.
     pub fn roots(&self, range: Study) -> Roots {
         let (first, last) = (60.0 / range.rpm_max, 60.0 / range.rpm_min);
         let radians = self.fastest_rate * self.flight_time(last - first);
-        let samples = Self::SAMPLES_PER_RADIAN * radians;
-        if !(samples <= Self::SAMPLES[1]) {
+        if !(radians <= Self::MOST_RADIANS) {
             return Roots::TooMany { radians };
         }
-        let samples = samples.max(Self::SAMPLES[0]) as usize;
-        let at = |index: usize| first + (last - first) * index as f64 / samples as f64;
-        let mut roots = Vec::new();
-        let (mut largest, mut largest_term) = (0.0_f64, 0.0_f64);
-        let (mut low, mut at_low) = (first, self.evaluate(first).0);
-        let mut finite = at_low.is_finite();
-        for index in 1..=samples {
-            let high = at(index);
-            let (at_high, size) = self.evaluate(high);
-            finite &= at_high.is_finite();
-            (largest, largest_term) = (largest.max(at_high.abs()), largest_term.max(size));
-            if (at_low < 0.0) != (at_high < 0.0) {
-                roots.push(self.close([low, high], at_low < 0.0));
-            }
-            (low, at_low) = (high, at_high);
+        let equation = self.one_impact();
+        let at = |time: Interval| equation.equation(&self.lift, time);
+        let times = [first, last].map(|period| self.flight_time(period));
+        if times.iter().any(|time| !at((*time).into()).size.is_finite()) {
+            return Roots::NotFinite;
         }
-        if !finite {
-            Roots::NotFinite
-        } else if largest <= tolerance::DEGENERATE.value * largest_term {
-            Roots::All { slowest: last }
-        } else {
-            Roots::Some(roots)
+        let Isolated { roots, undecided, .. } =
+            isolate([Interval::new(times[0], times[1])], Self::MOST_BOXES, |[time]| {
+                let equation = at(*time);
+                Some(Over { values: [equation.value], derivatives: [[equation.by_time]] })
+            });
+        let ends = |time: Interval| [time.low(), time.high()].map(|time| time / self.revolutions as f64);
+        let undecided: Vec<[f64; 2]> = joined(undecided).into_iter().map(|[time]| ends(time)).collect();
+        if let [[from, to]] = undecided[..]
+            && [from, to] == [times[0], times[1]].map(|time| time / self.revolutions as f64)
+        {
+            return Roots::All { slowest: last };
         }
+        let root = |[time]: [Interval; 1]| {
+            let middle = at(time.middle().into());
+            let residual = middle.value.middle().abs() / middle.size;
+            let period = time.middle() / self.revolutions as f64;
+            Root { period, bracket: ends(time), residual, standing: self.standing(time) }
+        };
+        Roots::Some(roots.into_iter().map(root).collect(), undecided)
     }
 
-    /// Bisection down to neighbouring doubles.
-    fn close(&self, bracket: [f64; 2], negative_at_low: bool) -> Root {
-        let changed = |period: f64| Ok::<_, Infallible>((self.evaluate(period).0 < 0.0) != negative_at_low);
-        let Ok(bracket) = halve(bracket, Width::Relative(tolerance::ROOT_WIDTH.value), changed);
-        let period = 0.5 * (bracket[0] + bracket[1]);
-        let (value, size) = self.evaluate(period);
-        Root { period, bracket, residual: value.abs() / size }
+    /// What a root is: a flight that leaves the corner over the segment after it, and comes back to it over the one before.
+    fn standing(&self, time: Interval) -> Standing {
+        let after = self.corner.segment;
+        let before = self.cam.before(after);
+        let turns = if after == 0 { self.revolutions - 1 } else { self.revolutions };
+        let segments = self.cam.segments();
+        let from = Struck { segment: after, angle: segments[after].start.into(), turns: 0 };
+        let to = Struck { segment: before, angle: segments[before].end.into(), turns };
+        self.one_impact().standing([from, to], &self.lift, time)
     }
 
     /// Whether a flight that leaves the corner with the cam's own velocity is free of the cam until it is back.
@@ -178,17 +191,9 @@ impl<'a> PeriodEquation<'a> {
         }
     }
 
-    /// v- and v+, m/s, where `s` is not 0.
-    fn velocities(&self, period: f64) -> [f64; 2] {
-        let response = self.flight.response(self.flight_time(period));
-        let force = self.force();
-        let after = -force * response.step / response.impulse;
-        [after * response.impulse_rate + force * response.impulse, after]
-    }
-
     /// Whether a root is an orbit of the cam as it is.
     pub fn orbit(&self, model: &Model, cam: &Cam, root: Root) -> Verdict {
-        let Root { period, bracket, residual } = root;
+        let Root { period, bracket, residual, .. } = root;
         let time = self.flight_time(period);
         let response = self.flight.response(time);
         let cam_velocity = self.cam_velocity(period);
@@ -198,9 +203,11 @@ impl<'a> PeriodEquation<'a> {
                 // v+ is free, so only v+ = v- = c' obeys the restitution law.
                 return self.graze(model, cam, period);
             }
-            return Verdict::Rejected("the flight would need an unbounded velocity: the period is in resonance".into());
+            return Verdict::Rejected(RESONANCE.into());
         }
-        let [velocity_before, velocity_after] = self.velocities(period);
+        let Some([velocity_before, velocity_after]) = self.velocities(period) else {
+            return Verdict::Rejected(RESONANCE.into());
+        };
         let approach = cam_velocity - velocity_before;
         if approach.abs() <= tolerance::GRAZING.value * (cam_velocity.abs() + velocity_before.abs()) {
             return self.graze(model, cam, period);
@@ -242,6 +249,12 @@ impl<'a> PeriodEquation<'a> {
         }))
     }
 
+    /// v- and v+, m/s; none in resonance.
+    fn velocities(&self, period: f64) -> Option<[f64; 2]> {
+        let velocities = self.one_impact().velocities(self.lift.value, self.flight_time(period).into());
+        velocities.map(|velocities| velocities.map(Interval::middle))
+    }
+
     /// The orbit's one impact, on its side of the corner.
     fn cycle(&self, cam: &Cam, velocity_before: f64) -> Cycle {
         let impact = at_corner(cam, self.corner, self.side, 0, velocity_before);
@@ -250,11 +263,10 @@ impl<'a> PeriodEquation<'a> {
 
     /// A root as its impact and period, whether or not it is an orbit of the cam; `None` in resonance.
     pub fn candidate(&self, cam: &Cam, root: Root) -> Option<Candidate> {
-        let [velocity_before, _] = self.velocities(root.period);
+        let [velocity_before, _] = self.velocities(root.period)?;
         let cycle = self.cycle(cam, velocity_before);
-        let (corner, side, Root { period, bracket, residual }) = (*self.corner, self.side, root);
-        let candidate = Candidate { cycle, impact: 0, corner, side, period, bracket, residual };
-        velocity_before.is_finite().then_some(candidate)
+        let (corner, side, Root { period, bracket, residual, .. }) = (*self.corner, self.side, root);
+        Some(Candidate { cycle, impact: 0, corner, side, period, bracket, residual })
     }
 
     /// Impacts and end of one period, or why it is no orbit with impacts only where `from_corner(turned)` is 0.

@@ -4,10 +4,11 @@
 use super::candidates::{Candidates, candidates};
 use super::confirm::Candidate;
 use super::corner_impact::CornerImpact;
-use super::period_equation::{PeriodEquation, Root, Roots, Verdict};
+use super::period_equation::{PeriodEquation, RESONANCE, Root, Roots, Verdict};
 use crate::cam::{Cam, Corner, Side};
 use crate::known::{Complete, Known};
 use crate::model::{Model, Study};
+use crate::orbit::complete::Standing;
 use crate::simulate::angular_velocity;
 use crate::tolerance;
 
@@ -24,6 +25,17 @@ pub struct Rejected {
 
 document!(Rejected as it { speed_rpm: it.speed_rpm, cam_angle_rad: it.cam_angle, why: it.why });
 
+/// Speeds at which enclosures do not tell whether an orbit of one impact has it on a corner.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UndecidedSpeeds {
+    /// Cam angle of the corner, rad.
+    pub cam_angle: f64,
+    /// From the lowest to the highest, rpm.
+    pub speeds_rpm: [f64; 2],
+}
+
+document!(UndecidedSpeeds as it { cam_angle_rad: it.cam_angle, speeds_rpm: it.speeds_rpm });
+
 /// What was found in a range of speeds, and what was looked at.
 #[derive(Clone, Debug)]
 pub struct FoundCornerImpacts {
@@ -33,8 +45,10 @@ pub struct FoundCornerImpacts {
     pub rejected: Vec<Rejected>,
     /// The corners of the cam, in order of angle.
     pub corners: Vec<Corner>,
-    /// For which numbers of impacts the list is all there is: those of one impact are sign changes between samples.
+    /// For which numbers of impacts the list is all there is.
     pub complete: Vec<Complete>,
+    /// Where one of one impact may be missing, or refused without a proof.
+    pub undecided: Vec<UndecidedSpeeds>,
     /// How orbits of several impacts were looked for.
     pub searched: Candidates,
 }
@@ -69,10 +83,12 @@ pub fn find_corner_impacts(
         return Err(RangeError::NoRange { low, high });
     }
     let corners = cam.corners();
-    let one_impact = one_impact(model, cam, &corners, range, revolutions)?;
-    let complete = vec![Complete { revolutions, impacts: 1, known: Known::Sampled }];
+    let (one_impact, undecided) = one_impact(model, cam, &corners, range, revolutions)?;
+    let known = if undecided.is_empty() { Known::Proved } else { Known::Sampled };
+    let complete = vec![Complete { revolutions, impacts: 1, known }];
     let searched = candidates(model, cam, range, revolutions);
-    let mut all = FoundCornerImpacts { found: Vec::new(), rejected: Vec::new(), corners, complete, searched };
+    let mut all =
+        FoundCornerImpacts { found: Vec::new(), rejected: Vec::new(), corners, complete, undecided, searched };
     for (corner, period, verdict) in one_impact {
         all.keep(&corner, 60.0 / period, verdict);
     }
@@ -87,47 +103,63 @@ pub fn find_corner_impacts(
     Ok(all)
 }
 
-/// What the roots of the equation for one impact are at each corner, each with its period, s.
+/// What the roots of the equation for one impact are at each corner, each with its period, s; and where there may be others.
+#[expect(clippy::type_complexity, reason = "two lists, each of which is told")]
 pub(super) fn one_impact(
     model: &Model,
     cam: &Cam,
     corners: &[Corner],
     range: Study,
     revolutions: u64,
-) -> Result<Vec<(Corner, f64, Verdict)>, RangeError> {
+) -> Result<(Vec<(Corner, f64, Verdict)>, Vec<UndecidedSpeeds>), RangeError> {
     let Study { rpm_min: low, rpm_max: high } = range;
-    let mut all = Vec::new();
+    let (mut all, mut undecided) = (Vec::new(), Vec::new());
     for corner in corners {
+        let mut leave = |[shortest, longest]: [f64; 2]| {
+            undecided.push(UndecidedSpeeds { cam_angle: corner.angle, speeds_rpm: [60.0 / longest, 60.0 / shortest] });
+        };
         // Where the velocity jumps, each side throws its own way.
         let throws = corner.jump_order == 1;
         for side in if throws { &[Side::Minus, Side::Plus][..] } else { &[Side::Plus] } {
-            let equation = PeriodEquation::new(&model.follower, corner, *side, revolutions);
+            let equation = PeriodEquation::new(&model.follower, cam, corner, *side, revolutions);
             match equation.roots(range) {
-                Roots::Some(roots) => all.extend(roots.into_iter().map(|root| {
-                    let verdict =
-                        if throws { one_side(model, cam, &equation, root) } else { equation.orbit(model, cam, root) };
-                    (*corner, root.period, verdict)
-                })),
+                Roots::Some(roots, between) => {
+                    between.into_iter().for_each(&mut leave);
+                    for root in roots {
+                        let verdict = match throws {
+                            true => one_side(model, cam, &equation, root),
+                            false => equation.orbit(model, cam, root),
+                        };
+                        let proved =
+                            if matches!(verdict, Verdict::Orbit(_)) { Standing::Orbit } else { Standing::NoOrbit };
+                        if root.standing != proved {
+                            leave(root.bracket);
+                        }
+                        all.push((*corner, root.period, verdict));
+                    }
+                }
                 Roots::TooMany { radians } => return Err(RangeError::TooWide { low, high, radians }),
                 Roots::NotFinite => return Err(RangeError::NotFinite { low, high }),
-                Roots::All { slowest } if equation.rests() => {
-                    all.push((*corner, slowest, equation.graze(model, cam, slowest)));
-                }
                 Roots::All { slowest } => {
+                    leave([60.0 / high, slowest]);
                     let why = "flights of every period start and end there, so nothing fixes a speed";
-                    all.push((*corner, slowest, Verdict::Rejected(why.into())));
+                    let verdict = match equation.rests() {
+                        true => equation.graze(model, cam, slowest),
+                        false => Verdict::Rejected(why.into()),
+                    };
+                    all.push((*corner, slowest, verdict));
                 }
             }
         }
     }
-    Ok(all)
+    Ok((all, undecided))
 }
 
 /// A root at a corner of velocity, where a simulation in doubles cannot tell which side is hit: its flight is simulated.
 fn one_side(model: &Model, cam: &Cam, equation: &PeriodEquation<'_>, root: Root) -> Verdict {
     match equation.candidate(cam, root) {
         Some(candidate) => verdict(candidate, model, cam),
-        None => Verdict::Rejected("the flight would need an unbounded velocity: the period is in resonance".into()),
+        None => Verdict::Rejected(RESONANCE.into()),
     }
 }
 

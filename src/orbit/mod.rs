@@ -6,7 +6,8 @@
 //! | `cycle` | an orbit as its impacts, the equations that close it, Newton's method |
 //! | `chain` | linear equations that link each impact with the next, in one pass |
 //! | `departure` | whether a cycle is an orbit of the cam as it is, by simulation |
-//! | [`mod@search`] | orbits of one machine: those of one impact as roots of one function, by many starts the others |
+//! | `complete` | all orbits of one impact, or of two in one revolution, by enclosures |
+//! | [`mod@search`] | orbits of one machine: those, and others from many starts |
 //! | [`settle`] | what a run ends on: an orbit, chaos, rest |
 //! | `family` | machines that differ in a speed or a number of the model |
 //! | `curve` | pseudo-arclength steps along the solutions of one equation fewer than unknowns |
@@ -14,6 +15,7 @@
 
 pub mod branch;
 mod chain;
+pub(crate) mod complete;
 pub(crate) mod curve;
 pub(crate) mod cycle;
 pub(crate) mod departure;
@@ -31,12 +33,13 @@ use nalgebra::Matrix2;
 use crate::flight::State;
 use crate::known::Known;
 use crate::simulate::{Event, EventKind, Machine, SimulateError};
+pub use complete::Undecided;
 pub(crate) use cycle::{Cycle, Impact, NotClosed};
 pub(crate) use departure::Departure;
 pub use family::Parameter;
 pub(crate) use family::{Family, FamilyError};
 pub use multipliers::{Eigenvalue, eigenvalues};
-pub use search::{Search, search};
+pub use search::{Search, Searched, search, search_all};
 
 /// A motion that repeats after a number of revolutions.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,11 +56,13 @@ pub struct PeriodicOrbit {
     pub residual: f64,
     /// What kind of motion it is.
     pub course: Course,
+    /// Whether it is proved that there is an orbit, or computed.
+    pub known: Known,
 }
 
 // Impacts apart from sticks and releases; the multipliers instead of the matrix.
 document!(PeriodicOrbit as orbit {
-    known: Known::Computed,
+    known: orbit.known,
     revolutions: orbit.revolutions,
     impacts: orbit.impacts().map(Met).collect::<Vec<_>>(),
     contact: orbit.rests().map(Rest).collect::<Vec<_>>(),
@@ -110,7 +115,8 @@ impl PeriodicOrbit {
         let cycle = cycle.in_order();
         let (state, matrix) = cycle.at_section(machine, 0.0);
         let events = cycle.events(machine);
-        Self { revolutions: cycle.revolutions, events, state, matrix, residual, course: Course::Impacts(cycle) }
+        let (revolutions, course) = (cycle.revolutions, Course::Impacts(cycle));
+        Self { revolutions, events, state, matrix, residual, course, known: Known::Computed }
     }
 
     /// The impacts of one period.

@@ -1,17 +1,18 @@
 //! Orbits of one machine, stable or not.
 //!
-//! Three ways, each of which finds what the others may miss. Orbits of one impact are roots of one function of the
-//! impact's angle, looked for between samples. Long runs settle on stable orbits. Short runs from many starts on the cam
-//! give Newton's method the guesses from which it finds unstable orbits.
+//! Orbits of one impact, and of two in one revolution where they are asked for, are all found, by enclosures. Of the others two
+//! ways each find what the other may miss: long runs settle on stable orbits, and short runs from many starts on the cam give
+//! Newton's method the guesses from which it finds unstable ones.
 
-use std::convert::Infallible;
 use std::f64::consts::TAU;
 
+use super::complete::{Solved, Standing, Undecided, of_one_impact, of_two_impacts};
 use super::settle::{MOST_IMPACTS, close, period, settled};
-use super::{Course, Cycle, Impact, PeriodicOrbit};
-use crate::bracket::{Width, halve};
+use super::{Course, Cycle, PeriodicOrbit};
 use crate::known::{Complete, Known};
+use crate::progress::Watch;
 use crate::simulate::{EventKind, Machine, SimulateError};
+use crate::tolerance;
 
 /// Which orbits are looked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,12 +24,6 @@ pub struct Search {
 }
 
 impl Search {
-    /// What the list of [`search`] has all of: one function's changes of sign between samples.
-    pub fn complete(&self) -> Option<Complete> {
-        let one = self.impacts.is_none_or(|impacts| impacts == 1);
-        one.then_some(Complete { revolutions: self.revolutions, impacts: 1, known: Known::Sampled })
-    }
-
     /// The most revolutions that an orbit is looked for over.
     pub const MOST_REVOLUTIONS: u64 = 1000;
 }
@@ -41,42 +36,33 @@ const LONG_RUNS: usize = 6;
 const SETTLING: u64 = 600;
 /// The same for those that come to rest on the cam.
 const SETTLING_STICKING: u64 = 6;
-/// Samples of a segment in which roots are told apart.
-const SAMPLES: usize = 512;
+
+/// The orbits that a search found, and which of them are all there are.
+#[derive(Clone, Debug)]
+pub struct Searched {
+    /// In order of impacts, then of where the first one is.
+    pub orbits: Vec<PeriodicOrbit>,
+    /// For which numbers of impacts they are all there is.
+    pub complete: Vec<Complete>,
+    /// Where that could not be decided.
+    pub undecided: Vec<Undecided>,
+}
 
 /// Every orbit that was found, in order of impacts, then of where its first impact is.
 ///
 /// An error only where no run could go on.
 pub fn search(machine: &Machine, wanted: &Search) -> Result<Vec<PeriodicOrbit>, SimulateError> {
-    let mut found = Found { machine, wanted, orbits: Vec::new() };
-    let mut error = None;
-    if wanted.impacts.is_none_or(|impacts| impacts == 1) {
-        for guess in one_impact(machine, wanted.revolutions) {
-            found.close(&guess);
-        }
+    let found = Found::new(machine, wanted);
+    found.search().map(|searched| searched.orbits)
+}
+
+/// The same with all of two impacts in one revolution, where they are among the wanted, which takes seconds.
+pub fn search_all(machine: &Machine, wanted: &Search, watch: &dyn Watch) -> Result<Searched, SimulateError> {
+    let mut found = Found::new(machine, wanted);
+    if wanted.revolutions == 1 && wanted.impacts.is_none_or(|impacts| impacts == 2) {
+        found.all(2, of_two_impacts(machine, watch));
     }
-    for start in 0..LONG_RUNS {
-        let angle = TAU * start as f64 / LONG_RUNS as f64;
-        let speed = start as f64 / LONG_RUNS as f64 * velocity_scale(machine);
-        error = found.settle(angle, speed).err().or(error);
-    }
-    if wanted.impacts != Some(1) {
-        for angle in 0..START_ANGLES {
-            for velocity in 0..START_VELOCITIES {
-                // The middle of each cell, in angle and in the square of the velocity's part.
-                let angle = TAU * (angle as f64 + 0.5) / START_ANGLES as f64;
-                let part = (velocity as f64 + 0.5) / START_VELOCITIES as f64;
-                error = found.shoot(angle, part * part * velocity_scale(machine)).err().or(error);
-            }
-        }
-    }
-    let Found { mut orbits, .. } = found;
-    if let (true, Some(error)) = (orbits.is_empty(), error) {
-        return Err(error);
-    }
-    let key = |orbit: &PeriodicOrbit| (orbit.impacts().count(), orbit.impacts().next().map_or(0.0, |e| e.cam_angle));
-    orbits.sort_by(|one, two| key(one).0.cmp(&key(two).0).then(key(one).1.total_cmp(&key(two).1)));
-    Ok(orbits)
+    found.search()
 }
 
 /// A velocity that few impacts of the machine are faster than, m/s: a fall from rest over the size of its motion.
@@ -92,16 +78,86 @@ fn velocity_scale(machine: &Machine) -> f64 {
 struct Found<'a> {
     machine: &'a Machine,
     wanted: &'a Search,
-    orbits: Vec<PeriodicOrbit>,
+    searched: Searched,
 }
 
-impl Found<'_> {
+impl<'a> Found<'a> {
+    fn new(machine: &'a Machine, wanted: &'a Search) -> Self {
+        let searched = Searched { orbits: Vec::new(), complete: Vec::new(), undecided: Vec::new() };
+        let mut found = Self { machine, wanted, searched };
+        if wanted.impacts.is_none_or(|impacts| impacts == 1) {
+            found.all(1, of_one_impact(machine, wanted.revolutions));
+        }
+        found
+    }
+
+    /// Everything that solves the equations of so many impacts, or may.
+    fn all(&mut self, impacts: usize, solved: Vec<Solved>) {
+        let undecided = self.searched.undecided.len();
+        for Solved { guess, angles, standing } in solved {
+            if standing == Standing::NoOrbit {
+                continue;
+            }
+            // Newton's method gives the digits; where it leads elsewhere, they are not those of what is proved.
+            let orbit = close(self.machine, &guess);
+            let guess = guess.in_order();
+            let is_at = |cycle: &Cycle| {
+                let pairs = cycle.impacts.iter().zip(&guess.impacts);
+                pairs.fold(0.0, |apart: f64, (one, other)| apart.max((one.cam_angle - other.cam_angle).abs()))
+                    <= tolerance::CYCLE_CLOSED.value
+            };
+            match orbit {
+                // Two that are proved are two, however near to each other.
+                Some(orbit)
+                    if standing == Standing::Orbit && matches!(&orbit.course, Course::Impacts(it) if is_at(it)) =>
+                {
+                    self.searched.orbits.push(PeriodicOrbit { known: Known::Proved, ..orbit });
+                    continue;
+                }
+                orbit => orbit.into_iter().for_each(|orbit| self.keep(orbit)),
+            }
+            let cam_angles = angles.iter().map(|angle| [angle.low(), angle.high()]).collect();
+            self.searched.undecided.push(Undecided { cam_angles });
+        }
+        let known = if self.searched.undecided.len() > undecided { Known::Sampled } else { Known::Proved };
+        let revolutions = self.wanted.revolutions;
+        self.searched.complete.push(Complete { revolutions, impacts, known });
+    }
+
+    /// The other ways, and everything in order.
+    fn search(mut self) -> Result<Searched, SimulateError> {
+        let mut error = None;
+        for start in 0..LONG_RUNS {
+            let angle = TAU * start as f64 / LONG_RUNS as f64;
+            let speed = start as f64 / LONG_RUNS as f64 * velocity_scale(self.machine);
+            error = self.settle(angle, speed).err().or(error);
+        }
+        if self.wanted.impacts != Some(1) {
+            for angle in 0..START_ANGLES {
+                for velocity in 0..START_VELOCITIES {
+                    // The middle of each cell, in angle and in the square of the velocity's part.
+                    let angle = TAU * (angle as f64 + 0.5) / START_ANGLES as f64;
+                    let part = (velocity as f64 + 0.5) / START_VELOCITIES as f64;
+                    error = self.shoot(angle, part * part * velocity_scale(self.machine)).err().or(error);
+                }
+            }
+        }
+        let Searched { orbits, .. } = &mut self.searched;
+        if let (true, Some(error)) = (orbits.is_empty(), error) {
+            return Err(error);
+        }
+        let key =
+            |orbit: &PeriodicOrbit| (orbit.impacts().count(), orbit.impacts().next().map_or(0.0, |e| e.cam_angle));
+        orbits.sort_by(|one, two| key(one).0.cmp(&key(two).0).then(key(one).1.total_cmp(&key(two).1)));
+        Ok(self.searched)
+    }
+
     fn keep(&mut self, orbit: PeriodicOrbit) {
         // A long run may settle on what repeats sooner.
         let wanted = orbit.revolutions == self.wanted.revolutions
             && self.wanted.impacts.is_none_or(|impacts| orbit.impacts().count() == impacts);
-        if wanted && !self.orbits.iter().any(|known| known.is_same(&orbit)) {
-            self.orbits.push(orbit);
+        if wanted && !self.searched.orbits.iter().any(|known| known.is_same(&orbit)) {
+            self.searched.orbits.push(orbit);
         }
     }
 
@@ -138,45 +194,4 @@ impl Found<'_> {
         self.close(&Cycle::of_events(self.wanted.revolutions, &events).in_order());
         Ok(())
     }
-}
-
-/// Guesses for every orbit of one impact in `revolutions`.
-///
-/// A flight of `T = 2 pi n/omega` from the cam at angle t back to it, with the responses s(T), p(T) and the force f at c(t),
-/// leaves with `v+ = -f p/s` and comes back with `v- = v+ s' + f s`; the restitution law leaves one equation for t:
-///
-/// ```text
-/// -f p (1 + r s') + r f s^2 - (1 + r) c' s = 0
-/// ```
-fn one_impact(machine: &Machine, revolutions: u64) -> Vec<Cycle> {
-    let (omega, r) = (machine.angular_velocity(), machine.restitution());
-    let response = machine.flight().response(revolutions as f64 * TAU / omega);
-    let (p, s, s1) = (response.step, response.impulse, response.impulse_rate);
-    let mut guesses = Vec::new();
-    for (index, segment) in machine.cam().segments().iter().enumerate() {
-        let equation = |angle: f64| {
-            let lift = segment.law.lift(angle);
-            let f = machine.flight().force(lift.value);
-            -f * p * (1.0 + r * s1) + r * f * s * s - (1.0 + r) * omega * lift.slope * s
-        };
-        let at = |sample: usize| segment.start + (segment.end - segment.start) * sample as f64 / SAMPLES as f64;
-        let mut before = equation(at(0));
-        for sample in 1..=SAMPLES {
-            let after = equation(at(sample));
-            if (before < 0.0) != (after < 0.0) {
-                // Newton's method goes on from here: a guess is enough.
-                let changed = |angle: f64| Ok::<_, Infallible>((equation(angle) < 0.0) != (before < 0.0));
-                let Ok([low, high]) = halve([at(sample - 1), at(sample)], Width::Halvings(20), changed);
-                let cam_angle = 0.5 * (low + high);
-                let f = machine.flight().force(segment.law.lift(cam_angle).value);
-                let velocity_before = -f * p / s * s1 + f * s;
-                if velocity_before.is_finite() {
-                    let impact = Impact { revolution: 0, segment: index, cam_angle, velocity_before };
-                    guesses.push(Cycle { revolutions, impacts: vec![impact] });
-                }
-            }
-            before = after;
-        }
-    }
-    guesses
 }

@@ -11,6 +11,7 @@ use super::cycle::lift_size;
 use super::{Course, Cycle, PeriodicOrbit, sticking};
 use crate::diagram::growth;
 use crate::flight::State;
+use crate::known::Known;
 use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError};
 use crate::tolerance;
 
@@ -203,7 +204,8 @@ fn free(machine: &Machine, state: State) -> Option<PeriodicOrbit> {
     let state = State { position: state.position + above, velocity: 0.0 };
     let matrix = flight.propagator(TAU / machine.angular_velocity());
     let residual = flight.acceleration(state).abs() / machine.angular_velocity().powi(2) / lift_size(machine);
-    let orbit = PeriodicOrbit { revolutions: 1, events: Vec::new(), state, matrix, residual, course: Course::Free };
+    let (events, course, known) = (Vec::new(), Course::Free, Known::Computed);
+    let orbit = PeriodicOrbit { revolutions: 1, events, state, matrix, residual, course, known };
     (state.position.is_finite() && state.position > machine.cam().top()).then_some(orbit)
 }
 

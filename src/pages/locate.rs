@@ -2,7 +2,7 @@
 
 use crate::border_collision::Classification;
 use crate::corner::candidates::{MOST_IMPACTS, NEAREST_OTHER};
-use crate::corner::period_equation::PeriodEquation;
+use crate::corner::range::{FoundCornerImpacts, UndecidedSpeeds};
 use crate::orbit::branch::GRID_RATIO;
 use crate::show::Paged;
 use crate::show::block::{Block, Column, Mark, Table, Words, words};
@@ -117,24 +117,29 @@ fn rejected(found: &Located) -> Vec<Block> {
 }
 
 fn searched(found: &Located) -> String {
-    let (corners, searched) = (found.looked_at.corners.len(), &found.looked_at.searched);
+    let FoundCornerImpacts { corners, searched, undecided, .. } = &found.looked_at;
+    let corners = corners.len();
     let mut words = if corners == 0 {
         "The cam has no corner: no derivative of its lift jumps as far as can be told.".to_owned()
     } else {
         format!(
-            "{corners} corner(s) of the cam. Orbits of one impact: where one equation changes its sign between two of {} samples \
-             or more; two roots between the same two are missed. Orbits of several impacts: those on branches through what a search \
-             finds at {} speeds, each {:.0} % faster than the one before, and through what branches off there with twice the period \
-             ({} stretches of branches); of up to {MOST_IMPACTS} impacts a revolution, none of them within {:.2} deg of the one on \
-             the corner. There may be others, but a part of the range has the same. Orbits on which the follower sticks forget \
-             where they hit: they are left out.",
-            PeriodEquation::SAMPLES[0],
+            "{corners} corner(s) of the cam. Orbits of one impact: {}. Orbits of several impacts: those on branches through what a \
+             search finds at {} speeds, each {:.0} % faster than the one before, and through what branches off there with twice the \
+             period ({} stretches of branches); of up to {MOST_IMPACTS} impacts a revolution, none of them within {:.2} deg of the \
+             one on the corner. There may be others, but a part of the range has the same. Orbits on which the follower sticks \
+             forget where they hit: they are left out.",
+            if undecided.is_empty() { "all, which is proved" } else { "all but for what is not decided" },
             searched.speeds.len(),
             100.0 * (GRID_RATIO - 1.0),
             searched.branches,
             NEAREST_OTHER.to_degrees(),
         )
     };
+    for UndecidedSpeeds { cam_angle, speeds_rpm } in undecided {
+        let (angle, speeds) =
+            (Digits::Fixed(4).text(cam_angle.to_degrees()), words::range(*speeds_rpm, Digits::Fixed(6)));
+        words += &format!(" Not decided at {angle} deg: {speeds} rpm.");
+    }
     if let Some(error) = &searched.failed {
         words += &format!(" A search could not go on: {error}.");
     }

@@ -1,6 +1,7 @@
 //! The page of `orbit`: each periodic orbit, its multipliers, and where it meets the cam.
 
-use crate::orbit::{Course, PeriodicOrbit};
+use crate::known::{Complete, Known};
+use crate::orbit::{Course, PeriodicOrbit, Undecided};
 use crate::show::block::{Block, Mark, Span, words};
 use crate::show::digits::Digits;
 use crate::show::{Paged, words};
@@ -16,8 +17,25 @@ impl Paged for Orbits {
         let title = format!("{} at {} rpm: {count} found", self.model, self.speed_rpm);
         let mut page = vec![Block::Line((Mark::Heading, title.as_str()).into())];
         self.orbits.iter().enumerate().for_each(|(index, orbit)| page.extend(one(index + 1, orbit)));
+        page.extend(self.complete.iter().map(complete));
+        page.extend(self.undecided.iter().map(undecided));
         page
     }
+}
+
+/// Whether there may be others.
+fn complete(of: &Complete) -> Block {
+    let (impacts, turns) = (words::many(of.impacts as u64, "impact"), words::many(of.revolutions, "revolution"));
+    let others = match of.known {
+        Known::Proved => "there are no others, which is proved",
+        _ => "there may be others where it is not decided",
+    };
+    Block::paragraph(format!("Orbits of {impacts} in {turns}: {others}."))
+}
+
+fn undecided(at: &Undecided) -> Block {
+    let angles = at.cam_angles.iter().map(|ends| words::range(ends.map(f64::to_degrees), Digits::Fixed(6)));
+    Block::paragraph(format!("Not decided: impacts at {} deg.", angles.collect::<Vec<_>>().join(" and ")))
 }
 
 fn one(number: usize, orbit: &PeriodicOrbit) -> Vec<Block> {

@@ -203,3 +203,11 @@ pub(crate) fn entry(name: &str, side: Side) -> Symbol {
     let letter = if name.starts_with('A') { "A" } else { "B" };
     symbol(name, letter, name.get(1..).unwrap_or_default(), sign(side))
 }
+
+/// From where to where, or one number where that is all that is shown of it.
+pub(crate) fn range(ends: [f64; 2], digits: Digits) -> String {
+    match ends.map(|end| digits.text(end)) {
+        [from, to] if from == to => from,
+        [from, to] => format!("{from} to {to}"),
+    }
+}

@@ -47,6 +47,7 @@ document!(Located as it {
     corner_impacts: it.found,
     rejected: it.looked_at.rejected,
     complete: it.looked_at.complete,
+    undecided: it.looked_at.undecided,
     searched: Searched(&it.looked_at),
     agrees: it.agrees,
 });

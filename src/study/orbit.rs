@@ -7,7 +7,8 @@ use crate::flight::State;
 use crate::known::Complete;
 use crate::model::Model;
 use crate::orbit::settle::near;
-use crate::orbit::{PeriodicOrbit, Search, search};
+use crate::orbit::{PeriodicOrbit, Search, Searched, Undecided, search_all};
+use crate::progress::Watch;
 
 /// The periodic orbits of a model at a speed: the document of `orbit --json`.
 #[derive(Clone, Debug, Serialize)]
@@ -21,6 +22,8 @@ pub struct Orbits {
     pub section_angle_rad: f64,
     /// For which numbers of impacts the list is all there is.
     pub complete: Vec<Complete>,
+    /// Where orbits of these numbers of impacts may be missing.
+    pub undecided: Vec<Undecided>,
     /// Those that were found.
     pub orbits: Vec<PeriodicOrbit>,
 }
@@ -35,16 +38,15 @@ pub enum Wanted {
 }
 
 /// Looks for the periodic orbits of a model at `speed_rpm`.
-pub fn orbits(model: &Model, speed_rpm: f64, wanted: Wanted) -> Result<Orbits, StudyError> {
+pub fn orbits(model: &Model, speed_rpm: f64, wanted: Wanted, watch: &dyn Watch) -> Result<Orbits, StudyError> {
     let machine = machine(model, speed_rpm)?;
-    let complete = match &wanted {
-        Wanted::All(wanted) => wanted.complete().into_iter().collect(),
-        Wanted::Near(..) => Vec::new(),
+    let Searched { orbits, complete, undecided } = match wanted {
+        Wanted::All(wanted) => search_all(&machine, &wanted, watch)?,
+        Wanted::Near(state, revolutions) => {
+            let orbits = near(&machine, 0.0, state, revolutions)?.into_iter().collect();
+            Searched { orbits, complete: Vec::new(), undecided: Vec::new() }
+        }
     };
-    let orbits = match wanted {
-        Wanted::All(wanted) => search(&machine, &wanted)?,
-        Wanted::Near(state, revolutions) => near(&machine, 0.0, state, revolutions)?.into_iter().collect(),
-    };
-    let schema = "corner-impact/orbit/1";
-    Ok(Orbits { schema, model: model.name.clone(), speed_rpm, section_angle_rad: 0.0, complete, orbits })
+    let (schema, model) = ("corner-impact/orbit/1", model.name.clone());
+    Ok(Orbits { schema, model, speed_rpm, section_angle_rad: 0.0, complete, undecided, orbits })
 }

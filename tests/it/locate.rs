@@ -43,7 +43,7 @@ fn the_papers_corner_impact_is_among_them() {
     let speeds = speeds(&document);
     assert!(speeds.is_sorted() && speeds.len() >= 2, "{speeds:?}");
     let at = &document["corner_impacts"][0];
-    let one_impact = serde_json::json!([{ "revolutions": 1, "impacts": 1, "known": "sampled" }]);
+    let one_impact = serde_json::json!([{ "revolutions": 1, "impacts": 1, "known": "proved" }]);
     assert_eq!((&document["complete"], &at["known"]), (&one_impact, &"computed".into()));
     let near =
         |value: &Value, expected: f64| (value.as_f64().unwrap() - expected).abs() <= 1e-12 * expected.abs().max(1.0);
@@ -71,7 +71,7 @@ fn an_orbit_of_two_revolutions_reaches_the_noses_end() {
     let (code, document) = document(MODEL, "738:741", "2");
     assert_eq!(code, Some(0));
     let at = &document["corner_impacts"][0];
-    let one_impact = serde_json::json!([{ "revolutions": 2, "impacts": 1, "known": "sampled" }]);
+    let one_impact = serde_json::json!([{ "revolutions": 2, "impacts": 1, "known": "proved" }]);
     assert_eq!((&document["complete"], &at["known"]), (&one_impact, &"computed".into()));
     assert!((at["speed_rpm"].as_f64().unwrap() - 739.377929649).abs() < 1e-8, "{at}");
     assert_eq!([&at["revolutions"], &at["impacts"], &at["jump_order"]], [2, 2, 2]);
@@ -240,7 +240,7 @@ fn the_page_says_what_was_looked_at() {
     assert!(page.contains("673.234445004") && page.contains("nonsmooth-fold") && page.contains("agree"), "{page}");
     assert!(page.contains("634.331399 rpm") && page.contains("would come out of the cam"), "{page}");
     let words = page.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(words.contains("4096 samples or more; two roots between the same two are missed"), "{page}");
+    assert!(words.contains("Orbits of one impact: all, which is proved."), "{page}");
     assert!(words.contains("each 2 % faster than the one before") && words.contains("There may be others"), "{page}");
     assert!(page.lines().all(|line| line.chars().count() <= 100), "{page}");
 }

@@ -73,9 +73,10 @@ fn orbits_of_one_speed_have_the_contracts_fields() {
     let found = document(&["orbit", MODEL, "--rpm", "680", "--json"]);
     assert_eq!(found["schema"], "corner-impact/orbit/1");
     let orbits = found["orbits"].as_array().unwrap();
-    // Nothing is proved: roots between two samples are not seen.
-    let one_impact = json!([{ "revolutions": 1, "impacts": 1, "known": "sampled" }]);
-    assert!(found["complete"] == one_impact && orbits.iter().all(|orbit| orbit["known"] == "computed"), "{found}");
+    // All of one impact and of two, with a proof.
+    let proved = |impacts: u64| json!({ "revolutions": 1, "impacts": impacts, "known": "proved" });
+    assert_eq!((&found["complete"], &found["undecided"]), (&json!([proved(1), proved(2)]), &json!([])));
+    assert!(orbits.iter().all(|orbit| orbit["known"] == "proved"), "{found}");
     let stable: Vec<bool> = orbits.iter().map(|orbit| orbit["stable"].as_bool().unwrap()).collect();
     assert_eq!(stable, [false, true, false]);
     for orbit in orbits {
@@ -98,7 +99,7 @@ fn orbits_of_one_speed_have_the_contracts_fields() {
         }
     }
     let of_two = document(&["orbit", MODEL, "--rpm", "680", "--impacts", "2", "--json"]);
-    assert_eq!((of_two["orbits"].as_array().unwrap().len(), &of_two["complete"]), (1, &json!([])));
+    assert_eq!((of_two["orbits"].as_array().unwrap().len(), &of_two["complete"]), (1, &json!([proved(2)])));
     let (page, _) = done(&["orbit", MODEL, "--rpm", "183"]);
     assert!(page.contains("sticks to the cam") && page.contains("stick   at 269.5137"), "{page}");
 }

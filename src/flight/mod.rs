@@ -10,12 +10,16 @@
 //!
 //! No equilibrium is needed, so stiffness 0 is no special case, and `q(t) - q0` comes without cancellation.
 
+mod response;
+
 use std::f64::consts::{PI, TAU};
 
 use nalgebra::Matrix2;
 
+use crate::interval::Number;
 use crate::model::Follower;
 use crate::tolerance;
+pub use response::Response;
 
 /// Position (m, in the cam's coordinates) and velocity (m/s) of the follower.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,17 +69,6 @@ enum Regime {
     },
 }
 
-/// What the follower does `t` after a unit impulse and a unit step, from rest.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Response {
-    /// `p(t)`, s^2: displacement under a unit acceleration switched on.
-    pub step: f64,
-    /// `s(t)`, s: displacement after a unit velocity; also the velocity under a unit step.
-    pub impulse: f64,
-    /// `s'(t)`: velocity left of a unit velocity.
-    pub impulse_rate: f64,
-}
-
 impl Flight {
     /// The free flight of a model's follower.
     pub fn new(follower: &Follower) -> Self {
@@ -121,8 +114,8 @@ impl Flight {
 
     /// Acceleration at rest at `position`: spring and gravity alone, m/s^2.
     #[inline]
-    pub fn force(&self, position: f64) -> f64 {
-        -self.omega0_squared * (position - self.rest_position) - self.gravity
+    pub fn force<N: Number>(&self, position: N) -> N {
+        (position - self.rest_position) * -self.omega0_squared - self.gravity
     }
 
     /// `q'''` in free flight, m/s^3.
@@ -169,80 +162,6 @@ impl Flight {
         let Response { step, impulse, impulse_rate } = *response;
         let spring = self.omega0_squared;
         Matrix2::new(1.0 - spring * step, impulse, -spring * impulse, impulse_rate)
-    }
-
-    /// The responses at `t`, s, zero or more.
-    #[inline]
-    pub fn response(&self, t: f64) -> Response {
-        match self.regime {
-            Regime::Undamped { omega } => {
-                let (sin, cos) = (omega * t).sin_cos();
-                let impulse = sin / omega;
-                // p = (1 - cos)/w^2 = s^2/(1 + cos), whichever does not cancel.
-                let step = if cos > 0.0 { impulse * impulse / (1.0 + cos) } else { (1.0 - cos) / self.omega0_squared };
-                Response { step, impulse, impulse_rate: cos }
-            }
-            _ => self.damped_response(t),
-        }
-    }
-
-    fn damped_response(&self, t: f64) -> Response {
-        let (zeta, omega0_squared) = (self.zeta, self.omega0_squared);
-        let angle_squared = omega0_squared * t * t;
-        // p(t) = (1 - s' - 2 zeta s) / w0^2 cancels where little of an oscillation has passed.
-        if angle_squared < 0.25 && zeta * t < 1.0 {
-            return self.response_by_series(t);
-        }
-        match self.regime {
-            Regime::Undamped { omega } | Regime::Underdamped { omega } => {
-                let decay = (-zeta * t).exp();
-                let (sin, cos) = (omega * t).sin_cos();
-                // s = e^{-zeta t} sin(w t)/w
-                let impulse = decay * sin / omega;
-                // s' = e^{-zeta t} cos(w t) - zeta s
-                let impulse_rate = decay * cos - zeta * impulse;
-                Response { step: (1.0 - impulse_rate - 2.0 * zeta * impulse) / omega0_squared, impulse, impulse_rate }
-            }
-            // Rates l1 <= l2 of e^{-l1 t}, e^{-l2 t}, with l1 l2 = w0^2.
-            Regime::Monotone { slow, fast } => {
-                let gap = fast - slow;
-                // s = e^{-l1 t} (1 - e^{-(l2 - l1) t})/(l2 - l1)
-                let impulse = (-slow * t).exp() * t * mean_decay(gap * t);
-                // s' = e^{-l2 t} - l1 s
-                let impulse_rate = (-fast * t).exp() - slow * impulse;
-                let step = if angle_squared < 0.25 {
-                    // p = t (E(l1 t) - E(l2 t))/(l2 - l1),  E(x) = (1 - e^{-x})/x
-                    t * (mean_decay(slow * t) - mean_decay(fast * t)) / gap
-                } else {
-                    (1.0 - impulse_rate - 2.0 * zeta * impulse) / omega0_squared
-                };
-                Response { step, impulse, impulse_rate }
-            }
-        }
-    }
-
-    /// `p(t) = sum p_n`, with `(n+2)(n+1) p_{n+2} = -2 zeta t (n+1) p_{n+1} - w0^2 t^2 p_n`, `p_2 = t^2/2`.
-    fn response_by_series(&self, t: f64) -> Response {
-        let damping = 2.0 * self.zeta * t;
-        let spring = self.omega0_squared * t * t;
-        // In units of t^2 for p, t for s and 1 for s': s = p', s' = p''.
-        let (mut before, mut term) = (0.0, 0.5);
-        let (mut step, mut impulse, mut impulse_rate) = (0.5, 1.0, 1.0);
-        // 2 zeta t < 2 and w0^2 t^2 < 1/4: the terms fall below an ulp of the sums before the 32nd.
-        for n in 1..32 {
-            let n = f64::from(n);
-            let next = (-damping * (n + 1.0) * term - spring * before) / ((n + 2.0) * (n + 1.0));
-            step += next;
-            impulse += (n + 2.0) * next;
-            let last = (n + 2.0) * (n + 1.0) * next;
-            impulse_rate += last;
-            // Two in a row, since one may vanish by chance; s' has the largest terms.
-            if last.abs().max((n + 1.0) * n * term.abs()) < tolerance::SERIES_END.value {
-                break;
-            }
-            (before, term) = (term, next);
-        }
-        Response { step: t * t * step, impulse: t * impulse, impulse_rate }
     }
 
     /// The time, s, up to which position changes one way only: the first instant after the start with `v = 0`.
@@ -360,9 +279,4 @@ impl Flight {
         }
         Some((time, State { position: level, ..at(time) }))
     }
-}
-
-/// `(1 - e^{-x})/x`, 1 at 0: the mean of `e^{-y}` over `0..x`.
-fn mean_decay(x: f64) -> f64 {
-    if x == 0.0 { 1.0 } else { -(-x).exp_m1() / x }
 }

@@ -1,0 +1,134 @@
+//! The follower's responses to a unit impulse and a unit step: over a time in doubles, over a range of times in intervals.
+
+use super::{Flight, Regime};
+use crate::interval::{Interval, Number};
+use crate::tolerance;
+
+/// What the follower does `t` after a unit impulse and a unit step, from rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Response<N = f64> {
+    /// `p(t)`, s^2: displacement under a unit acceleration switched on.
+    pub step: N,
+    /// `s(t)`, s: displacement after a unit velocity; also the velocity under a unit step.
+    pub impulse: N,
+    /// `s'(t)`: velocity left of a unit velocity.
+    pub impulse_rate: N,
+}
+
+impl Flight {
+    /// The responses at `t`, s, zero or more.
+    #[inline]
+    pub fn response(&self, t: f64) -> Response {
+        match self.regime {
+            Regime::Undamped { omega } => {
+                let (sin, cos) = (omega * t).sin_cos();
+                let impulse = sin / omega;
+                // p = (1 - cos)/w^2 = s^2/(1 + cos), whichever does not cancel.
+                let step = if cos > 0.0 { impulse * impulse / (1.0 + cos) } else { (1.0 - cos) / self.omega0_squared };
+                Response { step, impulse, impulse_rate: cos }
+            }
+            _ => self.damped_response(t),
+        }
+    }
+
+    fn damped_response(&self, t: f64) -> Response {
+        let (zeta, omega0_squared) = (self.zeta, self.omega0_squared);
+        let angle_squared = omega0_squared * t * t;
+        // p(t) = (1 - s' - 2 zeta s) / w0^2 cancels where little of an oscillation has passed.
+        if angle_squared < 0.25 && zeta * t < 1.0 {
+            return self.response_by_series(t);
+        }
+        match self.regime {
+            Regime::Undamped { omega } | Regime::Underdamped { omega } => {
+                let decay = (-zeta * t).exp();
+                let (sin, cos) = (omega * t).sin_cos();
+                // s = e^{-zeta t} sin(w t)/w
+                let impulse = decay * sin / omega;
+                // s' = e^{-zeta t} cos(w t) - zeta s
+                let impulse_rate = decay * cos - zeta * impulse;
+                Response { step: (1.0 - impulse_rate - 2.0 * zeta * impulse) / omega0_squared, impulse, impulse_rate }
+            }
+            // Rates l1 <= l2 of e^{-l1 t}, e^{-l2 t}, with l1 l2 = w0^2.
+            Regime::Monotone { slow, fast } => {
+                let gap = fast - slow;
+                // s = e^{-l1 t} (1 - e^{-(l2 - l1) t})/(l2 - l1)
+                let impulse = (-slow * t).exp() * t * mean_decay(gap * t);
+                // s' = e^{-l2 t} - l1 s
+                let impulse_rate = (-fast * t).exp() - slow * impulse;
+                let step = if angle_squared < 0.25 {
+                    // p = t (E(l1 t) - E(l2 t))/(l2 - l1),  E(x) = (1 - e^{-x})/x
+                    t * (mean_decay(slow * t) - mean_decay(fast * t)) / gap
+                } else {
+                    (1.0 - impulse_rate - 2.0 * zeta * impulse) / omega0_squared
+                };
+                Response { step, impulse, impulse_rate }
+            }
+        }
+    }
+
+    /// `p(t) = sum p_n`, with `(n+2)(n+1) p_{n+2} = -2 zeta t (n+1) p_{n+1} - w0^2 t^2 p_n`, `p_2 = t^2/2`.
+    fn response_by_series<N: Number>(&self, t: N) -> Response<N> {
+        let damping = t * (2.0 * self.zeta);
+        let spring = t * self.omega0_squared * t;
+        // In units of t^2 for p, t for s and 1 for s': s = p', s' = p''.
+        let (mut before, mut term) = (N::from(0.0), N::from(0.5));
+        let (mut step, mut impulse, mut impulse_rate) = (N::from(0.5), N::from(1.0), N::from(1.0));
+        let mut largest = f64::INFINITY;
+        // 2 zeta t < 2 and w0^2 t^2 < 4: the terms fall below an ulp of the sums before the 32nd.
+        for n in 1..32 {
+            let n = f64::from(n);
+            let next = (-damping * (n + 1.0) * term - spring * before) / ((n + 2.0) * (n + 1.0));
+            step = step + next;
+            impulse = impulse + next * (n + 2.0);
+            let last = next * ((n + 2.0) * (n + 1.0));
+            impulse_rate = impulse_rate + last;
+            // Two in a row, since one may vanish by chance; s' has the largest terms.
+            largest = last.magnitude().max((n + 1.0) * n * term.magnitude());
+            // Of the larger of the two before it a term of s' is this part at most.
+            let part = || (damping.magnitude() + spring.magnitude() / n) / (n + 1.0);
+            if largest < tolerance::SERIES_END.value && part() < 0.5 {
+                break;
+            }
+            (before, term) = (term, next);
+        }
+        // With parts q <= 1/2 all that are left out are less than 2 q/(1 - q) = 2 times the larger of the last two; those of p and s
+        // are smaller.
+        let tail = N::left_out(3.0 * largest);
+        Response { step: t * t * (step + tail), impulse: t * (impulse + tail), impulse_rate: impulse_rate + tail }
+    }
+
+    /// What certainly holds the responses over a range of times, s.
+    ///
+    /// Near 0 by their series. From a time m on by `x` they are those at m, put together with those at `x`; and those at m come from
+    /// half of m in the same way, so that nothing cancels and no damping is a case of its own.
+    pub fn response_over(&self, t: Interval) -> Response<Interval> {
+        let size = t.magnitude();
+        // Where the series is good, with room for rounding; what has no end cannot be halved.
+        if (self.omega0_squared * size * size < 3.9 && self.zeta * size < 0.9) || !size.is_finite() {
+            return self.response_by_series(t);
+        }
+        let middle = t.middle();
+        if t.low() == t.high() || t.holds_zero() {
+            let half = self.response_over(t.half());
+            return self.together(&half, &half);
+        }
+        self.together(&self.response_over(middle.into()), &self.response_over(t - middle))
+    }
+
+    /// The responses at the sum of two times.
+    fn together(&self, one: &Response<Interval>, two: &Response<Interval>) -> Response<Interval> {
+        // Under a unit step: at p, with velocity s and the force 1 - w0^2 p left.
+        let left = -(one.step * self.omega0_squared) + 1.0;
+        Response {
+            step: one.step + one.impulse * two.impulse + left * two.step,
+            // After a unit impulse: at s, with velocity s' and the force -w0^2 s.
+            impulse: one.impulse_rate * two.impulse + one.impulse * (-(two.step * self.omega0_squared) + 1.0),
+            impulse_rate: one.impulse_rate * two.impulse_rate - one.impulse * two.impulse * self.omega0_squared,
+        }
+    }
+}
+
+/// `(1 - e^{-x})/x`, 1 at 0: the mean of `e^{-y}` over `0..x`.
+fn mean_decay(x: f64) -> f64 {
+    if x == 0.0 { 1.0 } else { -(-x).exp_m1() / x }
+}

@@ -1,0 +1,333 @@
+//! Intervals of doubles that certainly hold what a formula gives for every number of the intervals it is fed with.
+//!
+//! Each operation is rounded to nearest and its ends moved outwards by one ulp, which is more than rounding took. Sine and cosine
+//! are alternating series with the term left out as their error. What has no bound, or is no number, is everything: no
+//! comparison then holds, so nothing is concluded from it.
+
+pub mod roots;
+
+use std::f64::consts::FRAC_PI_2;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// What a formula may be fed with: a double, or all doubles and what lies between them from one to another.
+pub trait Number:
+    Copy
+    + From<f64>
+    + Neg<Output = Self>
+    + Add<Output = Self>
+    + Add<f64, Output = Self>
+    + Sub<Output = Self>
+    + Sub<f64, Output = Self>
+    + Mul<Output = Self>
+    + Mul<f64, Output = Self>
+    + Div<Output = Self>
+    + Div<f64, Output = Self>
+{
+    /// Sine and cosine of an angle, rad.
+    fn sin_cos(self) -> (Self, Self);
+    /// The root that is not negative.
+    fn sqrt(self) -> Self;
+    /// The largest size of any number in it.
+    fn magnitude(self) -> f64;
+    /// What is left out of a sum, of at most this size; a sum of doubles leaves it out.
+    fn left_out(size: f64) -> Self;
+}
+
+impl Number for f64 {
+    #[inline]
+    fn sin_cos(self) -> (Self, Self) {
+        self.sin_cos()
+    }
+
+    #[inline]
+    fn sqrt(self) -> Self {
+        self.sqrt()
+    }
+
+    #[inline]
+    fn magnitude(self) -> f64 {
+        self.abs()
+    }
+
+    #[inline]
+    fn left_out(_: f64) -> Self {
+        0.0
+    }
+}
+
+/// All real numbers from one double to another that is not below it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval {
+    low: f64,
+    high: f64,
+}
+
+impl From<f64> for Interval {
+    #[inline]
+    fn from(number: f64) -> Self {
+        Self::new(number, number)
+    }
+}
+
+impl Interval {
+    /// Every number.
+    pub const EVERYTHING: Self = Self { low: f64::NEG_INFINITY, high: f64::INFINITY };
+    /// The first 33 bits of pi/2, of which a multiple is exact, and the rest: what the double of pi/2 has more, and what it has less.
+    const QUARTER_HIGH: f64 = f64::from_bits(FRAC_PI_2.to_bits() & !0xf_ffff);
+    const QUARTER_REST: Self = {
+        let rest = FRAC_PI_2 - Self::QUARTER_HIGH + 6.123_233_995_736_766e-17;
+        Self { low: rest.next_down(), high: rest.next_up() }
+    };
+    const QUARTER: Self = Self { low: FRAC_PI_2, high: FRAC_PI_2.next_up() };
+    /// 2 pi, and the double next to it that angles of the cam are counted by.
+    pub const TURN: Self = Self { low: 4.0 * Self::QUARTER.low, high: 4.0 * Self::QUARTER.high };
+
+    /// From `low` to `high`; everything where that is no interval.
+    #[inline]
+    pub fn new(low: f64, high: f64) -> Self {
+        if low <= high { Self { low, high } } else { Self::EVERYTHING }
+    }
+
+    /// The ends moved out by an ulp each.
+    #[inline]
+    fn rounded(low: f64, high: f64) -> Self {
+        Self::new(low.next_down(), high.next_up())
+    }
+
+    /// The lower end.
+    #[inline]
+    pub fn low(self) -> f64 {
+        self.low
+    }
+
+    /// The upper end.
+    #[inline]
+    pub fn high(self) -> f64 {
+        self.high
+    }
+
+    /// A number near its middle; 0 where an end is infinite.
+    #[inline]
+    pub fn middle(self) -> f64 {
+        let middle = 0.5 * self.low + 0.5 * self.high;
+        if middle.is_finite() { middle.clamp(self.low, self.high) } else { 0.0 }
+    }
+
+    /// From its lower end to its upper one, rounded.
+    #[inline]
+    pub fn width(self) -> f64 {
+        self.high - self.low
+    }
+
+    /// Whether it holds 0.
+    #[inline]
+    pub fn holds_zero(self) -> bool {
+        self.low <= 0.0 && 0.0 <= self.high
+    }
+
+    /// Whether all of it is above 0.
+    #[inline]
+    pub fn is_positive(self) -> bool {
+        self.low > 0.0
+    }
+
+    /// Whether all of it is below 0.
+    #[inline]
+    pub fn is_negative(self) -> bool {
+        self.high < 0.0
+    }
+
+    /// Whether it lies in another without its ends.
+    #[inline]
+    pub fn is_inside(self, other: Self) -> bool {
+        other.low < self.low && self.high < other.high
+    }
+
+    /// What it has in common with another, if anything.
+    #[inline]
+    pub fn common(self, other: Self) -> Option<Self> {
+        let (low, high) = (self.low.max(other.low), self.high.min(other.high));
+        (low <= high).then_some(Self { low, high })
+    }
+
+    /// The narrower of what two enclosures of one number leave for it.
+    #[inline]
+    pub(crate) fn and(self, other: Self) -> Self {
+        // Two enclosures of one number have it in common; were they to have nothing, either would be as wrong.
+        self.common(other).unwrap_or(Self::EVERYTHING)
+    }
+
+    /// From the lowest of both to the highest.
+    #[inline]
+    pub fn hull(self, other: Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+    }
+
+    /// Half of each number: exact.
+    #[inline]
+    pub(crate) fn half(self) -> Self {
+        Self { low: 0.5 * self.low, high: 0.5 * self.high }
+    }
+
+    /// Its two halves, which have one number in common.
+    #[inline]
+    pub fn halves(self) -> [Self; 2] {
+        let middle = self.middle();
+        [Self { high: middle, ..self }, Self { low: middle, ..self }]
+    }
+
+    /// Each number times itself.
+    #[inline]
+    pub fn squared(self) -> Self {
+        let (one, two) = (self.low * self.low, self.high * self.high);
+        let low = if self.holds_zero() { 0.0 } else { one.min(two).next_down() };
+        Self::new(low, one.max(two).next_up())
+    }
+
+    /// Sine and cosine of one double.
+    fn circular(angle: f64) -> (Self, Self) {
+        /// Beyond so many quarters of a turn the angle left over is not known well enough to be worth it.
+        const MOST_QUARTERS: f64 = 1e6;
+        /// Of the eighth of a turn the twentieth power over 20! is below an ulp.
+        const TERMS: u32 = 9;
+        let all = Self { low: -1.0, high: 1.0 };
+        let quarters = (angle / FRAC_PI_2).round();
+        if !(quarters.abs() <= MOST_QUARTERS) {
+            return (all, all);
+        }
+        // The first difference is exact as well: its ends are near each other, or 0 is one.
+        let rest = Self::from(angle - quarters * Self::QUARTER_HIGH) - Self::QUARTER_REST * quarters;
+        let square = rest.squared();
+        // 1 - x^2/(a b) (1 - x^2/(c d) (1 - ...)): the terms fall off and alternate, so all that are left out lie between none
+        // and the first of them.
+        let series = |first: u32| {
+            (0..TERMS).rev().fold(Self { low: 0.0, high: 1.0 }, |inner, term| {
+                let below = f64::from((first + 2 * term) * (first + 2 * term + 1));
+                -(square * inner / below) + 1.0
+            })
+        };
+        let (sin, cos) = (rest * series(2), series(1));
+        let (sin, cos) = match quarters.rem_euclid(4.0) as u8 {
+            0 => (sin, cos),
+            1 => (cos, -sin),
+            2 => (-sin, -cos),
+            _ => (-cos, sin),
+        };
+        (sin.and(all), cos.and(all))
+    }
+}
+
+impl Number for Interval {
+    fn sin_cos(self) -> (Self, Self) {
+        let (sin, cos) = Self::circular(self.low);
+        if self.low == self.high {
+            return (sin, cos);
+        }
+        let quarters = self / Self::QUARTER;
+        if !(quarters.width() < 4.0) {
+            return (Self { low: -1.0, high: 1.0 }, Self { low: -1.0, high: 1.0 });
+        }
+        let (sin_high, cos_high) = Self::circular(self.high);
+        let (mut sin, mut cos) = (sin.hull(sin_high), cos.hull(cos_high));
+        // Between the ends the largest and smallest values are at whole quarters.
+        let mut quarter = quarters.low.ceil();
+        while quarter <= quarters.high {
+            match quarter.rem_euclid(4.0) as u8 {
+                0 => cos.high = 1.0,
+                1 => sin.high = 1.0,
+                2 => cos.low = -1.0,
+                _ => sin.low = -1.0,
+            }
+            quarter += 1.0;
+        }
+        (sin, cos)
+    }
+
+    /// Everything where a part of it is below 0.
+    #[inline]
+    fn sqrt(self) -> Self {
+        Self::rounded(self.low.sqrt(), self.high.sqrt())
+    }
+
+    #[inline]
+    fn magnitude(self) -> f64 {
+        self.low.abs().max(self.high.abs())
+    }
+
+    #[inline]
+    fn left_out(size: f64) -> Self {
+        Self::new(-size, size)
+    }
+}
+
+impl Neg for Interval {
+    type Output = Self;
+
+    #[inline]
+    fn neg(self) -> Self {
+        Self { low: -self.high, high: -self.low }
+    }
+}
+
+impl Add for Interval {
+    type Output = Self;
+
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Self::rounded(self.low + other.low, self.high + other.high)
+    }
+}
+
+impl Sub for Interval {
+    type Output = Self;
+
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Mul for Interval {
+    type Output = Self;
+
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        let products = [self.low * other.low, self.low * other.high, self.high * other.low, self.high * other.high];
+        // 0 times infinity is no number, and would be lost among the others.
+        if products.iter().any(|product| product.is_nan()) {
+            return Self::EVERYTHING;
+        }
+        let [a, b, c, d] = products;
+        Self::rounded(a.min(b).min(c.min(d)), a.max(b).max(c.max(d)))
+    }
+}
+
+impl Div for Interval {
+    type Output = Self;
+
+    /// Everything where the divisor may be 0.
+    #[inline]
+    fn div(self, other: Self) -> Self {
+        if other.holds_zero() {
+            return Self::EVERYTHING;
+        }
+        // The quotients' ends rounded, and the products' again: each of them outwards.
+        self * Self::rounded(1.0 / other.high, 1.0 / other.low)
+    }
+}
+
+/// An operation with a double is one with the interval of that double.
+macro_rules! with_doubles {
+    ($($operation:ident $method:ident),+) => {$(
+        impl $operation<f64> for Interval {
+            type Output = Self;
+
+            #[inline]
+            fn $method(self, other: f64) -> Self {
+                self.$method(Self::from(other))
+            }
+        }
+    )+};
+}
+
+with_doubles!(Add add, Sub sub, Mul mul, Div div);

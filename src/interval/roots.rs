@@ -1,0 +1,195 @@
+//! All roots of equations in a box: by halving it, until each part holds none, or certainly one.
+//!
+//! Krawczyk's operator about the middle m of a box X, with C near the inverse of the derivative J,
+//!
+//! ```text
+//! K(X) = m - C F(m) + (1 - C J(X)) (X - m)
+//! ```
+//!
+//! holds every root of X. Where it lies inside of X there is exactly one (Krawczyk 1969, Moore 1977); where the two have nothing
+//! in common there is none. A root next to the border of a box is looked for in a somewhat larger one.
+
+use nalgebra::SMatrix;
+
+use super::{Interval, Number};
+use crate::tolerance;
+
+/// A box: an interval for each unknown.
+pub type Place<const N: usize> = [Interval; N];
+
+/// What equations are over a box: the values of N functions, and their derivatives by each unknown.
+#[derive(Clone, Copy, Debug)]
+pub struct Over<const N: usize> {
+    /// What must be 0.
+    pub values: [Interval; N],
+    /// Row by row.
+    pub derivatives: [[Interval; N]; N],
+}
+
+/// What is known of the roots in a box.
+#[derive(Clone, Debug, Default)]
+pub struct Isolated<const N: usize> {
+    /// Boxes that hold one root each, as narrow as rounding allows.
+    pub roots: Vec<Place<N>>,
+    /// Boxes too narrow to be halved again of which nothing is known. All other roots are in `roots`.
+    pub undecided: Vec<Place<N>>,
+    /// How many boxes were looked at.
+    pub boxes: usize,
+}
+
+/// Isolates all roots in `place`, in at most `most` boxes.
+///
+/// `over` tells the values and derivatives over a box, also somewhat outside of `place`; nothing where the box certainly holds none
+/// of the roots that are wanted.
+pub fn isolate<const N: usize>(
+    place: Place<N>,
+    most: usize,
+    over: impl Fn(&Place<N>) -> Option<Over<N>>,
+) -> Isolated<N> {
+    let narrowest = place.map(|side| {
+        (tolerance::NARROWEST_BOX.value * side.width()).max(tolerance::ROOT_WIDTH.value * side.magnitude())
+    });
+    let mut found = Isolated { roots: Vec::new(), undecided: Vec::new(), boxes: 0 };
+    // Each root with a box in which there is no other.
+    let mut alone: Vec<(Place<N>, Place<N>)> = Vec::new();
+    let mut left = vec![place];
+    while let Some(here) = left.pop() {
+        found.boxes += 1;
+        if found.boxes > most {
+            found.undecided.push(here);
+            continue;
+        }
+        let mut rest = here;
+        match look(&here, &over) {
+            Look::Nothing => continue,
+            Look::Unknown => {}
+            Look::Within(image) => {
+                let wider = around(&here, &image);
+                let one = [here, wider].into_iter().find(|wide| {
+                    let image = if *wide == here { Some(image) } else { step(wide, &over) };
+                    image.is_some_and(|image| is_inside(&image, wide))
+                });
+                if let Some(wide) = one {
+                    let root = closed_in(wide, &over);
+                    let is_known = alone.iter().any(|(_, alone)| is_inside(&root, alone));
+                    if common(&root, &here).is_some() && !is_known {
+                        alone.push((root, wide));
+                    }
+                    continue;
+                }
+                match common(&image, &here) {
+                    None => continue,
+                    Some(less) => rest = less,
+                }
+            }
+        }
+        let part = |side: usize| here[side].width() / place[side].width();
+        let widest = (0..N).max_by(|one, two| part(*one).total_cmp(&part(*two))).unwrap_or(0);
+        let is_less = rest[widest].width() < 0.5 * here[widest].width();
+        if is_less {
+            left.push(rest);
+        } else if (0..N).all(|side| rest[side].width() <= narrowest[side]) {
+            found.undecided.push(rest);
+        } else {
+            let [low, high] = rest[widest].halves();
+            for half in [high, low] {
+                let mut part = rest;
+                part[widest] = half;
+                left.push(part);
+            }
+        }
+    }
+    found.roots = alone.into_iter().map(|(root, _)| root).collect();
+    found
+}
+
+/// What one look at a box tells.
+enum Look<const N: usize> {
+    /// It holds no root.
+    Nothing,
+    /// Its roots, if any, are in this box.
+    Within(Place<N>),
+    /// Its derivative may be singular.
+    Unknown,
+}
+
+fn look<const N: usize>(here: &Place<N>, over: &impl Fn(&Place<N>) -> Option<Over<N>>) -> Look<N> {
+    let Some(whole) = over(here) else { return Look::Nothing };
+    if whole.values.iter().any(|value| !value.holds_zero()) {
+        return Look::Nothing;
+    }
+    let Some(middle) = over(&here.map(|side| side.middle().into())) else {
+        // Nothing wanted in the middle of it says nothing about the rest.
+        return Look::Unknown;
+    };
+    // F(X) is in F(m) + J(X) (X - m) as well.
+    let centred = |row: usize| {
+        (0..N).fold(middle.values[row], |sum, column| {
+            sum + whole.derivatives[row][column] * (here[column] - here[column].middle())
+        })
+    };
+    if (0..N).any(|row| !centred(row).holds_zero()) {
+        return Look::Nothing;
+    }
+    image(here, &whole, &middle).map_or(Look::Unknown, Look::Within)
+}
+
+/// Krawczyk's operator; none where the derivative in the middle has no inverse.
+fn image<const N: usize>(here: &Place<N>, whole: &Over<N>, middle: &Over<N>) -> Option<Place<N>> {
+    let derivative = SMatrix::<f64, N, N>::from_fn(|row, column| whole.derivatives[row][column].middle());
+    let inverse = derivative.try_inverse().filter(|inverse| inverse.iter().all(|entry| entry.is_finite()))?;
+    Some(std::array::from_fn(|row| {
+        let mut image = Interval::from(here[row].middle());
+        for column in 0..N {
+            image = image - middle.values[column] * inverse[(row, column)];
+        }
+        for column in 0..N {
+            let unit = if row == column { 1.0 } else { 0.0 };
+            let product = (0..N)
+                .fold(Interval::from(0.0), |sum, inner| sum + whole.derivatives[inner][column] * inverse[(row, inner)]);
+            image = image + (-product + unit) * (here[column] - here[column].middle());
+        }
+        image
+    }))
+}
+
+fn step<const N: usize>(here: &Place<N>, over: &impl Fn(&Place<N>) -> Option<Over<N>>) -> Option<Place<N>> {
+    image(here, &over(here)?, &over(&here.map(|side| side.middle().into()))?)
+}
+
+/// A box about both, with room on each side for a root on the border.
+fn around<const N: usize>(here: &Place<N>, image: &Place<N>) -> Place<N> {
+    std::array::from_fn(|side| {
+        let room = 0.25 * here[side].width();
+        let most = Interval::new(here[side].low() - room, here[side].high() + room);
+        // An image far beyond would take the box to where its derivatives are others.
+        here[side].hull(image[side] + Interval::new(-0.5 * room, 0.5 * room)).and(most)
+    })
+}
+
+/// The box of the one root in `here`, narrowed until rounding keeps it from getting narrower.
+fn closed_in<const N: usize>(mut here: Place<N>, over: &impl Fn(&Place<N>) -> Option<Over<N>>) -> Place<N> {
+    /// Once it is narrow each step squares what is left.
+    const STEPS: usize = 100;
+    for _ in 0..STEPS {
+        let Some(next) = step(&here, over).and_then(|image| common(&image, &here)) else { break };
+        let is_last = (0..N).all(|side| next[side].width() >= 0.99 * here[side].width());
+        here = next;
+        if is_last {
+            break;
+        }
+    }
+    here
+}
+
+fn is_inside<const N: usize>(one: &Place<N>, other: &Place<N>) -> bool {
+    one.iter().zip(other).all(|(one, other)| one.is_inside(*other))
+}
+
+fn common<const N: usize>(one: &Place<N>, other: &Place<N>) -> Option<Place<N>> {
+    let mut both = *one;
+    for (side, other) in both.iter_mut().zip(other) {
+        *side = side.common(*other)?;
+    }
+    Some(both)
+}

@@ -1,0 +1,132 @@
+//! Whether a flight is clear of the cam from one impact to the next: proved, or refuted.
+//!
+//! The gap G(phi) = q - c is 0 at both ends. It is positive next to the first where it rises all over a stretch from there,
+//! next to the other where it falls all over a stretch up to there, and between them where its Taylor sum about the middle m of
+//! a stretch is, with G'' anywhere on it:
+//!
+//! ```text
+//! G(m + x) = G(m) + x G'(m) + x^2/2 G''(...)
+//! ```
+
+use std::collections::VecDeque;
+use std::f64::consts::TAU;
+
+use crate::cam::Cam;
+use crate::flight::Flight;
+use crate::interval::Interval;
+use crate::tolerance;
+
+/// Where the cam is struck.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Struck {
+    /// Index of the segment whose law the flight that begins or ends here sees.
+    pub segment: usize,
+    /// Cam angle, rad.
+    pub angle: Interval,
+    /// Turns of the cam since the angle 0 before the flight began.
+    pub turns: u64,
+}
+
+/// A flight from the cam back to it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hop {
+    pub from: Struck,
+    pub to: Struck,
+    /// m/s, after the impact that it begins with.
+    pub velocity: Interval,
+    /// Of the cam, rad/s.
+    pub omega: Interval,
+}
+
+/// G, G' and G'', by the angle.
+struct Gap {
+    value: Interval,
+    slope: Interval,
+    curvature: Interval,
+}
+
+impl Hop {
+    /// Over the angles of a segment, `turns` of the cam on.
+    fn gap(&self, cam: &Cam, flight: &Flight, segment: usize, turns: u64, angles: Interval) -> Gap {
+        let law = |segment: usize| &cam.segments()[segment].law;
+        let (start, lift) = (law(self.from.segment).lift_over(self.from.angle), law(segment).lift_over(angles));
+        let turned = angles + Interval::TURN * turns as f64 - self.from.angle;
+        let response = flight.response_over(turned / self.omega);
+        let (force, v) = (flight.force(start.value), self.velocity);
+        // q = q0 + v0 s + f0 p,  q' = v0 s' + f0 s,  q'' = f0 - w0^2 (q - q0) - 2 zeta q'
+        let displacement = v * response.impulse + force * response.step;
+        let velocity = v * response.impulse_rate + force * response.impulse;
+        let acceleration = force - displacement * flight.omega0_squared() - velocity * (2.0 * flight.zeta());
+        Gap {
+            value: displacement - (lift.value - start.value),
+            slope: velocity / self.omega - lift.slope,
+            curvature: acceleration / self.omega.squared() - lift.curvature,
+        }
+    }
+
+    /// Whether it is clear of the cam; nothing where rounding does not tell.
+    pub(super) fn is_clear(&self, cam: &Cam, flight: &Flight) -> Option<bool> {
+        /// A flight next to a graze takes some hundreds.
+        const MOST: usize = 100_000;
+        let narrowest = tolerance::NARROWEST_BOX.value * TAU;
+        let mut left: VecDeque<_> = self.stretches(cam).into();
+        let (mut is_decided, mut boxes) = (true, 0);
+        while let Some(stretch @ Stretch { segment, turns, angles, .. }) = left.pop_front() {
+            boxes += 1;
+            let middle = angles.middle();
+            let whole = self.gap(cam, flight, segment, turns, angles);
+            let centre = self.gap(cam, flight, segment, turns, middle.into());
+            let away = angles - middle;
+            let slope = whole.slope.and(centre.slope + away * whole.curvature);
+            let value = centre.value + away * centre.slope + away.squared().half() * whole.curvature;
+            let is_past = !stretch.is_first || middle > self.from.angle.high();
+            let is_before = !stretch.is_last || middle < self.to.angle.low();
+            let falls_in = stretch.is_first && !stretch.is_last && slope.is_negative();
+            if (is_past && is_before && centre.value.is_negative()) || falls_in {
+                return Some(false);
+            }
+            // It leaves the cam at least as fast as that moves, so it rises as well where it is bent upwards.
+            let rises = stretch.is_first && (slope.is_positive() || whole.curvature.is_positive());
+            let falls = stretch.is_last && slope.is_negative();
+            let is_one = stretch.is_first && stretch.is_last;
+            if !is_one && (rises || falls) || !stretch.is_first && !stretch.is_last && value.is_positive() {
+                continue;
+            }
+            if angles.width() <= narrowest || boxes > MOST {
+                is_decided = false;
+                continue;
+            }
+            let [low, high] = angles.halves();
+            left.push_back(Stretch { angles: low, is_last: false, ..stretch });
+            left.push_back(Stretch { angles: high, is_first: false, ..stretch });
+        }
+        is_decided.then_some(true)
+    }
+
+    /// What it flies over, segment by segment.
+    fn stretches(&self, cam: &Cam) -> Vec<Stretch> {
+        let segments = cam.segments();
+        let (mut segment, mut turns, mut all) = (self.from.segment, 0, Vec::new());
+        let mut low = self.from.angle.low();
+        loop {
+            let is_last = (segment, turns) == (self.to.segment, self.to.turns);
+            let high = if is_last { self.to.angle.high() } else { segments[segment].end };
+            all.push(Stretch { segment, turns, angles: Interval::new(low, high), is_first: all.is_empty(), is_last });
+            if is_last || turns > self.to.turns {
+                return all;
+            }
+            (segment, turns) = if segment + 1 == segments.len() { (0, turns + 1) } else { (segment + 1, turns) };
+            low = segments[segment].start;
+        }
+    }
+}
+
+/// A part of a segment, with the turns of the cam up to it.
+#[derive(Clone, Copy)]
+struct Stretch {
+    segment: usize,
+    turns: u64,
+    angles: Interval,
+    is_first: bool,
+    is_last: bool,
+}

@@ -1,0 +1,134 @@
+//! Orbits with one impact in n revolutions: one equation, with both its unknowns.
+//!
+//! A flight of `t = n T` from the cam at angle theta back to it, with the responses s(t), p(t) and the force f at c(theta),
+//! leaves with `v+ = -f p/s` and comes back with `v- = v+ s' + f s`; the restitution law leaves
+//!
+//! ```text
+//! E(theta, t) = -f a(t) - (1 + r) c' s = 0        a = p (1 + r s') - r s^2        c' = (2 pi n/t) dc/dtheta
+//! ```
+//!
+//! At a speed the angle is unknown, at a corner the time.
+
+use super::clearance::Hop;
+use super::{Solved, Standing, Struck, joined};
+use crate::cam::{Cam, Lift};
+use crate::flight::Flight;
+use crate::interval::roots::{Isolated, Over, isolate};
+use crate::interval::{Interval, Number};
+use crate::orbit::cycle::{Cycle, Impact};
+use crate::simulate::Machine;
+
+/// The equation of a cam and a follower.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OneImpact<'a> {
+    pub cam: &'a Cam,
+    pub flight: &'a Flight,
+    /// r, 0 to 1.
+    pub restitution: f64,
+    /// n, turns of the cam in one flight.
+    pub revolutions: u64,
+}
+
+/// E, and its derivatives by the angle, rad, and by the time, s.
+pub(crate) struct Equation {
+    pub value: Interval,
+    pub by_angle: Interval,
+    pub by_time: Interval,
+    /// The sizes of its terms.
+    pub size: f64,
+}
+
+impl OneImpact<'_> {
+    /// 2 pi n, rad.
+    fn turn(&self) -> Interval {
+        Interval::TURN * self.revolutions as f64
+    }
+
+    /// Over the lifts of a range of angles and a range of times.
+    pub(crate) fn equation(&self, lift: &Lift<Interval>, time: Interval) -> Equation {
+        let (r, flight) = (self.restitution, self.flight);
+        let response = flight.response_over(time);
+        let (p, s, s1) = (response.step, response.impulse, response.impulse_rate);
+        // s'' = -2 zeta s' - w0^2 s
+        let s2 = -(s1 * (2.0 * flight.zeta()) + s * flight.omega0_squared());
+        let force = flight.force(lift.value);
+        let back = Interval::from(r) + 1.0;
+        let (a, omega) = (p * (s1 * r + 1.0) - s.squared() * r, self.turn() / time);
+        // a' = s (1 + r s') + r p s'' - 2 r s s'
+        let a1 = s * (s1 * r + 1.0) + p * s2 * r - s * s1 * (2.0 * r);
+        let terms = [force * a, back * omega * lift.slope * s];
+        Equation {
+            value: -terms[0] - terms[1],
+            size: terms[0].magnitude() + terms[1].magnitude(),
+            // df/dtheta = -w0^2 dc/dtheta
+            by_angle: lift.slope * a * flight.omega0_squared() - back * omega * lift.curvature * s,
+            // d(s/t)/dt = (s' - s/t)/t
+            by_time: -(force * a1) - back * omega * lift.slope * (s1 - s / time),
+        }
+    }
+
+    /// v- and v+, m/s; none where s may be 0.
+    pub(crate) fn velocities(&self, position: Interval, time: Interval) -> Option<[Interval; 2]> {
+        let (response, force) = (self.flight.response_over(time), self.flight.force(position));
+        let after = -(force * response.step / response.impulse);
+        let before = after * response.impulse_rate + force * response.impulse;
+        (!response.impulse.holds_zero()).then_some([before, after])
+    }
+
+    /// What a flight is that solves the equation: from one side of the cam at an angle to the other, which are the same but at a
+    /// corner, with a cam that throws as `lift` says.
+    pub(crate) fn standing(&self, [from, to]: [Struck; 2], lift: &Lift<Interval>, time: Interval) -> Standing {
+        let Some([before, after]) = self.velocities(lift.value, time) else { return Standing::Undecided };
+        let omega = self.turn() / time;
+        let approach = omega * lift.slope - before;
+        if approach.is_negative() {
+            return Standing::NoOrbit;
+        }
+        // Without the approach a follower that sticks would do as well as one that is hit.
+        if !approach.is_positive() || self.restitution == 0.0 {
+            return Standing::Undecided;
+        }
+        match (Hop { from, to, velocity: after, omega }).is_clear(self.cam, self.flight) {
+            Some(true) => Standing::Orbit,
+            Some(false) => Standing::NoOrbit,
+            None => Standing::Undecided,
+        }
+    }
+}
+
+/// Boxes after which a segment is left undecided: where flights of every angle come back, no number would do.
+const MOST_BOXES: usize = 1 << 14;
+
+/// Every solution at the speed of a machine, with what may be one.
+pub(crate) fn of_one_impact(machine: &Machine, revolutions: u64) -> Vec<Solved> {
+    let (cam, flight, restitution) = (machine.cam(), machine.flight(), machine.restitution());
+    let equation = OneImpact { cam, flight, restitution, revolutions };
+    let time = equation.turn() / machine.angular_velocity();
+    let mut all = Vec::new();
+    for (index, segment) in cam.segments().iter().enumerate() {
+        let over = |[angle]: &[Interval; 1]| {
+            let Equation { value, by_angle, .. } = equation.equation(&segment.law.lift_over(*angle), time);
+            Some(Over { values: [value], derivatives: [[by_angle]] })
+        };
+        let range = Interval::new(segment.start, segment.end);
+        let Isolated { roots, undecided, .. } = isolate([range], MOST_BOXES, over);
+        let mut add = |angle: Interval, standing: Standing| {
+            let lift = segment.law.lift_over(angle.middle().into());
+            let velocity_before = equation.velocities(lift.value, time).map_or(0.0, |[before, _]| before.middle());
+            let impact = Impact { revolution: 0, segment: index, cam_angle: angle.middle(), velocity_before };
+            let guess = Cycle { revolutions, impacts: vec![impact] };
+            all.push(Solved { guess, angles: vec![angle], standing });
+        };
+        for [angle] in roots {
+            let struck = |turns: u64| Struck { segment: index, angle, turns };
+            // On the border it is the law's of one side or the other's.
+            let standing = match angle.is_inside(range) {
+                true => equation.standing([struck(0), struck(revolutions)], &segment.law.lift_over(angle), time),
+                false => Standing::Undecided,
+            };
+            add(angle, standing);
+        }
+        joined(undecided).into_iter().for_each(|[angle]| add(angle, Standing::Undecided));
+    }
+    all
+}

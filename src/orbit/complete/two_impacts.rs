@@ -1,0 +1,253 @@
+//! Orbits with two impacts in one revolution: two equations for the angles of both.
+//!
+//! Flight 1, not the longer one, goes from the cam at `x` to `y = x + h`, in the time `t1 = h/omega`; flight 2 from there to
+//! `x + 2 pi`, in `t2 = T - t1`. Each leaves as it must to arrive, and arrives as the responses say:
+//!
+//! ```text
+//! u1 s1/t1 = A        A = omega (c(y) - c(x))/h - f(x) p1/t1        v(y) = u1 s1' + f(x) s1
+//! u2 s2    = B        B = c(x) - c(y) - f(y) p2                     v(x) = u2 s2' + f(y) s2
+//! ```
+//!
+//! The restitution law at x and at y, times `(s1/t1) s2`, are the equations; divided by the short hop as they are, they say
+//! something even where the two impacts come together:
+//!
+//! ```text
+//! A s2        - (1 + r) c'(x) (s1/t1) s2 + r (s1/t1) (B s2' + f(y) s2^2) = 0
+//! B (s1/t1)   - (1 + r) c'(y) (s1/t1) s2 + r s2 (A s1' + f(x) s1 s1/t1)  = 0
+//! ```
+
+use std::f64::consts::{PI, TAU};
+
+use super::clearance::Hop;
+use super::varied::Varied;
+use super::{Solved, Standing, Struck, joined};
+use crate::cam::Lift;
+use crate::flight::Response;
+use crate::interval::Interval;
+use crate::interval::roots::{Isolated, Over, isolate};
+use crate::orbit::cycle::{Cycle, Impact};
+use crate::progress::Watch;
+use crate::simulate::Machine;
+
+/// Boxes after which all that is left is undecided: some seconds.
+const MOST_BOXES: usize = 1 << 18;
+
+/// Two segments of the cam, one struck after the other.
+struct Pair<'a> {
+    machine: &'a Machine,
+    /// Indices, and how often the cam passes angle 0 from the first to the second: 0 or 1.
+    segments: [usize; 2],
+    turns: u64,
+}
+
+/// What the equations are made of, over a box of angles.
+struct Flights {
+    lifts: [Lift<Interval>; 2],
+    forces: [Interval; 2],
+    responses: [Response<Interval>; 2],
+    /// s1/t1, A and B.
+    mean: Varied,
+    short: Varied,
+    long: Varied,
+}
+
+impl Pair<'_> {
+    /// h, rad.
+    fn turn(&self, [x, y]: &[Interval; 2]) -> Interval {
+        *y + Interval::TURN * self.turns as f64 - *x
+    }
+
+    /// The derivatives of the lift from `x` to `y`: slopes all over, and the curvature where it is one law's.
+    fn between(&self, [x, y]: &[Interval; 2]) -> [Interval; 2] {
+        let segments = self.machine.cam().segments();
+        let [first, last] = self.segments;
+        if first == last && self.turns == 0 {
+            let lift = segments[first].law.lift_over(x.hull(*y));
+            return [lift.slope, lift.curvature];
+        }
+        let (mut at, mut slope) =
+            (first, segments[first].law.lift_over(Interval::new(x.low(), segments[first].end)).slope);
+        while at != last {
+            at = (at + 1) % segments.len();
+            let end = if at == last { y.high() } else { segments[at].end };
+            slope = slope.hull(segments[at].law.lift_over(Interval::new(segments[at].start, end)).slope);
+        }
+        [slope, Interval::EVERYTHING]
+    }
+
+    fn flights(&self, place: &[Interval; 2]) -> Option<Flights> {
+        let (machine, flight) = (self.machine, self.machine.flight());
+        let omega = Interval::from(machine.angular_velocity());
+        // Later than x by half a turn at most. Somewhat beyond the equations go on, as they must about a root on the border.
+        let h = self.turn(place);
+        h.common(Interval::new(0.0, Interval::TURN.half().high()))?;
+        let (t1, t2) = (h / omega, (Interval::TURN - h) / omega);
+        let laws = self.segments.map(|segment| &machine.cam().segments()[segment].law);
+        let lifts = [laws[0].lift_over(place[0]), laws[1].lift_over(place[1])];
+        let forces = lifts.map(|lift| flight.force(lift.value));
+        let responses = [flight.response_over(t1), flight.response_over(t2)];
+        let [one, two] = &responses;
+        // How t1 changes with x and y; t2 the other way.
+        let later = Interval::from(1.0) / omega;
+        let (by_x, by_y) = ([Interval::from(1.0), Interval::from(0.0)], [Interval::from(0.0), Interval::from(1.0)]);
+        let (by_1, by_2) = ([-later, later], [later, -later]);
+        // The means of s' and of s over the flight, and half their means weighted by time: each as a quotient, or where the
+        // time may be next to nothing by its bounds.
+        let (mean, mean_by, step, step_by, rise, rise_by) = if t1.low() > t1.width() {
+            let (mean, step, rise) = (one.impulse / t1, one.step / t1, (lifts[1].value - lifts[0].value) / h);
+            let rise_by = [(rise - lifts[0].slope) / h, (lifts[1].slope - rise) / h];
+            (mean, (one.impulse_rate - mean) / t1, step, (one.impulse - step) / t1, rise, rise_by)
+        } else {
+            let since = flight.response_over(t1.hull(0.0.into()));
+            let bend = -(since.impulse_rate * (2.0 * flight.zeta()) + since.impulse * flight.omega0_squared());
+            let [rise, curvature] = self.between(place);
+            (since.impulse_rate, bend.half(), since.impulse, since.impulse_rate.half(), rise, [curvature.half(); 2])
+        };
+        let mean = Varied::of(mean, mean_by, by_1);
+        let [x, y] = self.lift(&lifts, [by_x, by_y]);
+        let spring = flight.omega0_squared();
+        let force = |lift: Varied| Varied { value: flight.force(lift.value), by: lift.by.map(|by| -(by * spring)) };
+        let rise = Varied { value: rise, by: rise_by };
+        let short = rise * omega - force(x) * Varied::of(step, step_by, by_1);
+        let long = x - y - force(y) * Varied::of(two.step, two.impulse, by_2);
+        Some(Flights { lifts, forces, responses, mean, short, long })
+    }
+
+    /// c(x) and c(y).
+    fn lift(&self, lifts: &[Lift<Interval>; 2], by: [[Interval; 2]; 2]) -> [Varied; 2] {
+        [0, 1].map(|which| Varied::of(lifts[which].value, lifts[which].slope, by[which]))
+    }
+
+    /// The equations; nothing where no orbit has its impacts.
+    fn over(&self, place: &[Interval; 2]) -> Option<Over<2>> {
+        let flights = self.flights(place)?;
+        if flights.cannot_be(self.machine) {
+            return None;
+        }
+        let Flights { lifts, forces, responses: [one, two], mean, short, long } = flights;
+        let flight = self.machine.flight();
+        let omega = Interval::from(self.machine.angular_velocity());
+        let r = Interval::from(self.machine.restitution());
+        let later = Interval::from(1.0) / omega;
+        let (by_1, by_2) = ([-later, later], [later, -later]);
+        let none = Interval::from(0.0);
+        let (by_x, by_y) = ([Interval::from(1.0), none], [none, Interval::from(1.0)]);
+        let bend =
+            |of: &Response<Interval>| -(of.impulse_rate * (2.0 * flight.zeta()) + of.impulse * flight.omega0_squared());
+        let force = |which: usize, by: [Interval; 2]| {
+            Varied::of(forces[which], -(lifts[which].slope * flight.omega0_squared()), by)
+        };
+        let slope =
+            |which: usize, by: [Interval; 2]| Varied::of(lifts[which].slope, lifts[which].curvature, by) * omega;
+        let (s1, s2) =
+            (Varied::of(one.impulse, one.impulse_rate, by_1), Varied::of(two.impulse, two.impulse_rate, by_2));
+        let rates = [Varied::of(one.impulse_rate, bend(&one), by_1), Varied::of(two.impulse_rate, bend(&two), by_2)];
+        let both = mean * s2 * (r + 1.0);
+        let at_x = short * s2 - slope(0, by_x) * both + mean * (long * rates[1] + force(1, by_y) * s2 * s2) * r;
+        let at_y = long * mean - slope(1, by_y) * both + s2 * (short * rates[0] + force(0, by_x) * s1 * mean) * r;
+        Some(Over { values: [at_x.value, at_y.value], derivatives: [at_x.by, at_y.by] })
+    }
+
+    /// What a solution is.
+    fn standing(&self, place: &[Interval; 2]) -> Standing {
+        let segments = self.segments.map(|segment| &self.machine.cam().segments()[segment]);
+        let is_inside =
+            (0..2).all(|which| place[which].is_inside(Interval::new(segments[which].start, segments[which].end)));
+        let r = self.machine.restitution();
+        let Some(flights) = self.flights(place).filter(|_| is_inside && r > 0.0) else { return Standing::Undecided };
+        let omega = Interval::from(self.machine.angular_velocity());
+        let Flights { lifts, forces, responses: [one, two], mean, short, .. } = &flights;
+        let thrown =
+            |which: usize, before: Interval| lifts[which].slope * omega * (Interval::from(r) + 1.0) - before * r;
+        // The second impact's law and not its flight tells how it leaves: that flight may come back however it leaves.
+        let u1 = short.value / mean.value;
+        let v_y = u1 * one.impulse_rate + forces[0] * one.impulse;
+        let u2 = thrown(1, v_y);
+        let v_x = u2 * two.impulse_rate + forces[1] * two.impulse;
+        if thrown(0, v_x).common(u1).is_none() {
+            return Standing::NoOrbit;
+        }
+        let approaches = [lifts[0].slope * omega - v_x, lifts[1].slope * omega - v_y];
+        if approaches.iter().any(|approach| approach.is_negative()) {
+            return Standing::NoOrbit;
+        }
+        let struck = |which: usize, turns: u64| Struck { segment: self.segments[which], angle: place[which], turns };
+        let hops = [
+            Hop { from: struck(0, 0), to: struck(1, self.turns), velocity: u1, omega },
+            Hop { from: struck(1, 0), to: struck(0, 1 - self.turns), velocity: u2, omega },
+        ];
+        let clear = hops.map(|hop| hop.is_clear(self.machine.cam(), self.machine.flight()));
+        match clear {
+            [Some(false), _] | [_, Some(false)] => Standing::NoOrbit,
+            // Where s2 may be 0 the equations may be met by what comes back in one way only.
+            [Some(true), Some(true)]
+                if approaches.iter().all(|approach| approach.is_positive()) && !two.impulse.holds_zero() =>
+            {
+                Standing::Orbit
+            }
+            _ => Standing::Undecided,
+        }
+    }
+
+    fn guess(&self, place: &[Interval; 2]) -> Cycle {
+        let middles = place.map(|side| side.middle().into());
+        let before = self.flights(&middles).map_or([0.0; 2], |flights| {
+            let Flights { forces, responses: [one, two], mean, short, long, .. } = flights;
+            let v_y = short.value / mean.value * one.impulse_rate + forces[0] * one.impulse;
+            let v_x = long.value / two.impulse * two.impulse_rate + forces[1] * two.impulse;
+            [v_x.middle(), v_y.middle()]
+        });
+        let impact = |which: usize| Impact {
+            revolution: if which == 0 { 0 } else { self.turns as i64 },
+            segment: self.segments[which],
+            cam_angle: middles[which].middle(),
+            velocity_before: before[which],
+        };
+        Cycle { revolutions: 1, impacts: vec![impact(0), impact(1)] }
+    }
+}
+
+impl Flights {
+    /// Whether an impact would come out of the cam, or leave into it.
+    fn cannot_be(&self, machine: &Machine) -> bool {
+        let omega = Interval::from(machine.angular_velocity());
+        let [one, two] = &self.responses;
+        let cam = [0, 1].map(|which| self.lifts[which].slope * omega);
+        let (u1, u2) = (self.short.value / self.mean.value, self.long.value / two.impulse);
+        let v_y = u1 * one.impulse_rate + self.forces[0] * one.impulse;
+        let v_x = u2 * two.impulse_rate + self.forces[1] * two.impulse;
+        (cam[0] - v_x).is_negative()
+            || (cam[1] - v_y).is_negative()
+            || (u1 - cam[0]).is_negative()
+            || (u2 - cam[1]).is_negative()
+    }
+}
+
+/// Every solution at the speed of a machine, with what may be one.
+pub(crate) fn of_two_impacts(machine: &Machine, watch: &dyn Watch) -> Vec<Solved> {
+    let segments = machine.cam().segments();
+    let count = segments.len();
+    let (mut all, mut boxes) = (Vec::new(), 0);
+    for first in 0..count {
+        watch.at("two impacts: segments of the cam", first as u64, count as u64);
+        for later in 0..=count {
+            let second = (first + later) % count;
+            let turns = u64::from(first + later >= count);
+            let start = segments[second].start + if turns == 1 { TAU } else { 0.0 };
+            if start - segments[first].end > PI {
+                break;
+            }
+            let pair = Pair { machine, segments: [first, second], turns };
+            let place = [first, second].map(|segment| Interval::new(segments[segment].start, segments[segment].end));
+            let found = isolate(place, MOST_BOXES.saturating_sub(boxes), |place| pair.over(place));
+            boxes += found.boxes;
+            let Isolated { roots, undecided, .. } = found;
+            let mut add = |place: [Interval; 2], standing: Standing| {
+                all.push(Solved { guess: pair.guess(&place), angles: place.to_vec(), standing });
+            };
+            roots.into_iter().for_each(|place| add(place, pair.standing(&place)));
+            joined(undecided).into_iter().for_each(|place| add(place, Standing::Undecided));
+        }
+    }
+    all
+}

@@ -1,0 +1,220 @@
+//! Are the lists of orbits that are said to be all there is, all there is; and is nothing said where nothing can be?
+
+use std::f64::consts::TAU;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use crate::{common, random};
+use corner_impact::cam::{Cam, apart};
+use corner_impact::corner::range::find_corner_impacts;
+use corner_impact::known::Known;
+use corner_impact::model::{Model, Study};
+use corner_impact::orbit::{Course, PeriodicOrbit, Search, Searched, search, search_all};
+use corner_impact::progress::Unwatched;
+use corner_impact::simulate::{Event, EventKind, Goal, Machine, angular_velocity};
+use proptest::prelude::*;
+use random::check;
+
+fn machine(model: &Model, rpm: f64) -> Machine {
+    Machine::new(Cam::new(model).unwrap(), &model.follower, angular_velocity(rpm))
+}
+
+fn all(machine: &Machine, impacts: usize) -> Searched {
+    search_all(machine, &Search { revolutions: 1, impacts: Some(impacts) }, &Unwatched).unwrap()
+}
+
+fn file(name: &str) -> Model {
+    common::read(&Path::new(common::ROOT).join("models").join(name))
+}
+
+fn is_complete(searched: &Searched) -> bool {
+    let [complete] = searched.complete[..] else { panic!("{searched:?}") };
+    assert_eq!(complete.known == Known::Proved, searched.undecided.is_empty(), "{searched:?}");
+    complete.known == Known::Proved
+}
+
+/// Impacts of each orbit, in degrees.
+fn angles(searched: &Searched) -> Vec<Vec<f64>> {
+    let of = |orbit: &PeriodicOrbit| orbit.impacts().map(|event| event.cam_angle.to_degrees()).collect();
+    searched.orbits.iter().map(of).collect()
+}
+
+#[track_caller]
+fn are(searched: &Searched, expected: &[&[f64]]) {
+    assert!(is_complete(searched) && searched.orbits.iter().all(|orbit| orbit.known == Known::Proved), "{searched:?}");
+    let angles = angles(searched);
+    let near = |one: &[f64], other: &[f64]| {
+        one.len() == other.len() && one.iter().zip(other).all(|(a, b)| (a - b).abs() < 1e-7)
+    };
+    assert!(
+        angles.len() == expected.len() && angles.iter().zip(expected).all(|(one, other)| near(one, other)),
+        "{angles:?}"
+    );
+}
+
+#[test]
+fn the_papers_orbits_are_all_found() {
+    let paper = common::osorio();
+    are(&all(&machine(&paper, 700.0), 1), &[&[104.160829387844754], &[155.303685602748752]]);
+    are(&all(&machine(&paper, 700.0), 2), &[&[24.927658265, 158.084998107]]);
+    are(&all(&machine(&paper, 736.2), 1), &[&[97.621339376], &[157.321765949]]);
+    let three: [&[f64]; 3] =
+        [&[49.083027701, 157.337522837], &[89.8553963, 154.9548612], &[90.009638838, 154.942675475]];
+    are(&all(&machine(&paper, 736.2), 2), &three);
+    are(&all(&machine(&paper, 660.0), 1), &[]);
+}
+
+/// One revolution a period, but for models of the folder that need a follower or a speed of their own.
+#[test]
+fn every_kind_of_follower_and_cam_has_its_list() {
+    let mut counts = Vec::new();
+    for name in ["damped-light", "damped-heavy", "overdamped", "ballistic", "preloaded", "sharp-nose"] {
+        let model = file(&format!("{name}.toml"));
+        let study = model.study().unwrap();
+        for rpm in [study.rpm_min, 0.5 * (study.rpm_min + study.rpm_max), study.rpm_max] {
+            let searched = all(&machine(&model, rpm), 1);
+            assert!(is_complete(&searched), "{name} at {rpm}: {searched:?}");
+            counts.push(searched.orbits.len());
+        }
+    }
+    assert!(counts.iter().any(|count| *count >= 2) && counts.contains(&0), "{counts:?}");
+}
+
+/// Two orbits meet at 131.75 degrees and are gone; the speed itself is left undecided.
+#[test]
+fn a_fold_is_passed() {
+    let (model, fold) = (file("persistence.toml"), 493.811509867092714);
+    let [below, at, above] = [fold - 1e-6, fold, fold + 1e-6].map(|rpm| all(&machine(&model, rpm), 1));
+    assert!(is_complete(&below) && is_complete(&above), "{below:?} {above:?}");
+    assert_eq!(above.orbits.len().abs_diff(below.orbits.len()), 2, "{below:?} {above:?}");
+    let near =
+        |ends: &[f64; 2]| (ends[0].to_degrees() - 131.75).abs() < 0.01 && (ends[1].to_degrees() - 131.75).abs() < 0.01;
+    assert!(!is_complete(&at) && at.undecided.iter().all(|it| near(&it.cam_angles[0])), "{at:?}");
+}
+
+/// At the speed of the corner impact the impact is on neither side for certain.
+#[test]
+fn a_corner_is_left_undecided() {
+    let (paper, corner) = (common::osorio(), 150.179371797);
+    let [below, at, above] = [-1e-6, 0.0, 1e-6].map(|off| all(&machine(&paper, 673.234445003812032781 + off), 1));
+    assert!(is_complete(&below) && is_complete(&above), "{below:?} {above:?}");
+    assert_eq!(above.orbits.len().abs_diff(below.orbits.len()), 2, "{:?} {:?}", angles(&below), angles(&above));
+    assert!(!is_complete(&at), "{at:?}");
+    let near = |angle: f64| (angle.to_degrees() - corner).abs() < 1e-4;
+    assert!(at.undecided.iter().all(|it| near(it.cam_angles[0][0]) && near(it.cam_angles[0][1])), "{at:?}");
+}
+
+/// All corner impacts of one impact from 600 to 760 rpm are one, and a flight that leaves into the cam is refused with a proof.
+#[test]
+fn the_papers_corner_impacts_are_all_found() {
+    let (paper, range) = (common::osorio(), Study { rpm_min: 600.0, rpm_max: 760.0 });
+    let looked_at = find_corner_impacts(&paper, &Cam::new(&paper).unwrap(), range, 1).unwrap();
+    assert_eq!((looked_at.complete[0].known, &looked_at.undecided[..]), (Known::Proved, &[][..]));
+    let of_one: Vec<f64> =
+        looked_at.found.iter().filter(|it| it.cycle.impacts.len() == 1).map(|it| it.speed_rpm()).collect();
+    assert!(of_one.len() == 1 && (of_one[0] - 673.234445003812033).abs() < 1e-10, "{of_one:?}");
+    let refused = looked_at.rejected.iter().any(|it| (it.speed_rpm - 634.33).abs() < 0.01 && it.cam_angle > 3.6);
+    assert!(refused, "{:?}", looked_at.rejected);
+}
+
+/// Whether the first thing that happens to a follower thrown off the cam is that it comes back a revolution later.
+fn comes_back(machine: &Machine, angle: f64, velocity: f64) -> bool {
+    let Ok(mut motion) = machine.start_on_cam(angle, velocity) else { return false };
+    let mut first = None;
+    let goal = Goal { revolution: 1, cam_angle: angle + 1e-6 };
+    let _ = machine.advance(&mut motion, goal, &mut |event: &Event| {
+        first = Some(*event);
+        ControlFlow::Break(())
+    });
+    first.is_some_and(|event| event.kind == EventKind::Impact && (event.turned_since(angle) - TAU).abs() < 1e-6)
+}
+
+/// Angles at which dense samples find an orbit of one impact: none of this uses intervals.
+fn sampled(machine: &Machine) -> Vec<f64> {
+    let (omega, r, flight) = (machine.angular_velocity(), machine.restitution(), machine.flight());
+    let response = flight.response(TAU / omega);
+    let (p, s, s1) = (response.step, response.impulse, response.impulse_rate);
+    let mut angles = Vec::new();
+    for segment in machine.cam().segments() {
+        let at = |angle: f64| {
+            let lift = segment.law.lift(angle);
+            let after = -flight.force(lift.value) * p / s;
+            let approach = omega * lift.slope - (after * s1 + flight.force(lift.value) * s);
+            // What restitution is off by, and how fast follower and cam meet.
+            (after - omega * lift.slope - r * approach, approach)
+        };
+        let samples = 20_000.0 * (segment.end - segment.start) / TAU + 2.0;
+        let angle = |index: f64| segment.start + (segment.end - segment.start) * index / samples;
+        for index in 0..samples as u32 {
+            let (mut low, mut high) = (angle(f64::from(index)), angle(f64::from(index) + 1.0));
+            let sign = at(low).0 < 0.0;
+            if sign == (at(high).0 < 0.0) {
+                continue;
+            }
+            for _ in 0..60 {
+                let middle = 0.5 * (low + high);
+                if (at(middle).0 < 0.0) == sign { low = middle } else { high = middle }
+            }
+            let approach = at(low).1;
+            if approach > 0.0 && low < TAU - 1e-5 && comes_back(machine, low, r * approach) {
+                angles.push(low);
+            }
+        }
+    }
+    angles
+}
+
+/// An orbit that anything else finds is one of those that are said to be all, or where it is said that one may be missing.
+fn is_told(searched: &Searched, angles: &[f64]) -> bool {
+    let impacts = |orbit: &PeriodicOrbit| orbit.impacts().map(|event| event.cam_angle).collect::<Vec<_>>();
+    let same = |others: Vec<f64>| others.iter().zip(angles).all(|(one, other)| apart(*one, *other) < 1e-6);
+    let near = |[low, high]: [f64; 2], angle: f64| low - 1e-6 <= angle && angle <= high + 1e-6;
+    let is_at = |ends: &[f64; 2]| {
+        angles.iter().any(|angle| near(*ends, *angle) || near(*ends, angle + TAU) || near(*ends, angle - TAU))
+    };
+    let is_proved = |orbit: &&PeriodicOrbit| orbit.known == Known::Proved && matches!(orbit.course, Course::Impacts(_));
+    searched.orbits.iter().filter(is_proved).any(|orbit| same(impacts(orbit)))
+        || searched.undecided.iter().any(|it| it.cam_angles.iter().all(is_at))
+}
+
+static SEEN: [AtomicU32; 4] = [const { AtomicU32::new(0) }; 4];
+
+#[test]
+fn samples_find_no_orbit_of_one_impact_that_is_not_told() {
+    check(60, |case| {
+        // A run that cannot go on is an error where there is no orbit.
+        let Ok(searched) = search_all(&case.machine, &Search { revolutions: 1, impacts: Some(1) }, &Unwatched) else {
+            return Ok(());
+        };
+        let proved = u32::from(searched.complete[0].known == Known::Proved);
+        SEEN[1].fetch_add(proved, Ordering::Relaxed);
+        for angle in sampled(&case.machine) {
+            SEEN[0].fetch_add(1, Ordering::Relaxed);
+            prop_assert!(is_told(&searched, &[angle]), "{angle} {searched:?}");
+        }
+        Ok(())
+    });
+    let [found, proved] = [0, 1].map(|index: usize| SEEN[index].load(Ordering::Relaxed));
+    assert!(found >= 20 && proved >= 50, "{found} orbits, {proved} lists proved");
+}
+
+#[test]
+fn runs_find_no_orbit_of_two_impacts_that_is_not_told() {
+    check(40, |case| {
+        let Ok(searched) = search_all(&case.machine, &Search { revolutions: 1, impacts: Some(2) }, &Unwatched) else {
+            return Ok(());
+        };
+        let proved = u32::from(searched.complete[0].known == Known::Proved);
+        SEEN[3].fetch_add(proved, Ordering::Relaxed);
+        let Ok(orbits) = search(&case.machine, &Search { revolutions: 1, impacts: Some(2) }) else { return Ok(()) };
+        for orbit in orbits.iter().filter(|orbit| matches!(orbit.course, Course::Impacts(_))) {
+            SEEN[2].fetch_add(1, Ordering::Relaxed);
+            let angles: Vec<f64> = orbit.impacts().map(|event| event.cam_angle).collect();
+            prop_assert!(is_told(&searched, &angles), "{angles:?} {searched:?}");
+        }
+        Ok(())
+    });
+    let [found, proved] = [2, 3].map(|index: usize| SEEN[index].load(Ordering::Relaxed));
+    assert!(found >= 5 && proved >= 25, "{found} orbits, {proved} lists proved");
+}

@@ -1,0 +1,184 @@
+//! Do intervals hold what they say they hold, and are they no wider than they need be?
+//!
+//! A product, quotient or root is compared with the true one through the sign of a difference that is rounded once, sines and
+//! cosines with sixty digits of mpmath, each as a double and what is left of it.
+
+use corner_impact::cam::Cam;
+use corner_impact::flight::{Flight, Response};
+use corner_impact::interval::{Interval, Number};
+use proptest::prelude::*;
+
+use crate::common;
+
+/// Angle, sine and cosine.
+const CIRCULAR: [(f64, [f64; 2], [f64; 2]); 18] = [
+    (0.0, [0.0, 0.0], [1.0, 0.0]),
+    (1e-09, [1e-09, -1.6666666666666669e-28], [1.0, -5e-19]),
+    (0.1, [0.09983341664682815, 3.08001512929492e-18], [0.9950041652780258, -5.50210156918377e-17]),
+    (0.7853981633974483, [0.7071067811865475, 4.1036934489363755e-17], [0.7071067811865476, -2.6687565161377232e-17]),
+    (0.7853981633974484, [0.7071067811865476, 8.519254961036853e-18], [0.7071067811865475, 5.830114366949665e-18]),
+    (1.0, [0.8414709848078965, 1.776845092935536e-18], [0.5403023058681398, -4.760954612604417e-17]),
+    (1.5707963267948966, [1.0, -1.874699728327322e-33], [6.123233995736766e-17, -1.4973849048591698e-33]),
+    (2.0, [0.9092974268256817, -1.4020906557816256e-17], [-0.4161468365471424, 1.990596398957495e-17]),
+    (3.141592653589793, [1.2246467991473532e-16, -2.99476980971834e-33], [-1.0, 7.498798913309288e-33]),
+    (3.141592653589794, [-7.657137397853899e-16, -2.7646673097874883e-32], [-1.0, 2.931587656480639e-31]),
+    (4.0, [-0.7568024953079282, -4.892224089158451e-17], [-0.6536436208636119, 2.5846614087018284e-17]),
+    (4.71238898038469, [-1.0, 1.6872297554945898e-32], [-1.8369701987210297e-16, -7.833796929500799e-33]),
+    (6.283185307179586, [-2.4492935982947064e-16, 5.9895396194366814e-33], [1.0, -2.999519565323715e-32]),
+    (-2.5, [-0.5984721441039565, 5.521403334082375e-17], [-0.8011436155469337, -1.8674742705085553e-17]),
+    (22.0, [-0.008851309290403876, 2.8485303089220057e-19], [-0.9999608263946371, -8.51603380017413e-19]),
+    (355.0, [-3.014435335948845e-05, 1.3012643991046347e-21], [-0.999999999545659, 1.0574612846643521e-17]),
+    (1000.0, [0.8268795405320025, 3.867581909641312e-17], [0.5623790762907029, 5.1611423543848204e-17]),
+    (123456.789, [-0.9986640823432246, 4.3073133377883266e-17], [0.05167253271870138, -6.512424953386242e-19]),
+];
+
+/// Whether a double and what is left of it lie in an interval: differences of doubles so close are exact.
+fn holds(interval: Interval, [double, rest]: [f64; 2]) -> bool {
+    (interval.low() - double) <= rest && rest <= (interval.high() - double)
+}
+
+#[test]
+fn sine_and_cosine_are_held() {
+    for (angle, sin, cos) in CIRCULAR {
+        let (s, c) = Interval::from(angle).sin_cos();
+        assert!(holds(s, sin) && holds(c, cos), "{angle}: {s:?}, {c:?}");
+        let room = 4e-16 * angle.abs().max(4.0);
+        assert!(s.width() <= room && c.width() <= room, "{angle}: {:e}, {:e}", s.width(), c.width());
+    }
+    let (s, c) = Interval::new(-0.5, 2.0).sin_cos();
+    assert!(s.low() < -0.479 && s.high() == 1.0 && c.low() < -0.416 && c.high() == 1.0, "{s:?} {c:?}");
+    assert!(Interval::new(1.0, 8.0).sin_cos().0.width() == 2.0);
+}
+
+#[test]
+fn what_is_no_number_says_nothing() {
+    let (zero, all) = (Interval::new(-1.0, 1.0), Interval::EVERYTHING);
+    for anything in [zero / zero, all - all, zero * all, Interval::from(-1.0).sqrt(), Interval::new(f64::NAN, 1.0)] {
+        assert_eq!(anything, all);
+    }
+    assert!(!all.is_positive() && !all.is_negative() && all.holds_zero());
+}
+
+fn double() -> impl Strategy<Value = f64> {
+    (-1.0..1.0_f64, -30..30).prop_map(|(part, power)| part * 2.0_f64.powi(power))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn operations_hold_the_true_result(a in double(), b in double()) {
+        let (x, y) = (Interval::from(a), Interval::from(b));
+        let product = x * y;
+        prop_assert!(a.mul_add(b, -product.low()) >= 0.0 && a.mul_add(b, -product.high()) <= 0.0);
+        let quotient = x / y;
+        let side = |end: f64| end.mul_add(b, -a) * b.signum();
+        prop_assert!(side(quotient.low()) <= 0.0 && side(quotient.high()) >= 0.0);
+        let root = x.squared().sqrt();
+        prop_assert!(root.low() <= a.abs() && a.abs() <= root.high());
+        let root = Interval::from(a.abs()).sqrt();
+        prop_assert!(root.low().mul_add(root.low(), -a.abs()) <= 0.0 && root.high().mul_add(root.high(), -a.abs()) >= 0.0);
+        // What rounding takes from a sum is a double.
+        let sum = a + b;
+        let rest = if a.abs() > b.abs() { b - (sum - a) } else { a - (sum - b) };
+        prop_assert!(holds(x + y, [sum, rest]) && holds(x - -y, [sum, rest]));
+        for (interval, size) in [(product, a * b), (quotient, a / b), (x + y, a + b)] {
+            prop_assert!(interval.width() <= 1e-15 * size.abs() && interval.width() > 0.0, "{:?}", interval);
+        }
+    }
+
+    #[test]
+    fn an_operation_on_ranges_holds_that_on_their_numbers(ends in prop::array::uniform4(-3.0..3.0_f64), parts in prop::array::uniform2(0.0..1.0_f64)) {
+        let [a, b, c, d] = ends;
+        let (x, y) = (Interval::new(a.min(b), a.max(b)), Interval::new(c.min(d), c.max(d)));
+        let within = |range: Interval, part: f64| Interval::from((range.low() + part * range.width()).clamp(range.low(), range.high()));
+        let (p, q) = (within(x, parts[0]), within(y, parts[1]));
+        let pairs = [
+            (x + y, p + q), (x - y, p - q), (x * y, p * q), (x / y, p / q), (x.squared(), p.squared()),
+            (x.sin_cos().0, p.sin_cos().0), (x.sin_cos().1, p.sin_cos().1),
+        ];
+        for (range, one) in pairs {
+            prop_assert!(range == Interval::EVERYTHING || range.low() <= one.middle() && one.middle() <= range.high());
+        }
+    }
+}
+
+/// Numbers from 0 to 1 that are the same in every run.
+fn parts(count: usize) -> impl Iterator<Item = f64> {
+    (1..=count).map(|index| (index as f64 * 0.618_033_988_749_894_9).fract())
+}
+
+/// Lift, slope and curvature over ranges hold those at angles in them, for a law of every kind; and little else.
+#[test]
+fn every_law_stays_in_its_ranges() {
+    let laws = ["harmonic", "polynomial", "program", "rectified-sine", "table-cubic", "table-quintic"];
+    let files = laws.map(|law| format!("{}/models/laws/{law}.toml", common::ROOT));
+    let files = files.iter().map(std::path::Path::new).map(common::read).chain([common::osorio()]);
+    let mut kinds = std::collections::BTreeSet::new();
+    for model in files {
+        let cam = Cam::new(&model).unwrap();
+        for segment in cam.segments() {
+            kinds.insert(segment.law.name());
+            for (start, width) in parts(40).zip(parts(1000).skip(333)) {
+                let span = segment.end - segment.start;
+                let low = segment.start + 0.9 * start * span;
+                let angles = Interval::new(low, low + 0.1 * width * span);
+                let over = segment.law.lift_over(angles);
+                let ends = [angles.low(), angles.high()];
+                for part in [0.0, 0.25, 0.5, 0.75, 1.0] {
+                    let at = segment.law.lift((ends[0] + part * (ends[1] - ends[0])).min(ends[1]));
+                    let pairs = [(over.value, at.value), (over.slope, at.slope), (over.curvature, at.curvature)];
+                    for (range, value) in pairs {
+                        // The value is rounded itself.
+                        let room = 1e-13 * (at.value.abs() + at.slope.abs() + at.curvature.abs());
+                        assert!(range.low() - room <= value && value <= range.high() + room, "{segment:?} {angles:?}");
+                    }
+                }
+                // To first order the slope times the width; what more there is, is of second order.
+                let [one, two] = ends.map(|end| segment.law.lift(end));
+                let room = 10.0 * angles.width().powi(2) * over.curvature.magnitude() + 1e-13;
+                assert!(
+                    over.value.width() <= (one.slope.abs() + two.slope.abs()) * angles.width() + room,
+                    "{segment:?}"
+                );
+            }
+        }
+    }
+    assert_eq!(kinds.into_iter().collect::<Vec<_>>(), ["arc", "dwell", "harmonics", "polynomial", "sinusoid"]);
+}
+
+/// The responses over a range of times hold those at times in it, whatever the damping, and meet those in doubles.
+#[test]
+fn every_flight_stays_in_its_ranges() {
+    for (stiffness, damping) in
+        [(1430.8, 0.0), (1430.8, 5.0), (100.0, 20.0), (1430.8, 400.0), (0.0, 0.0), (0.0, 3.0), (1e-6, 0.0)]
+    {
+        let changes =
+            [("mass", "1.0".into()), ("stiffness", format!("{stiffness:?}")), ("damping", format!("{damping:?}"))];
+        let flight =
+            Flight::new(&common::osorio_with(&changes.each_ref().map(|(name, value)| (*name, &value[..]))).follower);
+        for (start, width) in parts(60).zip(parts(1000).skip(500)) {
+            let times = Interval::new(0.3 * start, 0.3 * start + 0.05 * width * width);
+            let over = flight.response_over(times);
+            for part in [0.0, 0.3, 0.5, 0.9, 1.0] {
+                let time = (times.low() + part * times.width()).min(times.high());
+                let (at, one) = (flight.response(time), flight.response_over(time.into()));
+                let of = |it: Response<Interval>| [it.step, it.impulse, it.impulse_rate];
+                let doubles = [at.step, at.impulse, at.impulse_rate];
+                for ((range, one), double) in of(over).into_iter().zip(of(one)).zip(doubles) {
+                    let room = 1e-13 * (1.0 + double.abs());
+                    assert!(
+                        range.low() <= one.low() + room && one.high() - room <= range.high(),
+                        "{flight:?} {times:?}"
+                    );
+                    assert!(
+                        (one.middle() - double).abs() <= room && one.width() <= room,
+                        "{one:?} {double} {flight:?} {time}"
+                    );
+                }
+                let rate = times.width() * (one.impulse.magnitude() + times.width()) + 1e-14;
+                assert!(over.step.width() <= 4.0 * rate, "{flight:?} {times:?}: {:?}", over.step);
+            }
+        }
+    }
+}
