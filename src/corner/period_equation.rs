@@ -148,7 +148,7 @@ impl<'a> PeriodEquation<'a> {
         let Isolated { roots, undecided, .. } =
             isolate([Interval::new(times[0], times[1])], Self::MOST_BOXES, |[time]| {
                 let equation = at(*time);
-                Some(Over { values: [equation.value], derivatives: [[equation.by_time]] })
+                Over { values: [equation.value], derivatives: [[equation.by_time]], is_wanted: true }
             });
         let ends = |time: Interval| [time.low(), time.high()].map(|time| time / self.revolutions as f64);
         let undecided: Vec<[f64; 2]> = joined(undecided).into_iter().map(|[time]| ends(time)).collect();

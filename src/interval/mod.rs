@@ -316,18 +316,44 @@ impl Div for Interval {
     }
 }
 
-/// An operation with a double is one with the interval of that double.
-macro_rules! with_doubles {
-    ($($operation:ident $method:ident),+) => {$(
-        impl $operation<f64> for Interval {
-            type Output = Self;
+impl Add<f64> for Interval {
+    type Output = Self;
 
-            #[inline]
-            fn $method(self, other: f64) -> Self {
-                self.$method(Self::from(other))
-            }
-        }
-    )+};
+    #[inline]
+    fn add(self, number: f64) -> Self {
+        self + Self::from(number)
+    }
 }
 
-with_doubles!(Add add, Sub sub, Mul mul, Div div);
+impl Sub<f64> for Interval {
+    type Output = Self;
+
+    #[inline]
+    fn sub(self, number: f64) -> Self {
+        self - Self::from(number)
+    }
+}
+
+impl Mul<f64> for Interval {
+    type Output = Self;
+
+    #[inline]
+    fn mul(self, number: f64) -> Self {
+        let (one, two) = (self.low * number, self.high * number);
+        if number < 0.0 { Self::rounded(two, one) } else { Self::rounded(one, two) }
+    }
+}
+
+impl Div<f64> for Interval {
+    type Output = Self;
+
+    /// Everything where the divisor is 0.
+    #[inline]
+    fn div(self, number: f64) -> Self {
+        match (self.low / number, self.high / number) {
+            _ if number == 0.0 => Self::EVERYTHING,
+            (one, two) if number < 0.0 => Self::rounded(two, one),
+            (one, two) => Self::rounded(one, two),
+        }
+    }
+}

@@ -24,6 +24,8 @@ pub struct Over<const N: usize> {
     pub values: [Interval; N],
     /// Row by row.
     pub derivatives: [[Interval; N]; N],
+    /// Whether the box may hold a root that is wanted.
+    pub is_wanted: bool,
 }
 
 /// What is known of the roots in a box.
@@ -31,7 +33,7 @@ pub struct Over<const N: usize> {
 pub struct Isolated<const N: usize> {
     /// Boxes that hold one root each, as narrow as rounding allows.
     pub roots: Vec<Place<N>>,
-    /// Boxes too narrow to be halved again of which nothing is known. All other roots are in `roots`.
+    /// Boxes that halving again would tell no more of: nothing is known of them. All other roots are in `roots`.
     pub undecided: Vec<Place<N>>,
     /// How many boxes were looked at.
     pub boxes: usize,
@@ -39,13 +41,8 @@ pub struct Isolated<const N: usize> {
 
 /// Isolates all roots in `place`, in at most `most` boxes.
 ///
-/// `over` tells the values and derivatives over a box, also somewhat outside of `place`; nothing where the box certainly holds none
-/// of the roots that are wanted.
-pub fn isolate<const N: usize>(
-    place: Place<N>,
-    most: usize,
-    over: impl Fn(&Place<N>) -> Option<Over<N>>,
-) -> Isolated<N> {
+/// `over` tells the values and derivatives over a box, also somewhat outside of `place`.
+pub fn isolate<const N: usize>(place: Place<N>, most: usize, over: impl Fn(&Place<N>) -> Over<N>) -> Isolated<N> {
     let narrowest = place.map(|side| {
         (tolerance::NARROWEST_BOX.value * side.width()).max(tolerance::ROOT_WIDTH.value * side.magnitude())
     });
@@ -62,6 +59,10 @@ pub fn isolate<const N: usize>(
         let mut rest = here;
         match look(&here, &over) {
             Look::Nothing => continue,
+            Look::Rounding => {
+                found.undecided.push(here);
+                continue;
+            }
             Look::Unknown => {}
             Look::Within(image) => {
                 let wider = around(&here, &image);
@@ -111,17 +112,16 @@ enum Look<const N: usize> {
     Within(Place<N>),
     /// Its derivative may be singular.
     Unknown,
+    /// All values in it are 0 but for what rounding makes of one of them: no part of it would tell more.
+    Rounding,
 }
 
-fn look<const N: usize>(here: &Place<N>, over: &impl Fn(&Place<N>) -> Option<Over<N>>) -> Look<N> {
-    let Some(whole) = over(here) else { return Look::Nothing };
-    if whole.values.iter().any(|value| !value.holds_zero()) {
+fn look<const N: usize>(here: &Place<N>, over: &impl Fn(&Place<N>) -> Over<N>) -> Look<N> {
+    let whole = over(here);
+    if !whole.is_wanted || whole.values.iter().any(|value| !value.holds_zero()) {
         return Look::Nothing;
     }
-    let Some(middle) = over(&here.map(|side| side.middle().into())) else {
-        // Nothing wanted in the middle of it says nothing about the rest.
-        return Look::Unknown;
-    };
+    let middle = over(&here.map(|side| side.middle().into()));
     // F(X) is in F(m) + J(X) (X - m) as well.
     let centred = |row: usize| {
         (0..N).fold(middle.values[row], |sum, column| {
@@ -130,6 +130,9 @@ fn look<const N: usize>(here: &Place<N>, over: &impl Fn(&Place<N>) -> Option<Ove
     };
     if (0..N).any(|row| !centred(row).holds_zero()) {
         return Look::Nothing;
+    }
+    if whole.values.iter().zip(&middle.values).all(|(all, one)| one.holds_zero() && all.width() <= 2.0 * one.width()) {
+        return Look::Rounding;
     }
     image(here, &whole, &middle).map_or(Look::Unknown, Look::Within)
 }
@@ -153,8 +156,8 @@ fn image<const N: usize>(here: &Place<N>, whole: &Over<N>, middle: &Over<N>) -> 
     }))
 }
 
-fn step<const N: usize>(here: &Place<N>, over: &impl Fn(&Place<N>) -> Option<Over<N>>) -> Option<Place<N>> {
-    image(here, &over(here)?, &over(&here.map(|side| side.middle().into()))?)
+fn step<const N: usize>(here: &Place<N>, over: &impl Fn(&Place<N>) -> Over<N>) -> Option<Place<N>> {
+    image(here, &over(here), &over(&here.map(|side| side.middle().into())))
 }
 
 /// A box about both, with room on each side for a root on the border.
@@ -168,7 +171,7 @@ fn around<const N: usize>(here: &Place<N>, image: &Place<N>) -> Place<N> {
 }
 
 /// The box of the one root in `here`, narrowed until rounding keeps it from getting narrower.
-fn closed_in<const N: usize>(mut here: Place<N>, over: &impl Fn(&Place<N>) -> Option<Over<N>>) -> Place<N> {
+fn closed_in<const N: usize>(mut here: Place<N>, over: &impl Fn(&Place<N>) -> Over<N>) -> Place<N> {
     /// Once it is narrow each step squares what is left.
     const STEPS: usize = 100;
     for _ in 0..STEPS {

@@ -108,7 +108,7 @@ pub(crate) fn of_one_impact(machine: &Machine, revolutions: u64) -> Vec<Solved> 
     for (index, segment) in cam.segments().iter().enumerate() {
         let over = |[angle]: &[Interval; 1]| {
             let Equation { value, by_angle, .. } = equation.equation(&segment.law.lift_over(*angle), time);
-            Some(Over { values: [value], derivatives: [[by_angle]] })
+            Over { values: [value], derivatives: [[by_angle]], is_wanted: true }
         };
         let range = Interval::new(segment.start, segment.end);
         let Isolated { roots, undecided, .. } = isolate([range], MOST_BOXES, over);

@@ -75,12 +75,10 @@ impl Pair<'_> {
         [slope, Interval::EVERYTHING]
     }
 
-    fn flights(&self, place: &[Interval; 2]) -> Option<Flights> {
+    fn flights(&self, place: &[Interval; 2]) -> Flights {
         let (machine, flight) = (self.machine, self.machine.flight());
         let omega = Interval::from(machine.angular_velocity());
-        // Later than x by half a turn at most. Somewhat beyond the equations go on, as they must about a root on the border.
         let h = self.turn(place);
-        h.common(Interval::new(0.0, Interval::TURN.half().high()))?;
         let (t1, t2) = (h / omega, (Interval::TURN - h) / omega);
         let laws = self.segments.map(|segment| &machine.cam().segments()[segment].law);
         let lifts = [laws[0].lift_over(place[0]), laws[1].lift_over(place[1])];
@@ -110,7 +108,7 @@ impl Pair<'_> {
         let rise = Varied { value: rise, by: rise_by };
         let short = rise * omega - force(x) * Varied::of(step, step_by, by_1);
         let long = x - y - force(y) * Varied::of(two.step, two.impulse, by_2);
-        Some(Flights { lifts, forces, responses, mean, short, long })
+        Flights { lifts, forces, responses, mean, short, long }
     }
 
     /// c(x) and c(y).
@@ -118,12 +116,11 @@ impl Pair<'_> {
         [0, 1].map(|which| Varied::of(lifts[which].value, lifts[which].slope, by[which]))
     }
 
-    /// The equations; nothing where no orbit has its impacts.
-    fn over(&self, place: &[Interval; 2]) -> Option<Over<2>> {
-        let flights = self.flights(place)?;
-        if flights.cannot_be(self.machine) {
-            return None;
-        }
+    /// The equations. Of the roots those are wanted that no law of impacts or flights is broken at, with y at most half a turn on.
+    fn over(&self, place: &[Interval; 2]) -> Over<2> {
+        let flights = self.flights(place);
+        let is_wanted = !flights.velocities(self.machine).is_broken
+            && self.turn(place).common(Interval::new(0.0, Interval::TURN.half().high())).is_some();
         let Flights { lifts, forces, responses: [one, two], mean, short, long } = flights;
         let flight = self.machine.flight();
         let omega = Interval::from(self.machine.angular_velocity());
@@ -145,7 +142,7 @@ impl Pair<'_> {
         let both = mean * s2 * (r + 1.0);
         let at_x = short * s2 - slope(0, by_x) * both + mean * (long * rates[1] + force(1, by_y) * s2 * s2) * r;
         let at_y = long * mean - slope(1, by_y) * both + s2 * (short * rates[0] + force(0, by_x) * s1 * mean) * r;
-        Some(Over { values: [at_x.value, at_y.value], derivatives: [at_x.by, at_y.by] })
+        Over { values: [at_x.value, at_y.value], derivatives: [at_x.by, at_y.by], is_wanted }
     }
 
     /// What a solution is.
@@ -153,35 +150,28 @@ impl Pair<'_> {
         let segments = self.segments.map(|segment| &self.machine.cam().segments()[segment]);
         let is_inside =
             (0..2).all(|which| place[which].is_inside(Interval::new(segments[which].start, segments[which].end)));
-        let r = self.machine.restitution();
-        let Some(flights) = self.flights(place).filter(|_| is_inside && r > 0.0) else { return Standing::Undecided };
+        if !is_inside || self.machine.restitution() == 0.0 {
+            return Standing::Undecided;
+        }
+        let flights = self.flights(place);
         let omega = Interval::from(self.machine.angular_velocity());
-        let Flights { lifts, forces, responses: [one, two], mean, short, .. } = &flights;
-        let thrown =
-            |which: usize, before: Interval| lifts[which].slope * omega * (Interval::from(r) + 1.0) - before * r;
-        // The second impact's law and not its flight tells how it leaves: that flight may come back however it leaves.
-        let u1 = short.value / mean.value;
-        let v_y = u1 * one.impulse_rate + forces[0] * one.impulse;
-        let u2 = thrown(1, v_y);
-        let v_x = u2 * two.impulse_rate + forces[1] * two.impulse;
-        if thrown(0, v_x).common(u1).is_none() {
+        let Velocities { before, after, is_broken } = flights.velocities(self.machine);
+        if is_broken {
             return Standing::NoOrbit;
         }
-        let approaches = [lifts[0].slope * omega - v_x, lifts[1].slope * omega - v_y];
-        if approaches.iter().any(|approach| approach.is_negative()) {
-            return Standing::NoOrbit;
-        }
+        let approaches = [0, 1].map(|which: usize| flights.lifts[which].slope * omega - before[which]);
         let struck = |which: usize, turns: u64| Struck { segment: self.segments[which], angle: place[which], turns };
         let hops = [
-            Hop { from: struck(0, 0), to: struck(1, self.turns), velocity: u1, omega },
-            Hop { from: struck(1, 0), to: struck(0, 1 - self.turns), velocity: u2, omega },
+            Hop { from: struck(0, 0), to: struck(1, self.turns), velocity: after[0], omega },
+            Hop { from: struck(1, 0), to: struck(0, 1 - self.turns), velocity: after[1], omega },
         ];
         let clear = hops.map(|hop| hop.is_clear(self.machine.cam(), self.machine.flight()));
         match clear {
             [Some(false), _] | [_, Some(false)] => Standing::NoOrbit,
             // Where s2 may be 0 the equations may be met by what comes back in one way only.
             [Some(true), Some(true)]
-                if approaches.iter().all(|approach| approach.is_positive()) && !two.impulse.holds_zero() =>
+                if approaches.iter().all(|approach| approach.is_positive())
+                    && !flights.responses[1].impulse.holds_zero() =>
             {
                 Standing::Orbit
             }
@@ -191,12 +181,7 @@ impl Pair<'_> {
 
     fn guess(&self, place: &[Interval; 2]) -> Cycle {
         let middles = place.map(|side| side.middle().into());
-        let before = self.flights(&middles).map_or([0.0; 2], |flights| {
-            let Flights { forces, responses: [one, two], mean, short, long, .. } = flights;
-            let v_y = short.value / mean.value * one.impulse_rate + forces[0] * one.impulse;
-            let v_x = long.value / two.impulse * two.impulse_rate + forces[1] * two.impulse;
-            [v_x.middle(), v_y.middle()]
-        });
+        let before = self.flights(&middles).velocities(self.machine).before.map(Interval::middle);
         let impact = |which: usize| Impact {
             revolution: if which == 0 { 0 } else { self.turns as i64 },
             segment: self.segments[which],
@@ -207,19 +192,40 @@ impl Pair<'_> {
     }
 }
 
+/// m/s, before and after each impact.
+struct Velocities {
+    before: [Interval; 2],
+    after: [Interval; 2],
+    /// Whether an impact would come out of the cam, or leave into it, or otherwise than it throws.
+    is_broken: bool,
+}
+
 impl Flights {
-    /// Whether an impact would come out of the cam, or leave into it.
-    fn cannot_be(&self, machine: &Machine) -> bool {
+    /// As the flights say, or where one comes back however it leaves, as the other and the law of impact say.
+    fn velocities(&self, machine: &Machine) -> Velocities {
         let omega = Interval::from(machine.angular_velocity());
-        let [one, two] = &self.responses;
-        let cam = [0, 1].map(|which| self.lifts[which].slope * omega);
-        let (u1, u2) = (self.short.value / self.mean.value, self.long.value / two.impulse);
-        let v_y = u1 * one.impulse_rate + self.forces[0] * one.impulse;
-        let v_x = u2 * two.impulse_rate + self.forces[1] * two.impulse;
-        (cam[0] - v_x).is_negative()
-            || (cam[1] - v_y).is_negative()
-            || (u1 - cam[0]).is_negative()
-            || (u2 - cam[1]).is_negative()
+        let r = machine.restitution();
+        let cam = [0, 1].map(|which: usize| self.lifts[which].slope * omega);
+        // v+ = (1 + r) c' - r v-
+        let thrown = |which: usize, before: Interval| cam[which] * (Interval::from(r) + 1.0) - before * r;
+        let arrives = |from: usize, after: Interval| {
+            let response = &self.responses[from];
+            after * response.impulse_rate + self.forces[from] * response.impulse
+        };
+        let mut after = [self.short.value / self.mean.value, self.long.value / self.responses[1].impulse];
+        let mut before = [arrives(1, after[1]), arrives(0, after[0])];
+        for which in 0..2 {
+            if after[which] == Interval::EVERYTHING {
+                after[which] = thrown(which, before[which]);
+                before[1 - which] = arrives(which, after[which]);
+            }
+        }
+        let is_broken = (0..2).any(|which| {
+            (cam[which] - before[which]).is_negative()
+                || (after[which] - cam[which]).is_negative()
+                || thrown(which, before[which]).common(after[which]).is_none()
+        });
+        Velocities { before, after, is_broken }
     }
 }
 
@@ -243,6 +249,12 @@ pub(crate) fn of_two_impacts(machine: &Machine, watch: &dyn Watch) -> Vec<Solved
             boxes += found.boxes;
             let Isolated { roots, undecided, .. } = found;
             let mut add = |place: [Interval; 2], standing: Standing| {
+                // Half a turn apart either impact may be called the first: what is there already by the other name is the same,
+                // since each is alone in a box far wider than its own.
+                let again = |known: &Solved| (0..2).all(|which| known.angles[which].common(place[1 - which]).is_some());
+                if all.iter().any(again) {
+                    return;
+                }
                 all.push(Solved { guess: pair.guess(&place), angles: place.to_vec(), standing });
             };
             roots.into_iter().for_each(|place| add(place, pair.standing(&place)));
