@@ -25,6 +25,6 @@ pub struct Complete {
     pub revolutions: u64,
     /// Impacts in one period.
     pub impacts: usize,
-    /// Sampled where orbits are told apart by samples: what lies between two of them can be missed.
+    /// Proved where no place is left undecided.
     pub known: Known,
 }

@@ -12,8 +12,8 @@ use crate::study::orbit::{Wanted, orbits};
     \x20 corner-impact orbit --rpm 680\n\
     \x20 corner-impact orbit models/osorio-2008.toml --rpm 745 --revolutions 2 --json\n\
     \n\
-    One-impact orbits are found where one equation changes its sign between two samples, which misses two roots between the \
-    same two; those of more impacts by a search from many starts, which may miss some.\n\
+    Orbits of one impact, and of two in one revolution, are proved to be all, but for impacts at angles that are told; others \
+    are found by a search from many starts, which may miss some.\n\
     Exit code: 0 done, also where there is none, 2 bad model file or usage.")]
 pub(super) struct Arguments {
     #[command(flatten)]

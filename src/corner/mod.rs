@@ -6,7 +6,7 @@
 //!
 //! | module | finds |
 //! |---|---|
-//! | `period_equation` | the speeds at which the one impact of an orbit is on a corner: the roots of one equation, by its signs at samples |
+//! | `period_equation` | the speeds at which the one impact of an orbit is on a corner: all roots of one equation |
 //! | `candidates` | corner impacts of several impacts, where branches of orbits pass a corner |
 //! | `confirm` | whether a corner impact of the equations is an orbit of the cam as it is |
 //! | [`mod@locate`] | the paper's kind, for `verify`; [`range`] all kinds |

@@ -85,8 +85,8 @@ pub enum Verdict {
 }
 
 impl<'a> PeriodEquation<'a> {
-    /// Boxes of a range after which the rest of it is left undecided: some ten for each root of the widest range.
-    const MOST_BOXES: usize = 1 << 17;
+    /// Boxes after which the rest of a range is left undecided: so many, and as many for each radian of the follower's motion.
+    const MOST_BOXES: [usize; 2] = [1024, 64];
     /// The most radians of the follower's motion, between the shortest period and the longest, that are searched.
     pub const MOST_RADIANS: f64 = 15_625.0;
 
@@ -145,11 +145,12 @@ impl<'a> PeriodEquation<'a> {
         if times.iter().any(|time| !at((*time).into()).size.is_finite()) {
             return Roots::NotFinite;
         }
-        let Isolated { roots, undecided, .. } =
-            isolate([Interval::new(times[0], times[1])], Self::MOST_BOXES, |[time]| {
-                let equation = at(*time);
-                Over { values: [equation.value], derivatives: [[equation.by_time]], is_wanted: true }
-            });
+        let [least, for_each] = Self::MOST_BOXES;
+        let most = least + for_each * radians as usize;
+        let Isolated { roots, undecided, .. } = isolate([Interval::new(times[0], times[1])], most, |[time]| {
+            let equation = at(*time);
+            Over { values: [equation.value], derivatives: [[equation.by_time]], is_wanted: true }
+        });
         let ends = |time: Interval| [time.low(), time.high()].map(|time| time / self.revolutions as f64);
         let undecided: Vec<[f64; 2]> = joined(undecided).into_iter().map(|[time]| ends(time)).collect();
         if let [[from, to]] = undecided[..]
