@@ -9,6 +9,8 @@
 //! holds every root of X. Where it lies inside of X there is exactly one (Krawczyk 1969, Moore 1977); where the two have nothing
 //! in common there is none. A root next to the border of a box is looked for in a somewhat larger one.
 
+use std::ops::Add as _;
+
 use nalgebra::SMatrix;
 
 use super::{Interval, Number};
@@ -141,18 +143,16 @@ fn look<const N: usize>(here: &Place<N>, over: &impl Fn(&Place<N>) -> Over<N>) -
 fn image<const N: usize>(here: &Place<N>, whole: &Over<N>, middle: &Over<N>) -> Option<Place<N>> {
     let derivative = SMatrix::<f64, N, N>::from_fn(|row, column| whole.derivatives[row][column].middle());
     let inverse = derivative.try_inverse().filter(|inverse| inverse.iter().all(|entry| entry.is_finite()))?;
+    let contracted = |row: usize, column: usize| {
+        let unit = if row == column { 1.0 } else { 0.0 };
+        let product = (0..N).map(|inner| whole.derivatives[inner][column] * inverse[(row, inner)]);
+        -product.fold(Interval::from(0.0), Interval::add) + unit
+    };
     Some(std::array::from_fn(|row| {
-        let mut image = Interval::from(here[row].middle());
-        for column in 0..N {
-            image = image - middle.values[column] * inverse[(row, column)];
-        }
-        for column in 0..N {
-            let unit = if row == column { 1.0 } else { 0.0 };
-            let product = (0..N)
-                .fold(Interval::from(0.0), |sum, inner| sum + whole.derivatives[inner][column] * inverse[(row, inner)]);
-            image = image + (-product + unit) * (here[column] - here[column].middle());
-        }
-        image
+        (0..N).fold(here[row].middle().into(), |image: Interval, column| {
+            let away = here[column] - here[column].middle();
+            image - middle.values[column] * inverse[(row, column)] + contracted(row, column) * away
+        })
     }))
 }
 

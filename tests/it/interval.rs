@@ -11,6 +11,7 @@ use proptest::prelude::*;
 use crate::common;
 
 /// Angle, sine and cosine.
+#[expect(clippy::approx_constant, reason = "doubles as they are, and not what they are near")]
 const CIRCULAR: [(f64, [f64; 2], [f64; 2]); 18] = [
     (0.0, [0.0, 0.0], [1.0, 0.0]),
     (1e-09, [1e-09, -1.6666666666666669e-28], [1.0, -5e-19]),

@@ -49,6 +49,7 @@ impl Sub for Varied {
 impl Mul for Varied {
     type Output = Self;
 
+    #[expect(clippy::suspicious_arithmetic_impl, reason = "the derivative of a product is a sum")]
     fn mul(self, other: Self) -> Self {
         let (one, two) = (self.value, other.value);
         self.each(other, one * two, |by_one, by_two| by_one * two + one * by_two)
