@@ -17,14 +17,14 @@ pub(super) enum Kind {
 /// Pixels across of a PNG: a page's width at 300 dots an inch.
 const PNG_WIDTH: u32 = 2000;
 
+/// Whether a file name ends in one of some extensions, in either case.
+pub(super) fn ends_in(path: &Path, extensions: &[&str]) -> bool {
+    path.extension().is_some_and(|extension| extensions.iter().any(|known| extension.eq_ignore_ascii_case(known)))
+}
+
 /// The kind that a file name asks for.
 pub(super) fn kind(path: &Path) -> Option<Kind> {
-    let extension = path.extension()?.to_str()?;
-    match extension {
-        _ if extension.eq_ignore_ascii_case("svg") => Some(Kind::Svg),
-        _ if extension.eq_ignore_ascii_case("png") => Some(Kind::Png),
-        _ => None,
-    }
+    [("svg", Kind::Svg), ("png", Kind::Png)].into_iter().find(|(name, _)| ends_in(path, &[name])).map(|(_, kind)| kind)
 }
 
 /// A file name of a picture, for clap.
@@ -37,8 +37,11 @@ pub(super) fn picture(text: &str) -> Result<PathBuf, String> {
 /// picture is not to hold a table.
 pub(super) fn picture_or_table(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
-    let is_table = path.extension().is_none_or(|extension| extension.eq_ignore_ascii_case("csv"));
-    if is_table || kind(&path).is_some() { Ok(path) } else { Err("must end in .csv, .svg or .png, or be -".into()) }
+    if path.extension().is_none() || ends_in(&path, &["csv", "svg", "png"]) {
+        Ok(path)
+    } else {
+        Err("must end in .csv, .svg or .png, or be -".into())
+    }
 }
 
 /// A file that a figure goes to, whole or not at all; opened before the work that the figure shows.

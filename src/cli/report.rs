@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use super::picture::ends_in;
 use super::progress::watched;
 use super::{CommandError, Exit, ModelArgument, Session};
 use crate::cli::file::Output;
@@ -39,10 +40,8 @@ pub(super) struct Arguments {
 /// A file name of a page, for clap.
 fn page(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
-    let other = path
-        .extension()
-        .is_some_and(|extension| !["html", "htm"].iter().any(|known| extension.eq_ignore_ascii_case(known)));
-    if other { Err("must end in .html, or be -".into()) } else { Ok(path) }
+    let is_page = path.extension().is_none() || ends_in(&path, &["html", "htm"]);
+    if is_page { Ok(path) } else { Err("must end in .html, or be -".into()) }
 }
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {

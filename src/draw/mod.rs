@@ -4,7 +4,7 @@
 //! write that down. Nothing here computes anything from the data but its extent; the figures themselves are built in
 //! [`crate::figures`].
 
-pub mod density;
+mod density;
 mod element;
 mod grid;
 pub mod layout;

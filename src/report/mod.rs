@@ -1,6 +1,6 @@
 //! Everything that is found about one model in one value: what the HTML page is made of.
 
-pub mod quantities;
+mod quantities;
 pub mod through;
 
 use serde::Serialize;

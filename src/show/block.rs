@@ -10,7 +10,6 @@ use crate::show::digits::Digits;
 /// What a stretch of text is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mark {
-    /// A heading.
     Heading,
     /// What matters in a sentence; a terminal leaves it plain.
     Strong,
@@ -27,7 +26,6 @@ pub enum Mark {
 /// A part of a sentence.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Span {
-    /// Words.
     Text(String),
     /// A number, and how many of its digits are shown.
     Number(f64, Digits),
@@ -52,7 +50,6 @@ pub enum Span {
 pub struct Symbol {
     /// As a terminal writes it: `A-`, `T*`.
     pub plain: String,
-    /// The letter.
     pub letter: &'static str,
     /// An index; empty where there is none.
     pub below: String,
@@ -183,7 +180,6 @@ pub enum Block {
     Note(Words),
     /// A name and what there is to say about it, each; the words begin so many columns behind the name.
     Entries(usize, Vec<(Words, Words)>),
-    /// A table.
     Table(Table),
     /// One thing after the other.
     List(Vec<Words>),
@@ -211,7 +207,6 @@ impl Block {
 pub struct Section {
     /// The fragment that leads there.
     pub id: &'static str,
-    /// Its heading.
     pub title: Words,
     /// What stands under it.
     pub blocks: Vec<Block>,
@@ -220,7 +215,6 @@ pub struct Section {
 /// A column of a table.
 #[derive(Clone, Debug)]
 pub struct Column {
-    /// Its head.
     pub head: Words,
     /// Spaces before it on a terminal, where there is room.
     pub gap: usize,
@@ -261,14 +255,11 @@ pub struct Row {
     pub is_bad: bool,
 }
 
-/// A table.
 #[derive(Clone, Debug)]
 pub struct Table {
     /// What it is of.
     pub label: String,
-    /// Its columns.
     pub columns: Vec<Column>,
-    /// Its rows.
     pub rows: Vec<Row>,
     /// Where it is too wide, it is told in several tables that all have the first column and so many of the last ones;
     /// `None` where it goes on row by row instead.
@@ -276,7 +267,6 @@ pub struct Table {
 }
 
 impl Table {
-    /// A table without rows.
     pub(crate) fn new(label: &str, columns: impl Into<Vec<Column>>) -> Self {
         Self { label: label.into(), columns: columns.into(), rows: Vec::new(), repeated: None }
     }

@@ -1,15 +1,15 @@
 //! How what was found is shown: blocks on a terminal, in a browser and as Markdown; JSON; CSV. Nothing is computed here.
 //!
-//! An enum becomes words in [`words`] and a number digits in [`digits`], and nowhere else.
+//! An enum becomes words in `words` and a number digits in `digits`, and nowhere else.
 
-pub mod block;
-pub mod command;
-pub mod csv;
-pub mod digits;
-pub mod html;
-pub mod json;
+pub(crate) mod block;
+pub(crate) mod command;
+pub(crate) mod csv;
+pub(crate) mod digits;
+pub(crate) mod html;
+pub(crate) mod json;
 pub mod markdown;
-pub mod page;
-pub mod words;
+pub(crate) mod page;
+pub(crate) mod words;
 
 pub use page::{Page, Paged};

@@ -37,6 +37,7 @@ impl ModelLabel {
 
 /// Why a question has no answer.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the message says what each number is")]
 pub enum StudyError {
     /// The model is impossible.
     #[error("{0}")]
@@ -52,26 +53,10 @@ pub enum StudyError {
     Family(#[from] FamilyError),
     /// What changes is not within its range where a search begins.
     #[error("{file}: {name} = {value}, where orbits are looked for, is outside of {}:{}", range[0], range[1])]
-    Outside {
-        /// The model's file.
-        file: String,
-        /// What changes.
-        name: String,
-        /// Its value.
-        value: f64,
-        /// From where to where.
-        range: [f64; 2],
-    },
+    Outside { file: String, name: String, value: f64, range: [f64; 2] },
     /// A search found no orbit.
     #[error("{file}: no periodic orbit of {revolutions} revolution(s) found at {rpm} rpm to follow")]
-    NothingToFollow {
-        /// The model's file.
-        file: String,
-        /// Turns of the cam in one period.
-        revolutions: u64,
-        /// Speed, rpm.
-        rpm: f64,
-    },
+    NothingToFollow { file: String, revolutions: u64, rpm: f64 },
     /// A curve of corner impacts tells their speed.
     #[error("--parameter must be a number of the model: the speed is what the corner impacts are at")]
     SpeedFollowed,
@@ -80,16 +65,7 @@ pub enum StudyError {
         "simulate: no impact in {waited} revolutions after impact {impacts}; the cam is at {:.4} deg of revolution {revolution}",
         cam_angle.to_degrees()
     )]
-    NoImpact {
-        /// Revolutions.
-        waited: u64,
-        /// How many there were.
-        impacts: u64,
-        /// rad.
-        cam_angle: f64,
-        /// Of the run.
-        revolution: u64,
-    },
+    NoImpact { waited: u64, impacts: u64, cam_angle: f64, revolution: u64 },
     /// No starts were named, and the machine has none of its own.
     #[error("no range to put starts in: give --position and --velocity")]
     NoStarts,

@@ -178,6 +178,16 @@ fn what_cannot_be_compared_says_why() {
 const PAGE: &str = "docs/jump-order.md";
 const MARKS: [&str; 2] = ["<!-- measured: begin -->\n", "<!-- measured: end -->\n"];
 
+fn words(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Gap => "velocity, cam as it is",
+        Quantity::Velocity => "velocity at the corner",
+        Quantity::Position => "position at the corner",
+        Quantity::MapOfPosition => "position after the map, by dx1",
+        Quantity::MapOfPeriod => "velocity after the map, by dT",
+    }
+}
+
 /// The table, with the columns that rounding decides last.
 fn table() -> String {
     let mut table = String::from(
@@ -192,7 +202,7 @@ fn table() -> String {
                 "| {} | {} | {} | {} | {:.3} | {:.4e} | {:.4e} | {:.0e} ± {:.0e} | {:.0e} |",
                 compared.approach.corner.jump_order,
                 example.name,
-                row.quantity.name(),
+                words(row.quantity),
                 row.predicted.exponent,
                 // Rounding decides the sign of a zero.
                 if exponent.abs() < 5e-4 { 0.0 } else { exponent },

@@ -25,19 +25,6 @@ pub enum Quantity {
     MapOfPeriod,
 }
 
-impl Quantity {
-    /// In words.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Gap => "velocity, cam as it is",
-            Self::Velocity => "velocity at the corner",
-            Self::Position => "position at the corner",
-            Self::MapOfPosition => "position after the map, by dx1",
-            Self::MapOfPeriod => "velocity after the map, by dT",
-        }
-    }
-}
-
 /// One power law, predicted and measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row {
