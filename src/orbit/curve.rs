@@ -12,11 +12,8 @@ pub trait Equations {
     /// Why they cannot be evaluated somewhere.
     type Error;
 
-    /// What n - 1 equations are off by at n unknowns.
-    fn residual(&self, unknowns: &DVector<f64>) -> Result<DVector<f64>, Self::Error>;
-
-    /// Its derivative, (n - 1) x n.
-    fn jacobian(&self, unknowns: &DVector<f64>) -> Result<DMatrix<f64>, Self::Error>;
+    /// What n - 1 equations are off by at n unknowns, and its derivative, (n - 1) x n.
+    fn linear(&self, unknowns: &DVector<f64>) -> Result<(DVector<f64>, DMatrix<f64>), Self::Error>;
 }
 
 /// Why there is no next point.
@@ -46,7 +43,7 @@ pub struct CurvePoint {
 
 /// A tangent at `unknowns` where none is known, of either sign.
 pub fn first_tangent<E: Equations>(equations: &E, unknowns: &DVector<f64>) -> Result<DVector<f64>, NoPoint<E::Error>> {
-    let jacobian = equations.jacobian(unknowns)?;
+    let (_, jacobian) = equations.linear(unknowns)?;
     let count = unknowns.len();
     // The direction that the equations see least; a row of zeros makes the matrix square.
     let square = jacobian.insert_row(count - 1, 0.0);
@@ -58,7 +55,7 @@ pub fn first_tangent<E: Equations>(equations: &E, unknowns: &DVector<f64>) -> Re
     if direction.iter().all(|entry| entry.is_finite()) { Ok(direction) } else { Err(NoPoint::NotClosed) }
 }
 
-/// The point of the curve in the plane across `tangent` at a distance `step` from `from`.
+/// The point of the curve in the plane across `along` at a distance `step` from `from`.
 pub fn step<E: Equations>(
     equations: &E,
     from: &DVector<f64>,
@@ -70,10 +67,10 @@ pub fn step<E: Equations>(
     let mut unknowns = from + along * step;
     let mut last = f64::INFINITY;
     for steps in 1..=STEPS {
-        let residual = equations.residual(&unknowns)?;
+        let (residual, jacobian) = equations.linear(&unknowns)?;
         let off_plane = along.dot(&(&unknowns - from)) - step;
         let right = -residual.push(off_plane);
-        let matrix = bordered(equations.jacobian(&unknowns)?, along).lu();
+        let matrix = bordered(jacobian, along).lu();
         let correction = matrix.solve(&right).ok_or(NoPoint::NotClosed)?;
         let length = correction.norm();
         // Away from the solution, or twice as far as the step itself.

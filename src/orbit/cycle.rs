@@ -112,18 +112,19 @@ impl Cycle {
         self.equations(machine).0
     }
 
-    /// The derivative of [`Cycle::residual`] by angle, rad, and velocity over omega, m/rad, of each impact in turn.
-    pub fn jacobian(&self, machine: &Machine) -> DMatrix<f64> {
+    /// [`Cycle::residual`] and its derivative by angle, rad, and velocity over omega, m/rad, of each impact in turn.
+    pub fn linear(&self, machine: &Machine) -> (DVector<f64>, DMatrix<f64>) {
         let count = self.impacts.len();
+        let (residual, links) = self.equations(machine);
         let mut rows = DMatrix::zeros(2 * count, 2 * count);
-        for (index, link) in self.equations(machine).1.into_iter().enumerate() {
+        for (index, link) in links.into_iter().enumerate() {
             let next = (index + 1) % count;
             for (column, by) in [(index, link.leaving), (next, link.coming)] {
                 let mut block = rows.fixed_view_mut::<2, 2>(2 * index, 2 * column);
                 block += by;
             }
         }
-        rows
+        (residual, rows)
     }
 
     /// Both, flight by flight.

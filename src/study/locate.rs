@@ -6,6 +6,7 @@
 
 use std::collections::BTreeMap;
 
+use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 
 use crate::agreement::Agreement;
@@ -181,7 +182,7 @@ pub enum LocateError {
 pub fn locate(model: &Model, range: Study, revolutions: u64) -> Result<Located, LocateError> {
     let cam = Cam::new(model)?;
     let looked_at = find_corner_impacts(model, &cam, range, revolutions)?;
-    let found: Vec<LocatedImpact> = looked_at.found.iter().map(|at| located(model, &cam, at)).collect();
+    let found: Vec<LocatedImpact> = looked_at.found.par_iter().map(|at| located(model, &cam, at)).collect();
     let agrees = found.iter().all(|located| located.agrees);
     Ok(Located { model: ModelLabel::of(model), found, looked_at, range, revolutions, agrees })
 }

@@ -101,7 +101,7 @@ fn touch(branch: &Branch, index: usize, cycle: &Cycle) -> Option<Exit> {
 /// The solutions that the equations see least there are the short orbits, whose halves move alike, and those of twice the
 /// period, whose halves move against each other.
 fn apart(problem: &Problem<'_>, at: &DVector<f64>) -> Result<DVector<f64>, NoPoint<FamilyError>> {
-    let jacobian = problem.jacobian(at)?;
+    let (_, jacobian) = problem.linear(at)?;
     let half = (at.len() - 1) / 2;
     // J on halves that move against each other: (J_1 - J_2) d = 0 for d of the first half.
     let against = jacobian.columns(0, half) - jacobian.columns(half, half);

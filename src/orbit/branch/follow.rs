@@ -4,7 +4,7 @@ use super::cut::{Cut, Located, Stride};
 use super::problem::{Pinned, Problem, Units};
 use super::switch::{self, Exit};
 use super::{BranchPoint, End, Following, Special, gap};
-use crate::orbit::curve::{self, CurvePoint, Equations, NoPoint};
+use crate::orbit::curve::{self, CurvePoint, NoPoint};
 use crate::orbit::cycle::lift_size;
 use crate::orbit::{Cycle, Departure, Family, FamilyError, OrbitError, PeriodicOrbit};
 use crate::tolerance;

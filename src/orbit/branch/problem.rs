@@ -135,29 +135,32 @@ impl<'a> Problem<'a> {
         Some(unknowns[2 * impact] - if at_end { segment.end } else { segment.start })
     }
 
-    fn residual_on(&self, unknowns: &DVector<f64>, machine: &Machine) -> DVector<f64> {
-        let residual = self.cycle(unknowns, machine).residual(machine) / self.units.lift;
+    /// Those of the cycle, of its size, and of the pinned impact, if one is.
+    fn with_pinned(&self, of_cycle: DVector<f64>, unknowns: &DVector<f64>, machine: &Machine) -> DVector<f64> {
+        let of_cycle = of_cycle / self.units.lift;
         match self.off_corner(unknowns, machine) {
-            Some(off) => residual.push(off),
-            None => residual,
+            Some(off) => of_cycle.push(off),
+            None => of_cycle,
         }
+    }
+
+    /// What the equations are off by.
+    pub(super) fn residual(&self, unknowns: &DVector<f64>) -> Result<DVector<f64>, FamilyError> {
+        let (machine, _) = self.family.machine(&self.values(unknowns))?;
+        Ok(self.with_pinned(self.cycle(unknowns, &machine).residual(&machine), unknowns, &machine))
     }
 }
 
 impl Equations for Problem<'_> {
     type Error = FamilyError;
 
-    fn residual(&self, unknowns: &DVector<f64>) -> Result<DVector<f64>, FamilyError> {
-        let (machine, _) = self.family.machine(&self.values(unknowns))?;
-        Ok(self.residual_on(unknowns, &machine))
-    }
-
-    fn jacobian(&self, unknowns: &DVector<f64>) -> Result<DMatrix<f64>, FamilyError> {
+    fn linear(&self, unknowns: &DVector<f64>) -> Result<(DVector<f64>, DMatrix<f64>), FamilyError> {
         /// Of the span of a free number: its column steers Newton's method and the tangent, and needs six digits.
-        const DIFFERENCE: f64 = 1e-5;
+        const DIFFERENCE: f64 = 1e-7;
         let count = 2 * self.pattern.impacts.len();
         let (machine, _) = self.family.machine(&self.values(unknowns))?;
-        let by_impacts = self.cycle(unknowns, &machine).jacobian(&machine);
+        let (residual, by_impacts) = self.cycle(unknowns, &machine).linear(&machine);
+        let residual = self.with_pinned(residual, unknowns, &machine);
         let rows = count + usize::from(self.pinned.is_some());
         let mut jacobian = DMatrix::zeros(rows, unknowns.len());
         for column in 0..count {
@@ -175,15 +178,13 @@ impl Equations for Problem<'_> {
                 moved[column] += step;
                 self.residual(&moved)
             };
-            // At the edge of what the model allows the difference is one-sided.
-            let derivative = match (moved(DIFFERENCE), moved(-DIFFERENCE)) {
-                (Ok(ahead), Ok(behind)) => (ahead - behind) / (2.0 * DIFFERENCE),
-                (Ok(ahead), Err(_)) => (ahead - self.residual(unknowns)?) / DIFFERENCE,
-                (Err(_), Ok(behind)) => (self.residual(unknowns)? - behind) / DIFFERENCE,
-                (Err(error), Err(_)) => return Err(error),
+            // At the edge of what the model allows, on its other side.
+            let derivative = match moved(DIFFERENCE) {
+                Ok(ahead) => (ahead - &residual) / DIFFERENCE,
+                Err(_) => (&residual - moved(-DIFFERENCE)?) / DIFFERENCE,
             };
             jacobian.set_column(column, &derivative);
         }
-        Ok(jacobian)
+        Ok((residual, jacobian))
     }
 }
