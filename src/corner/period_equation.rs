@@ -140,7 +140,7 @@ impl<'a> PeriodEquation<'a> {
             return Roots::TooMany { radians };
         }
         let equation = self.one_impact();
-        let at = |time: Interval| equation.equation(&self.lift, time);
+        let at = |time: Interval| equation.equation(&self.lift, time, &self.flight.response_over(time));
         let times = [first, last].map(|period| self.flight_time(period));
         if times.iter().any(|time| !at((*time).into()).size.is_finite()) {
             return Roots::NotFinite;

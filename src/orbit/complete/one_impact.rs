@@ -12,7 +12,7 @@
 use super::clearance::Hop;
 use super::{Solved, Standing, Struck, joined};
 use crate::cam::{Cam, Lift};
-use crate::flight::Flight;
+use crate::flight::{Flight, Response};
 use crate::interval::roots::{Isolated, Over, isolate};
 use crate::interval::{Interval, Number};
 use crate::orbit::cycle::{Cycle, Impact};
@@ -44,10 +44,9 @@ impl OneImpact<'_> {
         Interval::TURN * self.revolutions as f64
     }
 
-    /// Over the lifts of a range of angles and a range of times.
-    pub(crate) fn equation(&self, lift: &Lift<Interval>, time: Interval) -> Equation {
+    /// Over the lifts of a range of angles and a range of times, with the responses over these.
+    pub(crate) fn equation(&self, lift: &Lift<Interval>, time: Interval, response: &Response<Interval>) -> Equation {
         let (r, flight) = (self.restitution, self.flight);
-        let response = flight.response_over(time);
         let (p, s, s1) = (response.step, response.impulse, response.impulse_rate);
         // s'' = -2 zeta s' - w0^2 s
         let s2 = -(s1 * (2.0 * flight.zeta()) + s * flight.omega0_squared());
@@ -104,10 +103,11 @@ pub(crate) fn of_one_impact(machine: &Machine, revolutions: u64) -> Vec<Solved> 
     let (cam, flight, restitution) = (machine.cam(), machine.flight(), machine.restitution());
     let equation = OneImpact { cam, flight, restitution, revolutions };
     let time = equation.turn() / machine.angular_velocity();
+    let response = flight.response_over(time);
     let mut all = Vec::new();
     for (index, segment) in cam.segments().iter().enumerate() {
         let over = |[angle]: &[Interval; 1]| {
-            let Equation { value, by_angle, .. } = equation.equation(&segment.law.lift_over(*angle), time);
+            let Equation { value, by_angle, .. } = equation.equation(&segment.law.lift_over(*angle), time, &response);
             Over { values: [value], derivatives: [[by_angle]], is_wanted: true }
         };
         let range = Interval::new(segment.start, segment.end);
@@ -131,4 +131,34 @@ pub(crate) fn of_one_impact(machine: &Machine, revolutions: u64) -> Vec<Solved> 
         joined(undecided).into_iter().for_each(|[angle]| add(angle, Standing::Undecided));
     }
     all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{Model, OSORIO_2008};
+
+    /// Between two angles, or two times, E changes at a rate that its derivative has somewhere between them.
+    #[test]
+    fn each_derivative_is_that_of_the_equation() {
+        for damping in ["0.0", "5.0", "500.0"] {
+            let text = OSORIO_2008.replace("damping = 0.0", &format!("damping = {damping}"));
+            let model = Model::parse("damped.toml", &text).unwrap();
+            let (cam, flight) = (Cam::new(&model).unwrap(), Flight::new(&model.follower));
+            let equation = OneImpact { cam: &cam, flight: &flight, restitution: 0.8, revolutions: 1 };
+            for (angle, time) in [(1.6, 0.08), (1.9, 0.1), (2.3, 0.12), (2.7, 0.05), (4.0, 0.09)] {
+                let law = &cam.segments()[cam.segment_at(angle)].law;
+                let (angles, times) = (Interval::new(angle, angle + 1e-4), Interval::new(time, time + 1e-6));
+                let at = |angles: Interval, times: Interval| {
+                    equation.equation(&law.lift_over(angles), times, &flight.response_over(times))
+                };
+                let [from, to] = [angles.low(), angles.high()].map(|angle| at(angle.into(), time.into()).value);
+                let by_angle = (to - from) / (Interval::from(angles.high()) - angles.low());
+                assert!(by_angle.is_inside(at(angles, time.into()).by_angle), "{damping} {angle} {time}: {by_angle:?}");
+                let [from, to] = [times.low(), times.high()].map(|time| at(angle.into(), time.into()).value);
+                let by_time = (to - from) / (Interval::from(times.high()) - times.low());
+                assert!(by_time.is_inside(at(angle.into(), times).by_time), "{damping} {angle} {time}: {by_time:?}");
+            }
+        }
+    }
 }
