@@ -6,11 +6,13 @@ use corner_impact::border_collision::{LocalMap, passage};
 use corner_impact::cam::Cam;
 use corner_impact::diagram::{Speeds, exponent};
 use corner_impact::model::{Model, OSORIO_2008};
+use corner_impact::orbit::ending::Ending;
+use corner_impact::orbit::fate::Settling;
 use corner_impact::orbit::{Course, Search, search};
 use corner_impact::section::StroboscopicMap;
 use corner_impact::simulate::{Machine, angular_velocity};
 use corner_impact::study::basins::boundary::approach;
-use corner_impact::study::basins::{Curve, Ending, Extent, Patience, Reversed, Saddle, ending};
+use corner_impact::study::basins::{Curve, Extent, Reversed, Saddle};
 use corner_impact::study::verify::{External, Verification, verify};
 
 type Done = Result<(), Box<dyn std::error::Error>>;
@@ -55,8 +57,7 @@ fn endings(model: &Model, findings: &Verification) -> Done {
     let (mut orbits, mut resting) = (0, 0);
     for rpm in (0..speeds.count).map(|index| speeds.rpm(index)) {
         let machine = map(model, findings, rpm)?.machine;
-        let patience = Patience { revolutions: 3000, longest: 64 };
-        match ending(&machine, machine.start_on_cam(0.0, 0.0)?, patience)? {
+        match Settling::new(&machine, 64)?.ending(machine.start_on_cam(0.0, 0.0)?, 3000)? {
             Ending::Orbit(orbit) => {
                 orbits += 1;
                 let [first, second] = orbit.multipliers().map(|multiplier| multiplier.modulus());
@@ -66,11 +67,11 @@ fn endings(model: &Model, findings: &Verification) -> Done {
                     orbit.revolutions
                 );
             }
-            Ending::Resting => resting += 1,
-            Ending::Chaotic | Ending::Undecided => {}
+            Ending::Resting(_) => resting += 1,
+            Ending::Stays | Ending::Chaotic(_) | Ending::Undecided(_) => {}
         }
     }
-    println!("of {} speeds: {orbits} on an orbit, {resting} at rest in the last 400 revolutions", speeds.count);
+    println!("of {} speeds: {orbits} on an orbit, {resting} on one with rests", speeds.count);
     Ok(())
 }
 

@@ -29,6 +29,14 @@ impl Estimate {
         Self { value, error: (variance / count).sqrt(), error_is: ErrorIs::Standard }
     }
 
+    /// The mean of independent estimates of one number, with the error that theirs leave it.
+    pub fn mean(of: &[Self]) -> Self {
+        let count = of.len() as f64;
+        let value = of.iter().map(|one| one.value).sum::<f64>() / count;
+        let error = of.iter().map(|one| one.error * one.error).sum::<f64>().sqrt() / count;
+        Self { value, error, error_is: ErrorIs::Standard }
+    }
+
     /// What an extrapolation leads to.
     pub(crate) fn extrapolated(value: f64, error: f64) -> Self {
         Self { value, error, error_is: ErrorIs::Correction }

@@ -9,7 +9,8 @@ use super::{CommandError, Exit, ModelArgument, Session, picture, picture::Target
 use crate::figures::basins_figure;
 use crate::orbit::Search;
 use crate::show::csv;
-use crate::study::basins::{Border, Grid, Patience, Section, Summary};
+use crate::study::attractors::Patience;
+use crate::study::basins::{Border, Grid, Section, Summary};
 
 /// Runs a grid of starts at one speed and says what each ends on, as a table or a picture.
 #[derive(clap::Args)]

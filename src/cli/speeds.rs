@@ -1,16 +1,24 @@
 //! `corner-impact speeds [MODEL]`.
 
-use super::start::rpm_range;
-use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
-use crate::study::speeds::{Care, regimes, usual_speeds};
+use std::io::Write;
+use std::path::PathBuf;
 
-/// Tells at which speeds the follower leaves the cam, chatters, bounces regularly, is chaotic, and where hysteresis is.
+use super::picture::{Target, is_standard, picture_or_table};
+use super::start::{positive, rpm_range};
+use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
+use crate::cam::Cam;
+use crate::figures::{corner_marks, speeds_figure};
+use crate::show::csv;
+use crate::study::attractors::{Resolution, Step};
+use crate::study::speeds::{speeds, usual_range};
+
+/// Tells which motions a machine ends on at which speeds, where each of them begins and ends, and how many starts end on each.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact speeds\n\
-    \x20 corner-impact speeds models/osorio-2008.toml --rpm 600:800 --speeds 100\n\
+    \x20 corner-impact speeds models/osorio-2008.toml --rpm 600:800 --speeds 100 --out speeds.svg\n\
     \n\
-    Speeds are run through upwards and downwards; changes between them are narrowed down and, where a branch of orbits explains them, located. Narrow ranges between two of the speeds that are run may be missing: --speeds looks closer.\n\
+    The speeds that are run are multiples of a step, whatever the range: a part of a range has the answer of that part, if --step is the same.\n\
     Exit code: 0 done, 2 bad model file, usage, or a run that cannot go on.")]
 pub(super) struct Arguments {
     #[command(flatten)]
@@ -18,21 +26,33 @@ pub(super) struct Arguments {
     /// Lowest and highest speed [default: up to the end of the model's [study], or 1000 rpm, from a twentieth of that].
     #[arg(long, value_name = "LO:HI", value_parser = rpm_range, allow_hyphen_values = true)]
     rpm: Option<[f64; 2]>,
-    /// Speeds that are run.
+    /// The least number of speeds that are run.
     #[arg(long, value_name = "N", default_value_t = 300, value_parser = clap::value_parser!(u32).range(2..=100_000))]
     speeds: u32,
-    /// Revolutions at each speed before anything is decided.
-    #[arg(long, value_name = "N", default_value_t = 400)]
-    settling: u64,
+    /// From one speed to the next, at most: 1, 2 or 5 times a power of ten is taken [default: what puts as many speeds into the range as asked for].
+    #[arg(long, value_name = "RPM", value_parser = positive, allow_hyphen_values = true, conflicts_with = "speeds")]
+    step: Option<f64>,
+    /// Starts that are run at each speed.
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    starts: u32,
     /// Print one JSON document instead of the page.
     #[arg(long)]
     json: bool,
+    /// A picture (.svg, .png) of impacts, attractors and shares over the speeds, or a table (.csv, or - for standard output).
+    #[arg(long, value_name = "FILE", value_parser = picture_or_table)]
+    out: Option<PathBuf>,
 }
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let model = arguments.model.read(session)?;
-    let rpm = arguments.rpm.unwrap_or_else(|| usual_speeds(&model));
-    let care = Care { speeds: arguments.speeds as usize, settling: arguments.settling, ..Care::default() };
-    let found = watched("", |watch| regimes(&model, rpm, care, watch))?;
-    session.answer(&found, arguments.json)
+    let corners = corner_marks(&Cam::new(&model)?);
+    let rpm = arguments.rpm.unwrap_or_else(|| usual_range(&model));
+    let step = arguments.step.map_or_else(|| Step::for_speeds(rpm, arguments.speeds), Step::at_most);
+    let resolution = Resolution { step, starts: arguments.starts as usize };
+    let found = watched("", |watch| speeds(&model, rpm, resolution, watch))?;
+    if let Some(path) = &arguments.out {
+        let table = |table: &mut dyn Write| Ok(table.write_all(csv::speeds(&found).as_bytes())?);
+        Target::create(path, &mut *session.out)?.fill(table, || Ok(speeds_figure(&found, &corners)))?;
+    }
+    if is_standard(arguments.out.as_ref()) { Ok(Exit::Agrees) } else { session.answer(&found, arguments.json) }
 }

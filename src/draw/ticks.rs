@@ -10,6 +10,8 @@ pub enum Spacing {
     Decimal,
     /// Degrees: multiples of 15, 30, 45, 60, 90, …; decimal below 10.
     Degrees,
+    /// Nowhere: what stands along the axis has no numbers.
+    Nothing,
 }
 
 /// Steps of ten degrees and more.
@@ -45,7 +47,7 @@ pub fn ticks(range: [f64; 2], spacing: Spacing, most: usize, fits: impl Fn(&[Tic
     let [low, high] = range;
     let span = high - low;
     let exponent = exponent(low.abs().max(high.abs()));
-    if !(span > 0.0 && span.is_finite()) {
+    if spacing == Spacing::Nothing || !(span > 0.0 && span.is_finite()) {
         return Ticks::default();
     }
     let (most, mut step) = (most.max(2) as f64, first_step(span / most.max(2) as f64, spacing));

@@ -8,7 +8,8 @@ use crate::corner::CornerImpact;
 use crate::model::{Model, ModelError};
 use crate::orbit::branch::Branch;
 use crate::simulate::{Machine, angular_velocity};
-use crate::study::speeds::{detachment, usual_speeds};
+use crate::study::attractors::detachment;
+use crate::study::speeds::usual_range;
 use crate::study::verify::{External, Verification, verify};
 
 /// A model and what is shown of it.
@@ -130,7 +131,7 @@ impl Subject {
     pub(crate) fn with(model: &Model, findings: Result<Verification, String>) -> Result<Self, ModelError> {
         let cam = Cam::new(model)?;
         let paper = model.is_the_papers()?;
-        let [_, fastest] = usual_speeds(model);
+        let [_, fastest] = usual_range(model);
         let slow = if paper {
             Ok(Shown::PAPERS.0)
         } else {

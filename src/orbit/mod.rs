@@ -8,7 +8,9 @@
 //! | `departure` | whether a cycle is an orbit of the cam as it is, by simulation |
 //! | `complete` | all orbits of one impact, or of two in one revolution, by enclosures |
 //! | [`mod@search`] | orbits of one machine: those, and others from many starts |
-//! | [`settle`] | what a run ends on: an orbit, chaos, rest |
+//! | [`settle`] | the orbit near a guess or near a run |
+//! | [`ending`] | what a run can end on: an orbit, rest again and again, chaos |
+//! | [`fate`] | what runs come to, and what follows when the cam lets go of a follower |
 //! | `family` | machines that differ in a speed or a number of the model |
 //! | `curve` | pseudo-arclength steps along the solutions of one equation fewer than unknowns |
 //! | [`branch`] | branches of orbits through corners, folds, flips and grazes, with those points located |
@@ -19,7 +21,9 @@ pub(crate) mod complete;
 pub(crate) mod curve;
 pub(crate) mod cycle;
 pub(crate) mod departure;
+pub mod ending;
 pub(crate) mod family;
+pub mod fate;
 mod multipliers;
 mod naming;
 pub mod search;

@@ -65,6 +65,11 @@ pub fn search_all(machine: &Machine, wanted: &Search, watch: &dyn Watch) -> Resu
     found.search()
 }
 
+/// The orbits of one impact in `revolutions`, without a run.
+pub(super) fn with_one_impact(machine: &Machine, revolutions: u64) -> Vec<PeriodicOrbit> {
+    Found::new(machine, &Search { revolutions, impacts: Some(1) }).searched.orbits
+}
+
 /// A velocity that few impacts of the machine are faster than, m/s: a fall from rest over the size of its motion.
 fn velocity_scale(machine: &Machine) -> f64 {
     let cam = machine.cam();

@@ -2,7 +2,8 @@
 
 use crate::show::Paged;
 use crate::show::block::Block;
-use crate::study::basins::{Ending, Summary};
+use crate::show::words;
+use crate::study::basins::Summary;
 
 impl Paged for Summary {
     fn blocks(&self) -> Vec<Block> {
@@ -10,14 +11,8 @@ impl Paged for Summary {
         let angle = basins.grid.cam_angle.to_degrees();
         let mut lines = vec![format!("{model} at {rpm} rpm, {} starts at {angle:.4} deg", basins.starts)];
         for part in &basins.parts {
-            let orbit = match &part.ending {
-                Ending::Orbit(orbit) => {
-                    format!(", revolutions {}, impacts {}", orbit.revolutions, orbit.impacts().count())
-                }
-                _ => String::new(),
-            };
-            let (share, error, ending) = (part.share, part.standard_error, part.ending.name());
-            lines.push(format!("  {share:.4} ± {error:.4}  {ending}{orbit} ({})", part.starts));
+            let (share, error, ending) = (part.share, part.standard_error, words::ending(&part.ending));
+            lines.push(format!("  {share:.4} ± {error:.4}  {ending} ({})", part.starts));
         }
         lines.push(format!("  {wall_s:.3} s"));
         lines.into_iter().map(|line| Block::Line(line.into())).collect()

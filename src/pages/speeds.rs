@@ -1,62 +1,139 @@
-//! The page of `speeds`: the short answer first, then every range with rising and with falling speed.
+//! The page of `speeds`: the short answer first, then every attractor with where it begins and ends.
 
 use crate::show::Paged;
-use crate::show::block::{Block, Column, Mark, Table, words};
+use crate::show::block::{Block, Column, Mark, Table, Words, words};
 use crate::show::digits::Digits;
 use crate::show::words;
-use crate::study::speeds::{Regime, Regimes, Stretch};
+use crate::study::attractors::Change;
+use crate::study::speeds::{Attractor, Speeds};
 
-impl Paged for Regimes {
+impl Paged for Speeds {
     fn blocks(&self) -> Vec<Block> {
         let [low, high] = self.rpm;
-        let first = self.rising.first().map(|stretch| stretch.settled.regime);
-        let leaves = match (self.detachment_rpm, first) {
-            (Some(rpm), _) => format!("{rpm:.6} rpm"),
-            (None, Some(Regime::OnCam)) => "no speed in between".into(),
-            (None, Some(Regime::Free)) => "no speed: it is never on it".into(),
-            (None, _) => format!("{low} rpm already, or below"),
-        };
-        let line = |what: &str, answer: String| Block::Line(format!("  {what:<24}  {answer}").into());
-        let heading = |text: &str| Block::Line((Mark::Heading, text).into());
-        let mut page = vec![heading(&format!("{}, {low} to {high} rpm", self.model)), Block::Gap];
-        page.push(line("leaves the cam first at", leaves));
-        page.extend(self.regimes.iter().map(|seen| line(words::regime(seen.regime), listed(&seen.ranges))));
-        let hysteresis = self.hysteresis_ranges();
-        page.push(line("hysteresis", if hysteresis.is_empty() { "none".into() } else { listed(&hysteresis) }));
-        for (title, stretches) in [("rising speed", &self.rising), ("falling speed", &self.falling)] {
-            page.extend([Block::Gap, heading(title), Block::Table(table(title, stretches))]);
+        let heading = |text: String| Block::Line((Mark::Heading, text.as_str()).into());
+        let mut page = vec![heading(format!("{}, {low} to {high} rpm", self.model)), Block::Gap];
+        page.push(Block::Line(words!["  leaves the cam first at  ", detachment(self)]));
+        let together = together(self);
+        let together =
+            if together.is_empty() { "nowhere".into() } else { words![Words::joined(together, ", "), " rpm"] };
+        page.extend([
+            Block::Line(words!["  several attractors        ", together]),
+            Block::Gap,
+            Block::Table(table(self)),
+        ]);
+        for attractor in &self.attractors {
+            page.extend(rests(attractor).map(Block::paragraph));
         }
+        page.push(Block::paragraph(how(self)));
+        page.extend(self.failed.iter().map(|failed| {
+            Block::paragraph(format!("At {} rpm nothing could be run: {}.", failed.speed_rpm, failed.why))
+        }));
         page
     }
 }
 
-/// The ranges of speeds with one kind of motion.
-pub(crate) fn table(title: &str, stretches: &[Stretch]) -> Table {
+/// Where there are several attractors, ranges that meet as one.
+pub(crate) fn together(found: &Speeds) -> Vec<Words> {
+    let mut joined: Vec<[f64; 2]> = Vec::new();
+    for over in &found.coexistence {
+        match joined.last_mut() {
+            Some(last) if over.from_rpm <= last[1] => last[1] = over.to_rpm,
+            _ => joined.push([over.from_rpm, over.to_rpm]),
+        }
+    }
+    joined.into_iter().map(range).collect()
+}
+
+/// Where the follower first leaves the cam.
+pub(crate) fn detachment(found: &Speeds) -> Words {
+    let stays = found.attractors.iter().any(|attractor| attractor.kind == crate::orbit::ending::Kind::Stays);
+    match found.detachment {
+        Some(rpm) => words![(rpm, Digits::Fixed(6)), " rpm"],
+        None if stays => "no speed in between".into(),
+        None => format!("{} rpm already, or below", found.rpm[0]).into(),
+    }
+}
+
+/// How it was found out, and what that can miss.
+pub(crate) fn how(found: &Speeds) -> String {
+    format!(
+        "Sampled: {} starts at each of the speeds {} rpm apart, on the cam at any angle and up to the velocity that impacts keep \
+         up. A basin of less than {:.1} % of them may be missed at a speed, and what is there between two speeds only. A speed with six \
+         decimals was located by the equations of what happens there; others are known from runs alone, to the digits shown.",
+        found.starts,
+        found.step,
+        100.0 * found.missed()
+    )
+}
+
+/// How often a motion rests that bounces as chaos does in between.
+pub(crate) fn rests(attractor: &Attractor) -> Option<String> {
+    let rests = attractor.rests()?;
+    let id = &attractor.id;
+    Some(match rests.rate_error {
+        Some(error) => format!(
+            "{id} rests on the cam once in {:.0} ± {:.0} revolutions where it is chaotic in between ({} rests in {} revolutions): \
+             what looks like chaos there is on its way to a rest, and repeats from then on.",
+            1.0 / rests.rate,
+            error / rests.rate.powi(2),
+            rests.rests,
+            rests.revolutions
+        ),
+        None => format!(
+            "{id} did not rest on the cam once in {} revolutions: if it ever does, it is less than once in {:.0}.",
+            rests.revolutions,
+            1.0 / rests.rate
+        ),
+    })
+}
+
+/// A range of speeds.
+pub(crate) fn range([from, to]: [f64; 2]) -> Words {
+    words![(from, Digits::Fixed(2)), "–", (to, Digits::Fixed(2))]
+}
+
+/// The attractors, with where each begins and ends.
+pub(crate) fn table(found: &Speeds) -> Table {
     let columns = [
-        Column { gap: 2, ..Column::right("from (rpm)", 10) },
-        Column { gap: 1, ..Column::right("to (rpm)", 11) },
-        Column::left("motion", 2, 36),
-        Column::left("at the lower end", 1, 0),
+        Column::left("", 2, 3),
+        Column { gap: 1, ..Column::right("from (rpm)", 10) },
+        Column { gap: 1, ..Column::right("to (rpm)", 10) },
+        Column::left("motion", 2, 20),
+        Column { gap: 1, ..Column::right("starts (%)", 8) },
+        Column::left("begins with – ends with", 2, 0),
     ];
-    let mut table = Table::new(title, columns);
-    for Stretch { rpm: [from, to], settled, begins } in stretches {
-        let why = begins.as_ref().map_or(String::new(), |change| change.cause.words());
-        let [from, to] = [from, to].map(|rpm| words![(*rpm, Digits::Fixed(4))]);
-        table.row([from, to, words::motion(settled).into(), why.into()]);
+    let mut table = Table::new("Attractors by rising speed", columns);
+    for attractor in &found.attractors {
+        let shares = || attractor.at.iter().map(|at| 100.0 * at.share);
+        let [least, most] = [shares().fold(f64::INFINITY, f64::min), shares().fold(0.0, f64::max)];
+        let share = match (least, most) {
+            (least, most) if least.round() == most.round() => format!("{most:.0}"),
+            (least, most) if least.is_finite() => format!("{least:.0}–{most:.0}"),
+            _ => String::new(),
+        };
+        let ends = [&attractor.birth, &attractor.death];
+        let [from, to] = [0, 1].map(|side| speed(attractor.rpm[side], ends[side].as_ref()));
+        let ends = ends.map(|end| end.as_ref().map_or(String::new(), words::change)).join(" – ");
+        table.row([
+            attractor.id.as_str().into(),
+            from,
+            to,
+            words::attractor(attractor).into(),
+            share.into(),
+            ends.into(),
+        ]);
     }
     table
 }
 
-/// Ranges, the longest where there are many.
-fn listed(ranges: &[[f64; 2]]) -> String {
-    /// Ranges that fit a line.
-    const SHOWN: usize = 5;
-    let mut longest: Vec<[f64; 2]> = ranges.to_vec();
-    longest.sort_by(|one, two| (two[1] - two[0]).total_cmp(&(one[1] - one[0])));
-    longest.truncate(SHOWN);
-    longest.sort_by(|one, two| one[0].total_cmp(&two[0]));
-    let words: Vec<String> = longest.iter().map(|[low, high]| format!("{low:.2}-{high:.2}")).collect();
-    let more = ranges.len().saturating_sub(SHOWN);
-    let rest = if more > 0 { format!(" rpm, and {more} shorter") } else { " rpm".into() };
-    words.join(", ") + &rest
+/// A speed to the digits that it is known to.
+fn speed(rpm: f64, change: Option<&Change>) -> Words {
+    /// Of a located speed.
+    const LOCATED: f64 = 6.0;
+    let places = match change {
+        None => return words![(rpm, Digits::UpTo(LOCATED as usize))],
+        Some(change) if change.is_located() => LOCATED,
+        Some(change) => (-(change.bracket[1] - change.bracket[0]).log10()).ceil().clamp(0.0, LOCATED),
+    };
+    words![(rpm, Digits::Fixed(places as usize))]
 }

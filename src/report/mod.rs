@@ -15,8 +15,9 @@ use crate::report::quantities::{Quantity, quantities};
 use crate::report::through::ThroughCorner;
 use crate::show::command::command;
 use crate::show::words;
+use crate::study::attractors::{Resolution, Step};
 use crate::study::cam::CamSheet;
-use crate::study::speeds::{Care, Regimes, regimes, usual_speeds};
+use crate::study::speeds::{Speeds, speeds, usual_range};
 use crate::study::verify::{External, Tally, Verification, verify_watched};
 
 /// A report on one model; serializes to the document `corner-impact/report/1`.
@@ -35,7 +36,7 @@ pub struct Report {
     /// The paper's statements, where the model is the paper's.
     pub claims: Option<Claims>,
     /// What the follower does at other speeds, or why that is not known.
-    pub speeds: Result<Regimes, String>,
+    pub speeds: Result<Speeds, String>,
     /// The figures, in the paper's order.
     pub plates: Vec<Plate>,
     /// Commands that do all this again, each with what it does.
@@ -126,7 +127,9 @@ pub enum ReportError {
 }
 
 /// Speeds that are run for the section on other speeds.
-const SPEEDS: usize = 100;
+const SPEEDS: u32 = 100;
+/// Starts at each of them.
+const STARTS: usize = 32;
 /// Parts of the work that are done when each stage is, of one.
 const VERIFIED: f64 = 0.1;
 const HELD: f64 = 0.25;
@@ -146,7 +149,9 @@ impl Report {
             Ok(found) if is_paper => Some(Claims::hold(&Context::new(model, &cam, found)?, &part(VERIFIED, HELD))?),
             _ => None,
         };
-        let speeds = speeds(model, &part(HELD, SURVEYED));
+        let range = usual_range(model);
+        let resolution = Resolution { step: Step::for_speeds(range, SPEEDS), starts: STARTS };
+        let speeds = speeds(model, range, resolution, &part(HELD, SURVEYED)).map_err(|error| error.to_string());
         part(SURVEYED, THROUGH).at("the orbits on both sides of the corner impact", 0, 1);
         let through = verification.as_ref().map_err(String::clone).and_then(|found| through(model, &cam, found));
         let subject = Subject::with(model, verification.clone())?;
@@ -206,12 +211,6 @@ impl Watch for Part<'_> {
         let share = if total > 0 { done as f64 / total as f64 } else { 0.0 };
         self.watch.at(what, (STEPS * (self.from + (self.to - self.from) * share)) as u64, STEPS as u64);
     }
-}
-
-/// What the follower does at its usual speeds, or why that is not known.
-fn speeds(model: &Model, watch: &dyn Watch) -> Result<Regimes, String> {
-    let care = Care { speeds: SPEEDS, ..Care::default() };
-    regimes(model, usual_speeds(model), care, watch).map_err(|error| error.to_string())
 }
 
 fn commands(model: &Model, verified: bool) -> Vec<(String, &'static str)> {

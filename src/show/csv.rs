@@ -8,8 +8,10 @@ use crate::diagram::{Block, Row, Section, Seen, Sweep};
 use crate::flight::State;
 use crate::orbit::Eigenvalue;
 use crate::orbit::branch::{Branch, Kind};
+use crate::orbit::ending::Ending;
 use crate::simulate::{Event, Machine, Motion};
-use crate::study::basins::{Basins, Ending};
+use crate::study::basins::Basins;
+use crate::study::speeds::{At, Attractor, Speeds};
 
 /// The columns of a run's events.
 pub(crate) const EVENTS: &str =
@@ -93,10 +95,29 @@ pub(crate) fn basins(basins: &Basins) -> String {
     for (index, part) in basins.cells.iter().enumerate() {
         let State { position, velocity } = basins.grid.start(index);
         let ending = part.map(|part| &basins.parts[part].ending);
-        let orbit = ending.and_then(|ending| if let Ending::Orbit(orbit) = ending { Some(orbit) } else { None });
-        let (name, part) = (ending.map_or("", Ending::name), cell(*part));
-        let (turns, impacts) = (cell(orbit.map(|o| o.revolutions)), cell(orbit.map(|o| o.impacts().count())));
+        let (name, part) = (cell(ending.map(Ending::kind)), cell(*part));
+        let period = ending.and_then(Ending::period);
+        let (turns, impacts) = (cell(period.map(|period| period.0)), cell(period.map(|period| period.1)));
         let _ = writeln!(lines, "{position},{velocity},{name},{part},{turns},{impacts}");
+    }
+    lines
+}
+
+/// What each attractor is at each speed of the grid.
+pub(crate) fn speeds(found: &Speeds) -> String {
+    let mut lines =
+        String::from("rpm,attractor,kind,revolutions,impacts,growth_rate,growth_error,share,share_error,coexisting\n");
+    let mut all: Vec<(&Attractor, &At)> =
+        found.attractors.iter().flat_map(|attractor| attractor.at.iter().map(move |at| (attractor, at))).collect();
+    all.sort_by(|(_, one), (_, two)| one.rpm.total_cmp(&two.rpm));
+    for (attractor, at) in &all {
+        let coexisting = all.iter().filter(|(_, other)| other.rpm == at.rpm).count();
+        let (period, growth) = (at.ending.period(), at.ending.growth());
+        let (turns, impacts) = (cell(period.map(|period| period.0)), cell(period.map(|period| period.1)));
+        let (rate, error) = (cell(growth.map(|growth| growth.value)), cell(growth.map(|growth| growth.error)));
+        let (rpm, id, kind, share, share_error) = (at.rpm, &attractor.id, at.ending.kind(), at.share, at.error);
+        let _ =
+            writeln!(lines, "{rpm},{id},{kind},{turns},{impacts},{rate},{error},{share},{share_error},{coexisting}");
     }
     lines
 }

@@ -9,11 +9,12 @@ use crate::border_collision::long_run::End;
 use crate::border_collision::validity::{Compared, Ends};
 use crate::cam::Side;
 use crate::corner::map::RouteName;
+use crate::orbit::ending::{Ending, Kind};
 use crate::published::Verdict;
 use crate::show::block::{Mark, Symbol, Words, words};
 use crate::show::digits::Digits;
-use crate::study::basins::Ending;
-use crate::study::speeds::{Regime, Settled};
+use crate::study::attractors::{Cause, Change};
+use crate::study::speeds::Attractor;
 
 /// A route's name.
 pub(crate) fn route(name: RouteName) -> String {
@@ -153,15 +154,14 @@ pub(crate) fn end(end: &End) -> Words {
     }
 }
 
-/// What the follower does at a speed.
-pub(crate) fn regime(regime: Regime) -> &'static str {
-    match regime {
-        Regime::OnCam => "stays on the cam",
-        Regime::Chattering => "chatters and sticks",
-        Regime::Regular => "bounces regularly",
-        Regime::Chaotic => "chaotic",
-        Regime::Free => "never meets the cam",
-        Regime::Unsettled => "not settled",
+/// What the follower does in the long run.
+pub(crate) fn kind(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Stays => "stays on the cam",
+        Kind::Periodic => "periodic",
+        Kind::Resting => "rests on the cam",
+        Kind::Chaotic => "chaotic",
+        Kind::Undecided => "undecided",
     }
 }
 
@@ -169,27 +169,39 @@ pub(crate) fn many(count: u64, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
-/// What the long run at a speed is.
-pub(crate) fn motion(settled: &Settled) -> String {
-    let turns = |n| if n == 1 { "a revolution".to_owned() } else { many(n, "revolution") };
-    let name = regime(settled.regime);
-    match (settled.regime, settled.period()) {
-        (Regime::Regular, Some((n, impacts))) => format!("{} in {}", many(impacts as u64, "impact"), turns(n)),
-        (Regime::Chaotic, _) => format!("{name}, growth {:.2}", settled.growth.unwrap_or(f64::NAN)),
-        (Regime::Unsettled, _) => format!("{name}: no period found"),
-        _ => name.into(),
+/// A motion with its period: turns of the cam and impacts.
+fn motion(kind: Kind, revolutions: Option<u64>, impacts: Option<u64>) -> String {
+    let turns = |n: u64| if n == 1 { "a revolution".to_owned() } else { many(n, "revolution") };
+    match (kind, revolutions, impacts) {
+        (Kind::Periodic, Some(_), Some(0)) => "never meets the cam".into(),
+        (Kind::Periodic, Some(n), Some(impacts)) => format!("{} in {}", many(impacts, "impact"), turns(n)),
+        (Kind::Resting, Some(1), _) => "rests in each revolution".into(),
+        (Kind::Resting, Some(n), _) => format!("rests, period {}", many(n, "revolution")),
+        (Kind::Resting, None, _) => "rests now and then".into(),
+        _ => self::kind(kind).into(),
     }
 }
 
 /// What starts end on, in a legend.
 pub(crate) fn ending(ending: &Ending) -> String {
-    match ending {
-        Ending::Orbit(orbit) => {
-            format!("{} in {}", many(orbit.impacts().count() as u64, "impact"), many(orbit.revolutions, "revolution"))
-        }
-        Ending::Chaotic => "chaotic".into(),
-        Ending::Resting => "comes to rest, repeats later".into(),
-        Ending::Undecided => "undecided".into(),
+    let period = ending.period();
+    motion(ending.kind(), period.map(|(revolutions, _)| revolutions), period.map(|(_, impacts)| impacts))
+}
+
+/// An attractor over a range of speeds.
+pub(crate) fn attractor(attractor: &Attractor) -> String {
+    motion(attractor.kind, attractor.revolutions, attractor.impacts)
+}
+
+/// What an attractor begins or ends with.
+pub(crate) fn change(change: &Change) -> String {
+    match change.cause {
+        Cause::Fold => "fold".into(),
+        Cause::Flip => "flip".into(),
+        Cause::Graze { impacts: [before, after] } => format!("graze, {before} and {after} impacts"),
+        Cause::CornerImpact { cam_angle, .. } => format!("corner impact at {:.2} deg", cam_angle.to_degrees()),
+        Cause::Detachment => "detachment".into(),
+        Cause::Runs => "by runs".into(),
     }
 }
 

@@ -1,5 +1,6 @@
 //! One module per question that a user can ask.
 
+pub mod attractors;
 pub mod basins;
 pub mod cam;
 pub mod compared;

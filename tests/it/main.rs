@@ -2,6 +2,7 @@
 //! tests wait for.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod attractors;
 mod bad_commands;
 mod bad_input;
 mod border_collision;

@@ -232,57 +232,60 @@ fn the_type_changes_along_a_curve_of_corner_impacts() {
     assert!(words.contains("no corner impact of an orbit of 1 revolution"), "{words}");
 }
 
-#[test]
-#[ignore = "slow"]
-fn speeds_gives_the_short_answer() {
-    let answer = document(&["speeds", MODEL, "--rpm", "100:200", "--speeds", "30", "--json"]);
-    assert_eq!(answer["schema"], "corner-impact/speeds/1");
-    assert_relative_eq!(answer["detachment_rpm"].as_f64().unwrap(), 114.979_326_743_998, max_relative = 1e-12);
-    let regimes: Vec<&str> =
-        answer["regimes"].as_array().unwrap().iter().map(|entry| entry["regime"].as_str().unwrap()).collect();
-    assert_eq!(regimes, ["on-cam", "chattering"]);
-    assert_eq!(answer["hysteresis"].as_array().unwrap().len(), 0);
-
-    let answer = document(&["speeds", MODEL, "--rpm", "665:745", "--speeds", "41", "--json"]);
-    let falling = answer["falling"].as_array().unwrap();
-    let regular = falling.iter().find(|stretch| stretch["regime"] == "regular").unwrap();
-    // Falling speed loses the motion at the corner impact, and a branch says so.
-    assert_relative_eq!(regular["rpm"][0].as_f64().unwrap(), CORNER_IMPACT, max_relative = 1e-10);
-    assert!(regular["begins"]["cause"].as_str().unwrap().starts_with("corner impact at 150.1794 deg"));
-    assert_eq!(regular["begins"]["located"], true);
-    assert_relative_eq!(regular["rpm"][1].as_f64().unwrap(), 739.319_780_216, max_relative = 1e-10);
-    // Rising speed finds it later: hysteresis in between.
-    let hysteresis = answer["hysteresis"].as_array().unwrap();
-    let both = |entry: &&Value| entry["rising"]["regime"] == "chaotic" && entry["falling"]["regime"] == "regular";
-    let range = &hysteresis.iter().find(both).unwrap()["rpm"];
-    assert!(range[0].as_f64().unwrap() > 673.0 && range[1].as_f64().unwrap() < 683.0, "{range}");
-    let (page, _) = done(&["speeds", MODEL, "--rpm", "100:130", "--speeds", "10"]);
-    assert!(page.contains("leaves the cam first at   114.979327 rpm"), "{page}");
+/// The attractors of a document: kind, revolutions and impacts.
+fn motions(document: &Value) -> Vec<(&str, Option<u64>, Option<u64>)> {
+    let one = |entry: &Value| (entry["revolutions"].as_u64(), entry["impacts"].as_u64());
+    let all = document["attractors"].as_array().unwrap().iter();
+    all.map(|entry| (entry["kind"].as_str().unwrap(), one(entry).0, one(entry).1)).collect()
 }
 
-/// A flip and the corner impact after it, 0.06 rpm apart, between two speeds that are run; and on another cam the corner
-/// impact that an orbit of one impact begins in, and not that in which what was there before ends.
+#[test]
+fn speeds_gives_the_short_answer() {
+    let answer = document(&["speeds", MODEL, "--rpm", "100:130", "--step", "2", "--starts", "8", "--json"]);
+    assert_eq!(answer["schema"], "corner-impact/speeds/1");
+    assert_relative_eq!(answer["detachment_rpm"].as_f64().unwrap(), 114.979_326_743_998, max_relative = 1e-12);
+    assert_eq!(motions(&answer), [("stays", Some(1), Some(0)), ("resting", Some(1), None)]);
+    let [stays, rests] = [0, 1].map(|index| &answer["attractors"][index]);
+    assert_eq!((&stays["birth"], &rests["death"], &answer["coexistence"]), (&Value::Null, &Value::Null, &json!([])));
+    for end in [&stays["death"], &rests["birth"]] {
+        assert_eq!((end["cause"].as_str(), end["located"].as_bool()), (Some("detachment"), Some(true)));
+        assert_eq!(end["speed_rpm"], answer["detachment_rpm"]);
+    }
+    assert_eq!(
+        (stays["id"].as_str(), stays["from_rpm"].as_f64(), rests["to_rpm"].as_f64()),
+        (Some("A1"), Some(100.0), Some(130.0))
+    );
+    let shares = rests["shares"].as_array().unwrap();
+    assert_eq!((shares[0]["speed_rpm"].as_f64(), shares[0]["share"].as_f64()), (Some(116.0), Some(1.0)));
+    assert_eq!((shares[0]["error"].as_f64(), shares.len()), (Some(0.0), 8));
+    let (page, _) = done(&["speeds", MODEL, "--rpm", "100:130", "--step", "10", "--starts", "4"]);
+    assert!(page.contains("leaves the cam first at  114.979327 rpm"), "{page}");
+    let (table, _) = done(&["speeds", MODEL, "--rpm", "100:130", "--step", "10", "--starts", "4", "--out", "-"]);
+    assert!(table.starts_with("rpm,attractor,kind,revolutions,impacts,growth_rate,growth_error,share,"), "{table}");
+    assert!(table.lines().any(|line| line.starts_with("110,A1,stays,1,0,,,1,0,1")), "{table}");
+}
+
+/// A flip and the corner impact after it, 0.06 rpm apart, between two speeds that are run.
 #[test]
 #[ignore = "slow"]
-fn changes_between_two_speeds_are_told_apart() {
-    let answer = document(&["speeds", MODEL, "--rpm", "735:745", "--speeds", "31", "--json"]);
-    for walk in ["rising", "falling"] {
-        let stretches = answer[walk].as_array().unwrap();
-        let kinds: Vec<_> =
-            stretches.iter().map(|stretch| (&stretch["regime"], stretch["revolutions"].as_u64())).collect();
-        assert_eq!(kinds, [(&json!("regular"), Some(1)), (&json!("regular"), Some(2)), (&json!("chaotic"), None)]);
-        let begins = |index: usize| stretches[index]["begins"]["rpm"].as_f64().unwrap();
-        assert_relative_eq!(begins(1), 739.319_780_216, max_relative = 1e-10);
-        assert_relative_eq!(begins(2), 739.377_929_649, max_relative = 1e-10);
-        let cause = stretches[2]["begins"]["cause"].as_str().unwrap();
-        assert!(cause.starts_with("corner impact at 160.0000 deg"), "{cause}");
-    }
-    let law = concat!(env!("CARGO_MANIFEST_DIR"), "/models/laws/rectified-sine.toml");
-    let answer = document(&["speeds", law, "--rpm", "15:22", "--speeds", "15", "--json"]);
-    let rising = answer["rising"].as_array().unwrap();
-    let one = rising.iter().find(|stretch| stretch["revolutions"] == 1 && stretch["impacts"] == 1).unwrap();
-    // Others begin and end within a thousandth of an rpm of it.
-    assert_abs_diff_eq!(one["rpm"][0].as_f64().unwrap(), 18.479_838_427, epsilon = 1e-3);
+fn what_begins_and_ends_between_two_speeds_is_found() {
+    let answer = document(&["speeds", MODEL, "--rpm", "735:745", "--step", "1", "--starts", "16", "--json"]);
+    assert_eq!(motions(&answer)[..2], [("periodic", Some(1), Some(1)), ("periodic", Some(2), Some(2))]);
+    let [one, two, chaos] = [0, 1, 2].map(|index| &answer["attractors"][index]);
+    assert_eq!((chaos["kind"].as_str(), motions(&answer).len()), (Some("chaotic"), 3));
+    let end = |end: &Value, cause: &str, rpm: f64| {
+        assert_eq!((end["cause"].as_str(), end["located"].as_bool()), (Some(cause), Some(true)));
+        assert_relative_eq!(end["speed_rpm"].as_f64().unwrap(), rpm, max_relative = 1e-10);
+    };
+    end(&one["death"], "flip", 739.319_780_216);
+    end(&two["birth"], "flip", 739.319_780_216);
+    end(&two["death"], "corner-impact", 739.377_929_649);
+    assert_abs_diff_eq!(two["death"]["cam_angle_rad"].as_f64().unwrap().to_degrees(), 160.0, epsilon = 1e-9);
+    // What only runs know is bracketed, and the bracket holds the corner impact.
+    let (birth, bracket) = (&chaos["birth"], &chaos["birth"]["bracket_rpm"]);
+    assert_eq!((birth["cause"].as_str(), birth["located"].as_bool()), (Some("runs"), Some(false)));
+    let [low, high] = [0, 1].map(|side| bracket[side].as_f64().unwrap());
+    assert!(low <= 739.378 && 739.377 <= high && high - low < 4e-3, "{bracket}");
 }
 
 #[test]

@@ -9,7 +9,7 @@ use crate::flight::Flight;
 use crate::paper::context::{Context, Decision, decide};
 use crate::published::Verdict;
 use crate::simulate::{Event, Machine, SimulateError, angular_velocity};
-use crate::study::speeds;
+use crate::study::attractors;
 use crate::tolerance;
 
 /// Halves `[low, high]`, rpm, to the rounding of its ends, around the one speed from which on `is` is true.
@@ -36,7 +36,7 @@ pub(in crate::paper) fn detachment(context: &Context<'_>) -> Decision {
     for rpm in 1..=114 {
         silent += usize::from(first_event(f64::from(rpm))?.is_none());
     }
-    let found = speeds::detachment(context.model, [114.0, 116.0])?;
+    let found = attractors::detachment(context.model, [114.0, 116.0])?;
     let speed = found.ok_or("the follower does not leave the cam first between 114 and 116 rpm")?;
     let at = first_event(speed)?.unwrap_or(f64::NAN);
     let corners = context.cam.corners();

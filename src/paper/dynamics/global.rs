@@ -12,8 +12,9 @@ use crate::paper::context::{Context, Decision, decide};
 use crate::published::Verdict;
 use crate::section::StroboscopicMap;
 use crate::simulate::{SimulateError, angular_velocity};
+use crate::study::attractors::Patience;
 use crate::study::basins::boundary::{approach, border};
-use crate::study::basins::{Curve, Extent, Patience, Reversed, Saddle};
+use crate::study::basins::{Curve, Extent, Reversed, Saddle};
 use crate::tolerance;
 
 /// How far below the corner impact the revolutions are counted until the motion has left, rpm, and how far it is then, m.

@@ -1,10 +1,13 @@
 //! The border between two basins, from runs alone; and how near a saddle's unstable manifold comes to its stable manifold.
 
-use super::{Curve, Ending, Patience, Saddle, ending};
+use super::{Curve, Saddle};
 use crate::bracket::{Width, halve};
 use crate::flight::State;
+use crate::orbit::ending::Ending;
+use crate::orbit::fate::Settling;
 use crate::section::StroboscopicMap;
 use crate::simulate::SimulateError;
+use crate::study::attractors::Patience;
 use crate::tolerance;
 
 /// Where, between two starts on the section, runs change what they end on: the middle of a bracket that is halved down to
@@ -20,15 +23,17 @@ pub fn border(
         position: from.position + share * (to.position - from.position),
         velocity: from.velocity + share * (to.velocity - from.velocity),
     };
+    let settling = Settling::new(&map.machine, patience.longest)?;
     let end = |share: f64| -> Result<Ending, SimulateError> {
-        ending(&map.machine, map.machine.start(map.cam_angle, at(share))?, patience)
+        settling.ending(map.machine.start(map.cam_angle, at(share))?, patience.revolutions)
     };
     let (first, last) = (end(0.0)?, end(1.0)?);
     if first.is_same(&last) {
         return Ok(None);
     }
     // A chaotic run may come to rest by chance: an orbit, where one end has it, tells the two sides apart.
-    let ends_low = |ending: &Ending| if last.is_orbit() { !ending.is_same(&last) } else { ending.is_same(&first) };
+    let is_orbit = matches!(last, Ending::Orbit(_));
+    let ends_low = |ending: &Ending| if is_orbit { !ending.is_same(&last) } else { ending.is_same(&first) };
     let width = Width::Absolute(tolerance::BORDER_BRACKET.value);
     let [low, high] = halve([0.0, 1.0], width, |share| Ok(!ends_low(&end(share)?)))?;
     Ok(Some(at(0.5 * (low + high))))

@@ -1,14 +1,13 @@
 //! A grid of starts on a section, and the motion that each ends on.
 
-use std::sync::atomic::{AtomicU64, Ordering};
-
-use rayon::prelude::*;
 use serde::Serialize;
 
-use super::{Ending, Patience, ending};
 use crate::flight::State;
+use crate::orbit::ending::Ending;
+use crate::orbit::fate::Settling;
 use crate::progress::{Unwatched, Watch};
 use crate::simulate::{Machine, SimulateError};
+use crate::study::attractors::{Ensemble, Patience, Wandering};
 
 /// Starts on the section at one cam angle: the middles of cells, evenly spaced in position and velocity.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -60,20 +59,19 @@ impl Grid {
             builder = builder.num_threads(threads);
         }
         let pool = builder.build().map_err(|error| GridError::Threads(error.to_string()))?;
-        let (done, total) = (AtomicU64::new(0), self.cells.iter().product::<usize>() as u64);
-        let one = |cell: usize| {
-            watch.at("runs", done.fetch_add(1, Ordering::Relaxed), total);
-            let state = self.start(cell);
-            let motion = match machine.start(self.cam_angle, state) {
-                Ok(motion) => motion,
-                Err(SimulateError::BelowCam { .. }) => return Ok(None),
-                Err(error) => return Err(GridError::Simulate { state, error }),
-            };
-            ending(machine, motion, patience).map(Some).map_err(|error| GridError::Simulate { state, error })
+        let start = |cell: usize| match machine.start(self.cam_angle, self.start(cell)) {
+            Ok(motion) => Ok(Some(motion)),
+            Err(SimulateError::BelowCam { .. }) => Ok(None),
+            Err(error) => Err(error),
         };
-        let found: Result<Vec<Option<Ending>>, GridError> =
-            pool.install(|| (0..self.cells.iter().product()).into_par_iter().map(one).collect());
-        Ok(Basins::new(*self, found?))
+        let settling = Settling::new(machine, patience.longest).map_err(|error| self.failed(0, error))?;
+        let run = || Ensemble::of(&settling, patience, self.cells.iter().product(), start, watch);
+        let found = pool.install(run).map_err(|(cell, error)| self.failed(cell, error))?;
+        Ok(Basins::new(*self, found))
+    }
+
+    fn failed(&self, cell: usize, error: SimulateError) -> GridError {
+        GridError::Simulate { state: self.start(cell), error }
     }
 }
 
@@ -93,24 +91,17 @@ pub enum GridError {
     Threads(String),
 }
 
-// An orbit's numbers stand beside the name of the ending.
+// A period stands beside the kind.
 document!(Part as part {
-    ending: part.ending.name(),
-    revolutions if_any: part.orbit().map(|orbit| orbit.revolutions),
-    impacts if_any: part.orbit().map(|orbit| orbit.impacts().count()),
+    ending: part.ending.kind(),
+    revolutions if_any: part.ending.period().map(|(revolutions, _)| revolutions),
+    impacts if_any: part.ending.period().map(|(_, impacts)| impacts),
+    growth if_any: part.ending.growth().map(|growth| growth.value),
+    growth_error if_any: part.ending.growth().map(|growth| growth.error),
     starts: part.starts,
     share: part.share,
     share_standard_error: part.standard_error,
 });
-
-impl Part {
-    fn orbit(&self) -> Option<&crate::orbit::PeriodicOrbit> {
-        match &self.ending {
-            Ending::Orbit(orbit) => Some(orbit),
-            _ => None,
-        }
-    }
-}
 
 /// The starts of a grid that end alike.
 #[derive(Clone, Debug, PartialEq)]
@@ -137,33 +128,27 @@ pub struct Basins {
     /// The endings found, that of most starts first.
     #[serde(rename = "endings")]
     pub parts: Vec<Part>,
+    /// Runs that neither rested nor came to an orbit soon, all together.
+    pub wandering: Wandering,
     /// For each cell the index of its part; nothing where the start is below the cam.
     #[serde(skip)]
     pub cells: Vec<Option<usize>>,
 }
 
 impl Basins {
-    fn new(grid: Grid, endings: Vec<Option<Ending>>) -> Self {
-        let mut found: Vec<(Ending, Vec<usize>)> = Vec::new();
-        let mut cells = vec![None; endings.len()];
-        for (cell, ending) in endings.into_iter().enumerate() {
-            let Some(ending) = ending else { continue };
-            match found.iter_mut().find(|(known, _)| known.is_same(&ending)) {
-                Some((_, starts)) => starts.push(cell),
-                None => found.push((ending, vec![cell])),
-            }
-        }
+    fn new(grid: Grid, mut found: Ensemble) -> Self {
         // Stable: among parts of one size the first found comes first.
-        found.sort_by_key(|(_, starts)| std::cmp::Reverse(starts.len()));
-        let starts = found.iter().map(|(_, starts)| starts.len()).sum::<usize>();
+        found.parts.sort_by_key(|part| std::cmp::Reverse(part.starts.len()));
+        let mut cells = vec![None; grid.cells.iter().product()];
+        let starts = found.parts.iter().map(|part| part.starts.len()).sum::<usize>();
         let all = starts as f64;
-        let mut parts = Vec::with_capacity(found.len());
-        for (index, (ending, starts)) in found.into_iter().enumerate() {
-            starts.iter().for_each(|cell| cells[*cell] = Some(index));
-            let share = starts.len() as f64 / all;
+        let mut parts = Vec::with_capacity(found.parts.len());
+        for (index, part) in found.parts.into_iter().enumerate() {
+            part.starts.iter().for_each(|cell| cells[*cell] = Some(index));
+            let share = part.starts.len() as f64 / all;
             let standard_error = (share * (1.0 - share) / all).sqrt();
-            parts.push(Part { ending, starts: starts.len(), share, standard_error });
+            parts.push(Part { ending: part.ending, starts: part.starts.len(), share, standard_error });
         }
-        Self { grid, starts, parts, cells }
+        Self { grid, starts, parts, wandering: found.wandering, cells }
     }
 }

@@ -12,7 +12,6 @@ pub mod grid;
 pub mod manifold;
 mod section;
 
-pub use crate::orbit::settle::{Ending, Patience, ending};
 pub use grid::{Basins, Grid, GridError, Part};
 pub use manifold::{Curve, Extent, Reversed, Saddle};
 pub use section::{Border, Section, Summary};

@@ -2,9 +2,10 @@
 
 use serde::Serialize;
 
-use super::{Basins, Curve, Ending, Extent, Grid, Reversed, Saddle};
+use super::{Basins, Curve, Extent, Grid, Reversed, Saddle};
 use crate::flight::State;
 use crate::model::{Follower, Model};
+use crate::orbit::ending::Ending;
 use crate::orbit::{Course, PeriodicOrbit, Search, search};
 use crate::section::StroboscopicMap;
 use crate::study::{StudyError, machine};

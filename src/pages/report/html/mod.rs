@@ -18,7 +18,7 @@ use maud::{DOCTYPE, PreEscaped, html};
 
 use crate::pages::{local_map, verify};
 use crate::report::{Report, VERSION};
-use crate::show::block::{Block, Column, Section, Table};
+use crate::show::block::{Block, Section};
 use crate::show::html::{blocks, words};
 use crate::study::verify::Verification;
 
@@ -109,11 +109,6 @@ fn nowhere() -> Section {
         }
     };
     Section { id: "corner-impact", title: "Where the corner impact is".into(), blocks: vec![Block::Markup(words)] }
-}
-
-/// A table whose rows say by themselves what they are of.
-fn unheaded(label: &str, columns: usize) -> Table {
-    Table::new(label, vec![Column::words(""); columns])
 }
 
 /// Text that ends a `script` element neither by a tag nor by a comment.

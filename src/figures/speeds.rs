@@ -1,0 +1,88 @@
+//! Attractors over speeds: where their impacts fall, over which speeds each is there, and how many starts end on it.
+
+use crate::draw::{Axis, BREAK, Beside, Colour, Figure, Marker, Panel, Series, Spacing, Stroke, Word};
+use crate::figures::SPEED;
+use crate::figures::cam::CornerMark;
+use crate::figures::impacts::{WHOLE_CAM, impact_angles};
+use crate::orbit::ending::Kind;
+use crate::show::words;
+use crate::study::speeds::{Attractor, Speeds};
+
+/// Colours in turn: attractors that coexist follow one another.
+const COLOURS: [Colour; 4] = [Colour::Blue, Colour::Vermilion, Colour::Green, Colour::Purple];
+
+/// Each kind of motion with the stroke of its bar.
+const BARS: [(Kind, Stroke); 5] = [
+    (Kind::Stays, Stroke::Thick),
+    (Kind::Periodic, Stroke::Solid),
+    (Kind::Resting, Stroke::Dashed),
+    (Kind::Chaotic, Stroke::Dotted),
+    (Kind::Undecided, Stroke::Thin),
+];
+
+/// What `speeds` finds: impact phases in degrees, a bar for each attractor, and shares of starts, against the speed.
+pub fn speeds_figure(found: &Speeds, corners: &[CornerMark]) -> Figure {
+    let colour = |index: usize| COLOURS[index % COLOURS.len()];
+    let each = || found.attractors.iter().enumerate();
+    let shade = |top: f64| {
+        let corners = found.coexistence.iter().flat_map(|over| [BREAK, [over.from_rpm, top], [over.to_rpm, top]]);
+        Series::area("", Colour::Grey, Stroke::Thin, corners).if_any()
+    };
+    let mut impacts: Vec<Series> = shade(WHOLE_CAM[1]).into_iter().collect();
+    impacts.extend(each().filter_map(|(index, attractor)| {
+        let points =
+            attractor.at.iter().flat_map(|at| at.impact_angles.iter().map(|angle| [at.rpm, angle.to_degrees()]));
+        Series::points("", colour(index), Marker::Dot, points).if_any()
+    }));
+    let impacts = Panel::new(impact_angles().over(WHOLE_CAM), 0.42, impacts);
+    let impacts = Panel { marks: corners.iter().map(CornerMark::mark).collect(), ..impacts };
+    let shares = each().map(|(index, attractor)| {
+        let stroke = BARS.iter().find(|(kind, _)| *kind == attractor.kind).map_or(Stroke::Thin, |(_, stroke)| *stroke);
+        let points = attractor.at.iter().map(|at| [at.rpm, 100.0 * at.share]);
+        Series::line("", colour(index), stroke, points)
+    });
+    let shares = shade(SHARES[1]).into_iter().chain(shares).collect();
+    let shares = Panel::new(Axis::new("share of starts", "%").over(SHARES), 0.14, shares);
+    let title = format!("{}: attractors from {} to {} rpm", found.model, found.rpm[0], found.rpm[1]);
+    let axis = Axis::new(SPEED[0], SPEED[1]).over(found.rpm);
+    let mut figure = Figure::new(&title, axis, vec![impacts, bars(found), shares]);
+    if !found.coexistence.is_empty() {
+        figure.note = "grey: several attractors, each reached by runs".into();
+    }
+    figure
+}
+
+/// The axis of shares, a little wider than they can be.
+const SHARES: [f64; 2] = [-5.0, 105.0];
+
+/// The range of speeds of each attractor as a bar, stroked by its kind, in as few lanes as they fit into.
+fn bars(found: &Speeds) -> Panel {
+    /// Of the range: what a name takes, and what is left between two bars of a lane.
+    const NAME: f64 = 0.03;
+    const APART: f64 = 0.004;
+    let span = found.rpm[1] - found.rpm[0];
+    let mut lanes: Vec<f64> = Vec::new();
+    let placed: Vec<(&Attractor, f64)> = found
+        .attractors
+        .iter()
+        .map(|attractor| {
+            let [from, to] = attractor.rpm;
+            let lane = lanes.iter().position(|end| *end + APART * span < from).unwrap_or(lanes.len());
+            lanes.resize(lanes.len().max(lane + 1), f64::NEG_INFINITY);
+            lanes[lane] = to.max(from + NAME * span);
+            (attractor, -(lane as f64))
+        })
+        .collect();
+    let bars = BARS.iter().filter_map(|(kind, stroke)| {
+        let of_kind = placed.iter().filter(|(attractor, _)| attractor.kind == *kind);
+        let points =
+            of_kind.flat_map(|(attractor, lane)| [BREAK, [attractor.rpm[0], *lane], [attractor.rpm[1], *lane]]);
+        Series::line(words::kind(*kind), Colour::Ink, *stroke, points).if_any()
+    });
+    let names =
+        placed.iter().map(|(attractor, lane)| Word::new([attractor.rpm[0], *lane], &attractor.id, Beside::AboveRight));
+    let series = bars.chain(Series::words(names).if_any()).collect();
+    let lanes = [-(lanes.len() as f64) + 0.5, 0.9];
+    let axis = Axis { spacing: Spacing::Nothing, ..Axis::new("attractor", "").over(lanes) };
+    Panel::new(axis, 0.06 + 0.03 * (lanes[1] - lanes[0]), series)
+}

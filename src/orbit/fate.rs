@@ -1,0 +1,282 @@
+//! What runs come to: the one answer to it.
+//!
+//! A run that rests on the cam has no past: the cam lets go of it at an angle that the speed decides, and what follows is the
+//! same each time. So all that comes of a rest is found once for each release, however many runs rest ([`Settling::fate`]).
+
+use std::ops::ControlFlow;
+
+use super::cycle::lift_size;
+use super::ending::{Ending, Kind, Resting, is_same_release};
+use super::search::with_one_impact;
+use super::settle::{free, settled};
+use super::{Course, PeriodicOrbit};
+use crate::diagram::{Exponent, exponent};
+use crate::flight::State;
+use crate::simulate::{Event, EventKind, Goal, Machine, Motion, SimulateError};
+use crate::tolerance;
+
+/// What a run comes to within so many revolutions.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Run {
+    /// A stable periodic orbit.
+    Arrives(PeriodicOrbit),
+    /// It stays on the cam for good.
+    Stays,
+    /// It has rested on the cam, which let go of it at this angle, rad.
+    Released(f64),
+    /// None of these.
+    Wanders,
+}
+
+/// What follows a release.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Fate {
+    /// The same release again, in the end.
+    Recurs(Resting),
+    /// A stable periodic orbit, and the run at it.
+    Arrives(PeriodicOrbit, Motion),
+    /// Neither within [`LONGEST_REST`] revolutions from one rest to the next; and where the run was when it had settled.
+    Wanders(Motion),
+}
+
+/// Revolutions that are waited for the next rest of a follower that has rested.
+pub const LONGEST_REST: u64 = 20_000;
+
+/// Blocks, and revolutions of each, over which growth is averaged.
+const BLOCKS: (u64, u64) = (64, 25);
+/// Revolutions after which a run has forgotten its start, if it is to be told by how it goes on.
+const SETTLED: u64 = 100;
+
+/// The runs of one machine, with the stable orbits of it that are known beforehand: a run that comes to one of them is told
+/// sooner, and ends on the same orbit to the last bit as any other run that does.
+#[derive(Clone, Debug)]
+pub struct Settling<'a> {
+    /// What turns.
+    pub machine: &'a Machine,
+    /// The longest period looked for, revolutions.
+    longest: u64,
+    /// With the states as the cam passes angle 0.
+    known: Vec<(PeriodicOrbit, Vec<State>)>,
+}
+
+impl<'a> Settling<'a> {
+    /// Of `machine`; runs are looked at for orbits of up to `longest` revolutions, and those of one impact are found without.
+    pub fn new(machine: &'a Machine, longest: u64) -> Result<Self, SimulateError> {
+        /// The most revolutions of an orbit with one impact.
+        const ONE_IMPACT: u64 = 3;
+        let mut new = Self { machine, longest, known: Vec::new() };
+        for orbit in (1..=ONE_IMPACT).flat_map(|revolutions| with_one_impact(machine, revolutions)) {
+            new.know(&orbit)?;
+        }
+        Ok(new)
+    }
+
+    /// The orbits known.
+    pub fn known(&self) -> impl Iterator<Item = &PeriodicOrbit> {
+        self.known.iter().map(|(orbit, _)| orbit)
+    }
+
+    /// Takes note of an orbit, if it is stable, meets the cam without resting on it, and is not known.
+    pub fn know(&mut self, orbit: &PeriodicOrbit) -> Result<(), SimulateError> {
+        if draws(orbit) && !self.known.iter().any(|(known, _)| known.is_same(orbit)) {
+            self.known.push((orbit.clone(), passages(self.machine, orbit)?));
+        }
+        Ok(())
+    }
+
+    /// Runs `motion` for up to `revolutions`, or to where it is told what it comes to.
+    ///
+    /// An orbit counts where the run repeats nearly, Newton's method leads from there to a stable one, and the run's distance
+    /// from that shrinks as its multipliers say: a chaotic run now and then passes by a stable orbit outside of its basin.
+    pub fn run(&self, motion: &mut Motion, revolutions: u64) -> Result<Run, SimulateError> {
+        self.counted(motion, revolutions, &mut 0)
+    }
+
+    /// The same, with the impacts on the way added to a number.
+    fn counted(&self, motion: &mut Motion, revolutions: u64, impacts: &mut u64) -> Result<Run, SimulateError> {
+        /// Revolutions before the first look for an orbit that is not known: what most starts near one need.
+        const FIRST: u64 = 50;
+        /// Revolutions from one look for a known orbit to the next.
+        const OFTEN: u64 = 8;
+        // Orbits are compared as the cam passes angle 0.
+        if motion.cam_angle > 0.0
+            && let Some(release) = self.to_release(motion, motion.next(0.0), impacts)?
+        {
+            return Ok(Run::Released(release));
+        }
+        let (mut ran, mut look) = (0, FIRST.min(revolutions));
+        while ran < revolutions {
+            let stretch = OFTEN.min(look - ran);
+            if let Some(release) = self.to_release(motion, motion.after(stretch), impacts)? {
+                return Ok(Run::Released(release));
+            }
+            ran += stretch;
+            if motion.contact && self.stays(*motion)? {
+                return Ok(Run::Stays);
+            }
+            let (flight, top) = (self.machine.flight(), self.machine.cam().top());
+            if motion.state.position > top
+                && flight.fall_to(top, motion.state).is_none()
+                && let Some(orbit) = free(self.machine, motion.state)
+            {
+                return Ok(Run::Arrives(orbit));
+            }
+            for (orbit, states) in &self.known {
+                if self.has_arrived(*motion, orbit, states)? {
+                    return Ok(Run::Arrives(orbit.clone()));
+                }
+            }
+            if ran < look {
+                continue;
+            }
+            look = revolutions.min(2 * look);
+            if let Some(orbit) = settled(self.machine, *motion, 0, self.longest)?.filter(draws)
+                && self.has_arrived(*motion, &orbit, &passages(self.machine, &orbit)?)?
+            {
+                return Ok(Run::Arrives(orbit));
+            }
+        }
+        Ok(Run::Wanders)
+    }
+
+    /// What a run from `motion` ends on, if it is waited for so many revolutions, and from a release on as long as for any.
+    pub fn ending(&self, mut motion: Motion, revolutions: u64) -> Result<Ending, SimulateError> {
+        match self.run(&mut motion, revolutions)? {
+            Run::Arrives(orbit) => Ok(Ending::Orbit(orbit)),
+            Run::Stays => Ok(Ending::Stays),
+            Run::Released(cam_angle) => self.after(&self.fate(cam_angle)?),
+            Run::Wanders => self.by_growth(motion),
+        }
+    }
+
+    /// What a run ends on that has come to a release.
+    pub fn after(&self, fate: &Fate) -> Result<Ending, SimulateError> {
+        match fate {
+            Fate::Recurs(resting) => Ok(Ending::Resting(resting.clone())),
+            Fate::Arrives(orbit, _) => Ok(Ending::Orbit(orbit.clone())),
+            Fate::Wanders(motion) => Ok(Ending::by_growth(self.growth(*motion)?.growth)),
+        }
+    }
+
+    /// Runs `motion` to where the cam lets go of it, rad, if it does so before the goal, and counts the impacts on the way.
+    fn to_release(&self, motion: &mut Motion, goal: Goal, impacts: &mut u64) -> Result<Option<f64>, SimulateError> {
+        let flow = self.machine.advance(motion, goal, &mut |event: &Event| {
+            *impacts += u64::from(event.kind == EventKind::Impact);
+            if event.kind == EventKind::Release { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        })?;
+        Ok(flow.is_break().then_some(motion.cam_angle))
+    }
+
+    /// Whether nothing happens in the next revolution of a follower on the cam: it stays there.
+    fn stays(&self, mut motion: Motion) -> Result<bool, SimulateError> {
+        let goal = motion.after(1);
+        Ok(self.machine.advance(&mut motion, goal, &mut |_: &Event| ControlFlow::Break(()))?.is_continue())
+    }
+
+    /// Whether `motion`, at cam angle 0, is so near to a stable orbit, with its `states` there, that it stays: its distance
+    /// shrinks by what the multipliers say.
+    fn has_arrived(&self, mut motion: Motion, orbit: &PeriodicOrbit, states: &[State]) -> Result<bool, SimulateError> {
+        /// Periods in which the distance is to shrink, at most.
+        const MOST: f64 = 100.0;
+        let (size, omega) = (lift_size(self.machine), self.machine.angular_velocity());
+        let distance = |motion: &Motion| {
+            states.iter().map(|state| motion.state.apart(*state, omega)).fold(f64::INFINITY, f64::min)
+        };
+        let first = distance(&motion);
+        if first > tolerance::NEARLY_REPEATS.value * size {
+            return Ok(false);
+        }
+        let modulus = orbit.multipliers().iter().fold(0.0_f64, |largest, one| largest.max(one.modulus()));
+        // As many periods as leave a tenth, or as can be waited for.
+        let periods = (0.1_f64.ln() / modulus.ln()).ceil().clamp(1.0, MOST);
+        let goal = motion.after(periods as u64 * orbit.revolutions);
+        if self.to_release(&mut motion, goal, &mut 0)?.is_some() {
+            return Ok(false);
+        }
+        let shrunk = 0.5 * (1.0 + modulus.powf(periods)) * first;
+        Ok(distance(&motion) <= shrunk.max(tolerance::ORBIT_CLOSURE.value * size))
+    }
+
+    /// What follows a release at `cam_angle`, rad.
+    pub fn fate(&self, cam_angle: f64) -> Result<Fate, SimulateError> {
+        // Each release with the revolutions and impacts from the first to it.
+        let mut releases = vec![(cam_angle, 0, 0)];
+        loop {
+            let (release, turned, met) = releases[releases.len() - 1];
+            let begun = self.released(release)?;
+            let (mut motion, mut impacts) = (begun, met);
+            let next = match self.counted(&mut motion, LONGEST_REST, &mut impacts)? {
+                Run::Arrives(orbit) => return Ok(Fate::Arrives(orbit, motion)),
+                Run::Stays | Run::Wanders => {
+                    // Long before the end, where the follower may be about to rest.
+                    motion = begun;
+                    self.machine.revolve(&mut motion, SETTLED)?;
+                    return Ok(Fate::Wanders(motion));
+                }
+                Run::Released(next) => next,
+            };
+            let turned = turned + motion.revolution - begun.revolution;
+            if let Some(first) = releases.iter().position(|(known, ..)| is_same_release(*known, next)) {
+                let (_, turned_before, met_before) = releases[first];
+                let releases: Vec<f64> = releases[first..].iter().map(|(angle, ..)| *angle).collect();
+                let growth =
+                    releases.iter().try_fold(0.0_f64, |most, release| self.grown(*release).map(|g| most.max(g)))?;
+                let (revolutions, impacts) = (turned - turned_before, impacts - met_before);
+                return Ok(Fate::Recurs(Resting { releases, revolutions, impacts, growth }));
+            }
+            releases.push((next, turned, impacts));
+        }
+    }
+
+    /// What a deviation grows by from a release, rad, to the next rest, a natural logarithm: of a long way, that of its beginning.
+    fn grown(&self, cam_angle: f64) -> Result<f64, SimulateError> {
+        /// Revolutions after which a deviation is as large as the motion, if it is to be at all.
+        const LOOKED_AT: u32 = 200;
+        let found = exponent(self.machine, self.released(cam_angle)?, LOOKED_AT, 1)?;
+        // Of fewer than two revolutions there is no mean, and nothing that could grow far.
+        Ok(if found.blocks < 2 { 0.0 } else { found.growth.value * found.blocks as f64 })
+    }
+
+    /// A follower of which the cam lets go at an angle, rad.
+    pub fn released(&self, cam_angle: f64) -> Result<Motion, SimulateError> {
+        let mut motion = self.machine.start_on_cam(cam_angle, 0.0)?;
+        if motion.contact {
+            let goal = motion.after(1);
+            self.to_release(&mut motion, goal, &mut 0)?;
+        }
+        Ok(motion)
+    }
+
+    /// Chaotic or undecided, by the growth of a small deviation of `motion`; or what it ends on if it rests before that is known.
+    pub fn by_growth(&self, mut motion: Motion) -> Result<Ending, SimulateError> {
+        let found = self.growth(motion)?;
+        let told = Ending::by_growth(found.growth);
+        if found.rests
+            && told.kind() == Kind::Undecided
+            && let Run::Released(cam_angle) = self.run(&mut motion, BLOCKS.0 * BLOCKS.1)?
+        {
+            return self.after(&self.fate(cam_angle)?);
+        }
+        Ok(told)
+    }
+
+    fn growth(&self, motion: Motion) -> Result<Exponent, SimulateError> {
+        exponent(self.machine, motion, BLOCKS.0 as u32, BLOCKS.1)
+    }
+}
+
+/// Whether runs come to `orbit`, and do not rest on the way.
+fn draws(orbit: &PeriodicOrbit) -> bool {
+    orbit.is_stable() && matches!(orbit.course, Course::Impacts(_))
+}
+
+/// The states of an orbit as the cam passes angle 0, revolution by revolution.
+fn passages(machine: &Machine, orbit: &PeriodicOrbit) -> Result<Vec<State>, SimulateError> {
+    let mut motion = machine.start(0.0, orbit.state)?;
+    let mut states = vec![motion.state];
+    for _ in 1..orbit.revolutions {
+        machine.revolve(&mut motion, 1)?;
+        states.push(motion.state);
+    }
+    Ok(states)
+}

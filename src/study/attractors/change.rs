@@ -1,0 +1,105 @@
+//! Where an attractor begins or ends, and why.
+
+use serde::Serialize;
+
+use crate::orbit::Course;
+use crate::orbit::branch::{BranchPoint, Kind};
+
+/// Where an attractor begins or ends.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Change {
+    /// Where, rpm.
+    pub rpm: f64,
+    /// Between which speeds, rpm.
+    pub bracket: [f64; 2],
+    /// Why.
+    pub cause: Cause,
+}
+
+// Located is where the equations of the event were solved, and not a bracket of runs.
+document!(Change as it {
+    cause: it.cause.name(),
+    speed_rpm: it.rpm,
+    located: it.is_located(),
+    bracket_rpm: it.bracket,
+    cam_angle_rad if_any: it.cause.corner().map(|(angle, _)| angle),
+    jump_order if_any: it.cause.corner().map(|(_, order)| order),
+});
+
+/// Why an attractor begins or ends.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Cause {
+    /// A multiplier of the orbit passes 1.
+    Fold,
+    /// A multiplier of the orbit passes -1.
+    Flip,
+    /// A flight touches the cam: an impact more or less.
+    Graze {
+        /// Impacts before and after, in the direction in which the orbit was followed.
+        impacts: [usize; 2],
+    },
+    /// An impact at a corner of the cam.
+    CornerImpact {
+        /// Where the corner is, rad.
+        cam_angle: f64,
+        /// The lowest derivative of the lift that jumps there.
+        jump_order: usize,
+    },
+    /// The follower leaves the cam for the first time.
+    Detachment,
+    /// Runs end on it on one side, and on the other no more.
+    Runs,
+}
+
+impl Cause {
+    /// Its name in documents.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Fold => "fold",
+            Self::Flip => "flip",
+            Self::Graze { .. } => "graze",
+            Self::CornerImpact { .. } => "corner-impact",
+            Self::Detachment => "detachment",
+            Self::Runs => "runs",
+        }
+    }
+
+    fn corner(self) -> Option<(f64, usize)> {
+        match self {
+            Self::CornerImpact { cam_angle, jump_order } => Some((cam_angle, jump_order)),
+            _ => None,
+        }
+    }
+}
+
+impl Change {
+    /// At a special point of a branch.
+    pub fn of_point(point: &BranchPoint) -> Self {
+        let rpm = point.rpm;
+        let Some(special) = point.special else { return Self::by_runs([rpm; 2]) };
+        let cause = match (special.kind, &point.orbit.course) {
+            // Where another branch crosses, a multiplier passes 1 as well.
+            (Kind::Fold | Kind::Branching, _) => Cause::Fold,
+            (Kind::Flip, _) => Cause::Flip,
+            (Kind::Graze { before, after }, _) => Cause::Graze { impacts: [before, after] },
+            (Kind::Corner { impact, jump_order, .. }, Course::Impacts(cycle)) => {
+                let cam_angle = cycle.impacts.get(impact).map_or(f64::NAN, |impact| impact.cam_angle);
+                Cause::CornerImpact { cam_angle: cam_angle.rem_euclid(std::f64::consts::TAU), jump_order }
+            }
+            (Kind::Detachment, _) => Cause::Detachment,
+            (Kind::Corner { .. } | Kind::Chatter | Kind::Type { .. }, _) => Cause::Runs,
+        };
+        Self { rpm, bracket: special.bracket, cause }
+    }
+
+    /// Somewhere between two speeds, rpm.
+    pub fn by_runs([low, high]: [f64; 2]) -> Self {
+        Self { rpm: 0.5 * (low + high), bracket: [low, high], cause: Cause::Runs }
+    }
+
+    /// Whether the event's own equations were solved.
+    pub fn is_located(&self) -> bool {
+        self.cause != Cause::Runs
+    }
+}

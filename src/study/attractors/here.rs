@@ -1,0 +1,83 @@
+//! The attractors at one speed.
+
+use super::ensemble::{Ensemble, Part, Patience, Wandering};
+use super::starts::Starts;
+use crate::orbit::ending::Ending;
+use crate::orbit::fate::{Run, Settling};
+use crate::progress::Unwatched;
+use crate::simulate::{Machine, Motion, SimulateError, angular_velocity};
+
+/// What a machine does in the long run at one speed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Here {
+    /// Speed, rpm.
+    pub rpm: f64,
+    /// The motions that were found; starts below `sampled` are the sample's.
+    pub parts: Vec<Part>,
+    /// How many starts of the sample were run.
+    pub sampled: usize,
+    /// The runs that were waited for longest.
+    pub wandering: Wandering,
+}
+
+/// Angles at which a follower is put on the cam, to rest there.
+const RESTS: usize = 36;
+
+impl Here {
+    /// At `rpm`, from `sampled` starts of [`Starts`], from rest on the cam, and with the stable orbits that a search finds.
+    pub fn new(machine: &Machine, rpm: f64, sampled: usize) -> Result<Self, SimulateError> {
+        let machine = machine.at_speed(angular_velocity(rpm));
+        let patience = Patience::default();
+        let settling = Settling::new(&machine, patience.longest)?;
+        let known: Vec<Motion> =
+            settling.known().map(|orbit| machine.start(0.0, orbit.state)).collect::<Result<_, _>>()?;
+        let starts = Starts::of(&machine);
+        let start = |index: usize| {
+            if index < sampled {
+                return starts.motion(&machine, index).map(Some);
+            }
+            match index - sampled {
+                rest if rest < RESTS => {
+                    let angle = std::f64::consts::TAU * rest as f64 / RESTS as f64;
+                    machine.start_on_cam(angle, 0.0).map(|motion| motion.contact.then_some(motion))
+                }
+                orbit => Ok(known.get(orbit - RESTS).copied()),
+            }
+        };
+        let count = sampled + RESTS + known.len();
+        let Ensemble { parts, wandering } =
+            Ensemble::of(&settling, patience, count, start, &Unwatched).map_err(|(_, error)| error)?;
+        Ok(Self { rpm, parts, sampled, wandering })
+    }
+
+    /// How many of the sample's starts end on a part.
+    pub fn count(&self, part: &Part) -> usize {
+        part.starts.iter().filter(|start| **start < self.sampled).count()
+    }
+
+    /// What the motion of another speed comes to at this one, if that is an attractor which was not found here.
+    pub fn follow(&self, machine: &Machine, motion: &Motion) -> Result<Option<Part>, SimulateError> {
+        /// Revolutions after which a motion that still wanders is one that does.
+        const WAITED: u64 = 20_000;
+        let machine = machine.at_speed(angular_velocity(self.rpm));
+        // At another speed the cam may have come to where the follower is.
+        let Ok(mut motion) = machine.resume(motion) else { return Ok(None) };
+        let mut settling = Settling::new(&machine, Patience::default().longest)?;
+        for part in &self.parts {
+            if let Ending::Orbit(orbit) = &part.ending {
+                settling.know(orbit)?;
+            }
+        }
+        let ending = match settling.run(&mut motion, WAITED)? {
+            Run::Arrives(orbit) => Ending::Orbit(orbit),
+            Run::Stays => Ending::Stays,
+            Run::Released(release) => settling.after(&settling.fate(release)?)?,
+            Run::Wanders => settling.by_growth(motion)?,
+        };
+        let is_new = !self.parts.iter().any(|part| part.ending.is_same(&ending));
+        // What wanders where others have left is on its way, too.
+        let is_on_its_way =
+            matches!(ending, Ending::Undecided(_)) || (self.wandering.left > 0 && ending.period().is_none());
+        Ok((is_new && !is_on_its_way).then_some(Part { ending, starts: Vec::new(), motion }))
+    }
+}

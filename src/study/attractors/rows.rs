@@ -1,0 +1,332 @@
+//! Attractors over a range of speeds: what was found at one speed matched with what was found at the next.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+
+use super::change::{Cause, Change};
+use super::here::Here;
+use super::stretch::Stretch;
+use crate::bracket::{Width, halve};
+use crate::model::Model;
+use crate::orbit::ending::{Ending, Kind};
+use crate::orbit::settle::close;
+use crate::orbit::{Course, PeriodicOrbit};
+use crate::simulate::{Machine, SimulateError, angular_velocity};
+use crate::tolerance;
+
+/// What holds a motion together from one speed to the next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Class {
+    /// The follower stays on the cam.
+    Stays,
+    /// Its revolutions and impacts.
+    Orbit(u64, u64),
+    /// It rests in every revolution, after as many impacts as it takes.
+    Rests,
+    /// It rests sooner or later, or bounces on: whether it is seen to repeat, and after how long, changes with every speed.
+    Irregular,
+    /// What could not be told.
+    Undecided,
+}
+
+impl Class {
+    fn of(ending: &Ending) -> Self {
+        match ending {
+            Ending::Stays => Self::Stays,
+            Ending::Orbit(orbit) => Self::Orbit(orbit.revolutions, orbit.impacts().count() as u64),
+            Ending::Resting(resting) if resting.revolutions == 1 => Self::Rests,
+            Ending::Resting(_) | Ending::Chaotic(_) => Self::Irregular,
+            Ending::Undecided(_) => Self::Undecided,
+        }
+    }
+}
+
+/// An attractor over a range of speeds.
+#[derive(Clone, Debug)]
+pub struct Row {
+    class: Class,
+    /// The part that it is at speeds of the grid, by their indices.
+    pub at: BTreeMap<usize, usize>,
+    /// What it begins and ends with, by rising speed; nothing at the ends of the grid.
+    pub ends: [Option<Change>; 2],
+    /// Its lowest and highest speed, rpm.
+    pub rpm: [f64; 2],
+    stretch: Option<Stretch>,
+}
+
+/// The speeds that were looked at, by rising speed, with what was found at each or why nothing was.
+pub type Grid = [Result<Here, (f64, SimulateError)>];
+
+/// Matches what was found over a grid of speeds.
+pub fn rows(model: &Model, machine: &Machine, grid: &mut Grid) -> Vec<Row> {
+    let mut rows = linked(machine, grid);
+    let step = step(grid);
+    rows.par_iter_mut().for_each(|row| row.follow(model, grid, step));
+    let mut rows = joined(rows);
+    beyond(model, machine, &mut rows, step);
+    for row in &mut rows {
+        row.fill(machine, grid);
+    }
+    let mut rows = joined(rows);
+    rows.par_iter_mut().for_each(|row| row.narrow(machine, grid));
+    rows.sort_by(|one, two| one.rpm[0].total_cmp(&two.rpm[0]).then(one.rpm[1].total_cmp(&two.rpm[1])));
+    rows
+}
+
+fn speed(found: &Result<Here, (f64, SimulateError)>) -> f64 {
+    match found {
+        Ok(here) => here.rpm,
+        Err((rpm, _)) => *rpm,
+    }
+}
+
+fn step(grid: &Grid) -> f64 {
+    grid.windows(2).map(|pair| speed(&pair[1]) - speed(&pair[0])).fold(0.0, f64::max)
+}
+
+/// Rows by what one speed and the next have in common.
+fn linked(machine: &Machine, grid: &Grid) -> Vec<Row> {
+    let mut rows: Vec<Row> = Vec::new();
+    for (index, found) in grid.iter().enumerate() {
+        let Ok(here) = found else { continue };
+        let machine = machine.at_speed(angular_velocity(here.rpm));
+        for (place, part) in here.parts.iter().enumerate() {
+            let class = Class::of(&part.ending);
+            let before = |row: &Row| {
+                let before = index.checked_sub(1)?;
+                let part = *row.at.get(&before)?;
+                Some(&grid[before].as_ref().ok()?.parts.get(part)?.ending)
+            };
+            let goes_on = |row: &Row| {
+                let is_free = row.class == class && !row.at.contains_key(&index);
+                is_free && before(row).is_some_and(|before| is_next(&machine, before, &part.ending))
+            };
+            // Of several irregular motions those of one kind belong together.
+            let is_alike = |row: &Row| before(row).is_some_and(|before| before.kind() == part.ending.kind());
+            let open: Vec<usize> = (0..rows.len()).filter(|row| goes_on(&rows[*row])).collect();
+            let row = open.iter().find(|row| is_alike(&rows[**row])).or(open.first()).copied();
+            match row.and_then(|row| rows.get_mut(row)) {
+                Some(row) => {
+                    row.at.insert(index, place);
+                    row.rpm[1] = here.rpm;
+                }
+                None => rows.push(Row {
+                    class,
+                    at: BTreeMap::from([(index, place)]),
+                    ends: [None, None],
+                    rpm: [here.rpm; 2],
+                    stretch: None,
+                }),
+            }
+        }
+    }
+    rows
+}
+
+/// Whether Newton's method leads from an orbit of one speed to that of the next; of other motions there is one of a class.
+fn is_next(machine: &Machine, before: &Ending, now: &Ending) -> bool {
+    match (before, now) {
+        (Ending::Orbit(before), Ending::Orbit(now)) => {
+            at_speed(machine, before).is_some_and(|orbit| orbit.is_same(now))
+        }
+        _ => true,
+    }
+}
+
+/// The orbit of this machine near that of a machine at a neighbouring speed.
+fn at_speed(machine: &Machine, orbit: &PeriodicOrbit) -> Option<PeriodicOrbit> {
+    match &orbit.course {
+        Course::Impacts(cycle) => close(machine, cycle),
+        Course::Sticking(_) => None,
+        Course::Free => Some(orbit.clone()),
+    }
+}
+
+/// Adds the orbits that runs come to right beyond where another has ended, and those beyond their ends in turn: between two
+/// speeds of the grid there is room for several.
+fn beyond(model: &Model, machine: &Machine, rows: &mut Vec<Row>, step: f64) {
+    /// How often that is done.
+    const DEPTH: usize = 3;
+    let mut fresh = 0;
+    for _ in 0..DEPTH {
+        let ended = rows[fresh..].par_iter().filter_map(|row| row.stretch.as_ref());
+        let found: Vec<(f64, PeriodicOrbit)> = ended.flat_map_iter(|stretch| stretch.beyond(machine, step)).collect();
+        fresh = rows.len();
+        for (rpm, orbit) in found {
+            let here = machine.at_speed(angular_velocity(rpm));
+            let holds = |row: &Row| {
+                let near = row.stretch.as_ref().and_then(|stretch| stretch.near(rpm));
+                near.and_then(|near| at_speed(&here, near)).is_some_and(|known| known.is_same(&orbit))
+            };
+            if rows.iter().any(holds) {
+                continue;
+            }
+            let class = Class::of(&Ending::Orbit(orbit.clone()));
+            let mut row = Row { class, at: BTreeMap::new(), ends: [None, None], rpm: [rpm; 2], stretch: None };
+            if let Ok(stretch) = Stretch::all(model, rpm, &orbit, row.rpm, step) {
+                row.take(stretch);
+                rows.push(row);
+            }
+        }
+        if fresh == rows.len() {
+            return;
+        }
+    }
+}
+
+/// Rows that are on one stretch of one branch, as one.
+fn joined(rows: Vec<Row>) -> Vec<Row> {
+    let mut joined: Vec<Row> = Vec::new();
+    for row in rows {
+        let same = |known: &&mut Row| {
+            let near = |one: f64, two: f64| (one - two).abs() <= tolerance::SAME_ORBIT.value * one.abs();
+            known.class == row.class
+                && known.stretch.is_some()
+                && row.stretch.is_some()
+                && near(known.rpm[0], row.rpm[0])
+                && near(known.rpm[1], row.rpm[1])
+                && row.at.iter().all(|(index, part)| known.at.get(index).is_none_or(|other| other == part))
+                && known.at.len() + row.at.len() > 0
+        };
+        match joined.iter_mut().find(same) {
+            Some(known) => known.at.extend(row.at),
+            None => joined.push(row),
+        }
+    }
+    joined
+}
+
+impl Row {
+    fn ending<'a>(&self, grid: &'a Grid, index: usize) -> Option<&'a Ending> {
+        let here = grid.get(index)?.as_ref().ok()?;
+        Some(&here.parts.get(*self.at.get(&index)?)?.ending)
+    }
+
+    /// Follows the branch of an orbit to where it ceases to be stable.
+    fn follow(&mut self, model: &Model, grid: &Grid, step: f64) {
+        let middle = self.at.keys().nth(self.at.len() / 2).copied();
+        if let Some(index) = middle
+            && let Some(Ending::Orbit(orbit)) = self.ending(grid, index)
+            && let Ok(stretch) = Stretch::all(model, speed(&grid[index]), orbit, self.rpm, step)
+        {
+            self.take(stretch);
+        }
+    }
+
+    fn take(&mut self, stretch: Stretch) {
+        (self.rpm, self.ends) = (stretch.range(), stretch.ends.clone());
+        self.stretch = Some(stretch);
+    }
+
+    /// The orbit at the speeds of its stretch at which no run has come to it.
+    fn fill(&mut self, machine: &Machine, grid: &mut Grid) {
+        let Some(stretch) = &self.stretch else { return };
+        for (index, found) in grid.iter_mut().enumerate() {
+            let Ok(here) = found else { continue };
+            let Some(near) = stretch.near(here.rpm).filter(|_| !self.at.contains_key(&index)) else { continue };
+            let machine = machine.at_speed(angular_velocity(here.rpm));
+            let Some(orbit) = at_speed(&machine, near).filter(PeriodicOrbit::is_stable) else { continue };
+            let ending = Ending::Orbit(orbit);
+            if let Some(place) = here.parts.iter().position(|part| part.ending.is_same(&ending)) {
+                self.at.insert(index, place);
+            }
+        }
+    }
+
+    /// Narrows down where a motion that is no orbit begins and ends, between two speeds of the grid.
+    fn narrow(&mut self, machine: &Machine, grid: &Grid) {
+        if self.stretch.is_some() {
+            return;
+        }
+        let [Some(first), Some(last)] = [self.at.keys().next().copied(), self.at.keys().last().copied()] else {
+            return;
+        };
+        for (side, index) in [(0, first), (1, last)] {
+            let beyond = if side == 0 { index.checked_sub(1) } else { Some(index + 1) };
+            let Some(next) = beyond.and_then(|beyond| grid.get(beyond)) else { continue };
+            let change = self.ended(machine, grid, index, speed(next));
+            self.rpm[side] = change.rpm;
+            self.ends[side] = Some(change);
+        }
+    }
+
+    /// Between the speed of an index, at which it is there, and `gone`, rpm.
+    fn ended(&self, machine: &Machine, grid: &Grid, index: usize, gone: f64) -> Change {
+        /// Halvings of a step of the grid.
+        const HALVINGS: u32 = 8;
+        /// Starts at each speed between.
+        const STARTS: usize = 12;
+        let rpm = speed(&grid[index]);
+        let sorted = |[one, two]: [f64; 2]| [one.min(two), one.max(two)];
+        let part = grid[index].as_ref().ok().and_then(|here| here.parts.get(*self.at.get(&index)?));
+        let Some(part) = part else { return Change::by_runs(sorted([rpm, gone])) };
+        let mut motion = part.motion;
+        let found = halve([rpm, gone], Width::Halvings(HALVINGS), |rpm| -> Result<bool, SimulateError> {
+            let here = Here::new(machine, rpm, STARTS)?;
+            let of_class = |part: &super::Part| Class::of(&part.ending) == self.class;
+            let there = here.parts.iter().find(|part| of_class(part)).cloned();
+            let there = match there {
+                Some(part) => Some(part),
+                None => here.follow(machine, &motion)?.filter(of_class),
+            };
+            if let Some(part) = &there {
+                motion = part.motion;
+            }
+            Ok(there.is_none())
+        });
+        Change::by_runs(sorted(found.unwrap_or([rpm, gone])))
+    }
+
+    /// Turns of the cam and impacts of one period, where that is the same all along.
+    pub fn period(&self) -> Option<(u64, u64)> {
+        match self.class {
+            Class::Orbit(revolutions, impacts) => Some((revolutions, impacts)),
+            Class::Stays => Some((1, 0)),
+            Class::Rests | Class::Irregular | Class::Undecided => None,
+        }
+    }
+
+    /// Its kind: that of most of its speeds.
+    pub fn kind(&self, grid: &Grid) -> Kind {
+        let mut counts: BTreeMap<Kind, usize> = BTreeMap::new();
+        for index in self.at.keys() {
+            if let Some(ending) = self.ending(grid, *index) {
+                *counts.entry(ending.kind()).or_default() += 1;
+            }
+        }
+        // Between two speeds of the grid only orbits are known.
+        counts.into_iter().max_by_key(|(_, count)| *count).map_or(Kind::Periodic, |(kind, _)| kind)
+    }
+
+    /// What is told of where it ends by runs, if that is where the follower leaves the cam: `bracket` holds the speed, rpm.
+    pub(super) fn detaches(&mut self, bracket: [f64; 2]) {
+        let rpm = bracket[1];
+        for (end, own) in self.ends.iter_mut().zip(&mut self.rpm) {
+            if let Some(change) = end
+                && change.cause == Cause::Runs
+                && change.bracket[0] <= rpm
+                && bracket[0] <= change.bracket[1]
+            {
+                *change = Change { rpm, bracket, cause: Cause::Detachment };
+                *own = rpm;
+            }
+        }
+    }
+
+    /// Leaves what is inside of a range of speeds, rpm; false where nothing is.
+    pub(super) fn cut(&mut self, [low, high]: [f64; 2]) -> bool {
+        let is_inside = |rpm: f64| low < rpm && rpm < high;
+        for (end, own) in self.ends.iter_mut().zip(&mut self.rpm) {
+            if !is_inside(*own) {
+                (*end, *own) = (None, own.clamp(low, high));
+            }
+        }
+        self.rpm[0] < self.rpm[1]
+    }
+}
+
+/// Whether a motion of the same class as `ending` was found.
+pub(super) fn has_like(here: &Here, ending: &Ending) -> bool {
+    here.parts.iter().any(|part| Class::of(&part.ending) == Class::of(ending))
+}

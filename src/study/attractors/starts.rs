@@ -1,0 +1,56 @@
+//! The starts that stand for all motions of a machine.
+
+use std::f64::consts::TAU;
+
+use crate::simulate::{Machine, Motion, SimulateError};
+
+/// Starts on the cam: every motion that meets the cam leaves it with some relative velocity at some angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Starts {
+    /// The highest relative velocity, m/s; the lowest is 0, and the angles go all around.
+    pub fastest: f64,
+}
+
+impl Starts {
+    /// The starts of a machine, up to the relative velocity that impacts keep up.
+    ///
+    /// A flight from the cam back to it returns with no more than the energy that it left with and that of the way down the
+    /// lift, so that with the cam's largest velocity V, and w the velocity of that way,
+    ///
+    /// ```text
+    /// u' <= r (u + 2 V + w),   in the long run u <= r (2 V + w)/(1 - r)
+    /// ```
+    ///
+    /// What bounces hardly at all is given as much as the cam gives it, and what loses nothing ten times that.
+    pub fn of(machine: &Machine) -> Self {
+        /// The restitution at which impacts keep up ten times what one gives.
+        const MOST_KEPT: f64 = 10.0;
+        let (flight, segments) = (machine.flight(), machine.cam().segments());
+        let steepest =
+            segments.iter().flat_map(|segment| segment.bounds.slope).fold(0.0_f64, |most, one| most.max(one.abs()));
+        let lowest = segments.iter().fold(f64::INFINITY, |low, segment| low.min(segment.bounds.lift[0]));
+        let top = machine.cam().top();
+        let force = flight.force(lowest).abs().max(flight.force(top).abs());
+        let given = 2.0 * machine.angular_velocity() * steepest + (2.0 * force * (top - lowest)).sqrt();
+        let r = machine.restitution();
+        let kept = if r < 1.0 { (r / (1.0 - r)).min(MOST_KEPT) } else { MOST_KEPT };
+        Self { fastest: given * kept.max(1.0) }
+    }
+
+    /// The start of an index: cam angle, rad, and relative velocity, m/s. Any number of them from 0 on fills the rectangle
+    /// evenly.
+    ///
+    /// Steps of the plastic number's powers, which is to two dimensions what the golden section is to one.
+    pub fn at(&self, index: usize) -> [f64; 2] {
+        /// The root of x^3 = x + 1.
+        const PLASTIC: f64 = 1.324_717_957_244_746;
+        let place = |step: f64| ((index as f64 + 0.5) * step).fract();
+        [TAU * place(1.0 / PLASTIC), self.fastest * place(1.0 / (PLASTIC * PLASTIC))]
+    }
+
+    /// The motion of `machine` from the start of an index.
+    pub fn motion(&self, machine: &Machine, index: usize) -> Result<Motion, SimulateError> {
+        let [cam_angle, relative_velocity] = self.at(index);
+        machine.start_on_cam(cam_angle, relative_velocity)
+    }
+}

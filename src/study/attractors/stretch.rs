@@ -1,0 +1,150 @@
+//! The range of speeds over which a periodic orbit is stable, with what ends it on either side: by the branch that it is on.
+
+use super::change::{Cause, Change};
+use crate::model::Model;
+use crate::orbit::branch::{Branch, BranchPoint, End, Following, Kind};
+use crate::orbit::fate::{Run, Settling};
+use crate::orbit::{OrbitError, Parameter, PeriodicOrbit};
+use crate::simulate::{Machine, SimulateError, angular_velocity};
+
+/// A part of a branch on which the orbits are stable and have the same numbers of revolutions and impacts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stretch {
+    /// The orbits, by rising speed.
+    points: Vec<BranchPoint>,
+    /// What lies at the lower and at the upper end; nothing where the branch was followed no further.
+    pub ends: [Option<Change>; 2],
+}
+
+impl Stretch {
+    /// Through a stable orbit at `rpm`, followed between `range`, rpm.
+    fn through(model: &Model, rpm: f64, orbit: &PeriodicOrbit, range: [f64; 2]) -> Result<Self, OrbitError> {
+        /// The longest step, of the range or of a radian of an impact's angle.
+        const STEP: f64 = 0.05;
+        /// Points in either direction.
+        const MOST: usize = 400;
+        let following = Following { parameter: Parameter::Speed, range, longest_step: STEP, most_points: MOST };
+        let branch = Branch::through(model, rpm, orbit, &following)?;
+        let here = branch.points.iter().position(|point| point.rpm == rpm && point.orbit == *orbit).unwrap_or_default();
+        let (before, after) = branch.points.split_at(here);
+        let [mut backward, mut forward] = [Vec::new(), Vec::new()];
+        let middle = &after[..after.len().min(1)];
+        let first = walk(middle, before.iter().rev(), &branch.ends[0], &mut backward);
+        let last = walk(middle, after.iter().skip(1), &branch.ends[1], &mut forward);
+        backward.reverse();
+        let mut points = [backward, middle.to_vec(), forward].concat();
+        let mut ends = [first, last];
+        if points.first().zip(points.last()).is_some_and(|(first, last)| first.rpm > last.rpm) {
+            points.reverse();
+            ends.reverse();
+        }
+        Ok(Self { points, ends })
+    }
+
+    /// Through a stable orbit at `rpm`, that is known between `known`, rpm, at speeds `step` apart; followed to where it ends on
+    /// both sides, if that is not far.
+    pub fn all(
+        model: &Model,
+        rpm: f64,
+        orbit: &PeriodicOrbit,
+        [low, high]: [f64; 2],
+        step: f64,
+    ) -> Result<Self, OrbitError> {
+        /// How far beyond, of the speed, and in steps.
+        const BEYOND: (f64, f64) = (0.02, 3.0);
+        /// How many times that is made longer by a factor of four, where nothing ends the orbit.
+        const LONGER: i32 = 3;
+        let mut longer = 0;
+        loop {
+            let beyond = (BEYOND.0 * high + BEYOND.1 * step) * 4.0_f64.powi(longer);
+            let stretch = Self::through(model, rpm, orbit, [(low - beyond).max(0.5 * low), high + beyond])?;
+            if longer == LONGER || stretch.ends.iter().all(Option::is_some) {
+                return Ok(stretch);
+            }
+            longer += 1;
+        }
+    }
+
+    /// The stable orbits that runs from this one's ends come to right beyond them, each at a speed, rpm.
+    pub fn beyond(&self, machine: &Machine, step: f64) -> Vec<(f64, PeriodicOrbit)> {
+        /// How far beyond, in steps.
+        const FAR: [f64; 3] = [1e-1, 1e-2, 1e-3];
+        /// Revolutions in which a run has come to an orbit.
+        const WAITED: u64 = 10_000;
+        /// The longest period looked for: beyond, one follows the other in ever shorter ranges.
+        const LONGEST: u64 = 8;
+        let ends = [(-1.0, self.points.first()), (1.0, self.points.last())].into_iter().zip(&self.ends);
+        let ended = ends.filter(|(_, change)| change.as_ref().is_some_and(Change::is_located));
+        let starts = ended.filter_map(|((onward, point), _)| Some((onward, point?)));
+        let settled = |(onward, point, far): (f64, &BranchPoint, f64)| -> Result<_, SimulateError> {
+            let rpm = point.rpm + onward * far * step;
+            let machine = machine.at_speed(angular_velocity(rpm));
+            let settling = Settling::new(&machine, LONGEST)?;
+            let impact = point.orbit.impacts().next();
+            // From the cam, which at another speed is where it was at this one.
+            let Some(impact) = impact else { return Ok(None) };
+            let mut motion = machine.start_on_cam(impact.cam_angle, impact.velocity_after - impact.cam_velocity)?;
+            Ok(match settling.run(&mut motion, WAITED)? {
+                Run::Arrives(orbit) => Some((rpm, orbit)),
+                _ => None,
+            })
+        };
+        let starts = starts.flat_map(|(onward, point)| FAR.map(|far| (onward, point, far)));
+        // What cannot be run has no orbit to add.
+        starts.filter_map(|start| settled(start).ok().flatten()).collect()
+    }
+
+    /// The orbit of the stretch that is nearest in speed to `rpm`; none where that is beyond its ends.
+    pub fn near(&self, rpm: f64) -> Option<&PeriodicOrbit> {
+        let apart = |point: &&BranchPoint| (point.rpm - rpm).abs();
+        let inside = self.points.first().is_some_and(|first| first.rpm <= rpm)
+            && self.points.last().is_some_and(|last| rpm <= last.rpm);
+        let nearest = self.points.iter().min_by(|one, two| apart(one).total_cmp(&apart(two)));
+        nearest.filter(|_| inside).map(|point| &point.orbit)
+    }
+
+    /// The lowest and the highest speed, rpm.
+    pub fn range(&self) -> [f64; 2] {
+        [self.points.first(), self.points.last()].map(|point| point.map_or(f64::NAN, |point| point.rpm))
+    }
+}
+
+/// Takes the points for as long as orbits are of one kind, and returns why that is over.
+fn walk<'a>(
+    middle: &[BranchPoint],
+    points: impl Iterator<Item = &'a BranchPoint>,
+    end: &End,
+    taken: &mut Vec<BranchPoint>,
+) -> Option<Change> {
+    let numbers = |orbit: &PeriodicOrbit| (orbit.revolutions, orbit.impacts().count());
+    let kind = middle.first().map(|point| numbers(&point.orbit))?;
+    let mut last = middle.first()?.rpm;
+    let mut pending: Option<&BranchPoint> = None;
+    for point in points {
+        if point.special.is_some() {
+            let is_corner = matches!(point.special, Some(special) if matches!(special.kind, Kind::Corner { .. }));
+            // Two special points in a row, or one that ends the motion whatever is beyond.
+            if let Some(before) = pending.or((!is_corner).then_some(point)) {
+                taken.push(before.clone());
+                return Some(Change::of_point(before));
+            }
+            pending = Some(point);
+            continue;
+        }
+        if !point.orbit.is_stable() || numbers(&point.orbit) != kind {
+            let [low, high] = [last.min(point.rpm), last.max(point.rpm)];
+            let change = pending.map(Change::of_point);
+            taken.extend(pending.cloned());
+            return Some(change.unwrap_or(Change::by_runs([low, high])));
+        }
+        taken.extend(pending.take().cloned());
+        taken.push(point.clone());
+        last = point.rpm;
+    }
+    taken.extend(pending.cloned());
+    match (pending, end) {
+        (Some(point), _) => Some(Change::of_point(point)),
+        (None, End::Range | End::Closed | End::MostPoints) => None,
+        (None, _) => Some(Change { rpm: last, bracket: [last; 2], cause: Cause::Runs }),
+    }
+}

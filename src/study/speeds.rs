@@ -1,0 +1,264 @@
+//! What a machine does at which speed: its attractors, where each begins and ends, and how many starts end on each.
+
+use serde::Serialize;
+
+use crate::known::Known;
+use crate::model::Model;
+use crate::orbit::ending::{Ending, Kind};
+use crate::progress::Watch;
+use crate::simulate::{EventKind, SimulateError, angular_velocity};
+use crate::study::attractors::{
+    Attractors, AttractorsError, Change, Here, Part, Resolution, Row, Wandering, attractors,
+};
+use crate::study::machine;
+
+/// What a machine does over a range of speeds: the document of `speeds --json`.
+#[derive(Clone, Debug)]
+pub struct Speeds {
+    /// The model's name.
+    pub model: String,
+    /// The range, rpm.
+    pub rpm: [f64; 2],
+    /// From one speed to the next, rpm.
+    pub step: f64,
+    /// Starts of the sample at each speed.
+    pub starts: usize,
+    /// Where the follower first leaves the cam, rpm; `None` where it never does, or does so at the lowest speed already.
+    pub detachment: Option<f64>,
+    /// The attractors, by rising speed.
+    pub attractors: Vec<Attractor>,
+    /// Where there are several.
+    pub coexistence: Vec<Coexistence>,
+    /// Speeds at which nothing could be run.
+    pub failed: Vec<Failed>,
+}
+
+document!(Speeds as it {
+    schema: "corner-impact/speeds/1",
+    model: it.model,
+    rpm: it.rpm,
+    known: Known::Sampled,
+    step_rpm: it.step,
+    starts: it.starts,
+    missed_below_share: it.missed(),
+    detachment_rpm: it.detachment,
+    attractors: it.attractors,
+    coexistence: it.coexistence,
+    failed: it.failed,
+});
+
+/// An attractor over a range of speeds.
+#[derive(Clone, Debug)]
+pub struct Attractor {
+    /// Its name.
+    pub id: String,
+    /// What it is at most of the speeds.
+    pub kind: Kind,
+    /// Turns of the cam in one period, where it is the same at every speed.
+    pub revolutions: Option<u64>,
+    /// Impacts in one period, likewise.
+    pub impacts: Option<u64>,
+    /// Lowest and highest speed, rpm.
+    pub rpm: [f64; 2],
+    /// What it begins with at the lowest speed; nothing at the end of the range.
+    pub birth: Option<Change>,
+    /// What it ends with at the highest.
+    pub death: Option<Change>,
+    /// What it is at each speed of the grid, by rising speed.
+    pub at: Vec<At>,
+}
+
+document!(Attractor as it {
+    id: it.id,
+    kind: it.kind,
+    revolutions: it.revolutions,
+    impacts: it.impacts,
+    from_rpm: it.rpm[0],
+    to_rpm: it.rpm[1],
+    birth: it.birth,
+    death: it.death,
+    rests: it.rests(),
+    shares: it.at,
+});
+
+/// An attractor at one speed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct At {
+    /// rpm.
+    pub rpm: f64,
+    /// The share of the sample's starts that end on it.
+    pub share: f64,
+    /// The standard error of that, if the starts were drawn by chance; they are spread better than by chance.
+    pub error: f64,
+    /// What it is.
+    pub ending: Ending,
+    /// What runs did that neither rested nor came to an orbit soon.
+    pub wandering: Wandering,
+    /// Cam angles of its impacts, rad.
+    pub impact_angles: Vec<f64>,
+}
+
+document!(At as it {
+    speed_rpm: it.rpm,
+    share: it.share,
+    error: it.error,
+    kind: it.ending.kind(),
+    revolutions: it.ending.period().map(|(revolutions, _)| revolutions),
+    impacts: it.ending.period().map(|(_, impacts)| impacts),
+    revolutions_between_rests if_any: it.ending.between_rests(),
+    growth if_any: it.ending.growth().map(|growth| growth.value),
+    growth_error if_any: it.ending.growth().map(|growth| growth.error),
+});
+
+/// How often chaos rests on the cam, from runs that had wandered for long.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Rests {
+    /// Rests that were seen.
+    pub rests: u64,
+    /// In so many revolutions.
+    pub revolutions: u64,
+    /// A revolution: their ratio, and its standard error; of no rest at all the bound that it is below with 95 %.
+    pub rate: f64,
+    /// None where there is no rest.
+    pub rate_error: Option<f64>,
+}
+
+/// Two or more attractors at the same speeds, each of which runs have come to.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Coexistence {
+    /// Lowest speed, rpm.
+    pub from_rpm: f64,
+    /// Highest speed, rpm.
+    pub to_rpm: f64,
+    /// Their names.
+    pub attractors: Vec<String>,
+}
+
+/// A speed at which nothing could be run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Failed {
+    /// rpm.
+    pub speed_rpm: f64,
+    /// Why.
+    pub why: String,
+}
+
+/// -ln(0.05): the mean number of starts in a basin that is hit by one of them with 95 %.
+const HIT: f64 = 2.995_732_273_553_991;
+
+impl Speeds {
+    /// The share of the starts' rectangle that a basin has which one of the starts of a speed hits with 95 %, if they were drawn by
+    /// chance.
+    pub fn missed(&self) -> f64 {
+        (HIT / self.starts as f64).min(1.0)
+    }
+}
+
+impl Attractor {
+    /// How often it rests, if runs of it wandered for long enough to tell.
+    pub fn rests(&self) -> Option<Rests> {
+        /// Revolutions: what the runs of one speed are given.
+        const TOLD: u64 = 100_000;
+        let is_wandering = |at: &&At| matches!(at.ending, Ending::Chaotic(_)) || at.ending.is_long();
+        let all = self.at.iter().filter(is_wandering).fold(Wandering::default(), |all, at| all.with(at.wandering));
+        let (rests, revolutions) = (all.rested, all.revolutions);
+        let per = |count: f64| count / revolutions as f64;
+        (revolutions >= TOLD).then(|| match rests {
+            0 => Rests { rests, revolutions, rate: per(HIT), rate_error: None },
+            _ => Rests { rests, revolutions, rate: per(rests as f64), rate_error: Some(per((rests as f64).sqrt())) },
+        })
+    }
+}
+
+/// The range of speeds to look at where none is named, rpm: up to the fastest of `[study]`, or 1000, from a twentieth of that.
+pub fn usual_range(model: &Model) -> [f64; 2] {
+    let fastest = model.study.map_or(1000.0, |study| study.rpm_max);
+    [0.05 * fastest, fastest]
+}
+
+/// What `model` does over a range of speeds, rpm; `watch` is told speed by speed.
+pub fn speeds(
+    model: &Model,
+    range: [f64; 2],
+    resolution: Resolution,
+    watch: &dyn Watch,
+) -> Result<Speeds, AttractorsError> {
+    let Attractors { grid, rows, coexistence, detachment, .. } = attractors(model, range, resolution, watch)?;
+    let lowest = machine(model, range[0])?;
+    let is_inside = |rpm: f64| range[0] <= rpm && rpm <= range[1];
+    let attractor = |(index, row): (usize, &Row)| {
+        let at = row.at.iter().filter_map(|(place, part)| {
+            let here = grid.get(*place)?.as_ref().ok().filter(|here| is_inside(here.rpm))?;
+            let part = here.parts.get(*part)?;
+            let machine = lowest.at_speed(angular_velocity(here.rpm));
+            Some(At::new(here, part, impact_angles(&machine, part).unwrap_or_default()))
+        });
+        let at: Vec<At> = at.collect();
+        let only = |number: fn((u64, u64)) -> u64| {
+            let mut numbers = at.iter().map(|at| at.ending.period().map(number));
+            let first = numbers.next()??;
+            numbers.all(|other| other == Some(first)).then_some(first)
+        };
+        Attractor {
+            id: name(index),
+            kind: row.kind(&grid),
+            revolutions: row.period().map_or_else(|| only(|period| period.0), |period| Some(period.0)),
+            impacts: row.period().map_or_else(|| only(|period| period.1), |period| Some(period.1)),
+            rpm: row.rpm,
+            birth: row.ends[0].clone(),
+            death: row.ends[1].clone(),
+            at,
+        }
+    };
+    let failed = |(rpm, error): &(f64, SimulateError)| Failed { speed_rpm: *rpm, why: error.to_string() };
+    Ok(Speeds {
+        model: model.name.clone(),
+        rpm: range,
+        step: resolution.step.rpm(),
+        starts: resolution.starts,
+        detachment,
+        attractors: rows.iter().enumerate().map(attractor).collect(),
+        coexistence: coexistence
+            .iter()
+            .map(|over| Coexistence {
+                from_rpm: over.rpm[0],
+                to_rpm: over.rpm[1],
+                attractors: over.rows.iter().map(|index| name(*index)).collect(),
+            })
+            .collect(),
+        failed: grid.iter().filter_map(|found| found.as_ref().err()).map(failed).collect(),
+    })
+}
+
+fn name(index: usize) -> String {
+    format!("A{}", index + 1)
+}
+
+impl At {
+    fn new(here: &Here, part: &Part, impact_angles: Vec<f64>) -> Self {
+        let count = here.sampled as f64;
+        let share = here.count(part) as f64 / count;
+        let error = (share * (1.0 - share) / count).sqrt();
+        let (rpm, ending, wandering) = (here.rpm, part.ending.clone(), here.wandering);
+        Self { rpm, share, error, ending, wandering, impact_angles }
+    }
+}
+
+/// Where the impacts of an attractor are, cam angles in rad: of a period, or of as many revolutions as a picture has room for.
+fn impact_angles(machine: &crate::simulate::Machine, part: &Part) -> Result<Vec<f64>, SimulateError> {
+    /// Revolutions that a picture has room for.
+    const SHOWN: u64 = 120;
+    /// Impacts of them: before a rest there are any number.
+    const MOST: usize = 600;
+    if let Ending::Orbit(orbit) = &part.ending {
+        return Ok(orbit.impacts().map(|impact| impact.cam_angle).collect());
+    }
+    let mut motion = machine.resume(&part.motion)?;
+    let mut angles = Vec::new();
+    machine.watch(&mut motion, SHOWN, |event| {
+        if event.kind == EventKind::Impact && angles.len() < MOST {
+            angles.push(event.cam_angle);
+        }
+    })?;
+    Ok(angles)
+}
