@@ -46,10 +46,10 @@ pub struct Ticks {
 pub fn ticks(range: [f64; 2], spacing: Spacing, most: usize, fits: impl Fn(&[Tick]) -> bool) -> Ticks {
     let [low, high] = range;
     let span = high - low;
-    let exponent = exponent(low.abs().max(high.abs()));
     if spacing == Spacing::Nothing || !(span > 0.0 && span.is_finite()) {
         return Ticks::default();
     }
+    let exponent = exponent(low.abs().max(high.abs()));
     let (most, mut step) = (most.max(2) as f64, first_step(span / most.max(2) as f64, spacing));
     loop {
         let ticks = multiples(low, high, step, exponent);

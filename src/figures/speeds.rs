@@ -1,6 +1,6 @@
 //! Attractors over speeds: where their impacts fall, over which speeds each is there, and how many starts end on it.
 
-use crate::draw::{Axis, BREAK, Beside, Colour, Figure, Marker, Panel, Series, Spacing, Stroke, Word};
+use crate::draw::{Axis, BREAK, Beside, Colour, Data, Density, Figure, Marker, Panel, Series, Spacing, Stroke, Word};
 use crate::figures::SPEED;
 use crate::figures::cam::CornerMark;
 use crate::figures::impacts::{WHOLE_CAM, impact_angles};
@@ -8,7 +8,7 @@ use crate::orbit::ending::Kind;
 use crate::show::words;
 use crate::study::speeds::{Attractor, Speeds};
 
-/// Colours in turn: attractors that coexist follow one another.
+/// The colours of attractors.
 const COLOURS: [Colour; 4] = [Colour::Blue, Colour::Vermilion, Colour::Green, Colour::Purple];
 
 /// Each kind of motion with the stroke of its bar.
@@ -22,7 +22,8 @@ const BARS: [(Kind, Stroke); 5] = [
 
 /// What `speeds` finds: impact phases in degrees, a bar for each attractor, and shares of starts, against the speed.
 pub fn speeds_figure(found: &Speeds, corners: &[CornerMark]) -> Figure {
-    let colour = |index: usize| COLOURS[index % COLOURS.len()];
+    let colours = colours(found);
+    let colour = |index: usize| colours[index];
     let each = || found.attractors.iter().enumerate();
     let shade = |top: f64| {
         let corners = found.coexistence.iter().flat_map(|over| [BREAK, [over.from_rpm, top], [over.to_rpm, top]]);
@@ -30,9 +31,14 @@ pub fn speeds_figure(found: &Speeds, corners: &[CornerMark]) -> Figure {
     };
     let mut impacts: Vec<Series> = shade(WHOLE_CAM[1]).into_iter().collect();
     impacts.extend(each().filter_map(|(index, attractor)| {
-        let points =
-            attractor.at.iter().flat_map(|at| at.impact_angles.iter().map(|angle| [at.rpm, angle.to_degrees()]));
-        Series::points("", colour(index), Marker::Dot, points).if_any()
+        let places =
+            attractor.at.iter().flat_map(|at| at.impact_angles.iter().map(|phase| [at.rpm, phase.to_degrees()]));
+        if attractor.kind == Kind::Periodic {
+            return Series::points("", colour(index), Marker::Dot, places).if_any();
+        }
+        let mut points = Density::new(found.rpm, WHOLE_CAM);
+        places.for_each(|[rpm, degrees]| points.push(rpm, degrees));
+        Some(Series::new("", colour(index), Data::Density(points)))
     }));
     let impacts = Panel::new(impact_angles().over(WHOLE_CAM), 0.42, impacts);
     let impacts = Panel { marks: corners.iter().map(CornerMark::mark).collect(), ..impacts };
@@ -50,6 +56,21 @@ pub fn speeds_figure(found: &Speeds, corners: &[CornerMark]) -> Figure {
         figure.note = "grey: several attractors, each reached by runs".into();
     }
     figure
+}
+
+/// A colour for each attractor, other than those of what it coexists with or follows closely, as far as there are enough.
+fn colours(found: &Speeds) -> Vec<Colour> {
+    /// Of the range.
+    const CLOSE: f64 = 0.02;
+    let mut colours: Vec<Colour> = Vec::new();
+    for (index, attractor) in found.attractors.iter().enumerate() {
+        let from = attractor.rpm[0] - CLOSE * (found.rpm[1] - found.rpm[0]);
+        let near = found.attractors.iter().zip(&colours).filter(|(other, _)| other.rpm[1] >= from);
+        let taken: Vec<Colour> = near.map(|(_, colour)| *colour).collect();
+        let free = COLOURS.iter().find(|colour| !taken.contains(colour));
+        colours.push(*free.unwrap_or(&COLOURS[index % COLOURS.len()]));
+    }
+    colours
 }
 
 /// The axis of shares, a little wider than they can be.

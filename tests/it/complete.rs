@@ -202,7 +202,7 @@ fn samples_find_no_orbit_of_one_impact_that_is_not_told() {
 #[test]
 #[ignore = "slow"]
 fn runs_find_no_orbit_of_two_impacts_that_is_not_told() {
-    check(40, |case| {
+    check(12, |case| {
         let Ok(searched) = search_all(&case.machine, &Search { revolutions: 1, impacts: Some(2) }, &Unwatched) else {
             return Ok(());
         };
@@ -217,5 +217,5 @@ fn runs_find_no_orbit_of_two_impacts_that_is_not_told() {
         Ok(())
     });
     let [found, proved] = [2, 3].map(|index: usize| SEEN[index].load(Ordering::Relaxed));
-    assert!(found >= 5 && proved >= 20, "{found} orbits, {proved} lists proved");
+    assert!(found >= 2 && proved >= 6, "{found} orbits, {proved} lists proved");
 }

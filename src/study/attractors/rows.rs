@@ -13,7 +13,6 @@ use crate::orbit::ending::{Ending, Kind};
 use crate::orbit::settle::close;
 use crate::orbit::{Course, PeriodicOrbit};
 use crate::simulate::{Machine, SimulateError, angular_velocity};
-use crate::tolerance;
 
 /// What holds a motion together from one speed to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -180,14 +179,10 @@ fn joined(rows: Vec<Row>) -> Vec<Row> {
     let mut joined: Vec<Row> = Vec::new();
     for row in rows {
         let same = |known: &&mut Row| {
-            let near = |one: f64, two: f64| (one - two).abs() <= tolerance::SAME_ORBIT.value * one.abs();
+            let stretches = known.stretch.as_ref().zip(row.stretch.as_ref());
             known.class == row.class
-                && known.stretch.is_some()
-                && row.stretch.is_some()
-                && near(known.rpm[0], row.rpm[0])
-                && near(known.rpm[1], row.rpm[1])
+                && stretches.is_some_and(|(one, other)| one.is_same(other))
                 && row.at.iter().all(|(index, part)| known.at.get(index).is_none_or(|other| other == part))
-                && known.at.len() + row.at.len() > 0
         };
         match joined.iter_mut().find(same) {
             Some(known) => known.at.extend(row.at),

@@ -6,6 +6,7 @@ use crate::orbit::branch::{Branch, BranchPoint, End, Following, Kind};
 use crate::orbit::fate::{Run, Settling};
 use crate::orbit::{OrbitError, Parameter, PeriodicOrbit};
 use crate::simulate::{Machine, SimulateError, angular_velocity};
+use crate::tolerance;
 
 /// A part of a branch on which the orbits are stable and have the same numbers of revolutions and impacts.
 #[derive(Clone, Debug, PartialEq)]
@@ -101,6 +102,19 @@ impl Stretch {
             && self.points.last().is_some_and(|last| rpm <= last.rpm);
         let nearest = self.points.iter().min_by(|one, two| apart(one).total_cmp(&apart(two)));
         nearest.filter(|_| inside).map(|point| &point.orbit)
+    }
+
+    /// Whether two begin and end at the same speeds, with impacts at the same angles.
+    pub fn is_same(&self, other: &Self) -> bool {
+        let near = |one: f64, two: f64| (one - two).abs() <= tolerance::SAME_ORBIT.value * one.abs();
+        let ends = self.range().into_iter().zip(other.range()).all(|(one, two)| near(one, two));
+        let angles = |stretch: &Self| -> Vec<f64> {
+            let first = stretch.points.first().iter().flat_map(|point| point.orbit.impacts()).collect::<Vec<_>>();
+            first.iter().map(|impact| impact.cam_angle).collect()
+        };
+        let (here, there) = (angles(self), angles(other));
+        let has = |all: &[f64], angle: f64| all.iter().any(|one| (one - angle).abs() <= tolerance::NEIGHBOURING.value);
+        ends && here.iter().all(|angle| has(&there, *angle))
     }
 
     /// The lowest and the highest speed, rpm.
