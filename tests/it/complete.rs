@@ -202,7 +202,7 @@ fn samples_find_no_orbit_of_one_impact_that_is_not_told() {
 #[test]
 #[ignore = "slow"]
 fn runs_find_no_orbit_of_two_impacts_that_is_not_told() {
-    check(12, |case| {
+    check(24, |case| {
         let Ok(searched) = search_all(&case.machine, &Search { revolutions: 1, impacts: Some(2) }, &Unwatched) else {
             return Ok(());
         };

@@ -50,6 +50,12 @@ impl Here {
         Ok(Self { rpm, parts, sampled, wandering })
     }
 
+    /// Whether a run has come to a part, from the sample, from rest on the cam or from a neighbouring speed, and not only one
+    /// that began on it.
+    pub fn is_reached(&self, part: &Part) -> bool {
+        part.starts.is_empty() || part.starts.iter().any(|start| *start < self.sampled + RESTS)
+    }
+
     /// How many of the sample's starts end on a part.
     pub fn count(&self, part: &Part) -> usize {
         part.starts.iter().filter(|start| **start < self.sampled).count()

@@ -225,8 +225,15 @@ fn coexistence(rows: &[Row], grid: &rows::Grid) -> Vec<Coexistence> {
         let covers = |row: &usize| rows[*row].rpm[0] <= low && high <= rows[*row].rpm[1];
         let over: Vec<usize> = (0..rows.len()).filter(covers).collect();
         let seen = grid.iter().enumerate().any(|(index, here)| {
-            here.as_ref().is_ok_and(|here| low <= here.rpm && here.rpm <= high)
-                && over.iter().all(|row| rows[*row].at.contains_key(&index))
+            let Ok(here) = here else { return false };
+            (low <= here.rpm && here.rpm <= high)
+                && over.iter().all(|row| {
+                    rows[*row]
+                        .at
+                        .get(&index)
+                        .and_then(|part| here.parts.get(*part))
+                        .is_some_and(|part| here.is_reached(part))
+                })
         });
         if over.len() > 1 && seen {
             match found.last_mut() {
