@@ -106,14 +106,8 @@ table! {
     /// How near two orbits of one branch are at most, from one of its points to the next, rad.
     NEIGHBOURING = 0.05, "absolute, rad: more than twice the longest step of a survey, and far less than what parts two branches \
         at one speed";
-    /// How near a change that runs bracket the special point is that explains it.
-    EXPLAINED = 0.02, "of the step between two speeds, or of itself of the speed: runs take a motion for gone where it settles too \
-        slowly, and for there where it is left too slowly";
     /// How nearly a run must repeat for Newton's method to be tried on it.
     NEARLY_REPEATS = 1e-2, "of the cam's lift: a guess, that Newton's method and one simulated period confirm or refute";
-    /// How near a run must have come to a stable orbit to end on it.
-    ARRIVED = 1e-6, "of the cam's lift: chaos comes that near to an orbit by chance once in a thousand million revolutions, and \
-        a multiplier of 0.99 leaves it after the 1600 revolutions of a run";
     /// The bracket around the border between two basins.
     BORDER_BRACKET = 1e-12, "of the line that it is looked for on: a run that starts nearer to the border than that follows the \
         saddle for hundreds of revolutions, and rounding decides";
@@ -138,8 +132,6 @@ table! {
     CHAOTIC_GROWTH = 0.1, "absolute, a logarithm: sampling over thousands of revolutions leaves a few hundredths";
     /// How closely a speed is found by halving a bracket in which runs change their kind, rpm.
     SPEED_FOUND = 1e-9, "rpm, absolute: ten thousand ulps of a speed, and what the rounding of an angle moves a contact by";
-    /// The bracket around a speed at which a motion ends, rpm.
-    SPEED_BRACKETED = 1e-4, "rpm, absolute: each halving takes thousands of revolutions, and three decimals are given";
     /// The relative velocity after an impact from which on it counts as one that can be felt, m/s.
     FELT_IMPACT = 1e-6, "m/s, absolute: of infinitely many impacts a number must end somewhere, and far above where the \
         simulator takes the sum of the rest";
