@@ -1,0 +1,135 @@
+"""The cam: which law holds at a ball of angles, and where two laws meet."""
+
+from bisect import bisect_right
+from dataclasses import dataclass
+from math import floor, tau
+
+from flint import arb
+
+from .numbers import Refused, Undecided, between, hull, overlap
+from .profiles import pieces_of
+
+# Pieces of decimals whose lifts or slopes differ by no more than this part of their size are meant to meet.
+NEARLY = 1e-9
+# Starts of pieces are looked up in doubles: what lies nearer than this to a start is compared in balls.
+NEAR = 1e-9
+
+
+@dataclass(frozen=True)
+class Corner:
+    """Where one piece ends and another begins.
+
+    `smooth` counts the derivatives, the lift being the first, that agree: because of how the law is made, or, where `assumed`,
+    because the decimals of the pieces nearly do.
+    """
+
+    angle: arb
+    before: object
+    after: object
+    smooth: int
+    assumed: bool
+
+    def sides(self):
+        """(c, c', c'') of the law before and of the law after."""
+        return self.before.derivatives(self.angle)[:3], self.after.derivatives(self.angle)[:3]
+
+    def jumps(self):
+        """Law after less law before: of c, c' and c''."""
+        return tuple(after - before for before, after in zip(*self.sides()))
+
+
+class Cam:
+    """The [cam] table, 2 pi periodic; angles may be any number, of as many revolutions as it takes.
+
+    Where pieces of decimals meet nearly, what is proved is of any cam that goes over from one to the other there, within
+    `slack` of the pieces: (of the lift, of the slope), 0 for a cam whose pieces meet.
+    """
+
+    def __init__(self, table):
+        self.turn = 2 * arb.pi()
+        self.starts, self.laws, smooth = zip(*pieces_of(table))
+        self.rounded = [float(start) for start in self.starts]
+        self.slack = arb(0), arb(0)
+        corners = (self._corner(index, agree) for index, agree in enumerate(smooth) if agree is not None)
+        self.corners = [self._joined(corner) if corner.smooth == 0 else corner for corner in corners]
+        # For every piece, how many derivatives agree where it begins.
+        agree = iter(corner.smooth for corner in self.corners)
+        self.smooth = [None if count is None else next(agree) for count in smooth]
+
+    def _corner(self, index, smooth):
+        # The law of the last piece goes on to a revolution on, where the first one's corner is.
+        before = Turned(self.laws[-1], -self.turn) if index == 0 else self.laws[index - 1]
+        return Corner(self.starts[index], before, self.laws[index], smooth, smooth == 0)
+
+    def _joined(self, corner):
+        """A corner of decimals, with what it is taken to be; its rounding counts as slack."""
+        before, after = corner.sides()
+        jumps = [abs(jump) for jump in corner.jumps()]
+        small = [bool(jumps[order] < NEARLY * (abs(before[order]) + abs(after[order]) + abs(before[0]))) for order in (0, 1)]
+        if not small[0]:
+            raise Refused(f"cam: the lift jumps at {corner.angle.str(8)} rad")
+        within = [arb(0, jump.upper()) if meant else arb(0) for jump, meant in zip(jumps, small)]
+        self.slack = tuple(old.union(new) for old, new in zip(self.slack, within))
+        return Corner(corner.angle, corner.before, corner.after, 1 + small[1], True)
+
+    def _piece(self, index):
+        """Start, end and law of piece `index`, counted on through the revolutions, and the angle of its revolution."""
+        turns, inside = divmod(index, len(self.laws))
+        later, following = divmod(index + 1, len(self.laws))
+        shift = turns * self.turn
+        return self.starts[inside] + shift, self.starts[following] + later * self.turn, self.laws[inside], shift
+
+    def _indices(self, low, high):
+        """Pieces that may meet [low, high], doubles."""
+        count = len(self.laws)
+
+        def index(angle):
+            turns = floor(angle / tau)
+            return turns * count + bisect_right(self.rounded, angle - turns * tau) - 1
+
+        return range(index(low - NEAR), index(high + NEAR) + 1)
+
+    def parts(self, angle):
+        """[(law, part of the ball on it, less whole revolutions)], for every piece that the ball may meet; and whether c and
+        c' are continuous over the ball for certain."""
+        parts, smooth = [], True
+        for index in self._indices(float(angle.lower()), float(angle.upper())):
+            start, end, law, shift = self._piece(index)
+            part = overlap(angle, between(start, end))
+            if part is not None:
+                agree = self.smooth[index % len(self.laws)]
+                smooth = smooth and (not parts or agree is None or agree >= 2)
+                parts.append((law, part - shift))
+        if not parts:
+            raise Undecided("no piece of the cam holds an angle that is no number")
+        return parts, smooth
+
+    def piece_of(self, angle):
+        """The law that holds on all of the ball, and the ball less whole revolutions; Undecided where it may meet a corner."""
+        for index in self._indices(float(angle.lower()), float(angle.upper())):
+            start, end, law, shift = self._piece(index)
+            if angle > start and angle < end:
+                return law, angle - shift
+        raise Undecided(f"it is not proved on which piece of the cam the angle {angle.str(8)} lies")
+
+    def derivatives(self, angle):
+        """(c, c', c'', c''') over the ball: the hull of all pieces that it may meet, each over its part."""
+        parts, _ = self.parts(angle)
+        each = [law.derivatives(part) for law, part in parts]
+        lift, slope, curvature, third = each[0] if len(each) == 1 else tuple(hull(order) for order in zip(*each))
+        return lift + self.slack[0], slope + self.slack[1], curvature, third
+
+    def is_smooth(self, angle):
+        """Whether c and c' are continuous over the ball for certain, so that Taylor's formula holds with the hull of c''."""
+        return self.parts(angle)[1]
+
+
+class Turned:
+    """A law some revolutions on."""
+
+    def __init__(self, law, shift):
+        self.law, self.shift = law, shift
+
+    def derivatives(self, angle):
+        """(c, c', c'', c''') over the ball."""
+        return self.law.derivatives(angle - self.shift)

@@ -1,0 +1,79 @@
+"""Free flight in balls: m q'' + b q' + k (q - rest) = -m g, for every damping alike.
+
+    p'' + 2 zeta p' + w0^2 p = 1, p(0) = p'(0) = 0, s = p':  what is left of a unit step and of a unit impulse after a time.
+"""
+
+from flint import arb
+
+from .numbers import Refused, decimal
+
+FIELDS = ("mass", "damping", "stiffness", "gravity", "rest_position", "restitution")
+
+
+class Follower:
+    """The [follower] table: its numbers as the rationals that their decimals are, so that its kind of damping is decided."""
+
+    def __init__(self, table):
+        missing = [name for name in FIELDS if name not in table]
+        if missing:
+            raise Refused(f"no follower.{missing[0]}")
+        mass, damping, stiffness, gravity, rest, restitution = (decimal(table[name]) for name in FIELDS)
+        if not (mass > 0 and damping >= 0 and stiffness >= 0 and 0 <= restitution <= 1):
+            raise Refused("follower: needs mass > 0, damping >= 0, stiffness >= 0 and restitution from 0 to 1")
+        zeta, omega0_squared = damping / (2 * mass), stiffness / mass
+        # Under critical damping above 0, beyond it below.
+        discriminant = omega0_squared - zeta * zeta
+        self.oscillates, self.is_critical = discriminant > 0, discriminant == 0
+        self.has_spring = stiffness > 0
+        self.zeta, self.omega0_squared, self.gravity = arb(zeta), arb(omega0_squared), arb(gravity)
+        self.rate = arb(abs(discriminant)).sqrt()
+        self.rest, self.restitution = arb(rest), arb(restitution)
+        # The paper's x is measured from the spring's equilibrium, or from where a spring without stiffness is slack.
+        self.origin = arb(rest - gravity / omega0_squared if stiffness > 0 else rest)
+
+    def response(self, time):
+        """(p, s, s') after a ball of times."""
+        zeta, rate = self.zeta, self.rate
+        if self.is_critical:
+            # s = t e^{-zeta t}, s' = (1 - zeta t) e^{-zeta t}
+            decay = (-zeta * time).exp()
+            s, s1 = time * decay, (1 - zeta * time) * decay
+        elif self.oscillates:
+            # s = e^{-zeta t} sin(w t)/w, s' = e^{-zeta t} (cos(w t) - zeta sin(w t)/w)
+            sin, cos = (rate * time).sin_cos()
+            s, s1 = sin / rate, cos
+            if zeta != 0:
+                decay = (-zeta * time).exp()
+                s, s1 = decay * s, decay * (s1 - zeta * s)
+        else:
+            # s = e^{-zeta t} sinh(l t)/l, s' = e^{-zeta t} (cosh(l t) - zeta sinh(l t)/l)
+            sinh, cosh = (rate * time).sinh_cosh()
+            decay = (-zeta * time).exp()
+            s, s1 = decay * sinh / rate, decay * (cosh - zeta * sinh / rate)
+        if self.has_spring:
+            # w0^2 p = 1 - s' - 2 zeta s
+            p = (1 - s1 - 2 * zeta * s) / self.omega0_squared
+        elif zeta != 0:
+            # p' = s = (1 - e^{-2 zeta t})/(2 zeta)
+            p = (time - s) / (2 * zeta)
+        else:
+            p = time * time / 2
+        return p, s, s1
+
+    def force(self, position):
+        """The acceleration at a position and no velocity: -w0^2 (q - rest) - g."""
+        return -self.omega0_squared * (position - self.rest) - self.gravity
+
+    def fly(self, response, position, velocity):
+        """(q, v) after the time of a response: q = q0 + s v0 + p f0, v = s' v0 + s f0."""
+        p, s, s1 = response
+        force = self.force(position)
+        return position + s * velocity + p * force, s1 * velocity + s * force
+
+    def acceleration(self, position, velocity):
+        """q'' = f(q) - 2 zeta v."""
+        return self.force(position) - 2 * self.zeta * velocity
+
+    def rebound(self, cam_velocity, velocity):
+        """Newton's impact: v+ = (1 + r) c' - r v-."""
+        return (1 + self.restitution) * cam_velocity - self.restitution * velocity

@@ -1,0 +1,258 @@
+"""One flight over the cam, from a ball of starts: its gap, its first contact, the impact map and its derivative.
+
+A start is (theta, u, omega): the follower leaves the cam at the angle theta with the velocity u relative to it while the cam
+turns at omega. The gap after a time t is
+
+    g(t; theta, u, omega) = q(t) - c(theta + omega t),   q(0) = c(theta), q'(0) = c'(theta) omega + u,
+
+so that g(0) = 0 and g'(0) = u. Everywhere it is enclosed by the mean value form in the start, about the ball's centre, and by
+Taylor's formula of second order in t, about the middle of the times.
+"""
+
+from dataclasses import dataclass
+
+from flint import arb, arb_mat
+
+from .cam import Cam
+from .flight import Follower
+from .numbers import Refused, Undecided, between
+
+# Steps of a proof that no contact comes before: the first part of a revolution that is tried, and how often it is halved.
+FIRST_STEP = 1 / 16
+HALVINGS = 24
+# Steps of Newton's method: each doubles the digits, and no precision that is used has 2^12.
+NEWTON = 12
+
+
+class Machine:
+    """A follower on a cam."""
+
+    def __init__(self, document):
+        for name in ("follower", "cam"):
+            if not isinstance(document.get(name), dict):
+                raise Refused(f"no {name}")
+        self.follower, self.cam = Follower(document["follower"]), Cam(document["cam"])
+
+
+@dataclass(frozen=True)
+class Start:
+    """Balls of starts: cam angle, rad, velocity relative to the cam, m/s, cam speed, rad/s."""
+
+    angle: arb
+    velocity: arb
+    speed: arb
+
+    def __iter__(self):
+        return iter((self.angle, self.velocity, self.speed))
+
+    def centre(self):
+        """The start in the middle."""
+        return Start(*(number.mid() for number in self))
+
+    def offsets(self):
+        """How far a start of the ball may be from the one in the middle."""
+        return [number - number.mid() for number in self]
+
+
+class Flight:
+    """The flights from a ball of starts; `law` says on which piece all of them start, else the cam tells."""
+
+    def __init__(self, machine, start, law=None):
+        self.machine, self.start, self.law = machine, start, law
+        lift, slope, curvature, _ = (law or machine.cam).derivatives(start.angle)
+        self.slope, self.curvature, self.position = slope, curvature, lift
+        self.velocity = slope * start.speed + start.velocity
+        offsets = start.offsets()
+        self.is_point = all(offset == 0 for offset in offsets)
+        self.offsets = offsets
+        self.centre = self if self.is_point else Flight(machine, start.centre(), law)
+
+    def angle(self, time):
+        """theta + omega t."""
+        return self.start.angle + self.start.speed * time
+
+    def state(self, time):
+        """(q, v) at a ball of times, as wide as it comes."""
+        return self.machine.follower.fly(self.machine.follower.response(time), self.position, self.velocity)
+
+    def _kinematics(self, time):
+        """What every enclosure needs at a ball of times: response, state, and (c, c', c'') under the follower."""
+        follower = self.machine.follower
+        response = follower.response(time)
+        return response, follower.fly(response, self.position, self.velocity), self.machine.cam.derivatives(self.angle(time))
+
+    def gap_by_start(self, time, seen=None):
+        """(g_theta, g_u, g_omega) over the ball."""
+        (p, s, _), _, (_, slope, _, _) = seen or self._kinematics(time)
+        omega0_squared, speed = self.machine.follower.omega0_squared, self.start.speed
+        # q_theta = (1 - w0^2 p) c'(theta) + s c''(theta) omega, q_u = s, q_omega = s c'(theta)
+        of_angle = (1 - omega0_squared * p) * self.slope + s * self.curvature * speed - slope
+        return of_angle, s, s * self.slope - slope * time
+
+    def rate_by_start(self, time, seen=None):
+        """(g'_theta, g'_u, g'_omega) over the ball, ' by time."""
+        (_, s, s1), _, (_, slope, curvature, _) = seen or self._kinematics(time)
+        omega0_squared, speed = self.machine.follower.omega0_squared, self.start.speed
+        # v_theta = -w0^2 s c'(theta) + s' c''(theta) omega, v_u = s', v_omega = s' c'(theta)
+        of_angle = -omega0_squared * s * self.slope + s1 * self.curvature * speed - curvature * speed
+        return of_angle, s1, s1 * self.slope - slope - curvature * speed * time
+
+    def _rate_rate(self, seen):
+        """g'' = q'' - c'' omega^2 over the ball."""
+        _, (position, velocity), (_, _, curvature, _) = seen
+        return self.machine.follower.acceleration(position, velocity) - curvature * self.start.speed**2
+
+    def _at(self, time):
+        """(g, g') as they come out, without any form that keeps them narrow."""
+        _, (position, velocity), (lift, slope, _, _) = self._kinematics(time)
+        return position - lift, velocity - slope * self.start.speed
+
+    def gap(self, time):
+        """g over a ball of times and all starts."""
+        if not self.machine.cam.is_smooth(self.angle(time)) or not self._starts_smoothly():
+            return self._at(time)[0]
+        seen, middle = self._kinematics(time), time.mid()
+        gap, rate = self.centre._at(middle)
+        later = time - middle
+        gap += (rate + self._rate_rate(seen) * later / 2) * later
+        return gap if self.is_point else gap + _along(self.gap_by_start(time, seen), self.offsets)
+
+    def gap_rate(self, time):
+        """g' over a ball of times and all starts."""
+        if not self.machine.cam.is_smooth(self.angle(time)) or not self._starts_smoothly():
+            return self._at(time)[1]
+        seen, middle = self._kinematics(time), time.mid()
+        rate = self.centre._at(middle)[1] + self._rate_rate(seen) * (time - middle)
+        return rate if self.is_point else rate + _along(self.rate_by_start(time, seen), self.offsets)
+
+    def _starts_smoothly(self):
+        return self.law is not None or self.machine.cam.is_smooth(self.start.angle)
+
+    def contact_near(self, time):
+        """A ball that holds a contact of each flight, one and no other within `time`, by interval Newton; None if not proved.
+
+        Nor is it where the lift or its slope may jump under the ball.
+        """
+        if not (self._starts_smoothly() and self.machine.cam.is_smooth(self.angle(time))):
+            return None
+        for _ in range(NEWTON):
+            rate, middle = self.gap_rate(time), time.mid()
+            if not rate < 0:
+                return None
+            # All of N(T) = m - g(m)/g'(T) in T: each start has one contact in T, and it lies in N(T).
+            step = middle - self.gap(middle) / rate
+            if not time.contains(step):
+                return None
+            if not step.rad() < time.rad() * 0.75:
+                return step
+            time = step
+        return time
+
+    def first_contact(self, horizon, guess=None):
+        """The time of the first contact of each flight, proved to be the first: 0 < g before it, g' < 0 at it.
+
+        Looked for up to `horizon`, s. Refused where the flight touches, or where a proof would take steps too short.
+        """
+        revolution = 2 * arb.pi() / self.start.speed.mid()
+        shortest = float(revolution.mid()) * FIRST_STEP / 2**HALVINGS
+        if not self.start.velocity > 0:
+            raise Undecided("the follower is not proved to leave the cam")
+        # Next to the launch g' > 0, so that g > 0 but for t = 0.
+        step = float(revolution.mid()) * FIRST_STEP
+        while not self.gap_rate(between(0, step)) > 0:
+            step /= 2
+            if step < shortest:
+                raise Undecided("the follower is not proved to get clear of the cam")
+        reached, landing = step, guess
+        while reached < horizon:
+            if landing is None and not self.centre._at(arb(reached + step))[0] > 0:
+                landing = self.centre._closed(reached, reached + step)
+            if landing is not None and reached + 2 * step >= landing:
+                found = self._lands(reached, landing)
+                if found is not None:
+                    return found
+            if self.gap(between(reached, reached + step)) > 0:
+                reached += step
+                step *= 1.5
+                continue
+            step /= 2
+            if step < shortest:
+                raise Refused(f"the flight is not proved to be clear of the cam {reached:.6g} s after it began: it may touch")
+        raise Refused(f"no contact within {horizon:.6g} s")
+
+    def _closed(self, low, high):
+        """About when the flight from the centre comes down, by halving: a guess."""
+        for _ in range(50):
+            middle = (low + high) / 2
+            low, high = (middle, high) if self._at(arb(middle))[0] > 0 else (low, middle)
+        return (low + high) / 2
+
+    def _lands(self, reached, landing):
+        """The contact near a guess, if g' < 0 from `reached` on to it; None if that is not proved."""
+        # As wide as the starts make it, and more than the guess is off by.
+        rate = self.centre._at(arb(landing))[1]
+        if not rate < 0:
+            return None
+        spread = abs(_along(self.gap_by_start(arb(landing)), self.offsets) / rate).upper() if not self.is_point else arb(0)
+        reach = 2 * spread + abs(self.centre._at(arb(landing))[0] / rate).upper() * 2 + arb(landing) * 2**-40
+        time = arb(landing) + arb(0, reach)
+        if not time.lower() > reached:
+            return None
+        contact = self.contact_near(time)
+        if contact is None or not self.gap_rate(between(reached, contact)) < 0:
+            return None
+        return contact
+
+
+def _along(gradient, offsets):
+    return sum((slope * offset for slope, offset in zip(gradient, offsets)), arb(0))
+
+
+@dataclass(frozen=True)
+class Impact:
+    """What the impact map makes of a ball of starts: the next start, all of it, its derivative, and the flight's time."""
+
+    start: Start
+    derivative: arb_mat
+    time: arb
+
+
+def derivative(flight, time):
+    """d(theta', u')/d(theta, u, omega), 2x3, over all starts whose contact is within `time`; c'' is the hull across corners."""
+    machine, (_, _, speed) = flight.machine, flight.start
+    seen = flight._kinematics(time)
+    (_, s, s1), (position, velocity), (_, slope, curvature, _) = seen
+    follower = machine.follower
+    rate, acceleration = velocity - slope * speed, follower.acceleration(position, velocity)
+    at_start = flight.slope, flight.curvature * speed
+    # q0 and v0 by (theta, u, omega).
+    starts = ((at_start[0], at_start[1]), (arb(0), arb(1)), (arb(0), flight.slope))
+    rows = [[], []]
+    for index, (gap_by, (q_by, v_by)) in enumerate(zip(flight.gap_by_start(time, seen), starts)):
+        # g(t; x) = 0 gives t_x = -g_x/g'; theta' = theta + omega t; u' = r (c'(theta') omega - v)
+        time_by = -gap_by / rate
+        angle_by = speed * time_by + (1 if index == 0 else time if index == 2 else 0)
+        cam_by = curvature * speed * angle_by + (slope if index == 2 else 0)
+        velocity_by = -follower.omega0_squared * s * q_by + s1 * v_by + acceleration * time_by
+        rows[0].append(angle_by)
+        rows[1].append(follower.restitution * (cam_by - velocity_by))
+    return arb_mat(rows)
+
+
+def impact_map(machine, start, horizon, law=None, guess=None):
+    """f: (theta, u, omega) to (theta', u') after the first contact, proved to be the first of every start in the ball.
+
+    The image is that of the centre and the derivative times the ball. Where c'' jumps under the ball, f is Lipschitz with the
+    derivative's hull, and the mean value form holds all the same.
+    """
+    flight = Flight(machine, start, law)
+    time = flight.first_contact(horizon, guess)
+    jacobian = derivative(flight, time)
+    at_centre = flight.centre.contact_near(time) or time
+    _, velocity = flight.centre.state(at_centre)
+    angle = flight.centre.angle(at_centre)
+    slope = machine.cam.derivatives(angle)[1]
+    image = [angle, machine.follower.restitution * (slope * flight.centre.start.speed - velocity)]
+    if not flight.is_point:
+        image = [value + _along([jacobian[row, k] for k in range(3)], flight.offsets) for row, value in enumerate(image)]
+    return Impact(Start(image[0], image[1], start.speed), jacobian, time)

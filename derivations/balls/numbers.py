@@ -1,0 +1,74 @@
+"""Decimals as a model file writes them, balls as text that certainly holds them, and signs that are proved."""
+
+from fractions import Fraction
+
+from flint import arb, ctx, fmpq
+
+# A double has no exponent beyond this; more digits than that would only take memory.
+LARGEST_EXPONENT = 400
+
+
+class Refused(Exception):
+    """What was to be proved is not so, or is no model: the sentence says what was found."""
+
+
+class Undecided(Refused):
+    """The balls are too wide to tell."""
+
+
+def decimal(value):
+    """A decimal, as text or as an integer, as the rational number that it is."""
+    if isinstance(value, bool) or not isinstance(value, (str, int)):
+        raise Refused(f"{value!r} is not a number")
+    _, _, exponent = str(value).lower().partition("e")
+    try:
+        if exponent and abs(int(exponent)) > LARGEST_EXPONENT:
+            raise Refused(f"{value!r} is beyond what a double holds")
+        number = Fraction(value)
+    except ValueError as error:
+        raise Refused(f"{value!r} is not a number") from error
+    return fmpq(number.numerator, number.denominator)
+
+
+def ball(number):
+    """A ball as {"mid", "rad"}, decimals; whatever the ball holds lies within rad of mid."""
+    if not number.is_finite():
+        raise Undecided("a ball is unbounded")
+    # A few digits more than the precision has, so that writing them widens the ball by little.
+    digits = int(ctx.prec * 0.30103) + 4
+    text = number.str(digits, more=True).strip("[]")
+    mid, _, rad = text.partition("+/-")
+    return {"mid": mid.strip() or "0", "rad": rad.strip() or "0"}
+
+
+def hull(balls):
+    """The smallest ball, or nearly, that holds all of them."""
+    balls = iter(balls)
+    whole = next(balls)
+    for one in balls:
+        whole = whole.union(one)
+    return whole
+
+
+def between(low, high):
+    """The ball of all numbers from one number or ball to another."""
+    return arb(low).union(arb(high))
+
+
+def overlap(one, other):
+    """A ball that holds what two balls share; None where it is proved that they share nothing."""
+    return one.intersection(other) if one.overlaps(other) else None
+
+
+def within(inner, outer):
+    """Whether it is proved that one ball lies in the inside of another."""
+    return bool(inner.lower() > outer.lower() and inner.upper() < outer.upper())
+
+
+def sign(number, what):
+    """1 or -1, proved; Undecided where the ball holds 0."""
+    if number > 0:
+        return 1
+    if number < 0:
+        return -1
+    raise Undecided(f"the sign of {what} is not decided: it lies in {number.str(5, more=True)}")

@@ -1,0 +1,252 @@
+"""The [cam] table of a model as pieces: [(angle where it starts, law, how many derivatives agree there)].
+
+The decimals of the table are exact. The lift counts as a derivative, so that 2 says that lift and slope agree; it is said only
+of what follows from how the law is made. 0: the decimals of two pieces meet nearly at most. None: nothing meets there.
+"""
+
+from flint import arb, arb_mat, fmpq
+
+from .laws import Circle, Waves
+from .numbers import Refused, decimal
+
+# Larger systems than a measured cam has; their solution in balls takes minutes.
+MOST_ROWS = 1000
+
+
+def pieces_of(table):
+    """The pieces of a [cam] table, by rising start in [0, 2 pi)."""
+    law = table.get("law")
+    if law not in LAWS:
+        raise Refused(f"cam.law: {law!r} is not known; known are {', '.join(LAWS)}")
+    return LAWS[law](table)
+
+
+def _number(table, name, where="cam"):
+    if name not in table:
+        raise Refused(f"no {where}.{name}")
+    return decimal(table[name])
+
+
+def _radians(degrees):
+    return arb(degrees) * arb.pi() / 180
+
+
+def arcs(table):
+    """Base, flank and nose circles that touch, mirrored about pi; touching, they agree in lift and slope."""
+    fields = ("base_radius", "flank_radius", "nose_radius", "flank_start_deg", "nose_end_deg")
+    base, flank, nose, start_deg, end_deg = (_number(table, name) for name in fields)
+    if not (0 < base < flank and 0 < nose < flank and 0 < start_deg < end_deg <= 180):
+        raise Refused("cam: the circles need 0 < base < flank, 0 < nose < flank and 0 < flank_start < nose_end <= 180 deg")
+    start, end, turn = _radians(start_deg), _radians(end_deg), 2 * arb.pi()
+    sin, cos = _radians(end_deg - start_deg).sin_cos()
+    # The flank's centre is opposite its first ray; |O1 O2| = flank - nose fixes the nose's centre on its last.
+    behind, apart = arb(flank - base), arb(flank - nose)
+    ahead = ((apart - behind * sin) * (apart + behind * sin)).sqrt() - behind * cos
+    if not ahead > 0:
+        raise Refused("cam: the flank and the nose circle do not touch")
+    # Seen from axes with the flank's first ray as the first: O1 = (-behind, 0), O2 = ahead (cos, sin).
+    stretch = arb(flank) / apart
+    meeting = start + arb.atan2(stretch * ahead * sin, stretch * (ahead * cos + behind) - behind)
+    if not (meeting > start and meeting < end):
+        raise Refused("cam: flank and nose do not touch between flank_start and nose_end")
+    rising, falling = (Circle(behind, angle, arb(flank)) for angle in (start + arb.pi(), arb.pi() - start))
+    near, far = (Circle(ahead, angle, arb(nose)) for angle in (end, turn - end))
+    pieces = [(start, rising, 2), (meeting, near, 2)]
+    if end_deg < 180:
+        pieces.append((end, Waves(end, [ahead + nose]), 2))
+    return pieces + [(turn - end, far, 2), (turn - meeting, falling, 2), (turn - start, Waves(turn - start, [base]), 2)]
+
+
+def harmonic(table):
+    """c = offset + sum a_k cos(k theta + p_k), one law all round."""
+    pairs = zip(table.get("amplitudes", ()), table.get("phases_deg", ()), strict=True)
+    waves = [(arb(decimal(a)), k, _radians(decimal(phase))) for k, (a, phase) in enumerate(pairs, start=1)]
+    return [(arb(0), Waves(arb(0), [_number(table, "offset")], waves), None)]
+
+
+def rectified_sine(table):
+    """c = offset + amplitude |sin theta|: the lift agrees at 0 and pi, and the slope jumps."""
+    offset, amplitude = _number(table, "offset"), arb(_number(table, "amplitude"))
+    # sin u = cos(u - pi/2)
+    hump = [(amplitude, 1, -arb.pi() / 2)]
+    return [(start, Waves(start, [offset], hump), 1) for start in (arb(0), arb.pi())]
+
+
+def polynomial(table):
+    """c = sum a_k (theta - start)^k: what agrees where two of them meet is for their decimals to tell."""
+    pieces = []
+    for segment in table.get("segment", ()):
+        start = _radians(_number(segment, "start_deg", "cam.segment"))
+        pieces.append((start, Waves(start, [decimal(a) for a in segment.get("coefficients", ())]), 0))
+    if not pieces:
+        raise Refused("no cam.segment")
+    return pieces
+
+
+def spline(table):
+    """The periodic spline through the rows, solved in balls: of degree 3 it agrees up to c'', of degree 5 up to c''''."""
+    rows = [(decimal(row["angle_deg"]), decimal(row["lift"])) for row in table.get("rows", ())]
+    degree = {"cubic": 3, "quintic": 5}.get(table.get("spline"))
+    if degree is None or not 3 <= len(rows) <= MOST_ROWS:
+        raise Refused(f"cam: a table is certified as a cubic or quintic spline of 3 to {MOST_ROWS} rows")
+    turn, count, size = fmpq(360), len(rows), (degree - 1) // 2
+    ends = rows[1:] + [(rows[0][0] + turn, rows[0][1])]
+    # Widths in units of the mean one; the unknowns of a row are its slope and, of degree 5, its curvature.
+    gaps = [(fmpq(count) * (b - a) / turn, v, w - v) for (a, v), (b, w) in zip(rows, ends)]
+    matrix, right = arb_mat(size * count, size * count), arb_mat(size * count, 1)
+    for index, (h, value, rise) in enumerate(gaps):
+        after = (index + 1) % count
+        d = rise / h
+        if degree == 3:
+            # c'' at the ends of a piece: (6 d - 4 s0 - 2 s1)/h and (2 s0 + 4 s1 - 6 d)/h.
+            equations = [(index, [4 / h], [2 / h], 6 * d / h), (after, [2 / h], [4 / h], 6 * d / h)]
+        else:
+            # c'''' = (-360 d + 192 s0 + 168 s1)/h^3 + (36 k0 - 24 k1)/h^2 and c''' = (60 d - 36 s0 - 24 s1)/h^2 + (3 k1 - 9 k0)/h
+            # at the start; at the end the mirror image.
+            a, b, c, e, f, g = 192 / h**3, 168 / h**3, 36 / h**2, 24 / h**2, 9 / h, 3 / h
+            top, low = 360 * d / h**3, 60 * d / h**2
+            equations = [
+                (2 * index, [a, c], [b, -e], top),
+                (2 * index + 1, [c, f], [e, -g], low),
+                (2 * after, [b, e], [a, -c], top),
+                (2 * after + 1, [-e, -g], [-c, f], -low),
+            ]
+        for row, at_start, at_end, known in equations:
+            for column in range(size):
+                matrix[row, size * index + column] += arb(at_start[column])
+                matrix[row, size * after + column] += arb(at_end[column])
+            right[row, 0] += arb(known)
+    solution = matrix.solve(right)
+    unit, pieces = 2 * arb.pi() / count, []
+    for index, (h, value, rise) in enumerate(gaps):
+        left, far = ([solution[size * at + k, 0] for k in range(size)] for at in (index, (index + 1) % count))
+        e0, e1 = left[0] - rise / h, far[0] - rise / h
+        if degree == 3:
+            coefficients = [arb(value), left[0], -(2 * e0 + e1) / h, (e0 + e1) / h**2]
+        else:
+            e0, e1, k0, k1 = e0 / h, e1 / h, left[1], far[1]
+            coefficients = [
+                arb(value),
+                left[0],
+                k0 / 2,
+                (-6 * e0 - 4 * e1 + (k1 - 3 * k0) / 2) / h,
+                (8 * e0 + 7 * e1 + (3 * k0 - 2 * k1) / 2) / h**2,
+                (-3 * (e0 + e1) + (k1 - k0) / 2) / h**3,
+            ]
+        start = _radians(rows[index][0])
+        pieces.append((start, Waves(start, [a / unit**k for k, a in enumerate(coefficients)]), degree))
+    return pieces
+
+
+def program(table):
+    """Motions one after the other. Each starts and ends at rest, so that lift and slope agree; inside one, too.
+
+    The spans are taken as parts of their sum and the last rise as what closes the lift, as the model's reader takes them.
+    """
+    segments = table.get("segment", ())
+    spans = [_number(segment, "span_deg", "cam.segment") for segment in segments]
+    rises = [decimal(segment.get("rise", 0)) for segment in segments]
+    degrees, base = sum(spans, fmpq(0)), _number(table, "base")
+    moving = [index for index, segment in enumerate(segments) if segment.get("motion") != "dwell"]
+    pieces, turned, lifted, start, lift = [], fmpq(0), fmpq(0), arb(0), base
+    for index, (segment, span, rise) in enumerate(zip(segments, spans, rises)):
+        turned, lifted = turned + span, lifted + rise
+        to = base if moving and index == moving[-1] else base + lifted if index in moving else lift
+        end = 2 * arb.pi() * arb(turned / degrees)
+        if segment.get("motion") not in MOTIONS:
+            raise Refused(f"cam.segment.motion: {segment.get('motion')!r} is not known; known are {', '.join(MOTIONS)}")
+        pieces += Placed(start, end - start, arb(lift), arb(to - lift)).pieces(MOTIONS[segment["motion"]])
+        start, lift = end, to
+    if not pieces:
+        raise Refused("no cam.segment")
+    return pieces
+
+
+class Placed:
+    """A motion's place: where it starts and what it takes, rad, the lift that it starts at and what it adds."""
+
+    def __init__(self, start, span, lift, rise):
+        self.start, self.span, self.lift, self.rise = start, span, lift, rise
+
+    def pieces(self, motion):
+        """A motion, for a rise of 1 over a span of 1, is [(where it starts, about which x, coefficients, wave)]."""
+        return [(self.start + self.span * x, self.law(*law), 2) for x, *law in motion()]
+
+    def law(self, about, coefficients, wave):
+        """s = sum a_k y^k + amplitude cos(frequency y + phase), y = x - about, stretched."""
+        scaled = [self.rise * a / self.span**k for k, a in enumerate(coefficients)]
+        waves = [(self.rise * amplitude, frequency / self.span, phase) for amplitude, frequency, phase in wave]
+        return Waves(self.start + self.span * about, [self.lift + scaled[0]] + scaled[1:], waves)
+
+
+def _halves(*powers):
+    """s = sum a_k x^k, k from 0, up to the middle, and 1 - s(1 - x) from there, about the end."""
+    first = [arb(a) for a in powers]
+    # -(-1)^k a_k, as y = x - 1.
+    last = [1 - first[0]] + [-a if k % 2 == 0 else a for k, a in enumerate(first)][1:]
+    return [(fmpq(0), fmpq(0), first, []), (fmpq(1, 2), fmpq(1), last, [])]
+
+
+def _sine(about, lift, velocity, peak, frequency):
+    """s = lift + velocity y + peak/f^2 (f y - sin(f y)), y = x - about: its acceleration is peak sin(f y)."""
+    amplitude = peak / frequency**2
+    # -sin = cos(. + pi/2)
+    return about, [arb(lift), velocity + amplitude * frequency], [(amplitude, frequency, arb.pi() / 2)]
+
+
+def _modified_trapezoid():
+    """Acceleration C sin(4 pi x), C, C cos(4 pi (x - 3/8)) and antisymmetric, C = 8 pi/(pi + 2) for a rise of 1."""
+    peak, frequency = 8 * arb.pi() / (arb.pi() + 2), 4 * arb.pi()
+    # At 1/8: s' = C/(4 pi), s = C/(4 pi)^2 (pi/2 - 1); at 1/2: s' = 2.
+    velocity, covered = peak / frequency, peak / frequency**2 * (arb.pi() / 2 - 1)
+    eighth = fmpq(1, 8)
+    return [
+        (fmpq(0), *_sine(fmpq(0), 0, arb(0), peak, frequency)),
+        (eighth, eighth, [covered, velocity, peak / 2], []),
+        (3 * eighth, *_sine(fmpq(1, 2), fmpq(1, 2), arb(2), -peak, frequency)),
+        (5 * eighth, 7 * eighth, [1 - covered, velocity, -peak / 2], []),
+        (7 * eighth, *_sine(fmpq(1), 1, arb(0), peak, frequency)),
+    ]
+
+
+def _modified_sine():
+    """Acceleration C sin(4 pi x), C sin(pi/3 + 4 pi x/3), C sin(4 pi (x - 1)), C = 4 pi^2/(pi + 4) for a rise of 1."""
+    peak, frequency = 4 * arb.pi() ** 2 / (arb.pi() + 4), 4 * arb.pi()
+    # At 1/2: s' = C/pi.
+    return [
+        (fmpq(0), *_sine(fmpq(0), 0, arb(0), peak, frequency)),
+        (fmpq(1, 8), *_sine(fmpq(1, 2), fmpq(1, 2), peak / arb.pi(), -peak, frequency / 3)),
+        (fmpq(7, 8), *_sine(fmpq(1), 1, arb(0), peak, frequency)),
+    ]
+
+
+def _cycloidal():
+    """s = x - sin(2 pi x)/(2 pi): acceleration 2 pi sin(2 pi x)."""
+    return [(fmpq(0), *_sine(fmpq(0), 0, arb(0), 2 * arb.pi(), 2 * arb.pi()))]
+
+
+def _simple_harmonic():
+    """s = (1 - cos(pi x))/2."""
+    half = arb(fmpq(1, 2))
+    return [(fmpq(0), fmpq(0), [half], [(-half, arb.pi(), arb(0))])]
+
+
+MOTIONS = {
+    "dwell": lambda: [(fmpq(0), fmpq(0), [arb(0)], [])],
+    "parabolic": lambda: _halves(0, 0, 2),
+    "harmonic": _simple_harmonic,
+    "cycloidal": _cycloidal,
+    "modified-trapezoid": _modified_trapezoid,
+    "modified-sine": _modified_sine,
+    "poly345": lambda: _halves(0, 0, 0, 10, -15, 6),
+    "poly4567": lambda: _halves(0, 0, 0, 0, 35, -84, 70, -20),
+}
+
+LAWS = {
+    "arcs": arcs,
+    "harmonic": harmonic,
+    "rectified-sine": rectified_sine,
+    "program": program,
+    "polynomial": polynomial,
+    "table": spline,
+}
