@@ -164,6 +164,13 @@ table! {
     /// The standard error of a Lyapunov exponent of the local map over the exponent, when the motion counts as chaotic.
     CHAOTIC_EXPONENT = 0.2, "the standard error over the exponent: five standard errors above 0, which chance exceeds once in \
         three million runs";
+    /// By how much the local map sends a region into its own inside.
+    TRAPPED = 1e-10, "of the region's size: a hundred thousand roundings, so that rounding hides no way out";
+    /// How much further than what is sent out of a region the region is made to reach.
+    TAKEN_IN = 1e-4, "of the distance from its middle: with less, the region creeps towards its bounds for hundreds of rounds; \
+        attractors within that of their end are left undecided";
+    /// When a region that grows is given up: the size of what it was made around over its own.
+    LEAVING = 1e-2, "of its size: regions that close up have grown by less than half";
     /// The difference between the local map and the real one up to which it counts as valid.
     LINEAR_WITHIN = 0.1, "of the displacement that the local map predicts: the tenth that its range is asked for at";
     /// Where the search for the end of the local map's range begins.

@@ -2,11 +2,13 @@
 //!
 //! Whether a motion ends on an orbit or escapes is not guessed from its size. Once the sides that it visits repeat a word,
 //! the rest is known: it tends to the orbit of that word where this orbit is stable and visits those sides, and it escapes
-//! where a sufficient condition holds. For a motion that repeats no word the largest Lyapunov exponent is measured.
+//! where a sufficient condition holds. For a motion that repeats no word the largest Lyapunov exponent is measured; it is
+//! called chaotic where a region that the map sends into itself shows that it stays.
 
 use nalgebra::{Matrix2, Vector2};
 
 use super::local_map::{LocalMap, PeriodicOrbit};
+use super::trapping::Region;
 use super::word::Word;
 use crate::cam::Side;
 use crate::corner::map::Eigenvalue;
@@ -18,9 +20,11 @@ use crate::tolerance;
 pub enum End {
     /// On a stable periodic orbit; a fixed point for a word of one letter.
     Periodic(PeriodicOrbit),
-    /// In a bounded motion that parts neighbours, by its largest Lyapunov exponent per step, a natural logarithm.
-    Chaotic(Estimate),
-    /// In a bounded motion whose exponent is not above 0 by enough: on a closed curve, or not settled yet.
+    /// In a motion that parts neighbours, by its largest Lyapunov exponent per step, a natural logarithm; it never leaves
+    /// the region.
+    Chaotic(Estimate, Region),
+    /// In a motion that has not left yet, with its exponent: on a closed curve, not settled, or with no region found that it
+    /// stays in, so that it may be a long transient.
     Undecided(Estimate),
     /// At the corner impact itself: at mu = 0 the motion shrinks to nothing.
     Corner,
@@ -46,10 +50,14 @@ pub enum Escape {
 const PART: usize = 1024;
 /// Parts that are no longer looked at for a mean: the transient.
 const TRANSIENT: usize = 8;
-/// Parts of a run that repeats no word.
+/// Parts of such a run.
 const PARTS: usize = 40;
+/// Steps of a run that repeats no word.
+pub(super) const STEPS: usize = PARTS * PART;
 /// Steps that an exponent's mean is taken over.
 pub(super) const MEASURED: usize = (PARTS - TRANSIENT) * PART;
+/// Parts that a region which the motion stays in is made around.
+const AROUND: usize = 8;
 /// How often a word must have been repeated to be one.
 const REPEATED: usize = 8;
 
@@ -80,9 +88,15 @@ impl LocalMap {
         let mut tangent = Tangent::new(scales);
         let mut means = Vec::with_capacity(PARTS);
         let mut sides = Vec::with_capacity(PART);
+        let mut visited = Vec::with_capacity(PART);
         for part in 0..PARTS {
             sides.clear();
+            // The region around what was visited is made of the last parts alone.
+            if part + AROUND < PARTS {
+                visited.clear();
+            }
             for _ in 0..PART {
+                visited.push(x);
                 let side = self.side(x, mu);
                 sides.push(side);
                 let map = self.of(side);
@@ -114,8 +128,11 @@ impl LocalMap {
             }
         }
         let exponent = Estimate::of_parts(&means);
-        let known = exponent.error <= tolerance::CHAOTIC_EXPONENT.value * exponent.value;
-        if known && exponent.value > 0.0 { End::Chaotic(exponent) } else { End::Undecided(exponent) }
+        let known = exponent.error <= tolerance::CHAOTIC_EXPONENT.value * exponent.value && exponent.value > 0.0;
+        match known.then(|| self.region(&visited, mu)).flatten() {
+            Some(region) => End::Chaotic(exponent, region),
+            None => End::Undecided(exponent),
+        }
     }
 
     /// The factor by which a motion at `x` grows with each repetition of `word`, if it provably repeats it for ever.

@@ -6,6 +6,7 @@
 //! | [`mod@conditions`], [`feigin`] | what a classification rests on, and the classification |
 //! | [`mod@normal_form`] | the map with its parameter out of the border |
 //! | [`local_map`], [`word`] | the map itself; the sides that its orbits visit |
+//! | [`trapping`] | regions that it sends into themselves |
 //! | [`long_run`], `outcome` | where its motions end, on either side of the corner impact |
 //! | [`validity`], [`passage`] | how far it holds; how the machine leaves the place where its orbit was |
 //! | `impact_curve` | what happens along a curve of corner impacts in two numbers of the model |
@@ -18,6 +19,7 @@ pub mod long_run;
 pub mod normal_form;
 pub(crate) mod outcome;
 pub mod passage;
+pub mod trapping;
 pub mod validity;
 pub mod word;
 

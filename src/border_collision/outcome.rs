@@ -4,7 +4,8 @@ use nalgebra::Vector2;
 
 use super::feigin::speeds_at;
 use super::local_map::{LocalMap, PeriodicOrbit};
-use super::long_run::{End, Escape, MEASURED};
+use super::long_run::{End, Escape, MEASURED, STEPS};
+use super::trapping::Region;
 use super::word::Word;
 use crate::cam::Side;
 use crate::estimate::Estimate;
@@ -107,7 +108,7 @@ impl End {
         match self {
             Self::Periodic(orbit) if orbit.word.sides().len() == 1 => "fixed-point",
             Self::Periodic(_) => "periodic",
-            Self::Chaotic(_) => "chaotic",
+            Self::Chaotic(..) => "chaotic",
             Self::Undecided(_) => "undecided",
             Self::Corner => "corner",
             Self::Escapes(_) => "escapes",
@@ -124,14 +125,15 @@ impl End {
                     orbit.word
                 )
             }
-            Self::Chaotic(_) => format!(
-                "bounded and without a repeated word over the run; its Lyapunov exponent, a mean over {MEASURED} steps, is above 0 by \
-                 {:.0} standard errors or more",
+            Self::Chaotic(_, Region { polygons, corners }) => format!(
+                "the map sends a region around the motion into itself, {polygons} convex polygon(s) with {corners} corners, so the \
+                 motion stays; it repeats no word over the run, and its Lyapunov exponent, a mean over {MEASURED} steps, is above 0 \
+                 by {:.0} standard errors or more",
                 1.0 / tolerance::CHAOTIC_EXPONENT.value
             ),
             Self::Undecided(_) => format!(
-                "bounded and without a stable word over the run; its Lyapunov exponent, a mean over {MEASURED} steps, is not known to \
-                 be above 0"
+                "bounded and without a stable word over the run of {STEPS} steps; but either its Lyapunov exponent, a mean over \
+                 {MEASURED} of them, is not known to be above 0, or no region is found that it stays in, and it may leave later"
             ),
             Self::Corner => "the motion shrinks below any size".into(),
             Self::Escapes(Escape::Follows { word, multiplier }) => {
@@ -147,7 +149,7 @@ impl End {
     fn is_like(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Periodic(one), Self::Periodic(other)) => one.word == other.word,
-            (Self::Chaotic(one), Self::Chaotic(other)) => {
+            (Self::Chaotic(one, _), Self::Chaotic(other, _)) => {
                 let apart = (one.value - other.value).abs() * tolerance::CHAOTIC_EXPONENT.value;
                 apart <= one.error.hypot(other.error).max(tolerance::DEGENERATE.value)
             }
@@ -158,7 +160,7 @@ impl End {
     /// The exponent of a motion that repeats nothing.
     fn exponent(&self) -> Option<&Estimate> {
         match self {
-            Self::Chaotic(exponent) | Self::Undecided(exponent) => Some(exponent),
+            Self::Chaotic(exponent, _) | Self::Undecided(exponent) => Some(exponent),
             _ => None,
         }
     }

@@ -147,7 +147,7 @@ pub(crate) fn end(end: &End) -> Words {
     match end {
         End::Periodic(orbit) if end.fixed_on().is_some() => format!("on the fixed point {}", orbit.word).into(),
         End::Periodic(orbit) => format!("on the orbit {}", orbit.word).into(),
-        End::Chaotic(exponent) => growth("chaotic", exponent.value, exponent.error),
+        End::Chaotic(exponent, _) => growth("chaotic", exponent.value, exponent.error),
         End::Undecided(exponent) => growth("bounded and undecided", exponent.value, exponent.error),
         End::Corner => "to the corner impact".into(),
         End::Escapes(_) => format!("without bound ({})", end.basis()).into(),

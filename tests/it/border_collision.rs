@@ -30,7 +30,7 @@ fn grid([low, high]: [f64; 2], count: u32) -> impl Iterator<Item = f64> + Clone 
 
 fn exponent(end: &End) -> Estimate {
     match end {
-        End::Chaotic(exponent) => *exponent,
+        End::Chaotic(exponent, _) => *exponent,
         other => panic!("{other:?}"),
     }
 }
@@ -222,7 +222,7 @@ fn fixed_points_and_period_two_are_where_trace_and_determinant_say() {
 /// `phi = l (l - dL) + (l - 1)(l tR - dR) > 0`, l the unstable eigenvalue on L.
 ///
 /// Where phi < 0 the saddle's own unstable manifold leaves: its fold, at `(l/(l - dL), 0)`, is carried past the stable one.
-/// Chaos that does not reach as far as the fold may stay.
+/// Chaos that does not reach as far as the fold stays, on nine of the maps.
 #[test]
 fn chaos_is_robust_where_it_is_known_to_be() {
     let (mut chaotic, mut left, mut stayed) = (0, 0, 0);
@@ -249,7 +249,7 @@ fn chaos_is_robust_where_it_is_known_to_be() {
             }
         }
     }
-    assert!(chaotic > 200 && left > 200 && stayed > 0, "{chaotic} {left} {stayed}");
+    assert!(chaotic > 200 && left > 200 && stayed == 9, "{chaotic} {left} {stayed}");
 }
 
 #[test]

@@ -145,8 +145,8 @@ fn distances_from_failing_have_no_units() {
 #[test]
 fn numbers_that_are_none_end_without_a_panic() {
     let mut map = common::normal_form([0.5, f64::NAN], [0.3, 0.2]);
-    assert!(!matches!(map.outcome(1.0).fates[0].end, End::Periodic(_) | End::Chaotic(_)));
+    assert!(!matches!(map.outcome(1.0).fates[0].end, End::Periodic(_) | End::Chaotic(..)));
     map.plus.a = Matrix2::repeat(f64::INFINITY);
-    assert!(!matches!(map.outcome(-1.0).fates[0].end, End::Chaotic(_)));
+    assert!(!matches!(map.outcome(-1.0).fates[0].end, End::Chaotic(..)));
     assert!(conditions(&map).iter().any(|condition| !condition.holds()));
 }

@@ -36,7 +36,7 @@ fn word(text: &str) -> Word {
 
 fn exponent(end: &End) -> Estimate {
     match end {
-        End::Chaotic(exponent) => *exponent,
+        End::Chaotic(exponent, _) => *exponent,
         other => panic!("{other:?}"),
     }
 }

@@ -51,6 +51,7 @@ mod sticking;
 mod stopped;
 mod targets;
 mod tolerance;
+mod trapping;
 mod verify;
 mod whole_files;
 mod work;

@@ -1,0 +1,177 @@
+//! Whether a motion of the local map stays: regions that the map sends into themselves.
+//!
+//! That a motion has not left for some thousand steps says little: next to where an attractor ends, motions stay for millions
+//! of steps and then leave. A region that the map sends into its own inside settles it. Here it is made of convex polygons, one
+//! for each of the words of the last few sides visited: a side's part of a polygon has a convex image, so that its corners
+//! alone decide. A polygon starts as the hull of where the motion was, and takes in what is sent out of it, until nothing is.
+//! One polygon does for most attractors; those in several pieces take one for each side that was visited last.
+
+use nalgebra::Vector2;
+
+use super::local_map::LocalMap;
+use crate::cam::Side;
+use crate::tolerance;
+
+/// The longest word of sides that polygons are told apart by.
+const LONGEST_MEMORY: u32 = 3;
+/// Rounds of taking in after which a region is given up.
+const ROUNDS: usize = 400;
+
+/// The corners of a convex polygon, counter-clockwise, in units in which the motion is of size 1; of a segment two.
+type Polygon = Vec<Vector2<f64>>;
+
+/// A region that the map sends into its own inside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Region {
+    /// How many convex polygons it consists of.
+    pub polygons: usize,
+    /// How many corners these have together.
+    pub corners: usize,
+}
+
+impl LocalMap {
+    /// A region around the `visited` points of one motion, in their order and all at `mu`, that the map sends into its inside
+    /// by [`tolerance::TRAPPED`]: so the motion stays in it for ever. `None` says nothing: there may be one that is not found.
+    pub fn region(&self, visited: &[Vector2<f64>], mu: f64) -> Option<Region> {
+        let scaled = Scaled { map: self, mu, units: self.scales().map(|scale| if scale > 0.0 { scale } else { 1.0 }) };
+        (0..=LONGEST_MEMORY).find_map(|memory| scaled.region(visited, memory))
+    }
+}
+
+struct Scaled<'a> {
+    map: &'a LocalMap,
+    mu: f64,
+    units: Vector2<f64>,
+}
+
+impl Scaled<'_> {
+    /// The same with one polygon for each word of `memory` sides.
+    fn region(&self, visited: &[Vector2<f64>], memory: u32) -> Option<Region> {
+        let words = 1_usize << memory;
+        let next = |word: usize, side: Side| ((word << 1) | usize::from(side == Side::Plus)) & (words - 1);
+        let mut clouds = vec![Vec::new(); words];
+        let mut word = 0;
+        for (step, point) in visited.iter().enumerate() {
+            // Before that, the word is not that of the motion.
+            if step >= memory as usize {
+                clouds.get_mut(word)?.push(point.component_div(&self.units));
+            }
+            word = next(word, self.map.side(*point, self.mu));
+        }
+        let largest = visited.iter().map(|point| point.component_div(&self.units).amax()).fold(0.0, f64::max);
+        if largest == 0.0 {
+            return None;
+        }
+        let mut polygons: Vec<Polygon> = clouds.into_iter().map(hull).collect();
+        for _ in 0..ROUNDS {
+            let mut sent_out = vec![Vec::new(); words];
+            for (word, polygon) in polygons.iter().enumerate() {
+                for side in [Side::Minus, Side::Plus] {
+                    let to = next(word, side);
+                    let images = self.part(polygon, side).into_iter().map(|corner| self.image(corner, side));
+                    let target = polygons.get(to)?;
+                    sent_out.get_mut(to)?.extend(images.filter(|image| !is_inside(target, *image, largest)));
+                }
+            }
+            if sent_out.iter().all(Vec::is_empty) {
+                let corners = polygons.iter().map(Vec::len).sum();
+                return Some(Region {
+                    polygons: polygons.iter().filter(|polygon| !polygon.is_empty()).count(),
+                    corners,
+                });
+            }
+            for (polygon, out) in polygons.iter_mut().zip(sent_out).filter(|(_, out)| !out.is_empty()) {
+                let center = polygon.iter().sum::<Vector2<f64>>() / polygon.len().max(1) as f64;
+                // A little further than it must be, so that growing comes to an end.
+                polygon.extend(out.iter().map(|image| image + (image - center) * tolerance::TAKEN_IN.value));
+                *polygon = hull(std::mem::take(polygon));
+            }
+            // What leaves has no region.
+            if polygons.iter().flatten().any(|corner| !(corner.amax() * tolerance::LEAVING.value < largest)) {
+                return None;
+            }
+        }
+        None
+    }
+
+    /// `e x + f mu` in these units.
+    fn height(&self, point: Vector2<f64>) -> f64 {
+        self.map.height(point.component_mul(&self.units), self.mu).0
+    }
+
+    fn image(&self, point: Vector2<f64>, side: Side) -> Vector2<f64> {
+        let map = self.map.of(side);
+        (map.a * point.component_mul(&self.units) + map.b * self.mu).component_div(&self.units)
+    }
+
+    /// The corners of a side's part of a polygon.
+    fn part(&self, polygon: &Polygon, side: Side) -> Polygon {
+        let sign = if side == Side::Minus { -1.0 } else { 1.0 };
+        let mut part = Vec::new();
+        for (from, to) in edges(polygon) {
+            let (one, other) = (sign * self.height(from), sign * self.height(to));
+            if one >= 0.0 {
+                part.push(from);
+            }
+            if one * other < 0.0 {
+                part.push(from + (to - from) * (one / (one - other)));
+            }
+        }
+        part
+    }
+}
+
+/// The edges of a polygon; of a point one that goes nowhere.
+fn edges(polygon: &Polygon) -> impl Iterator<Item = (Vector2<f64>, Vector2<f64>)> {
+    polygon.iter().zip(polygon.iter().cycle().skip(1)).map(|(from, to)| (*from, *to))
+}
+
+/// Twice the area of a triangle, positive where `third` is on the left of the way from `first` to `second`.
+fn turn(first: Vector2<f64>, second: Vector2<f64>, third: Vector2<f64>) -> f64 {
+    (second - first).perp(&(third - first))
+}
+
+/// Whether a point lies inside a polygon by the margin of [`tolerance::TRAPPED`], of `largest`.
+///
+/// A segment has no inside: across it, where the map of a line does not move, the margin is 0.
+fn is_inside(polygon: &Polygon, point: Vector2<f64>, largest: f64) -> bool {
+    let margin = tolerance::TRAPPED.value * largest;
+    match polygon.as_slice() {
+        [] | [_] => false,
+        [from, to] => {
+            let along = to - from;
+            let (part, length) = ((point - from).dot(&along) / along.norm(), along.norm());
+            turn(*from, *to, point) == 0.0 && part >= margin && part <= length - margin
+        }
+        _ => edges(polygon).all(|(from, to)| turn(from, to, point) >= margin * (to - from).norm()),
+    }
+}
+
+/// The convex hull, by the monotone chain of Andrew (1979).
+fn hull(mut points: Vec<Vector2<f64>>) -> Polygon {
+    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    points.dedup();
+    if points.len() < 3 {
+        return points;
+    }
+    let mut corners = half(points.iter().copied());
+    corners.extend(half(points.iter().rev().copied()));
+    corners
+}
+
+/// The lower half of a hull, from points sorted to the right, without its last corner; or the upper half to the left.
+fn half(points: impl Iterator<Item = Vector2<f64>>) -> Polygon {
+    let row = |points: &Polygon| match points.as_slice() {
+        [.., before, last] => Some((*before, *last)),
+        _ => None,
+    };
+    let mut corners = Polygon::new();
+    for point in points {
+        while row(&corners).is_some_and(|(before, last)| turn(before, last, point) <= 0.0) {
+            corners.pop();
+        }
+        corners.push(point);
+    }
+    corners.pop();
+    corners
+}
