@@ -7,7 +7,7 @@ The map is x -> A x + b mu on either side of a border; L is the side where the b
 
 Proved: fixed points and the orbit of period two with the conditions for their place and their stability; the stable orbits
 L^(n-1) R of the line, for n up to 7; when the unstable manifold of the fixed point on L comes back on the inside of its stable
-one (Banerjee, Yorke and Grebogi 1998); and, for any continuous map of the plane, that one number decides where both fixed
+one (Banerjee, Yorke and Grebogi 1998); the cone of directions that both sides stretch then; and, for any continuous map of the plane, that one number decides where both fixed
 points lie.
 """
 
@@ -97,6 +97,26 @@ def homoclinic_proofs():
                 phi - printed)
 
 
+def cone_proofs():
+    """The directions (1, m) with -l2 <= m <= k2, for eigenvalues l1 > 1 > l2 > 0 of A_L and -k1 < -1 < -k2 < 0 of A_R.
+
+    Each matrix sends them into themselves and stretches the first coordinate, at least l1-fold and k1-fold: with m + l2 and
+    k2 - m not negative, all that stands here is a sum, product or quotient of numbers whose sign is known.
+    """
+    l1, l2, k1, k2, m = sp.symbols("l1 l2 k1 k2 m")
+    direction = sp.Matrix([1, m])
+    on_L, on_R = side(l1 + l2, l1 * l2) * direction, side(-(k1 + k2), k1 * k2) * direction
+    stretch_L, stretch_R = l1 + (m + l2), k1 + (k2 - m)
+    yield Proof("A_L stretches (1, m) by l1 + (m + l2), and A_R by -(k1 + (k2 - m))", [on_L[0] - stretch_L, on_R[0] + stretch_R])
+    slope_L, slope_R = on_L[1] / on_L[0], on_R[1] / on_R[0]
+    yield Proof("A_L sends the slope m to -l2 + l2 (m + l2)/(l1 + (m + l2)), which is -l1 l2/(l1 + (m + l2)) < 0",
+                [slope_L + l2 - l2 * (m + l2) / stretch_L, slope_L + l1 * l2 / stretch_L])
+    yield Proof("A_R sends the slope m to k2 - k2 (k2 - m)/(k1 + (k2 - m)), which is k1 k2/(k1 + (k2 - m)) > 0",
+                [slope_R - k2 + k2 * (k2 - m) / stretch_R, slope_R - k1 * k2 / stretch_R])
+    yield Proof("tau_L - 1 - delta_L = (l1 - 1)(1 - l2) and -tau_R - 1 - delta_R = (k1 - 1)(1 - k2)",
+                [(l1 + l2) - 1 - l1 * l2 - (l1 - 1) * (1 - l2), (k1 + k2) - 1 - k1 * k2 - (k1 - 1) * (1 - k2)])
+
+
 def border_proofs():
     A = sp.Matrix(2, 2, sp.symbols("a11 a12 a21 a22"))
     B = sp.Matrix(sp.symbols("b1 b2"))
@@ -114,6 +134,7 @@ def proofs():
     yield from line_proofs()
     yield from plane_proofs()
     yield from homoclinic_proofs()
+    yield from cone_proofs()
     yield from border_proofs()
 
 

@@ -3,7 +3,7 @@
 //! Two kinds: what the numerics may call resolved, and what two routes may differ by and still agree.
 
 /// One threshold and why it has this value.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
     /// What it decides.
     pub name: &'static str,

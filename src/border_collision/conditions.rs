@@ -22,10 +22,12 @@ pub enum Decides {
     Stability,
     /// The normal form alone.
     NormalForm,
+    /// Whether chaos is a theorem.
+    RobustChaos,
 }
 
 /// One condition.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Condition {
     /// What must not vanish, as a formula; for continuity what must.
     pub name: &'static str,

@@ -2,8 +2,8 @@
 //!
 //! Whether a motion ends on an orbit or escapes is not guessed from its size. Once the sides that it visits repeat a word,
 //! the rest is known: it tends to the orbit of that word where this orbit is stable and visits those sides, and it escapes
-//! where a sufficient condition holds. For a motion that repeats no word the largest Lyapunov exponent is measured; it is
-//! called chaotic where a region that the map sends into itself shows that it stays.
+//! where a sufficient condition holds. For a motion that repeats no word the largest Lyapunov exponent is measured, or known to
+//! be above 0; it is called chaotic where a region that the map sends into itself shows that it stays.
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -20,9 +20,8 @@ use crate::tolerance;
 pub enum End {
     /// On a stable periodic orbit; a fixed point for a word of one letter.
     Periodic(PeriodicOrbit),
-    /// In a motion that parts neighbours, by its largest Lyapunov exponent per step, a natural logarithm; it never leaves
-    /// the region.
-    Chaotic(Estimate, Region),
+    /// In chaos.
+    Chaotic(Chaos),
     /// In a motion that has not left yet, with its exponent: on a closed curve, not settled, or with no region found that it
     /// stays in, so that it may be a long transient.
     Undecided(Estimate),
@@ -30,6 +29,18 @@ pub enum End {
     Corner,
     /// Nowhere: it grows without bound.
     Escapes(Escape),
+}
+
+/// A motion that stays and parts neighbours.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Chaos {
+    /// Its largest Lyapunov exponent a step, a natural logarithm.
+    pub exponent: Estimate,
+    /// What the exponent of no motion is below, by [`super::robust_chaos`]; none where its saddles are not there, and then the
+    /// exponent is above 0 as a measured number is.
+    pub least_exponent: Option<f64>,
+    /// Where it stays.
+    pub region: Region,
 }
 
 /// Why a motion is taken to escape.
@@ -128,9 +139,11 @@ impl LocalMap {
             }
         }
         let exponent = Estimate::of_parts(&means);
+        let least_exponent = self.robust_chaos(mu).map(|chaos| chaos.least_exponent);
         let known = exponent.error <= tolerance::CHAOTIC_EXPONENT.value * exponent.value && exponent.value > 0.0;
-        match known.then(|| self.region(&visited, mu)).flatten() {
-            Some(region) => End::Chaotic(exponent, region),
+        let region = if known || least_exponent.is_some() { self.region(&visited, mu) } else { None };
+        match region {
+            Some(region) => End::Chaotic(Chaos { exponent, least_exponent, region }),
             None => End::Undecided(exponent),
         }
     }

@@ -7,6 +7,7 @@
 //! | [`mod@normal_form`] | the map with its parameter out of the border |
 //! | [`local_map`], [`word`] | the map itself; the sides that its orbits visit |
 //! | [`trapping`] | regions that it sends into themselves |
+//! | [`mod@robust_chaos`] | when chaos is a theorem |
 //! | [`long_run`], `outcome` | where its motions end, on either side of the corner impact |
 //! | [`validity`], [`passage`] | how far it holds; how the machine leaves the place where its orbit was |
 //! | `impact_curve` | what happens along a curve of corner impacts in two numbers of the model |
@@ -19,6 +20,7 @@ pub mod long_run;
 pub mod normal_form;
 pub(crate) mod outcome;
 pub mod passage;
+pub mod robust_chaos;
 pub mod trapping;
 pub mod validity;
 pub mod word;
@@ -29,6 +31,7 @@ pub(crate) use impact_curve::{AtCorner, ImpactCurve};
 pub use local_map::LocalMap;
 pub use normal_form::{NormalForm, normal_form};
 pub use outcome::LocalOutcome;
+pub use robust_chaos::RobustChaos;
 
 use crate::cam::Side;
 

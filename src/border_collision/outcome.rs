@@ -4,7 +4,8 @@ use nalgebra::Vector2;
 
 use super::feigin::speeds_at;
 use super::local_map::{LocalMap, PeriodicOrbit};
-use super::long_run::{End, Escape, MEASURED, STEPS};
+use super::long_run::{Chaos, End, Escape, MEASURED, STEPS};
+use super::robust_chaos::RobustChaos;
 use super::trapping::Region;
 use super::word::Word;
 use crate::cam::Side;
@@ -25,6 +26,8 @@ pub struct LocalOutcome {
     pub period_two: Option<PeriodicOrbit>,
     /// Every admissible periodic orbit of `LONGEST_WORD` steps or fewer, fixed points included.
     pub orbits: Vec<PeriodicOrbit>,
+    /// The theorem of robust chaos, where its saddles are there.
+    pub robust_chaos: Option<RobustChaos>,
     /// Where motions end, each kind once; first the one that x = 0 has, the state of the corner impact.
     pub fates: Vec<Fate>,
 }
@@ -42,6 +45,7 @@ document!(LocalOutcome as outcome {
     fixed_points: outcome.fixed_points,
     period_two: outcome.period_two,
     periodic_orbits: outcome.orbits,
+    robust_chaos if_any: outcome.robust_chaos,
     starts: outcome.starts(),
     ends: outcome.fates,
 });
@@ -97,6 +101,7 @@ impl LocalMap {
             fixed_points,
             period_two: two.as_ref().and_then(orbit),
             orbits: if mu == 0.0 { Vec::new() } else { self.admissible_orbits(mu, LONGEST_WORD) },
+            robust_chaos: if mu == 0.0 { None } else { self.robust_chaos(mu) },
             fates,
         }
     }
@@ -125,12 +130,21 @@ impl End {
                     orbit.word
                 )
             }
-            Self::Chaotic(_, Region { polygons, corners }) => format!(
-                "the map sends a region around the motion into itself, {polygons} convex polygon(s) with {corners} corners, so the \
-                 motion stays; it repeats no word over the run, and its Lyapunov exponent, a mean over {MEASURED} steps, is above 0 \
-                 by {:.0} standard errors or more",
-                1.0 / tolerance::CHAOTIC_EXPONENT.value
-            ),
+            Self::Chaotic(Chaos { region: Region { polygons, corners }, least_exponent, .. }) => {
+                let above = match least_exponent {
+                    Some(least) => {
+                        format!("of no motion is the Lyapunov exponent below {least:.6}, by an invariant cone")
+                    }
+                    None => format!(
+                        "its Lyapunov exponent, a mean over {MEASURED} steps, is above 0 by {:.0} standard errors or more",
+                        1.0 / tolerance::CHAOTIC_EXPONENT.value
+                    ),
+                };
+                format!(
+                    "the map sends a region around the motion into itself, {polygons} convex polygon(s) with {corners} corners, so \
+                     the motion stays; {above}"
+                )
+            }
             Self::Undecided(_) => format!(
                 "bounded and without a stable word over the run of {STEPS} steps; but either its Lyapunov exponent, a mean over \
                  {MEASURED} of them, is not known to be above 0, or no region is found that it stays in, and it may leave later"
@@ -149,7 +163,7 @@ impl End {
     fn is_like(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Periodic(one), Self::Periodic(other)) => one.word == other.word,
-            (Self::Chaotic(one, _), Self::Chaotic(other, _)) => {
+            (Self::Chaotic(Chaos { exponent: one, .. }), Self::Chaotic(Chaos { exponent: other, .. })) => {
                 let apart = (one.value - other.value).abs() * tolerance::CHAOTIC_EXPONENT.value;
                 apart <= one.error.hypot(other.error).max(tolerance::DEGENERATE.value)
             }
@@ -160,7 +174,7 @@ impl End {
     /// The exponent of a motion that repeats nothing.
     fn exponent(&self) -> Option<&Estimate> {
         match self {
-            Self::Chaotic(exponent, _) | Self::Undecided(exponent) => Some(exponent),
+            Self::Chaotic(Chaos { exponent, .. }) | Self::Undecided(exponent) => Some(exponent),
             _ => None,
         }
     }

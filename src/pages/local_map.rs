@@ -1,9 +1,9 @@
 //! The part of the page on the local map: how generic it is, what it predicts by itself, how far it holds.
 
-use crate::border_collision::LocalOutcome;
 use crate::border_collision::feigin::{Speeds, speeds_at};
 use crate::border_collision::local_map::PeriodicOrbit;
 use crate::border_collision::validity::{Compared, Range};
+use crate::border_collision::{LocalOutcome, RobustChaos};
 use crate::show::block::{Block, Column, Span, Table, Words, words};
 use crate::show::digits::Digits;
 use crate::show::words;
@@ -87,7 +87,24 @@ fn motions(outcome: &LocalOutcome) -> Vec<(Words, Words)> {
         let words = format!("periodic orbits: stable {}; unstable {}", listed(&stable), listed(&unstable));
         lines.push(("".into(), words.into()));
     }
+    lines.extend(outcome.robust_chaos.iter().map(|chaos| ("".into(), theorem(chaos))));
     lines
+}
+
+/// What the theorem of robust chaos says, and on what it rests.
+fn theorem(chaos: &RobustChaos) -> Words {
+    let (three, four) = (Digits::Significant(3), Digits::Fixed(4));
+    let rests = chaos.hypotheses.iter().map(|hypothesis| words![hypothesis.name, " = ", (hypothesis.value, three)]);
+    let rests = words![" (", Words::joined(rests, ", "), "; ", chaos.known.to_string(), ")"];
+    if !chaos.holds() {
+        return words!["no robust chaos: phi must be positive", rests];
+    }
+    words![
+        "theorem: robust chaos, an attractor and no stable orbit of any period, each exponent at least ",
+        (chaos.least_exponent, four),
+        " a turn; the follower's too, near enough to omega*",
+        rests
+    ]
 }
 
 /// The words of some orbits.

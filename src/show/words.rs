@@ -5,7 +5,7 @@
 use crate::agreement::Quantity;
 use crate::border_collision::conditions::Decides;
 use crate::border_collision::feigin::{Scenario, Speeds};
-use crate::border_collision::long_run::End;
+use crate::border_collision::long_run::{Chaos, End};
 use crate::border_collision::validity::{Compared, Ends};
 use crate::cam::Side;
 use crate::corner::map::RouteName;
@@ -117,6 +117,7 @@ pub(crate) fn decides(decides: Decides) -> &'static str {
         Decides::Classification => "classification",
         Decides::Stability => "stability",
         Decides::NormalForm => "normal form",
+        Decides::RobustChaos => "theorem of robust chaos",
     }
 }
 
@@ -147,8 +148,8 @@ pub(crate) fn end(end: &End) -> Words {
     match end {
         End::Periodic(orbit) if end.fixed_on().is_some() => format!("on the fixed point {}", orbit.word).into(),
         End::Periodic(orbit) => format!("on the orbit {}", orbit.word).into(),
-        End::Chaotic(exponent, _) => growth("chaotic", exponent.value, exponent.error),
-        End::Undecided(exponent) => growth("bounded and undecided", exponent.value, exponent.error),
+        End::Chaotic(Chaos { exponent, .. }) => growth("chaotic", exponent.value, exponent.error),
+        End::Undecided(exponent) => growth("bounded so far, undecided", exponent.value, exponent.error),
         End::Corner => "to the corner impact".into(),
         End::Escapes(_) => format!("without bound ({})", end.basis()).into(),
     }

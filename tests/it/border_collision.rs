@@ -5,9 +5,11 @@
 
 use crate::common;
 use approx::assert_relative_eq;
+use corner_impact::border_collision::LocalMap;
 use corner_impact::border_collision::local_map::PeriodicOrbit;
 use corner_impact::border_collision::long_run::{End, Escape};
 use corner_impact::border_collision::word::Word;
+use corner_impact::cam::Side;
 use corner_impact::estimate::Estimate;
 use nalgebra::Vector2;
 
@@ -30,7 +32,7 @@ fn grid([low, high]: [f64; 2], count: u32) -> impl Iterator<Item = f64> + Clone 
 
 fn exponent(end: &End) -> Estimate {
     match end {
-        End::Chaotic(exponent, _) => *exponent,
+        End::Chaotic(chaos) => chaos.exponent,
         other => panic!("{other:?}"),
     }
 }
@@ -239,17 +241,45 @@ fn chaos_is_robust_where_it_is_known_to_be() {
             if phi > 1e-3 {
                 let stable = map.admissible_orbits(1.0, 6).iter().any(PeriodicOrbit::stable);
                 assert!(kind(&from_0) == "chaotic" && kind(&from_fold) == "chaotic" && !stable, "{case}");
+                let theorem = map.robust_chaos(1.0).unwrap();
+                assert!(theorem.holds() && theorem.saddle == Side::Minus, "{case}");
+                assert_relative_eq!(theorem.hypotheses[4].value, phi, max_relative = 1e-9);
+                assert!(exponent(&from_0).value > theorem.least_exponent, "{case}: {theorem:?}");
+                assert_eq!(map.robust_chaos(-1.0), None);
                 chaotic += 1;
             } else if phi < -1e-3 {
                 let follows =
                     matches!(&from_fold, End::Escapes(Escape::Follows { word, .. }) if word.to_string() == "L");
-                assert!(follows, "{case}");
+                assert!(follows && !map.robust_chaos(1.0).unwrap().holds(), "{case}");
                 left += 1;
                 stayed += usize::from(kind(&from_0) == "chaotic");
             }
         }
     }
     assert!(chaotic > 200 && left > 200 && stayed == 9, "{chaotic} {left} {stayed}");
+}
+
+/// The theorem does not mind which side is called L, nor coordinates; and it is silent where a hypothesis fails.
+#[test]
+fn the_theorem_of_robust_chaos_has_its_hypotheses() {
+    let map = common::normal_form([1.7, -1.5], [0.3, 0.2]);
+    let theorem = map.robust_chaos(1.0).unwrap();
+    let (e, f) = map.border;
+    let mirrored = LocalMap { minus: map.plus, plus: map.minus, border: (-e, -f) };
+    let other = mirrored.robust_chaos(1.0).unwrap();
+    assert_eq!((theorem.saddle, other.saddle), (Side::Minus, Side::Plus));
+    assert_eq!(theorem.hypotheses, other.hypotheses);
+    assert!(theorem.holds());
+    // l = 1.5, -k = -1.35: l (l - 0.3) + (l - 1)(-1.5 l - 0.2) = 0.575 to the last digit.
+    let l = 0.85 + 0.4225_f64.sqrt();
+    assert_relative_eq!(l, 1.5, max_relative = 1e-15);
+    assert_relative_eq!(theorem.hypotheses[4].value, 0.575, max_relative = 1e-14);
+    assert_relative_eq!(theorem.least_exponent, (0.75 + 0.3625_f64.sqrt()).ln(), max_relative = 1e-14);
+    for (traces, determinants) in
+        [([1.29, -1.5], [0.3, 0.2]), ([1.7, -1.19], [0.3, 0.2]), ([1.7, -1.5], [-0.1, 0.2]), ([1.7, -1.5], [0.3, 0.0])]
+    {
+        assert_eq!(common::normal_form(traces, determinants).robust_chaos(1.0), None, "{traces:?} {determinants:?}");
+    }
 }
 
 #[test]

@@ -36,7 +36,7 @@ fn word(text: &str) -> Word {
 
 fn exponent(end: &End) -> Estimate {
     match end {
-        End::Chaotic(exponent, _) => *exponent,
+        End::Chaotic(chaos) => chaos.exponent,
         other => panic!("{other:?}"),
     }
 }
@@ -180,9 +180,13 @@ fn the_follower_does_what_the_local_map_predicts_where_it_is_periodic() {
 #[test]
 fn the_follower_does_what_the_local_map_predicts_where_it_is_chaotic() {
     const DT: f64 = -1e-9;
-    for name in ["damped-heavy", "overdamped"] {
+    for (name, phi) in [("damped-heavy", 0.975), ("overdamped", 0.987)] {
         let (real, found) = real_word(name, DT, 4000);
         let local = exponent(&found.outcomes[0].fates[0].end);
+        let theorem = found.outcomes[0].robust_chaos.unwrap();
+        assert!(theorem.holds() && (theorem.hypotheses[4].value - phi).abs() < 1e-3, "{name}: {theorem:?}");
+        let page = found.text().unwrap();
+        assert!(page.contains("theorem: robust chaos") && page.contains("phi = 0.9"), "{page}");
         assert!(real.chars().all(|letter| letter != '?') && real.contains('L') && real.contains('R'), "{name}");
         let section = section_at(&read(name), &found, DT);
         let motion = section.machine.start(section.cam_angle, found.at.state).unwrap();

@@ -39,7 +39,7 @@ fn what_is_said_to_stay_stays() {
         let map = common::normal_form(traces, determinants);
         match map.end(Vector2::zeros(), 1.0) {
             // Two pieces, each of which is sent into the other.
-            End::Chaotic(_, region) => assert_eq!(region.polygons, 2, "{region:?}"),
+            End::Chaotic(chaos) => assert_eq!(chaos.region.polygons, 2, "{chaos:?}"),
             end => panic!("{traces:?} {determinants:?}: {end:?}"),
         }
         assert_eq!(leaves(&map, 3_000_000), None, "{traces:?} {determinants:?}");
