@@ -11,6 +11,7 @@
 //! | `terrain` | the cam as the loop sees it: seams, corners, bounds |
 //! | `window` | a stretch of flight over one segment: free, or its first contact |
 //! | `contact` | the first root of the gap in it, certified |
+//! | `leap` | a flight over many short segments at once |
 //! | `again` | a settled motion's next impact, one turn on: checked, not searched |
 //! | `sticking` | infinitely many impacts, contact, release |
 //! | `variation` | how a small deviation is carried along |
@@ -18,6 +19,7 @@
 mod again;
 mod contact;
 mod event;
+mod leap;
 mod motion;
 mod sticking;
 mod terrain;
@@ -317,6 +319,13 @@ impl Machine {
             (motion.state, motion.gap, motion.lift) = (state, None, None);
             // What is exactly at the top would be looked at as above it once more.
             return if state.position <= top { Ok(Step::Moved) } else { Err(self.not_finite(motion)) };
+        }
+        if let Some(leap) = self.leap(motion, left) {
+            observer.flight(&self.flight, start, leap.time);
+            (motion.state, motion.gap) = (self.flight.fly(start, leap.time).1, None);
+            motion.segment = leap.segment;
+            self.enter_next(motion);
+            return Ok(Step::Moved);
         }
         let segment = &self.cam().segments()[motion.segment];
         let within = segment.end - motion.cam_angle;

@@ -117,7 +117,9 @@ impl Machine {
         }
         if entry.slope_jump < 0.0 || entry.lift_step < 0.0 {
             let gap = motion.gap;
-            let step = self.let_go(motion, &lift, before, observer);
+            // What the two sides of a seam differ by is not to be a gap.
+            let position = if entry.lift_step == 0.0 { lift.value } else { before.position };
+            let step = self.let_go(motion, &lift, State { position, ..before }, observer);
             motion.gap = gap;
             return Ok(step);
         }

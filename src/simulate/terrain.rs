@@ -1,5 +1,6 @@
 //! The cam as the event loop sees it: what changes from one segment to the next, and what no part of it exceeds.
 
+use super::leap::Chords;
 use crate::cam::{Cam, Segment};
 use crate::tolerance;
 
@@ -17,6 +18,8 @@ pub(super) struct Terrain {
     pub steepest: f64,
     /// No `d^2c/dtheta^2` is above it, m/rad^2; infinite where a velocity jumps upwards.
     pub largest_curvature: f64,
+    /// What a flight over many short segments has to clear; nothing where there are few.
+    pub chords: Chords,
 }
 
 /// What changes from the end of the segment before to the start of this one; 0 where it is rounding.
@@ -43,7 +46,9 @@ impl Terrain {
         let curvatures = segments.iter().map(|segment| segment.bounds.curvature[1]);
         let largest_curvature = if kicks { f64::INFINITY } else { curvatures.fold(f64::NEG_INFINITY, f64::max) };
         let top = cam.top();
-        Self { cam, entries, top, size, steepest, largest_curvature }
+        let kinks: Vec<bool> = entries.iter().map(|entry| entry.slope_jump < 0.0 || entry.lift_step != 0.0).collect();
+        let chords = Chords::of_many(segments, &kinks);
+        Self { cam, entries, top, size, steepest, largest_curvature, chords }
     }
 }
 

@@ -14,7 +14,7 @@ use nalgebra::{Matrix2, Vector2};
 use crate::random;
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
-use random::{Case, check};
+use random::{Case, check, check_many_segments};
 
 /// Rounding of a number that a dozen operations made.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
@@ -241,54 +241,63 @@ fn least_gap(machine: &Machine, angle: f64, start: State, end: f64) -> (f64, f64
 
 /// From the start and from every event on which a flight begins, a scan of that one flight finds nothing below the cam
 /// before the next impact, and nothing above it there.
+fn first_contacts(case: &Case) -> TestCaseResult {
+    let (machine, mut motion) = (&case.machine, case.motion().unwrap());
+    let omega = machine.angular_velocity();
+    let mut from = (!motion.contact).then_some((case.angle, motion.state));
+    let (mut turned, mut log) = (case.angle, Log::default());
+    let goal = goal(&motion, case.turns(3.0));
+    if let Err(error) = machine.advance(&mut motion, goal, &mut log) {
+        return only_no_progress(case, error);
+    }
+    let end = (motion.revolution as f64) * TAU + motion.cam_angle;
+    let ends = log.events.iter().map(|event| (event.turned_since(0.0), Some(event)));
+    let broken = log.events.len() >= EVENTS;
+    for (until, event) in ends.chain((!broken).then_some((end, None))).take(60) {
+        // A stick after a chatter is where infinitely many flights end.
+        let ends_flights = event.is_some_and(|event| event.kind == EventKind::Stick);
+        if let Some((angle, start)) = from.filter(|_| !ends_flights) {
+            let time = (until - turned) / omega;
+            let (least, at) = least_gap(machine, angle, start, time);
+            let there = State { position: start.position, velocity: machine.flight().fly(start, at).1.velocity };
+            let blur = |time: f64, state: State| blur(case, (angle + omega * time) % TAU, state, time);
+            prop_assert!(
+                least >= -blur(at, there),
+                "{least} m after {at} s of {time} s from {start:?} at {angle}, {event:?}"
+            );
+            if event.is_some_and(|event| event.kind == EventKind::Impact) {
+                let end = machine.flight().fly(start, time).1;
+                // The angles of two events tell the time between them to the rounding of angles only.
+                let last = gap(machine, angle, start, time);
+                prop_assert!(
+                    last.abs() <= blur(time, end) + ROUNDING * end.velocity.abs() * turned / omega,
+                    "{last} m at the impact, after {time} s from {start:?} at {angle}: {event:?}"
+                );
+            }
+        }
+        let Some(event) = event else { break };
+        turned = until;
+        let state = State { position: event.position, velocity: event.velocity_after };
+        from = match event.kind {
+            EventKind::Impact if event.velocity_after > event.cam_velocity => Some((event.cam_angle, state)),
+            EventKind::Release => Some((event.cam_angle, state)),
+            _ => None,
+        };
+    }
+    Ok(())
+}
+
 #[test]
 #[ignore = "slow"]
 fn the_first_contact_is_the_first() {
-    check(1500, |case| {
-        let (machine, mut motion) = (&case.machine, case.motion().unwrap());
-        let omega = machine.angular_velocity();
-        let mut from = (!motion.contact).then_some((case.angle, motion.state));
-        let (mut turned, mut log) = (case.angle, Log::default());
-        let goal = goal(&motion, case.turns(3.0));
-        if let Err(error) = machine.advance(&mut motion, goal, &mut log) {
-            return only_no_progress(case, error);
-        }
-        let end = (motion.revolution as f64) * TAU + motion.cam_angle;
-        let ends = log.events.iter().map(|event| (event.turned_since(0.0), Some(event)));
-        let broken = log.events.len() >= EVENTS;
-        for (until, event) in ends.chain((!broken).then_some((end, None))).take(60) {
-            // A stick after a chatter is where infinitely many flights end.
-            let ends_flights = event.is_some_and(|event| event.kind == EventKind::Stick);
-            if let Some((angle, start)) = from.filter(|_| !ends_flights) {
-                let time = (until - turned) / omega;
-                let (least, at) = least_gap(machine, angle, start, time);
-                let there = State { position: start.position, velocity: machine.flight().fly(start, at).1.velocity };
-                let blur = |time: f64, state: State| blur(case, (angle + omega * time) % TAU, state, time);
-                prop_assert!(
-                    least >= -blur(at, there),
-                    "{least} m after {at} s of {time} s from {start:?} at {angle}, {event:?}"
-                );
-                if event.is_some_and(|event| event.kind == EventKind::Impact) {
-                    let end = machine.flight().fly(start, time).1;
-                    // The angles of two events tell the time between them to the rounding of angles only.
-                    let last = gap(machine, angle, start, time);
-                    prop_assert!(
-                        last.abs() <= blur(time, end) + ROUNDING * end.velocity.abs() * turned / omega,
-                        "{last} m at the impact, after {time} s from {start:?} at {angle}: {event:?}"
-                    );
-                }
-            }
-            let Some(event) = event else { break };
-            turned = until;
-            let state = State { position: event.position, velocity: event.velocity_after };
-            from = match event.kind {
-                EventKind::Impact if event.velocity_after > event.cam_velocity => Some((event.cam_angle, state)),
-                EventKind::Release => Some((event.cam_angle, state)),
-                _ => None,
-            };
-        }
-        Ok(())
-    });
+    check(1500, first_contacts);
+}
+
+/// Where flights go over many segments at once.
+#[test]
+#[ignore = "slow"]
+fn the_first_contact_is_the_first_over_many_segments() {
+    check_many_segments(600, first_contacts);
 }
 
 /// How far rounding has moved the follower, as the flow carries it on: an upper bound, since nothing cancels.

@@ -5,6 +5,7 @@
 
 use std::f64::consts::TAU;
 use std::fmt;
+use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -181,8 +182,8 @@ fn program() -> impl Strategy<Value = Law> {
 }
 
 /// Pieces through random lifts, with slopes that meet or do not.
-fn polynomial() -> impl Strategy<Value = Law> {
-    (unit(), any::<bool>(), prop::collection::vec((unit(), unit(), unit(), unit()), 2..6)).prop_map(
+fn polynomial(knots: Range<usize>) -> impl Strategy<Value = Law> {
+    (unit(), any::<bool>(), prop::collection::vec((unit(), unit(), unit(), unit()), knots)).prop_map(
         |(first, smooth, knots)| {
             let count = knots.len();
             let width = TAU / count as f64;
@@ -211,8 +212,8 @@ fn polynomial() -> impl Strategy<Value = Law> {
     )
 }
 
-fn table() -> impl Strategy<Value = Law> {
-    let rows = prop::collection::vec((unit(), unit()), 3..40);
+fn table(rows: Range<usize>) -> impl Strategy<Value = Law> {
+    let rows = prop::collection::vec((unit(), unit()), rows);
     (rows, any::<bool>(), unit(), unit()).prop_map(|(rows, quintic, offset, noise)| {
         let count = rows.len() as f64;
         let mut table = "angle_deg,lift\n".to_owned();
@@ -232,9 +233,14 @@ fn law() -> impl Strategy<Value = Law> {
         harmonic().boxed(),
         rectified_sine().boxed(),
         program().boxed(),
-        polynomial().boxed(),
-        table().boxed(),
+        polynomial(2..6).boxed(),
+        table(3..40).boxed(),
     ])
+}
+
+/// Cams of so many segments that a flight passes several at once.
+fn law_of_many_segments() -> impl Strategy<Value = Law> {
+    Union::new([polynomial(64..90).boxed(), table(64..150).boxed()])
 }
 
 /// A folder of this case's own for its table.
@@ -254,12 +260,12 @@ fn model(text: &str, table: Option<&str>) -> Model {
     model
 }
 
-pub fn cases() -> impl Strategy<Value = Case> {
+fn cases(law: impl Strategy<Value = Law>) -> impl Strategy<Value = Case> {
     let rest = unit();
     let speed = (0..5, unit());
     let angle = (0..4, unit());
     let start = (0..6, unit(), unit());
-    (follower(), law(), rest, speed, angle, start).prop_map(|(follower, (law, table), rest, speed, angle, start)| {
+    (follower(), law, rest, speed, angle, start).prop_map(|(follower, (law, table), rest, speed, angle, start)| {
         let text = |rest: f64| format!("[follower]\nrest_position = {rest:?}\n{follower}\n[cam]\n{law}");
         // Where the cam is, from a model of the same cam.
         let cam = Cam::new(&model(&text(0.0), table.as_deref())).unwrap();
@@ -304,6 +310,17 @@ pub fn cases() -> impl Strategy<Value = Case> {
 /// Asks `holds` of `count` cases, or as many as the environment says.
 #[track_caller]
 pub fn check(count: u32, holds: fn(&Case) -> TestCaseResult) {
+    check_over(law(), count, holds);
+}
+
+/// The same over cams of many segments.
+#[track_caller]
+pub fn check_many_segments(count: u32, holds: fn(&Case) -> TestCaseResult) {
+    check_over(law_of_many_segments(), count, holds);
+}
+
+#[track_caller]
+fn check_over(law: impl Strategy<Value = Law>, count: u32, holds: fn(&Case) -> TestCaseResult) {
     let is_set = |name: &str| std::env::var_os(name).is_some();
     let config = Config::default();
     let config = Config {
@@ -315,7 +332,7 @@ pub fn check(count: u32, holds: fn(&Case) -> TestCaseResult) {
     };
     let in_time =
         move |case: Case| common::ends(move || holds(&case)).unwrap_or_else(|why| Err(TestCaseError::fail(why)));
-    if let Err(error) = TestRunner::new(config).run(&cases(), in_time) {
+    if let Err(error) = TestRunner::new(config).run(&cases(law), in_time) {
         panic!("{error}");
     }
 }
