@@ -1,6 +1,6 @@
 """The stroboscopic map of a cam-follower and its derivatives at a corner impact, from first principles.
 
-For every damping, any stiffness, any restitution and any cam c(theta) that turns through 2 pi in T:
+For every damping, any stiffness, any restitution r > 0 and any cam c(theta) that turns through 2 pi in T:
 
     fly from -T/2 to the impact at tau, impact, fly from tau to T/2;    tau from contact, q(tau) = c(2 pi tau/T).
 
@@ -11,6 +11,10 @@ P(x, T) is that composition. With H the gap at contact, H(x, T, tau) = 0 defines
 A and B are these at tau = 0. Nothing but the derivatives of the two responses (flight.py), restitution and the chain rule
 goes in; the cam is a function of which only c, c', c'' at the corner survive. Proved: A and B are closed_forms.py; they
 depend on position only through the spring's force; they hold for c'' of either side; det A; when the impact comes.
+
+Assumed, as the composition is: the follower comes to the cam, v < c', and flies after the impact. With r > 0 it does, at r (c' - v)
+away from the cam. At r = 0 it leaves with the cam's velocity and flies only where S = c'' + 2 zeta c' + spring < 0; where S > 0
+the cam holds it until a moment that the cam alone decides, so that A is the zero matrix.
 """
 
 import sympy as sp

@@ -6,6 +6,7 @@ use nalgebra::RowVector2;
 use serde::Serialize;
 
 use crate::agreement::{Agreement, Quantity, compare, compare_routes, worse};
+use crate::border_collision::{Classification, Refusal, classify};
 use crate::cam::{Cam, Side};
 use crate::corner::map::{RouteName, Uncertainty};
 use crate::corner::one_sided::SampleError;
@@ -80,6 +81,18 @@ pub(super) fn routes(model: &Model, cam: &Cam, at: &CornerImpact, log: &mut Log)
         routes.extend(log.keep(RouteName::LeastSquares, least_squares::route(model, cam, at)));
     }
     (routes, sticking)
+}
+
+/// What happens at a corner impact whose map is `map`, if next to it the follower flies off the cam on both sides.
+pub(super) fn classified(
+    map: &CornerMap,
+    border: (RowVector2<f64>, f64),
+    sticking: Option<Side>,
+) -> Result<Classification, Refusal> {
+    match sticking {
+        Some(side) => Err(Refusal::Sticking { side }),
+        None => Ok(classify(map, border)?),
+    }
 }
 
 /// The estimate of the side that the impact is on, in the place of both.

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 
 use crate::agreement::Agreement;
-use crate::border_collision::{Classification, Degenerate, classify};
+use crate::border_collision::{Classification, Refusal};
 use crate::cam::{Cam, Side};
 use crate::corner::border::border;
 use crate::corner::map::RouteName;
@@ -121,7 +121,7 @@ pub enum Happens {
     /// Velocity jumps: impacts across the corner are thrown elsewhere.
     Gap,
     /// Acceleration jumps: two matrices meet on a border; Feigin's verdict, where there is one.
-    BorderCollision(Result<Classification, Degenerate>),
+    BorderCollision(Result<Classification, Refusal>),
     /// A higher derivative jumps: one matrix.
     Smooth,
 }
@@ -132,7 +132,8 @@ impl Happens {
         match self {
             Self::Gap => "gap".into(),
             Self::BorderCollision(Ok(kind)) => kind.scenario.to_string(),
-            Self::BorderCollision(Err(_)) => "degenerate".into(),
+            Self::BorderCollision(Err(Refusal::Degenerate(_))) => "degenerate".into(),
+            Self::BorderCollision(Err(Refusal::Sticking { .. })) => "sticking".into(),
             Self::Smooth => "smooth".into(),
         }
     }
@@ -141,7 +142,7 @@ impl Happens {
     pub(crate) fn meaning(&self) -> String {
         match self {
             Self::BorderCollision(Ok(_)) => "two matrices meet on a border".into(),
-            Self::BorderCollision(Err(degenerate)) => format!("Feigin's classification says nothing: {degenerate}"),
+            Self::BorderCollision(Err(refusal)) => format!("Feigin's classification says nothing: {refusal}"),
             Self::Gap => {
                 "the cam's velocity jumps, and what an impact leaves the follower with jumps with it: this side's \
                           orbit ends here, and across the corner the map has a gap, not a second matrix"
@@ -190,7 +191,7 @@ pub fn locate(model: &Model, range: Study, revolutions: u64) -> Result<Located, 
 /// A corner impact with its map by each route that its corner has.
 fn located(model: &Model, cam: &Cam, at: &CornerImpact) -> LocatedImpact {
     let mut log = Log::default();
-    let (mut routes, _) = compared::routes(model, cam, at, &mut log);
+    let (mut routes, sticking) = compared::routes(model, cam, at, &mut log);
     // The route that knows every kind of orbit comes first: its map is told.
     routes.sort_by_key(|route| route.name != RouteName::Variational);
     let mut comparisons = compared::comparisons(at, &routes, &mut log);
@@ -200,7 +201,7 @@ fn located(model: &Model, cam: &Cam, at: &CornerImpact) -> LocatedImpact {
         2 => {
             let differences = routes.iter().find(|route| route.name == RouteName::FiniteDifference);
             comparisons.extend(differences.map(|route| compare_borders(route, RouteName::Flight, border)));
-            Happens::BorderCollision(classify(&map, border))
+            Happens::BorderCollision(compared::classified(&map, border, sticking))
         }
         _ => Happens::Smooth,
     };

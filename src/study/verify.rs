@@ -9,8 +9,7 @@ use serde::Serialize;
 use crate::agreement::{Agreement, NamedOrbit, Quantity, compare_orbits, fewest_shared_decimals};
 use crate::border_collision::validity::{self, Range};
 use crate::border_collision::{
-    Classification, Condition, Degenerate, LocalMap, LocalOutcome, NormalForm, Refusal, classify, conditions,
-    normal_form,
+    Classification, Condition, Degenerate, LocalMap, LocalOutcome, NormalForm, Refusal, conditions, normal_form,
 };
 use crate::cam::{Cam, Side};
 use crate::corner::border::border;
@@ -235,10 +234,7 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
     comparisons.push(compare_borders(&closed, RouteName::FreeFlight, border));
     let normal_form = normal_form(&map);
     log.refused("normal_form", &normal_form);
-    let classification = match sticking {
-        Some(side) => Err(Refusal::Sticking { side }),
-        None => classify(&map, border).map_err(Refusal::from),
-    };
+    let classification = compared::classified(&map, border, sticking);
     log.refused("classification", &classification);
     watch.at("what the map does by itself", 0, 0);
     let local = LocalMap::new(&map, border);

@@ -18,6 +18,7 @@ use corner_impact::model::Model;
 use corner_impact::section::StroboscopicMap;
 use corner_impact::show::Paged;
 use corner_impact::simulate::Machine;
+use corner_impact::study::locate::{Happens, locate};
 use corner_impact::study::verify::{External, Verification, verify};
 use nalgebra::{Matrix2, Vector2};
 use serde_json::json;
@@ -186,6 +187,8 @@ fn the_follower_does_what_the_local_map_predicts_where_it_is_chaotic() {
         let theorem = found.outcomes[0].robust_chaos.unwrap();
         assert!(theorem.holds() && (theorem.hypotheses[4].value - phi).abs() < 1e-3, "{name}: {theorem:?}");
         let page = found.text().unwrap();
+        // Neither fixed point is one that a motion follows, so nothing is said to have nowhere to go.
+        assert!(page.contains("Both are unstable") && !page.contains("nowhere to go"), "{page}");
         assert!(page.contains("theorem: robust chaos") && page.contains("phi = 0.9"), "{page}");
         assert!(real.chars().all(|letter| letter != '?') && real.contains('L') && real.contains('R'), "{name}");
         let section = section_at(&read(name), &found, DT);
@@ -223,6 +226,19 @@ fn sticking_is_refused_with_its_reason() {
     assert!(found.outcomes.is_empty() && found.ranges.is_empty());
     let page = found.text().unwrap();
     assert!(page.contains("verdict             none") && page.contains("sticking: next to the corner"), "{page}");
+    // That it forgets: from wherever it starts next to x*, a revolution with the impact on the flank ends in one place.
+    let section = section_at(&plastic, &found, 1e-6);
+    let after = |dx: f64| {
+        let start = State { position: found.at.state.position - dx, ..found.at.state };
+        section.apply(start).unwrap().state
+    };
+    let (one, other) = (after(1e-5), after(2e-5));
+    assert!((one.position - other.position).abs() < 1e-12 && (one.velocity - other.velocity).abs() < 1e-10);
+    let listed = locate(&plastic, plastic.study().unwrap(), 1).unwrap();
+    assert!(
+        matches!(&listed.found[..], [one] if matches!(one.local, Happens::BorderCollision(Err(Refusal::Sticking { .. }))))
+    );
+    assert_eq!(serde_json::to_value(&listed).unwrap()["corner_impacts"][0]["classification"]["scenario"], "sticking");
 }
 
 /// Where the machine does not do what the orbit does, there is no range and the reason is said: from below the cam, and from

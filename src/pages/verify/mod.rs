@@ -124,7 +124,7 @@ fn classification(kind: &Classification) -> Vec<(Words, Words)> {
     );
     let born = kind.period_two_orbit && *scenario != Scenario::NonsmoothFlip;
     let born = if born { ", and an orbit of period two" } else { "" };
-    let verdict = words![scenario.to_string(), born, Span::Break, words::meaning(*scenario)];
+    let verdict = words![scenario.to_string(), born, Span::Break, words::meaning(kind)];
     let fate = |side: &SideCounts| {
         let stability = if side.stable { "a stable" } else { "an unstable" };
         format!("{stability} one at speeds {}", words::speeds(Some(side.exists_for)))
