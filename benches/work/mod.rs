@@ -5,7 +5,7 @@ use std::hint::black_box;
 use std::ops::ControlFlow;
 
 use corner_impact::cam::Cam;
-use corner_impact::diagram::{Counted, Following, Placed, Section, Speeds, Start, Sweep, SweepError};
+use corner_impact::diagram::{Counted, Following, Placed, Section, Speeds, Start, Starts, Sweep, SweepError};
 use corner_impact::flight::State;
 use corner_impact::model::{Model, OSORIO_2008};
 use corner_impact::simulate::{Machine, angular_velocity};
@@ -105,7 +105,7 @@ pub fn sweep() -> Sweep {
     Sweep {
         machine: Machine::new(cam, &model.follower, 1.0),
         speeds: Speeds { low: 660.0, high: 750.0, count: 2000 },
-        start: Start { cam_angle: 2.62112450116623235 + PI, follower: Placed::At(state) },
+        starts: Starts::One(Start { cam_angle: 2.62112450116623235 + PI, follower: Placed::At(state) }),
         following: Following::Nothing,
         transient: 300,
         record: 100,

@@ -8,11 +8,11 @@ use clap::ValueEnum;
 use super::start::{StartArguments, count, finite, speeds, turn};
 use super::{CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::Progress};
 use crate::cam::Cam;
-use crate::diagram::{Counted, Following, Places, Section, Speeds, Sweep};
+use crate::diagram::{Counted, Following, Places, Section, Speeds, Starts, Sweep};
 use crate::figures::{corner_marks, impact_diagram, strobe_diagram};
 use crate::show::csv;
 use crate::simulate::{Machine, angular_velocity};
-use crate::study::diagram::{Shown, Swept};
+use crate::study::diagram::{Shown, Swept, on_attractors};
 
 /// Sweeps over speeds: what the motion settles on, as a table or a picture.
 #[derive(clap::Args)]
@@ -42,6 +42,9 @@ pub(super) struct Arguments {
     /// Start every speed alike, or go on from the next lower (up) or next higher speed (down).
     #[arg(long = "start", value_enum, default_value = "fixed")]
     following: FollowingName,
+    /// Record, at each speed, what happens on each attractor that 64 starts come to there, as `speeds` finds them.
+    #[arg(long, conflicts_with_all = ["following", "start_angle", "state", "relative_velocity"])]
+    attractors: bool,
     #[command(flatten)]
     start: StartArguments,
     /// Threads [default: one for each core]; up and down go from speed to speed on one.
@@ -83,7 +86,10 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let sweep = Sweep {
         machine: Machine::new(cam, &model.follower, angular_velocity(arguments.rpm.low)),
         speeds: arguments.rpm,
-        start: arguments.start.start(),
+        starts: match arguments.attractors {
+            true => Starts::Found(on_attractors),
+            false => Starts::One(arguments.start.start()),
+        },
         following: match arguments.following {
             FollowingName::Fixed => Following::Nothing,
             FollowingName::Up => Following::Up,
@@ -138,6 +144,7 @@ fn title(model: &str, sweep: &Sweep) -> String {
         Section::Strobe(angle) => format!("states at {:.4}°", angle.to_degrees()),
     };
     let how = match sweep.following {
+        Following::Nothing if matches!(sweep.starts, Starts::Found(_)) => "on each attractor",
         Following::Nothing => "from one start",
         Following::Up => "speed going up",
         Following::Down => "speed going down",

@@ -66,6 +66,25 @@ impl Start {
     }
 }
 
+/// Where the runs of a speed begin.
+#[derive(Clone, Copy, Debug)]
+pub enum Starts {
+    /// One run, from one start at every speed.
+    One(Start),
+    /// A run from each motion that is found for the speed.
+    Found(fn(&Machine) -> Result<Vec<Motion>, SimulateError>),
+}
+
+impl Starts {
+    /// The motions of `machine` to begin with.
+    fn motions(&self, machine: &Machine) -> Result<Vec<Motion>, SimulateError> {
+        match self {
+            Self::One(start) => Ok(vec![start.motion(machine)?]),
+            Self::Found(find) => find(machine),
+        }
+    }
+}
+
 /// Speeds, evenly spaced.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Speeds {
@@ -100,7 +119,7 @@ pub struct Sweep {
     /// The speeds.
     pub speeds: Speeds,
     /// Where each starts.
-    pub start: Start,
+    pub starts: Starts,
     /// Whether each goes on from its neighbour.
     pub following: Following,
     /// Revolutions that are not recorded.
@@ -120,6 +139,8 @@ pub struct Row {
     pub rpm: f64,
     /// How often the cam has passed angle 0 since the start at this speed.
     pub revolution: u64,
+    /// Which of the motions found for this speed it belongs to.
+    pub motion: Option<usize>,
     /// What was seen.
     pub seen: Seen,
     /// The exponent of this speed per revolution, if asked for.
@@ -179,11 +200,12 @@ impl Sweep {
         machine: &Machine,
         rpm: f64,
         mut motion: Motion,
+        which: Option<usize>,
         mut keep: impl FnMut(Row) -> ControlFlow<()>,
     ) -> Result<(Motion, ControlFlow<()>), SimulateError> {
         machine.revolve(&mut motion, self.transient)?;
         let lyapunov = if self.lyapunov { Some(growth(machine, motion, self.record)?) } else { None };
-        let row = |revolution, seen| Row { rpm, revolution, seen, lyapunov };
+        let row = |revolution, seen| Row { rpm, revolution, motion: which, seen, lyapunov };
         let goal = motion.after(self.record);
         let flow = match self.section {
             Section::Impacts => machine

@@ -10,7 +10,7 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
 use serde::Serialize;
 
-use super::{Following, Row, Seen, Sweep, SweepError};
+use super::{Following, Row, Seen, Starts, Sweep, SweepError};
 use crate::simulate::EventKind;
 
 /// A part of a record, made by a worker.
@@ -93,7 +93,7 @@ impl Sweep {
                     return Err(error);
                 }
                 let (motion, here) = found?;
-                from = Some(motion);
+                from = motion;
                 tally.add(here);
                 take(index, B::default())?;
             }
@@ -163,23 +163,32 @@ impl Sweep {
         index: usize,
         from: Option<crate::simulate::Motion>,
         send: &mut dyn FnMut(B) -> ControlFlow<()>,
-    ) -> Result<(crate::simulate::Motion, Tally), SweepError> {
+    ) -> Result<(Option<crate::simulate::Motion>, Tally), SweepError> {
         let rpm = self.speeds.rpm(index);
         let failed = |error| SweepError::Simulate { rpm, error };
         let machine = self.machine_at(rpm);
-        let motion = match &from {
-            Some(motion) => machine.resume(motion),
-            None => self.start.motion(&machine),
+        let motions = match &from {
+            Some(motion) => machine.resume(motion).map(|motion| vec![motion]),
+            None => self.starts.motions(&machine),
         };
-        let mut tally = Tally { revolutions: self.transient + self.record, ..Tally::default() };
+        let mut tally = Tally::default();
         let mut block = B::default();
-        let keep = |row: Row| {
+        let mut keep = |row: Row| {
             tally.points += 1;
             tally.impacts += u64::from(matches!(&row.seen, Seen::Event(event) if event.kind == EventKind::Impact));
             block.push(&row);
             if block.is_full() { send(std::mem::take(&mut block)) } else { ControlFlow::Continue(()) }
         };
-        let (end, _) = self.speed(&machine, rpm, motion.map_err(failed)?, keep).map_err(failed)?;
+        let (mut end, mut runs) = (None, 0);
+        for motion in motions.map_err(failed)? {
+            let which = matches!(self.starts, Starts::Found(_)).then_some(runs);
+            let (last, flow) = self.speed(&machine, rpm, motion, which, &mut keep).map_err(failed)?;
+            (end, runs) = (Some(last), runs + 1);
+            if flow.is_break() {
+                break;
+            }
+        }
+        tally.revolutions = runs as u64 * (self.transient + self.record);
         // The caller that wants no more sees to it itself.
         let _ = send(block);
         Ok((end, tally))

@@ -1,6 +1,6 @@
 //! Diagrams over speeds: where impacts fall on the cam, or where the follower is at the section.
 
-use crate::diagram::{Following, Placed, Places, Section, Speeds, Start, Sweep, SweepError};
+use crate::diagram::{Following, Placed, Places, Section, Speeds, Start, Starts, Sweep, SweepError};
 use crate::draw::layout::widened;
 use crate::draw::{Axis, Colour, Data, Density, Figure, Panel, Series, Stroke};
 use crate::figures::cam::{CornerMark, corner_marks};
@@ -99,7 +99,7 @@ impl Subject {
         let sweep = Sweep {
             machine: self.machine(low),
             speeds: Speeds { low, high, count: effort.speeds },
-            start: Start { cam_angle: 0.0, follower: Placed::OnCam(0.0) },
+            starts: Starts::One(Start { cam_angle: 0.0, follower: Placed::OnCam(0.0) }),
             following,
             transient: effort.transient,
             record: effort.record,

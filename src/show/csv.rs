@@ -4,7 +4,7 @@
 use std::fmt::{Display, Write};
 
 use crate::border_collision::ImpactCurve;
-use crate::diagram::{Block, Row, Section, Seen, Sweep};
+use crate::diagram::{Block, Row, Section, Seen, Starts, Sweep};
 use crate::flight::State;
 use crate::orbit::Eigenvalue;
 use crate::orbit::branch::{Branch, Kind};
@@ -44,7 +44,9 @@ pub(crate) fn diagram(sweep: &Sweep) -> String {
         Section::Impacts => "cam_angle_rad,event,position_m,velocity_before_m_s,velocity_after_m_s",
         Section::Strobe(_) => "position_m,velocity_m_s",
     };
-    format!("rpm,revolution,{seen}{}\n", if sweep.lyapunov { ",lyapunov_per_revolution" } else { "" })
+    let lyapunov = if sweep.lyapunov { ",lyapunov_per_revolution" } else { "" };
+    let motion = if matches!(sweep.starts, Starts::Found(_)) { ",attractor" } else { "" };
+    format!("rpm,revolution,{seen}{lyapunov}{motion}\n")
 }
 
 /// Lines of a diagram, as a worker makes them.
@@ -59,7 +61,7 @@ impl Lines {
 impl Block for Lines {
     fn push(&mut self, row: &Row) {
         let line = &mut self.0;
-        let Row { rpm, revolution, seen, lyapunov } = row;
+        let Row { rpm, revolution, motion, seen, lyapunov } = row;
         let _ = match seen {
             Seen::Event(event) => {
                 let Event { cam_angle, position, velocity_before, velocity_after, .. } = event;
@@ -70,6 +72,9 @@ impl Block for Lines {
         };
         if let Some(exponent) = lyapunov {
             let _ = write!(line, ",{exponent}");
+        }
+        if let Some(motion) = motion {
+            let _ = write!(line, ",{motion}");
         }
         line.push('\n');
     }

@@ -1,5 +1,6 @@
 //! What the motion settles on, speed by speed.
 
+use std::f64::consts::TAU;
 use std::time::Instant;
 
 use serde::Serialize;
@@ -7,6 +8,19 @@ use serde::Serialize;
 use crate::diagram::{Block, Following, Places, Section, Sweep, SweepError, Tally};
 use crate::draw::{Cloud, Density};
 use crate::progress::Watch;
+use crate::simulate::{Machine, Motion, SimulateError};
+use crate::study::attractors::Here;
+
+/// A motion on each of the attractors of `machine` that are found at its speed alone.
+pub fn on_attractors(machine: &Machine) -> Result<Vec<Motion>, SimulateError> {
+    /// Starts of the sample, as many as `speeds` runs.
+    const SAMPLED: usize = 64;
+    let rpm = machine.angular_velocity() * 60.0 / TAU;
+    let mut motions: Vec<Motion> =
+        Here::new(machine, rpm, SAMPLED)?.parts.into_iter().map(|part| part.motion).collect();
+    motions.iter_mut().for_each(|motion| motion.revolution = 0);
+    Ok(motions)
+}
 
 /// What a sweep came to: the document of `diagram --summary`.
 #[derive(Clone, Debug, Serialize)]

@@ -194,6 +194,36 @@ fn a_sweep_goes_on_from_its_neighbour() {
     assert_ne!(at(&up, "674.2"), at(&fixed, "674.2"));
 }
 
+/// Where the stable orbit and chaos attract, both are recorded whatever the start would have been; above that, one.
+#[test]
+fn a_diagram_of_attractors_has_each_of_them() {
+    let sweep = ["diagram", MODEL, "--rpm", "678:690:2", "--transient", "50", "--record", "40"];
+    let table = prints(&[&sweep[..], &["--attractors", "--out", "-"]].concat());
+    let rows = rows(&table, &format!("{IMPACTS},attractor"));
+    let angles = |rpm: &str, attractor: &str| -> Vec<f64> {
+        let of = rows.iter().filter(|row| row[0] == rpm && row[7] == attractor && row[3] == "impact");
+        of.map(|row| number(&row[2])).collect()
+    };
+    let spread = |angles: &[f64]| {
+        angles.iter().fold(f64::NEG_INFINITY, |one, angle| one.max(*angle))
+            - angles.iter().fold(TAU, |one, angle| one.min(*angle))
+    };
+    let both = [angles("678", "0"), angles("678", "1")];
+    let [orbit, chaos] = if spread(&both[0]) < spread(&both[1]) {
+        both
+    } else {
+        let [one, two] = both;
+        [two, one]
+    };
+    // One impact a revolution, always at the same angle; and impacts all over the cam.
+    assert_eq!(orbit.len(), 40);
+    assert!(spread(&orbit) < 1e-6 && spread(&chaos) > 3.0, "{orbit:?} {chaos:?}");
+    assert!(angles("678", "2").is_empty() && angles("690", "1").is_empty());
+    assert_eq!(angles("690", "0").len(), 40);
+    let summary = document(&[&sweep[..], &["--attractors", "--summary"]].concat());
+    assert_eq!(summary["revolutions"], 3 * 90);
+}
+
 #[test]
 fn a_diagram_has_a_summary() {
     let sweep = ["diagram", MODEL, "--rpm", "180:190:3", "--transient", "10", "--record", "20", "--threads", "2"];
