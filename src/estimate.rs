@@ -37,6 +37,14 @@ impl Estimate {
         Self { value, error, error_is: ErrorIs::Standard }
     }
 
+    /// The share of those that do something, with its standard error if they were drawn by chance: that of one more which does
+    /// and one more which does not, since none of few is not certainly none of all.
+    pub(crate) fn share(number: usize, of: usize) -> Self {
+        let (number, of) = (number as f64, of as f64);
+        let likely = (number + 1.0) / (of + 2.0);
+        Self { value: number / of, error: (likely * (1.0 - likely) / of).sqrt(), error_is: ErrorIs::Standard }
+    }
+
     /// What an extrapolation leads to.
     pub(crate) fn extrapolated(value: f64, error: f64) -> Self {
         Self { value, error, error_is: ErrorIs::Correction }

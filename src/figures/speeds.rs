@@ -44,7 +44,7 @@ pub fn speeds_figure(found: &Speeds, corners: &[CornerMark]) -> Figure {
     let impacts = Panel { marks: corners.iter().map(CornerMark::mark).collect(), ..impacts };
     let shares = each().map(|(index, attractor)| {
         let stroke = BARS.iter().find(|(kind, _)| *kind == attractor.kind).map_or(Stroke::Thin, |(_, stroke)| *stroke);
-        let points = attractor.at.iter().map(|at| [at.rpm, 100.0 * at.share]);
+        let points = attractor.at.iter().map(|at| [at.rpm, 100.0 * at.share.value]);
         Series::line("", colour(index), stroke, points)
     });
     let shares = shade(SHARES[1]).into_iter().chain(shares).collect();

@@ -11,7 +11,7 @@ impl Paged for Summary {
         let angle = basins.grid.cam_angle.to_degrees();
         let mut lines = vec![format!("{model} at {rpm} rpm, {} starts at {angle:.4} deg", basins.starts)];
         for part in &basins.parts {
-            let (share, error, ending) = (part.share, part.standard_error, words::ending(&part.ending));
+            let (share, error, ending) = (part.share.value, part.share.error, words::ending(&part.ending));
             lines.push(format!("  {share:.4} ± {error:.4}  {ending} ({})", part.starts));
         }
         lines.push(format!("  {wall_s:.3} s"));

@@ -104,7 +104,7 @@ pub(crate) fn table(found: &Speeds) -> Table {
     ];
     let mut table = Table::new("Attractors by rising speed", columns);
     for attractor in &found.attractors {
-        let shares = || attractor.at.iter().map(|at| 100.0 * at.share);
+        let shares = || attractor.at.iter().map(|at| 100.0 * at.share.value);
         let [least, most] = [shares().fold(f64::INFINITY, f64::min), shares().fold(0.0, f64::max)];
         let share = match (least, most) {
             (least, most) if least.round() == most.round() => format!("{most:.0}"),

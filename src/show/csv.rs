@@ -120,7 +120,8 @@ pub(crate) fn speeds(found: &Speeds) -> String {
         let (period, growth) = (at.ending.period(), at.ending.growth());
         let (turns, impacts) = (cell(period.map(|period| period.0)), cell(period.map(|period| period.1)));
         let (rate, error) = (cell(growth.map(|growth| growth.value)), cell(growth.map(|growth| growth.error)));
-        let (rpm, id, kind, share, share_error) = (at.rpm, &attractor.id, at.ending.kind(), at.share, at.error);
+        let (rpm, id, kind, share, share_error) =
+            (at.rpm, &attractor.id, at.ending.kind(), at.share.value, at.share.error);
         let _ =
             writeln!(lines, "{rpm},{id},{kind},{turns},{impacts},{rate},{error},{share},{share_error},{coexisting}");
     }

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::estimate::Estimate;
 use crate::known::Known;
 use crate::model::Model;
 use crate::orbit::ending::{Ending, Kind};
@@ -86,10 +87,9 @@ document!(Attractor as it {
 pub struct At {
     /// rpm.
     pub rpm: f64,
-    /// The share of the sample's starts that end on it.
-    pub share: f64,
-    /// The standard error of that, if the starts were drawn by chance; they are spread better than by chance.
-    pub error: f64,
+    /// The share of the sample's starts that end on it. They are spread better than by chance, so that its error errs on the
+    /// large side.
+    pub share: Estimate,
     /// What it is.
     pub ending: Ending,
     /// What runs did that neither rested nor came to an orbit soon.
@@ -100,8 +100,8 @@ pub struct At {
 
 document!(At as it {
     speed_rpm: it.rpm,
-    share: it.share,
-    error: it.error,
+    share: it.share.value,
+    error: it.share.error,
     kind: it.ending.kind(),
     revolutions: it.ending.period().map(|(revolutions, _)| revolutions),
     impacts: it.ending.period().map(|(_, impacts)| impacts),
@@ -236,11 +236,9 @@ fn name(index: usize) -> String {
 
 impl At {
     fn new(here: &Here, part: &Part, impact_angles: Vec<f64>) -> Self {
-        let count = here.sampled as f64;
-        let share = here.count(part) as f64 / count;
-        let error = (share * (1.0 - share) / count).sqrt();
+        let share = Estimate::share(here.count(part), here.sampled);
         let (rpm, ending, wandering) = (here.rpm, part.ending.clone(), here.wandering);
-        Self { rpm, share, error, ending, wandering, impact_angles }
+        Self { rpm, share, ending, wandering, impact_angles }
     }
 }
 

@@ -98,7 +98,8 @@ fn the_paper_s_cam_has_two_motions_up_to_682_rpm() {
             let (stable, other, wild) =
                 if other.id == one.id { (wild, here[0].0, stable) } else { (stable, *other, wild) };
             assert!(matches!(other.kind, Kind::Chaotic | Kind::Resting), "{rpm}: {:?}", other.kind);
-            assert!(stable.share > 0.0 && wild.share > 0.5 && (stable.share + wild.share - 1.0).abs() < 1e-12);
+            let [few, most] = [stable.share.value, wild.share.value];
+            assert!(few > 0.0 && most > 0.5 && (few + most - 1.0).abs() < 1e-12);
         }
         assert!(found.coexistence.iter().any(|over| over.from_rpm < 678.0 && over.to_rpm > 678.0));
     }

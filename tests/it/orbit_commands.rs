@@ -257,7 +257,10 @@ fn speeds_gives_the_short_answer() {
     );
     let shares = rests["shares"].as_array().unwrap();
     assert_eq!((shares[0]["speed_rpm"].as_f64(), shares[0]["share"].as_f64()), (Some(116.0), Some(1.0)));
-    assert_eq!((shares[0]["error"].as_f64(), shares.len()), (Some(0.0), 8));
+    // All of a few starts are not certainly all.
+    let error = shares[0]["error"].as_f64().unwrap();
+    assert_relative_eq!(error, (0.9_f64 * 0.1 / 8.0).sqrt(), max_relative = 1e-12);
+    assert_eq!(shares.len(), 8);
     let (page, _) = done(&["speeds", MODEL, "--rpm", "100:130", "--step", "10", "--starts", "4"]);
     assert!(page.contains("leaves the cam first at  114.979327 rpm"), "{page}");
     let (table, _) = done(&["speeds", MODEL, "--rpm", "100:130", "--step", "10", "--starts", "4", "--out", "-"]);

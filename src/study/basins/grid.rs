@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::estimate::Estimate;
 use crate::flight::State;
 use crate::orbit::ending::Ending;
 use crate::orbit::fate::Settling;
@@ -92,29 +93,27 @@ pub enum GridError {
 }
 
 // A period stands beside the kind.
-document!(Part as part {
+document!(Basin as part {
     ending: part.ending.kind(),
     revolutions if_any: part.ending.period().map(|(revolutions, _)| revolutions),
     impacts if_any: part.ending.period().map(|(_, impacts)| impacts),
     growth if_any: part.ending.growth().map(|growth| growth.value),
     growth_error if_any: part.ending.growth().map(|growth| growth.error),
     starts: part.starts,
-    share: part.share,
-    share_standard_error: part.standard_error,
+    share: part.share.value,
+    share_standard_error: part.share.error,
 });
 
 /// The starts of a grid that end alike.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Part {
+pub struct Basin {
     /// How they end.
     pub ending: Ending,
     /// How many.
     pub starts: usize,
-    /// Their share of the starts above the cam.
-    pub share: f64,
-    /// `sqrt(p (1 - p)/N)`: the standard error of the share if the N starts were drawn by chance. Those of a grid are spread
-    /// better than by chance, so it errs on the large side.
-    pub standard_error: f64,
+    /// Their share of the starts above the cam. Those of a grid are spread better than by chance, so that its error errs on the
+    /// large side.
+    pub share: Estimate,
 }
 
 /// What the starts of a grid end on.
@@ -127,7 +126,7 @@ pub struct Basins {
     pub starts: usize,
     /// The endings found, that of most starts first.
     #[serde(rename = "endings")]
-    pub parts: Vec<Part>,
+    pub parts: Vec<Basin>,
     /// Runs that neither rested nor came to an orbit soon, all together.
     pub wandering: Wandering,
     /// For each cell the index of its part; nothing where the start is below the cam.
@@ -141,13 +140,11 @@ impl Basins {
         found.parts.sort_by_key(|part| std::cmp::Reverse(part.starts.len()));
         let mut cells = vec![None; grid.cells.iter().product()];
         let starts = found.parts.iter().map(|part| part.starts.len()).sum::<usize>();
-        let all = starts as f64;
         let mut parts = Vec::with_capacity(found.parts.len());
         for (index, part) in found.parts.into_iter().enumerate() {
             part.starts.iter().for_each(|cell| cells[*cell] = Some(index));
-            let share = part.starts.len() as f64 / all;
-            let standard_error = (share * (1.0 - share) / all).sqrt();
-            parts.push(Part { ending: part.ending, starts: part.starts.len(), share, standard_error });
+            let share = Estimate::share(part.starts.len(), starts);
+            parts.push(Basin { ending: part.ending, starts: part.starts.len(), share });
         }
         Self { grid, starts, parts, wandering: found.wandering, cells }
     }
