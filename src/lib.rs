@@ -40,7 +40,7 @@
 //!
 //! Data moves down; no stage uses one below it, and a test holds the code to that. `tolerance` stands above all: every
 //! threshold is a row of its one table; so do `known`, the words for how a result is known, `progress`, by which long work
-//! tells how far it has come, `bracket`, which finds roots, `interval`, which proves that it has found all, `estimate`, a number with its error, and `draw`, which turns a
+//! tells how far it has come, `bracket`, which finds roots, `interval`, which proves that it has found all, `estimate`, a number with its error, `ball`, a number with the radius that is proved, and `draw`, which turns a
 //! plot into SVG or PNG and knows no mechanics.
 //!
 //! ```
@@ -63,6 +63,7 @@ pub mod known;
 
 pub mod progress;
 
+pub mod ball;
 pub mod bracket;
 pub mod estimate;
 pub mod interval;

@@ -14,8 +14,20 @@ use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 /// The scripts, with the modules that they import and the file that they read, by their places in the project.
-const FILES: [(&str, &str); 4] = [
+const FILES: [(&str, &str); 16] = [
     ("derivations/arithmetic.py", include_str!("../derivations/arithmetic.py")),
+    ("derivations/balls/__init__.py", include_str!("../derivations/balls/__init__.py")),
+    ("derivations/balls/cam.py", include_str!("../derivations/balls/cam.py")),
+    ("derivations/balls/corner_impact.py", include_str!("../derivations/balls/corner_impact.py")),
+    ("derivations/balls/duals.py", include_str!("../derivations/balls/duals.py")),
+    ("derivations/balls/flight.py", include_str!("../derivations/balls/flight.py")),
+    ("derivations/balls/krawczyk.py", include_str!("../derivations/balls/krawczyk.py")),
+    ("derivations/balls/laws.py", include_str!("../derivations/balls/laws.py")),
+    ("derivations/balls/motion.py", include_str!("../derivations/balls/motion.py")),
+    ("derivations/balls/numbers.py", include_str!("../derivations/balls/numbers.py")),
+    ("derivations/balls/profiles.py", include_str!("../derivations/balls/profiles.py")),
+    ("derivations/balls/verdict.py", include_str!("../derivations/balls/verdict.py")),
+    ("derivations/certify.py", include_str!("../derivations/certify.py")),
     ("derivations/evaluate.py", include_str!("../derivations/evaluate.py")),
     ("derivations/simulate_scipy.py", include_str!("../derivations/simulate_scipy.py")),
     ("golden/derived/corner_map.json", include_str!("../golden/derived/corner_map.json")),
@@ -32,10 +44,10 @@ const TIME_LIMIT: Duration = Duration::from_secs(120);
 pub(crate) enum PythonError {
     #[error("the scripts could not be written to a temporary folder: {0}")]
     NotWritten(std::io::Error),
-    #[error("`{command}` did not start: {error}; `make verify` sets up Python, --no-external does without it")]
+    #[error("`{command}` did not start: {error}; `make verify` sets up Python, `verify --no-external` does without it")]
     NotStarted { command: String, error: std::io::Error },
     #[error(
-        "`{command}` failed ({status}); if a package is missing, `make verify` sets it up, and --no-external does without; it \
+        "`{command}` failed ({status}); if a package is missing, `make verify` sets it up, and `verify --no-external` does without; it \
          said:\n{stderr}"
     )]
     Failed { command: String, status: String, stderr: String },

@@ -105,11 +105,12 @@ class Cam:
         return parts, smooth
 
     def piece_of(self, angle):
-        """The law that holds on all of the ball, and the ball less whole revolutions; Undecided where it may meet a corner."""
+        """The piece that holds all of the ball, in the revolution that it is in; Undecided where the ball may meet a corner."""
         for index in self._indices(float(angle.lower()), float(angle.upper())):
             start, end, law, shift = self._piece(index)
-            if angle > start and angle < end:
-                return law, angle - shift
+            piece = Piece(start, end, Turned(law, shift))
+            if piece.holds(angle):
+                return piece
         raise Undecided(f"it is not proved on which piece of the cam the angle {angle.str(8)} lies")
 
     def derivatives(self, angle):
@@ -122,6 +123,19 @@ class Cam:
     def is_smooth(self, angle):
         """Whether c and c' are continuous over the ball for certain, so that Taylor's formula holds with the hull of c''."""
         return self.parts(angle)[1]
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A law with the angles between which it holds, rad, of one revolution."""
+
+    start: arb
+    end: arb
+    law: object
+
+    def holds(self, angle):
+        """Whether all of a ball is proved to lie between its ends."""
+        return bool(angle > self.start and angle < self.end)
 
 
 class Turned:

@@ -148,10 +148,11 @@ class Flight:
             time = step
         return time
 
-    def first_contact(self, horizon, guess=None):
+    def first_contact(self, horizon, contact=None):
         """The time of the first contact of each flight, proved to be the first: 0 < g before it, g' < 0 at it.
 
-        Looked for up to `horizon`, s. Refused where the flight touches, or where a proof would take steps too short.
+        Looked for up to `horizon`, s; or it is `contact`, a ball of which it is known that g is 0 in it. Refused where the
+        flight touches, or where a proof would take steps too short.
         """
         revolution = 2 * arb.pi() / self.start.speed.mid()
         shortest = float(revolution.mid()) * FIRST_STEP / 2**HALVINGS
@@ -163,18 +164,20 @@ class Flight:
             step /= 2
             if step < shortest:
                 raise Undecided("the follower is not proved to get clear of the cam")
-        reached, landing = step, guess
+        reached, landing = step, contact and float(contact)
         while reached < horizon:
             if landing is None and not self.centre._at(arb(reached + step))[0] > 0:
                 landing = self.centre._closed(reached, reached + step)
             if landing is not None and reached + 2 * step >= landing:
-                found = self._lands(reached, landing)
+                found = self._lands(reached, landing, contact)
                 if found is not None:
                     return found
             if self.gap(between(reached, reached + step)) > 0:
                 reached += step
                 step *= 1.5
                 continue
+            if contact is not None and contact > reached + step and self.gap(arb(reached + step)) < 0:
+                raise Refused(f"the flight meets the cam elsewhere, within {reached + step:.6g} s after it began")
             step /= 2
             if step < shortest:
                 raise Refused(f"the flight is not proved to be clear of the cam {reached:.6g} s after it began: it may touch")
@@ -187,21 +190,23 @@ class Flight:
             low, high = (middle, high) if self._at(arb(middle))[0] > 0 else (low, middle)
         return (low + high) / 2
 
-    def _lands(self, reached, landing):
-        """The contact near a guess, if g' < 0 from `reached` on to it; None if that is not proved."""
+    def _lands(self, reached, landing, contact):
+        """The contact near a guess, or the one that is known, if g' < 0 from `reached` on to it; None if that is not proved."""
+        if contact is None:
+            contact = self._contact_about(landing)
+        if contact is None or not contact > reached or not self.gap_rate(between(reached, contact)) < 0:
+            return None
+        return contact
+
+    def _contact_about(self, landing):
+        """The contact near a guess, proved to be one; None without a proof."""
         # As wide as the starts make it, and more than the guess is off by.
         rate = self.centre._at(arb(landing))[1]
         if not rate < 0:
             return None
         spread = abs(_along(self.gap_by_start(arb(landing)), self.offsets) / rate).upper() if not self.is_point else arb(0)
         reach = 2 * spread + abs(self.centre._at(arb(landing))[0] / rate).upper() * 2 + arb(landing) * 2**-40
-        time = arb(landing) + arb(0, reach)
-        if not time.lower() > reached:
-            return None
-        contact = self.contact_near(time)
-        if contact is None or not self.gap_rate(between(reached, contact)) < 0:
-            return None
-        return contact
+        return self.contact_near(arb(landing) + arb(0, reach))
 
 
 def _along(gradient, offsets):
@@ -239,14 +244,14 @@ def derivative(flight, time):
     return arb_mat(rows)
 
 
-def impact_map(machine, start, horizon, law=None, guess=None):
+def impact_map(machine, start, horizon):
     """f: (theta, u, omega) to (theta', u') after the first contact, proved to be the first of every start in the ball.
 
     The image is that of the centre and the derivative times the ball. Where c'' jumps under the ball, f is Lipschitz with the
     derivative's hull, and the mean value form holds all the same.
     """
-    flight = Flight(machine, start, law)
-    time = flight.first_contact(horizon, guess)
+    flight = Flight(machine, start)
+    time = flight.first_contact(horizon)
     jacobian = derivative(flight, time)
     at_centre = flight.centre.contact_near(time) or time
     _, velocity = flight.centre.state(at_centre)

@@ -6,6 +6,8 @@ from flint import arb, ctx, fmpq
 
 # A double has no exponent beyond this; more digits than that would only take memory.
 LARGEST_EXPONENT = 400
+# log10(2), rounded down: more digits than that no ball of so many bits has.
+BITS_TO_DIGITS = 0.30102
 
 
 class Refused(Exception):
@@ -31,13 +33,11 @@ def decimal(value):
 
 
 def ball(number):
-    """A ball as {"mid", "rad"}, decimals; whatever the ball holds lies within rad of mid."""
+    """A ball as {"mid", "rad"}, decimals: whatever the ball holds lies within rad of mid, and mid has no more digits than are proved,
+    each right but for one unit of the last."""
     if not number.is_finite():
         raise Undecided("a ball is unbounded")
-    # A few digits more than the precision has, so that writing them widens the ball by little.
-    digits = int(ctx.prec * 0.30103) + 4
-    text = number.str(digits, more=True).strip("[]")
-    mid, _, rad = text.partition("+/-")
+    mid, _, rad = number.str(int(ctx.prec * BITS_TO_DIGITS)).strip("[]").partition("+/-")
     return {"mid": mid.strip() or "0", "rad": rad.strip() or "0"}
 
 

@@ -5,7 +5,7 @@
 //! total below -1 is odd (nonsmooth flip). Where each side's fixed point exists is computed on its own, from the border.
 
 use nalgebra::{Matrix2, RowVector2, Vector2};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::Degenerate;
 use super::conditions::{Condition, Decides, conditions};
@@ -16,7 +16,7 @@ use crate::orbit::eigenvalues;
 use crate::tolerance;
 
 /// What happens to the fixed point at the border.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Scenario {
     /// It crosses to the other side.
@@ -41,7 +41,7 @@ impl Scenario {
 named!(Scenario, Speeds);
 
 /// On which side of the corner-impact speed a fixed point exists.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Speeds {
     /// Above omega*: dT < 0.

@@ -2,6 +2,7 @@
 
 mod basins;
 mod cam;
+mod certify;
 mod claims;
 mod complaint;
 mod completions;
@@ -87,6 +88,7 @@ subcommands! {
         Report = report,
         Claims = claims,
         Locate = locate,
+        Certify = certify,
     "What a machine does":
         Cam = cam,
         Simulate = simulate,

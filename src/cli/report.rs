@@ -32,7 +32,7 @@ pub(super) struct Arguments {
     /// Print one JSON document instead; the page only where --out names it.
     #[arg(long)]
     json: bool,
-    /// Leave out the routes that need Python (symbolic, scipy), and say so.
+    /// Leave out the routes that need Python (symbolic, scipy, certificate), and say so.
     #[arg(long)]
     no_external: bool,
 }

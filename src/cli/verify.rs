@@ -17,7 +17,7 @@ pub(super) struct Arguments {
     /// Print one JSON document instead of the page.
     #[arg(long)]
     json: bool,
-    /// Leave out the routes that need Python (symbolic, scipy), and say so.
+    /// Leave out the routes that need Python (symbolic, scipy, certificate), and say so.
     #[arg(long)]
     no_external: bool,
 }

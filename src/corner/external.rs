@@ -2,11 +2,11 @@
 //! integration of its own). Both get the numbers of the model file and nothing else, and find the corner impact themselves.
 
 use nalgebra::{Matrix2, Vector2};
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use serde_json::json;
 
 use super::map::{Route, RouteName, SideMap, Sides, Uncertainty};
-use crate::model::{ArcsProfile, CamProfile, Model, Study};
+use crate::model::{CamProfile, Model, Study};
 use crate::python::{self, PythonError};
 
 /// A route outside this program: its name, and its script in `derivations/`.
@@ -39,7 +39,8 @@ pub fn know(model: &Model) -> bool {
 
 /// Runs one of them on a model whose study range is `study`.
 pub fn run(program: Program, model: &Model, study: Study) -> Result<Outside, PythonError> {
-    let answer: Answer = python::run(program.script, &numbers(model, study))?;
+    let numbers = json!({ "follower": model.follower, "cam": model.cam, "study": study });
+    let answer: Answer = python::run(program.script, &numbers)?;
     let map = answer.map.map(Matrices::map);
     let uncertainty = answer.standard_error.map(|error| Uncertainty::Fit {
         standard: error.map(Matrices::map),
@@ -51,23 +52,6 @@ pub fn run(program: Program, model: &Model, study: Study) -> Result<Outside, Pyt
         x_star: Vector2::new(answer.x_star[0].value(), answer.x_star[1].value()),
         period: answer.period_s.value(),
     })
-}
-
-/// The numbers of a model file, as its tables name them.
-fn numbers(model: &Model, study: Study) -> serde_json::Value {
-    let cam = match &model.cam {
-        CamProfile::Arcs(profile) => Some(Named { law: model.cam.law(), profile }),
-        _ => None,
-    };
-    json!({ "follower": model.follower, "cam": cam, "study": study })
-}
-
-/// The table `[cam]`.
-#[derive(Serialize)]
-struct Named<'a> {
-    law: &'static str,
-    #[serde(flatten)]
-    profile: &'a ArcsProfile,
 }
 
 /// A number, or one with more digits than a double holds, as text.

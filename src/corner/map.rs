@@ -101,6 +101,8 @@ impl CornerMap {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RouteName {
+    /// The middles of balls in which it is proved to lie.
+    Certificate,
     /// The formulas of the paper.
     ClosedForm,
     /// Differences of simulated periods.

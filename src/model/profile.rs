@@ -1,6 +1,6 @@
 //! The `[cam]` table: one entry for every lift law, and the fields of each.
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::ModelError;
 use super::fields::{Allowed, Fields};
@@ -37,6 +37,31 @@ impl CamProfile {
     }
 }
 
+/// As the table of a model file has it, a table of lifts with its rows in the place of the file.
+impl Serialize for CamProfile {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct Named<T> {
+            law: &'static str,
+            #[serde(flatten)]
+            profile: T,
+        }
+        #[derive(Serialize)]
+        struct Segments<'a> {
+            segment: &'a [PolynomialSegment],
+        }
+        let law = self.law();
+        match self {
+            Self::Arcs(profile) => Named { law, profile }.serialize(to),
+            Self::Harmonic(profile) => Named { law, profile }.serialize(to),
+            Self::RectifiedSine(profile) => Named { law, profile }.serialize(to),
+            Self::Program(profile) => Named { law, profile }.serialize(to),
+            Self::Polynomial(segment) => Named { law, profile: Segments { segment } }.serialize(to),
+            Self::Table(profile) => Named { law, profile }.serialize(to),
+        }
+    }
+}
+
 /// Base, flank and nose circles, mirrored about theta = pi. Centres and top radius follow from tangency.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ArcsProfile {
@@ -53,7 +78,7 @@ pub struct ArcsProfile {
 }
 
 /// `c = offset + sum a_k cos(k theta + p_k)`, k from 1.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct HarmonicProfile {
     /// Mean lift, m.
     pub offset: f64,
@@ -64,7 +89,7 @@ pub struct HarmonicProfile {
 }
 
 /// `c = offset + amplitude |sin theta|`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RectifiedSineProfile {
     /// Lift at the corners, m.
     pub offset: f64,
@@ -73,16 +98,17 @@ pub struct RectifiedSineProfile {
 }
 
 /// Motions from theta = 0 on.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ProgramProfile {
     /// Lift at theta = 0, m.
     pub base: f64,
     /// In order; at least one.
+    #[serde(rename = "segment")]
     pub segments: Vec<MotionSegment>,
 }
 
 /// One motion of a program.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MotionSegment {
     /// How the lift gets from one end to the other.
     pub motion: Motion,
@@ -93,7 +119,8 @@ pub struct MotionSegment {
 }
 
 /// The standard motions of cam design, between ends at rest.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Motion {
     /// Constant lift.
     Dwell,
@@ -128,7 +155,7 @@ impl Motion {
 }
 
 /// `c = sum a_k (theta - start)^k` from its start to the next one's.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PolynomialSegment {
     /// Where it starts, degrees, from 0 to below 360.
     pub start_deg: f64,

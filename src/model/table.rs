@@ -3,6 +3,8 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use serde::Serialize;
+
 use super::ModelError;
 use super::fields::Fields;
 use crate::tolerance;
@@ -18,8 +20,11 @@ pub struct TableProfile {
     pub rows: Arc<[Row]>,
 }
 
+document!(TableProfile as it { file: it.file, spline: it.spline, rows: &it.rows[..] });
+
 /// The periodic interpolating splines.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Spline {
     /// Pieces of degree 3; the third derivative jumps at every row.
     Cubic,
@@ -27,7 +32,7 @@ pub enum Spline {
     Quintic,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Row {
     /// Cam angle, degrees.
     pub angle_deg: f64,

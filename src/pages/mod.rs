@@ -3,6 +3,7 @@
 mod basins;
 pub(crate) mod branches;
 pub mod cam;
+mod certify;
 pub mod claims;
 mod local_map;
 mod locate;

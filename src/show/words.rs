@@ -3,7 +3,6 @@
 //! The names of values in JSON and in tables are what the values serialize as, and a value is written by that name.
 
 use crate::agreement::Quantity;
-use crate::border_collision::Classification;
 use crate::border_collision::conditions::Decides;
 use crate::border_collision::feigin::{Scenario, Speeds};
 use crate::border_collision::long_run::{Chaos, End};
@@ -78,16 +77,16 @@ pub(crate) fn mark(verdict: Verdict) -> Mark {
     }
 }
 
-/// What a border collision does.
-pub(crate) fn meaning(kind: &Classification) -> &'static str {
-    match kind.scenario {
+/// What a border collision does, where a fixed point of either side is stable or where none is.
+pub(crate) fn meaning(scenario: Scenario, has_stable: bool) -> &'static str {
+    match scenario {
         Scenario::Persistence => "the fixed point crosses from one side to the other and lives on",
-        Scenario::NonsmoothFold if kind.minus.stable || kind.plus.stable => {
+        Scenario::NonsmoothFold if has_stable => {
             "the two fixed points meet at omega* = 60/T* rpm and vanish: a motion that follows one of them has nowhere to go"
         }
         Scenario::NonsmoothFold => {
             "the two fixed points meet at omega* = 60/T* rpm and vanish. Both are unstable: what ends there for a follower is not \
-             one of them but what else the local map keeps beside them, told below"
+             one of them but what else the local map keeps beside them"
         }
         Scenario::NonsmoothFlip => {
             "the fixed point crosses from one side to the other, and an orbit of period two is born"

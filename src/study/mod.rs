@@ -3,6 +3,7 @@
 pub mod attractors;
 pub mod basins;
 pub mod cam;
+pub mod certify;
 pub mod compared;
 pub mod continuation;
 pub mod curve;

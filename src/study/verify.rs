@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::thread::JoinHandle;
 
-use nalgebra::RowVector2;
+use nalgebra::{RowVector2, Vector2};
 use serde::Serialize;
 
 use crate::agreement::{Agreement, NamedOrbit, Quantity, compare_orbits, fewest_shared_decimals};
@@ -22,6 +22,7 @@ use crate::progress::{Unwatched, Watch};
 use crate::published::{PrintedNumber, PublishedError, compare_published};
 use crate::python::PythonError;
 use crate::study::ModelLabel;
+use crate::study::certify::{self, Certificate, Outcome};
 use crate::study::compared::{self, Log, Skipped, compare_borders};
 
 /// What a verification found: the document `corner-impact/verify/1`.
@@ -35,6 +36,8 @@ pub struct Verification {
     pub others: Vec<CornerImpact>,
     /// The map by the closed form.
     pub map: CornerMap,
+    /// What of it is proved.
+    pub certificate: Option<Certificate>,
     /// The map by each route that ran.
     pub routes: Vec<Route>,
     /// Every comparison of two routes.
@@ -64,6 +67,7 @@ document!(Verification as found {
     model: found.model,
     corner_impact: Whole(&found.at),
     other_corner_impacts: found.others.iter().map(Place).collect::<Vec<_>>(),
+    certificate if_any: found.certificate,
     routes: found.routes.iter().map(|route| (route.name, route)).collect::<BTreeMap<_, _>>(),
     agreement: found.comparisons,
     eigenvalues: found.map.map(SideMap::eigenvalues),
@@ -196,6 +200,10 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
     let mut log = Log::default();
     // The programs outside take seconds and this one's routes a few hundredths: they run beside each other.
     let outside = start_outside(model, external)?;
+    let proving = (external == External::Run).then(|| {
+        let (model, place) = (model.clone(), certify::candidate(model, &cam, &at));
+        std::thread::spawn(move || certify::prove(&model, vec![place], certify::BITS))
+    });
 
     watch.at("the map by the routes of this program", 0, 0);
     let closed = closed_form::route(model, &at);
@@ -227,14 +235,20 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
             Some(Err(_)) => log.fail(program.name, "its thread ended without an answer"),
         }
     }
+    let border = border(model, &cam, &at);
+    let classification = compared::classified(&map, border, sticking);
+    watch.at("the proof, in Python", 0, 0);
+    let certificate = certificate(proving, classification.is_err(), &mut log);
+    if let Some(certificate) = &certificate {
+        let (name, x_star) = (RouteName::Certificate, Vector2::from_fn(|row, _| certificate.state[row].value()));
+        routes.push(Route { name, map: certificate.map(), uncertainty: None });
+        orbits.push((name, x_star, certificate.period_s.value()));
+    }
     let mut comparisons = compared::comparisons(&at, &routes, &mut log);
     comparisons.extend(compare_orbits(&orbits));
-
-    let border = border(model, &cam, &at);
     comparisons.push(compare_borders(&closed, RouteName::FreeFlight, border));
     let normal_form = normal_form(&map);
     log.refused("normal_form", &normal_form);
-    let classification = compared::classified(&map, border, sticking);
     log.refused("classification", &classification);
     watch.at("what the map does by itself", 0, 0);
     let local = LocalMap::new(&map, border);
@@ -259,6 +273,7 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
         at,
         others,
         map,
+        certificate,
         routes,
         comparisons,
         border,
@@ -271,6 +286,26 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
         skipped: log.0,
         agrees,
     })
+}
+
+type Proving = JoinHandle<Result<Vec<Outcome>, PythonError>>;
+
+/// The certificate that was waited for; where what happens is not classified either, there need be none.
+fn certificate(proving: Option<Proving>, is_unclassified: bool, log: &mut Log) -> Option<Certificate> {
+    let name = RouteName::Certificate;
+    let Some(proving) = proving else {
+        log.leave_out(name, "left out by --no-external");
+        return None;
+    };
+    let outcome = proving.join().map(|proved| proved.map(|mut outcomes| outcomes.pop()));
+    match outcome {
+        Ok(Ok(Some(Outcome::Certificate(certificate)))) => return Some(*certificate),
+        Ok(Ok(Some(Outcome::Refused(why)))) if is_unclassified => log.leave_out(name, why),
+        Ok(Ok(Some(Outcome::Refused(why)))) => log.fail(name, why),
+        Ok(Err(error)) => log.fail(name, error),
+        Ok(Ok(None)) | Err(_) => log.fail(name, "it ended without an answer"),
+    }
+    None
 }
 
 type Started = (Program, Option<JoinHandle<Result<Outside, PythonError>>>);

@@ -8,11 +8,12 @@ use crate::common::{PROGRAM, ROOT, corner_impact, program, text};
 use rayon::prelude::*;
 use tempfile::TempDir;
 
-const COMMANDS: [&str; 16] = [
+const COMMANDS: [&str; 17] = [
     "verify",
     "report",
     "claims",
     "locate",
+    "certify",
     "cam",
     "simulate",
     "speeds",
@@ -116,6 +117,7 @@ fn pages_fit_the_width_that_is_asked_for() {
         "cam",
         "cam models/laws/program.toml",
         "locate --rpm 600:760",
+        "certify --rpm 600:760",
         "locate models/laws/rectified-sine.toml --rpm 600:760",
         "orbit --rpm 680",
         "orbit --rpm 183",
@@ -336,7 +338,7 @@ fn from_any_folder() {
             assert!(words.contains(part), "{part} in {words}");
         }
     }
-    assert!(page.contains("INCOMPLETE: symbolic and scipy did not run"), "{page}");
+    assert!(page.contains("INCOMPLETE: symbolic, scipy and certificate did not run"), "{page}");
 }
 
 /// In front of a person work of more than a second has a bar, or a spinner; `script` makes a terminal.

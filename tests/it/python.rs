@@ -64,11 +64,7 @@ fn without_python_it_says_so_and_does_not_agree() {
         page.contains("NOT RUN") && page.contains("/nonexistent/python") && page.contains("did not start"),
         "{page}"
     );
-    assert!(
-        page.contains("INCOMPLETE: scipy and symbolic did not run")
-            || page.contains("INCOMPLETE: symbolic and scipy did not run"),
-        "{page}"
-    );
+    assert!(page.contains("INCOMPLETE: symbolic, scipy and certificate did not run"), "{page}");
     let message = String::from_utf8(output.stderr).unwrap();
     assert!(message.contains("scipy") && message.contains("did not start"), "{message}");
 }
@@ -118,8 +114,13 @@ fn nothing_of_the_current_folder_is_run() {
         let mark = marks.join(name.replace('/', "-"));
         std::fs::write(path, format!("open({:?}, 'w').close()\n", mark.to_str().unwrap())).unwrap();
     };
-    let modules = ["arithmetic.py", "json.py", "mpmath.py", "numpy.py", "scipy.py", "sitecustomize.py", "sympy.py"];
-    for name in modules.into_iter().chain(["derivations/evaluate.py", "derivations/simulate_scipy.py"]) {
+    let modules =
+        ["arithmetic.py", "json.py", "mpmath.py", "numpy.py", "scipy.py", "flint.py", "sitecustomize.py", "sympy.py"];
+    for name in modules.into_iter().chain([
+        "derivations/evaluate.py",
+        "derivations/simulate_scipy.py",
+        "derivations/certify.py",
+    ]) {
         python(name);
     }
     let touch = format!("touch '{}/interpreter'", marks.display());

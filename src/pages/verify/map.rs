@@ -19,7 +19,8 @@ pub(crate) fn map(found: &Verification) -> Vec<Block> {
         ),
         Block::Full(vec![Block::paragraph(
             "Each column is computed on its own: no two share a formula for A and B. Finite difference and least squares run \
-             the same simulator; symbolic and scipy run no code of this program. Digits in which a column leaves the closed \
+             the same simulator; symbolic and scipy run no code of this program, and certificate proves what it is \
+             told where to look for. Digits in which a column leaves the closed \
              form are underlined.",
         )]),
         Block::Gap,

@@ -59,6 +59,13 @@ pub(crate) fn orbit(found: &Verification) -> Vec<Block> {
         let (speed, angle) = (fixed(other.speed_rpm(), 6), degrees(other.corner.angle));
         ("also".into(), words![speed, " rpm at ", angle, " deg: narrow [study] to verify that one"])
     }));
+    if let Some(certificate) = &found.certificate {
+        let words = format!(
+            "this orbit exists, and its speed, state, A and B are proved to {} digits: `certify` has them",
+            certificate.digits()
+        );
+        entries.push(("proved".into(), words.into()));
+    }
     let close = Words::prose(
         "_T^∗_ lies between {} and {} s; one simulated revolution ends within {} of where it started, in parts of the orbit's \
          size.",
@@ -124,7 +131,12 @@ fn classification(kind: &Classification) -> Vec<(Words, Words)> {
     );
     let born = kind.period_two_orbit && *scenario != Scenario::NonsmoothFlip;
     let born = if born { ", and an orbit of period two" } else { "" };
-    let verdict = words![scenario.to_string(), born, Span::Break, words::meaning(kind)];
+    let verdict = words![
+        scenario.to_string(),
+        born,
+        Span::Break,
+        words::meaning(kind.scenario, kind.minus.stable || kind.plus.stable)
+    ];
     let fate = |side: &SideCounts| {
         let stability = if side.stable { "a stable" } else { "an unstable" };
         format!("{stability} one at speeds {}", words::speeds(Some(side.exists_for)))

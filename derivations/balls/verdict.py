@@ -1,0 +1,80 @@
+"""What a border collision does, from balls: every condition with its value and proved sign, and Feigin's verdict.
+
+The orbit's map is x -> A- x + B- dT where e x + f dT < 0 and A+ x + B+ dT elsewhere, up to terms of second order. Each side's map
+is analytic, with the cam's law of that side continued past the corner, so that the implicit function theorem gives each of them
+one fixed point near x* for every dT near 0 where det(I - A) is not 0; it is one of the machine just where it lies on its own
+side. With a sign of e x + f dT that does not vanish to first order, the verdict of the linear map is that of the machine.
+"""
+
+from dataclasses import dataclass
+
+from flint import arb, arb_mat
+
+from .corner_impact import eigenvalues
+from .numbers import sign
+
+SIDES = ("minus", "plus")
+
+
+@dataclass(frozen=True)
+class Condition:
+    """A number that must not be 0, and the sign that it is proved to have."""
+
+    name: str
+    value: arb
+    sign: int
+
+
+class Verdict:
+    """The maps of both sides, {side: 2 x 3 [A | B]}, and the border (e, f); Undecided where a sign is not."""
+
+    def __init__(self, maps, border):
+        self.maps, self.border = maps, border
+        self.a = {side: arb_mat([[whole[i, j] for j in range(2)] for i in range(2)]) for side, whole in maps.items()}
+        self.b = {side: [whole[0, 2], whole[1, 2]] for side, whole in maps.items()}
+        jump = [maps["plus"][0, column] - maps["minus"][0, column] for column in range(3)]
+        # C = e1^T (A+ - A-), D = e1^T (B+ - B-)
+        self.c, self.d = jump[:2], jump[2]
+        self.eigenvalues = {side: eigenvalues(a) for side, a in self.a.items()}
+        self.conditions = [Condition(name, value, sign(value, name)) for name, value in self._numbers()]
+        self.scenario = self._scenario()
+
+    def _numbers(self):
+        one = arb_mat([[1, 0], [0, 1]])
+        for side, mark in zip(SIDES, "-+"):
+            yield f"det(I - A{mark})", (one - self.a[side]).det()
+        for side, mark in zip(SIDES, "-+"):
+            yield f"det(I + A{mark})", (one + self.a[side]).det()
+        yield "det(I - A+ A-)", (one - self.a["plus"] * self.a["minus"]).det()
+        e, f = self.border[:2], self.border[2]
+        whole, (b1, b2) = one - self.a["minus"], self.b["minus"]
+        # e adj(I - A-) B- + f det(I - A-): over det(I - A), how far either side's fixed point is from the border at dT = 1.
+        across = e[0] * (whole[1, 1] * b1 - whole[0, 1] * b2) + e[1] * (whole[0, 0] * b2 - whole[1, 0] * b1)
+        yield "e adj(I - A-) B- + f det(I - A-)", across + f * whole.det()
+        for side, mark in zip(SIDES, "-+"):
+            moduli = [(re * re + im * im).sqrt() for re, im in self.eigenvalues[side]]
+            yield f"|first eigenvalue| - 1 of A{mark}", moduli[0] - 1
+            yield f"|second eigenvalue| - 1 of A{mark}", moduli[1] - 1
+
+    def stable(self, side):
+        """Whether both eigenvalues of a side are proved to lie inside the unit circle; Undecided was raised where one is on it."""
+        mark = "-" if side == "minus" else "+"
+        return all(self.signs()[f"|{which} eigenvalue| - 1 of A{mark}"] < 0 for which in ("first", "second"))
+
+    def signs(self):
+        """The sign of each condition, by its name."""
+        return {condition.name: condition.sign for condition in self.conditions}
+
+    def _scenario(self):
+        """Of the real eigenvalues of both sides together, an odd number is above 1 just where det(I - A-) det(I - A+) < 0, and
+        below -1 just where det(I + A-) det(I + A+) < 0."""
+        signs = self.signs()
+        if signs["det(I - A-)"] * signs["det(I - A+)"] < 0:
+            return "nonsmooth-fold"
+        return "nonsmooth-flip" if signs["det(I + A-)"] * signs["det(I + A+)"] < 0 else "persistence"
+
+    def exists_for(self, side):
+        """Where the fixed point of a side is one of the machine: "slower" (dT > 0) or "faster"."""
+        signs, mark = self.signs(), "-" if side == "minus" else "+"
+        towards = signs["e adj(I - A-) B- + f det(I - A-)"] * signs[f"det(I - A{mark})"]
+        return "slower" if towards == (-1 if side == "minus" else 1) else "faster"

@@ -1,0 +1,112 @@
+"""A certificate for every corner impact that is put forward: that it exists, alone, and what its map and its verdict are.
+
+One JSON document on stdin: the model's "follower" and "cam", "bits", and "candidates", places in doubles where corner impacts
+are thought to be. One on stdout: "results", for each candidate in turn a "certificate", with a ball for every number, or "refused"
+with why. Everything said in a certificate is proved, for the machine whose constants are the decimals of the model; the
+candidates are only where corner impacts are looked for.
+"""
+
+import json
+import sys
+
+try:
+    from flint import ctx
+except ImportError:
+    sys.exit("certify.py: the Python package python-flint is missing")
+
+from balls.corner_impact import CornerImpact
+from balls.motion import Machine
+from balls.numbers import Refused, ball, decimal
+from balls.verdict import SIDES, Verdict
+
+# With fewer bits nothing is proved; with more a number takes longer than anyone waits.
+FEWEST_BITS, MOST_BITS = 16, 16384
+# The cam's law before the corner holds on the minus side, that after it on the plus side.
+LAW_OF = {"minus": "before", "plus": "after"}
+
+
+def certificate(machine, candidate):
+    """Everything that is proved of one candidate; Refused says what is not."""
+    orbit = CornerImpact(machine, candidate)
+    maps, borders = {}, {}
+    for side in SIDES:
+        maps[side], borders[side] = orbit.side_map(LAW_OF[side])
+    # How far the flight is from the cam when the corner passes does not depend on what the impact does.
+    found = Verdict(maps, borders["minus"])
+    return {
+        "period_s": ball(orbit.period),
+        "speed_rpm": ball(60 / orbit.period),
+        "cam_angle_rad": ball(orbit.corner.angle),
+        "alone_within": orbit.alone,
+        "revolutions": orbit.revolutions,
+        "section_angle_rad": ball(orbit.section),
+        "state": [ball(x) for x in orbit.state],
+        "state_origin_m": ball(machine.follower.origin),
+        "impacts": [
+            {
+                "cam_angle_rad": ball(impact.angle),
+                "velocity_before_m_s": ball(before),
+                "velocity_after_m_s": ball(impact.velocity),
+                "cam_velocity_m_s": ball(impact.cam_velocity),
+            }
+            for impact, before in zip(orbit.impacts, orbit.velocities_before)
+        ],
+        **{side: side_document(found, side) for side in SIDES},
+        "C": [ball(x) for x in found.c],
+        "D": ball(found.d),
+        "border": [ball(x) for x in found.border],
+        "conditions": [{"name": one.name, "value": ball(one.value), "sign": one.sign} for one in found.conditions],
+        "verdict": found.scenario,
+        "assumed": assumed(machine.cam),
+        "proved": True,
+    }
+
+
+def side_document(found, side):
+    """One side of the map."""
+    a = found.a[side]
+    return {
+        "A": [[ball(a[row, column]) for column in range(2)] for row in range(2)],
+        "B": [ball(x) for x in found.b[side]],
+        "eigenvalues": [{"re": ball(re), "im": ball(im)} for re, im in found.eigenvalues[side]],
+        "fixed_point_exists_for": found.exists_for(side),
+        "stable": found.stable(side),
+    }
+
+
+def assumed(cam):
+    """By how much the pieces of a cam of decimals miss each other where they are taken to meet: lift, slope; none where they meet."""
+    if not any(corner.assumed for corner in cam.corners):
+        return None
+    return {"lift_m": float(cam.slack[0].abs_upper()), "slope_m_rad": float(cam.slack[1].abs_upper())}
+
+
+def answer(document, candidates):
+    """A certificate or why there is none, candidate by candidate."""
+    bits = int(decimal(document.get("bits", 128)))
+    if not FEWEST_BITS <= bits <= MOST_BITS:
+        raise Refused(f"bits: {FEWEST_BITS} to {MOST_BITS}, not {bits}")
+    ctx.prec = bits
+    machine, results = Machine(document), []
+    for candidate in candidates:
+        try:
+            results.append({"certificate": certificate(machine, candidate)})
+        except (Refused, ZeroDivisionError) as error:
+            results.append({"refused": str(error)})
+    return {"results": results}
+
+
+def main():
+    try:
+        text = sys.stdin.read()
+        # The model's numbers are taken to the digit, guesses as doubles.
+        document, guesses = json.loads(text, parse_float=str, parse_int=str), json.loads(text).get("candidates", ())
+        found = answer(document, guesses)
+    except (Refused, ValueError, KeyError, TypeError, AttributeError) as error:
+        sys.exit(f"certify.py: {error}")
+    json.dump(found, sys.stdout)
+    print()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,48 @@
+//! `corner-impact certify [MODEL]`.
+
+use super::start::rpm_range;
+use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
+use crate::model::Study;
+use crate::orbit::Search;
+use crate::study::certify::{BITS, CertifyError, certify};
+
+/// Proves that corner impacts exist, with their maps and verdicts, in ball arithmetic.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:\n\
+    \x20 corner-impact certify\n\
+    \x20 corner-impact certify models/osorio-2008.toml --rpm 600:760 --bits 400 --json\n\
+    \n\
+    Needs Python with the packages that `make verify` sets up.\n\
+    Exit code: 0 every border collision that `locate` finds is proved, 1 one is not, 2 bad model file or usage, or no Python.")]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    model: ModelArgument,
+    /// Range of speeds, rpm [default: the model's [study]].
+    #[arg(long, value_name = "LO:HI", value_parser = rpm_range)]
+    rpm: Option<[f64; 2]>,
+    /// Turns of the cam after which the orbits repeat, and no fewer.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=Search::MOST_REVOLUTIONS))]
+    revolutions: u64,
+    /// Bits that the balls are computed with.
+    #[arg(long, value_name = "N", default_value_t = BITS, value_parser = clap::value_parser!(u32).range(16..=16384))]
+    bits: u32,
+    /// Print one JSON document instead of the page.
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
+    let model = arguments.model.read(session)?;
+    let range = match arguments.rpm {
+        Some([rpm_min, rpm_max]) => Study { rpm_min, rpm_max },
+        None => model.study()?,
+    };
+    let found = watched("proving corner impacts", |_| {
+        certify(&model, range, arguments.revolutions, arguments.bits).map_err(|error| match error {
+            CertifyError::Range(error) => CommandError::Words(format!("{}: {error}", model.file())),
+            error => error.into(),
+        })
+    })?;
+    session.answer(&found, arguments.json)?;
+    Ok(if found.agrees() { Exit::Agrees } else { Exit::Disagrees })
+}

@@ -1,0 +1,138 @@
+//! The page of `certify`: what is proved of each corner impact, with the digits that are, and what is not.
+
+use crate::ball::Ball;
+use crate::show::block::{Block, Column, Mark, Table, Words, words};
+use crate::show::digits::Digits;
+use crate::show::{Paged, words};
+use crate::study::certify::{Certificate, Certified, ProvedEigenvalue, ProvedSide, Unproved};
+
+impl Paged for Certified {
+    fn blocks(&self) -> Vec<Block> {
+        let (low, high) = (self.range.rpm_min, self.range.rpm_max);
+        let count = match self.corner_impacts.len() {
+            0 => "no corner impact is proved".into(),
+            1 => "1 corner impact is proved".to_owned(),
+            count => format!("{count} corner impacts are proved"),
+        };
+        let mut page = vec![
+            Block::Title(format!("Certificates of corner impacts of {}", self.model.name).into()),
+            Block::paragraph(format!(
+                "{low} to {high} rpm: {count}, with {} bits. Of every number below each digit is proved, but for one unit of the last.",
+                self.bits
+            )),
+        ];
+        self.corner_impacts.iter().for_each(|one| page.extend(certificate(one)));
+        page.extend(refused(&self.refused));
+        page
+    }
+}
+
+fn certificate(of: &Certificate) -> Vec<Block> {
+    let (impacts, turns) = (words::many(of.impacts.len() as u64, "impact"), words::many(of.revolutions, "revolution"));
+    let degrees = Digits::Fixed(4).text(of.cam_angle_rad.value().to_degrees());
+    let mut entries: Vec<(Words, Words)> = vec![
+        ("omega*, rpm".into(), words![&of.speed_rpm.mid]),
+        ("T*, s".into(), words![&of.period_s.mid]),
+        ("x*".into(), pair(&of.state)),
+    ];
+    for (index, impact) in of.impacts.iter().enumerate().skip(1) {
+        entries.push((format!("impact {}, rad", index + 1).into(), words![&impact.cam_angle_rad.mid]));
+    }
+    for (mark, side) in [("-", &of.sides.minus), ("+", &of.sides.plus)] {
+        entries.extend(side_entries(mark, side));
+    }
+    entries.extend([("C".into(), pair(&of.c)), ("D".into(), words![&of.d.mid])]);
+    let mut conditions = Table::new(
+        "Conditions",
+        [Column::left("condition", 2, 34), Column::left("value", 2, 38), Column::left("sign", 2, 0)],
+    );
+    for condition in &of.conditions {
+        let sign = if condition.sign > 0 { "above 0" } else { "below 0" };
+        conditions.row([condition.name.as_str().into(), words![&condition.value.mid], (Mark::Good, sign).into()]);
+    }
+    let near = |side: &ProvedSide| {
+        format!("{}, {}", words::speeds(Some(side.fixed_point_exists_for)), words::stability(side.stable))
+    };
+    vec![
+        Block::Heading(
+            format!("{} rpm, on the corner at {degrees} deg", Digits::Fixed(6).text(of.speed_rpm.value())).into(),
+        ),
+        Block::paragraph(format!(
+            "Theorem. There is a periodic orbit of {impacts} in {turns} with one of them on this corner, and no other whose period \
+             and impacts differ from its own by up to {} of them. Each impact is on its piece of the cam; each flight leaves the \
+             cam, is clear of it and ends in a blow. Its map is the one below, found by two routes that agree in every entry.",
+            of.alone_within
+        )),
+        Block::Entries(20, entries),
+        Block::Table(conditions),
+        Block::Paragraph(
+            2,
+            words![
+                (Mark::Strong, of.verdict.to_string().as_str()),
+                format!(
+                    ": {}. For all speeds near enough to omega* the machine has the fixed point with the impact before the corner {}, \
+                     and the one with the impact after it {}: by the implicit function theorem, applied to the map of each side \
+                     with the cam's law continued past the corner.",
+                    words::meaning(of.verdict, of.sides.minus.stable || of.sides.plus.stable),
+                    near(&of.sides.minus),
+                    near(&of.sides.plus),
+                ),
+            ],
+        ),
+        Block::paragraph(hypotheses(of)),
+    ]
+}
+
+/// What the theorem is about.
+fn hypotheses(of: &Certificate) -> String {
+    let mut sentence =
+        "Hypotheses: the machine's numbers are the decimals of its model file; free flight follows the equation of \
+                        motion, and impacts are instantaneous, by Newton's law."
+            .to_owned();
+    if let Some(assumed) = of.assumed {
+        sentence += &format!(
+            " The pieces of the cam miss each other by up to {} m and {} m/rad where they meet: the theorem is about a cam that goes \
+             over from one to the other there, and whose lift and slope at the corner are those of the piece after it.",
+            Digits::Size.text(assumed.lift_m),
+            Digits::Size.text(assumed.slope_m_rad),
+        );
+    }
+    sentence
+}
+
+fn side_entries(mark: &str, side: &ProvedSide) -> Vec<(Words, Words)> {
+    let eigenvalue = |ProvedEigenvalue { re, im }: &ProvedEigenvalue| match im.mid.as_str() {
+        "0" => re.mid.clone(),
+        im if im.starts_with('-') => format!("{} - {}i", re.mid, im.trim_start_matches('-')),
+        im => format!("{} + {im}i", re.mid),
+    };
+    let [one, other] = &side.eigenvalues;
+    vec![
+        (format!("A{mark}").into(), pair(&side.a[0])),
+        ("".into(), pair(&side.a[1])),
+        (format!("B{mark}").into(), pair(&side.b)),
+        (format!("eigenvalues of A{mark}").into(), words![eigenvalue(one), ",  ", eigenvalue(other)]),
+    ]
+}
+
+fn pair([one, other]: &[Ball; 2]) -> Words {
+    words![&one.mid, ",  ", &other.mid]
+}
+
+fn refused(all: &[Unproved]) -> Vec<Block> {
+    /// Longest list that is printed line by line.
+    const LONGEST: usize = 12;
+    if all.is_empty() {
+        return Vec::new();
+    }
+    let line = |words: Words| Block::Paragraph(4, words);
+    let mut page = vec![Block::Heading(format!("Not proved ({})", all.len()).into())];
+    page.extend(all.iter().take(LONGEST).map(|one| {
+        let (speed, angle) = (one.speed_rpm, one.cam_angle.to_degrees());
+        line(words![(speed, Digits::Fixed(6)), " rpm at ", (angle, Digits::Fixed(4)), " deg: ", &one.why])
+    }));
+    if all.len() > LONGEST {
+        page.push(line(format!("and {} more; --json lists them", all.len() - LONGEST).into()));
+    }
+    page
+}

@@ -1,0 +1,260 @@
+//! Which corner impacts are proved to exist, with what, and which are not.
+//!
+//! Where to look is found here, in doubles; the proof is made by `derivations/certify.py`, in balls, from the numbers of the
+//! model file. It believes nothing of where to look, and a place that is off is refused.
+
+use nalgebra::{Matrix2, Vector2};
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+
+use super::ModelLabel;
+use crate::ball::Ball;
+use crate::border_collision::feigin::{Scenario, Speeds};
+use crate::cam::Cam;
+use crate::corner::map::Sides;
+use crate::corner::range::{RangeError, Rejected, find_corner_impacts};
+use crate::corner::{CornerImpact, CornerMap, SideMap};
+use crate::known::Known;
+use crate::model::{Model, ModelError, Study};
+use crate::python::{self, PythonError};
+use crate::simulate::Machine;
+
+/// Bits that are enough for more digits than anyone prints.
+pub const BITS: u32 = 128;
+
+/// The certificates of a range of speeds: the document `corner-impact/certify/1`.
+#[derive(Clone, Debug)]
+pub struct Certified {
+    /// The model.
+    pub model: ModelLabel,
+    /// The range of speeds.
+    pub range: Study,
+    /// Bits that the balls were computed with.
+    pub bits: u32,
+    /// What is proved, by rising speed.
+    pub corner_impacts: Vec<Certificate>,
+    /// What is not, by rising speed.
+    pub refused: Vec<Unproved>,
+}
+
+document!(Certified as it {
+    schema: "corner-impact/certify/1",
+    model: it.model.name,
+    source: it.model.source,
+    rpm: [it.range.rpm_min, it.range.rpm_max],
+    bits: it.bits,
+    known: Known::Proved,
+    corner_impacts: it.corner_impacts,
+    refused: it.refused,
+    agrees: it.agrees(),
+});
+
+impl Certified {
+    /// Whether every corner impact that was found where the cam's acceleration jumps is proved.
+    pub fn agrees(&self) -> bool {
+        !self.refused.iter().any(|refused| refused.was_found)
+    }
+}
+
+/// A corner impact without a certificate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unproved {
+    /// Where it was looked for, rpm.
+    pub speed_rpm: f64,
+    /// The corner, rad.
+    pub cam_angle: f64,
+    /// What the proof fails at.
+    pub why: String,
+    /// Whether a search in doubles finds a border collision there.
+    pub was_found: bool,
+}
+
+document!(Unproved as it {
+    speed_rpm: it.speed_rpm,
+    cam_angle_rad: it.cam_angle,
+    why: it.why,
+    was_found: it.was_found,
+});
+
+/// What is proved of one corner impact: there is one periodic orbit of these numbers, with these maps and this verdict, and no
+/// other whose period and impacts differ from its own by up to `alone_within` of them.
+///
+/// Speeds in rpm, angles in rad, times in s, lengths in m; the state is the paper's, from the spring's equilibrium.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[expect(missing_docs, reason = "the fields are those of the document, which says what each is")]
+pub struct Certificate {
+    pub speed_rpm: Ball,
+    pub period_s: Ball,
+    pub cam_angle_rad: Ball,
+    pub alone_within: f64,
+    pub revolutions: u64,
+    pub section_angle_rad: Ball,
+    pub state: [Ball; 2],
+    pub state_origin_m: Ball,
+    pub impacts: Vec<ProvedImpact>,
+    #[serde(flatten)]
+    pub sides: Sides<ProvedSide>,
+    #[serde(rename = "C")]
+    pub c: [Ball; 2],
+    #[serde(rename = "D")]
+    pub d: Ball,
+    pub border: [Ball; 3],
+    pub conditions: Vec<ProvedCondition>,
+    pub verdict: Scenario,
+    pub assumed: Option<Assumed>,
+    pub proved: bool,
+}
+
+/// An impact, the first on the corner: it is on its piece of the cam, and no contact comes before it.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[expect(missing_docs, reason = "the names say what each is")]
+pub struct ProvedImpact {
+    pub cam_angle_rad: Ball,
+    pub velocity_before_m_s: Ball,
+    pub velocity_after_m_s: Ball,
+    pub cam_velocity_m_s: Ball,
+}
+
+/// One side of the map.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct ProvedSide {
+    /// By rows.
+    #[serde(rename = "A")]
+    pub a: [[Ball; 2]; 2],
+    /// By the period.
+    #[serde(rename = "B")]
+    pub b: [Ball; 2],
+    /// The one with the larger real part first, of a pair the one above the axis.
+    pub eigenvalues: [ProvedEigenvalue; 2],
+    /// At which speeds the machine has this side's fixed point, near the corner impact.
+    pub fixed_point_exists_for: Speeds,
+    /// Whether both eigenvalues are inside the unit circle.
+    pub stable: bool,
+}
+
+/// An eigenvalue; proved to be real where the imaginary part is 0.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[expect(missing_docs, reason = "real and imaginary part")]
+pub struct ProvedEigenvalue {
+    pub re: Ball,
+    pub im: Ball,
+}
+
+/// A number that must not be 0, and its proved sign.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[expect(missing_docs, reason = "the names say what each is")]
+pub struct ProvedCondition {
+    pub name: String,
+    pub value: Ball,
+    pub sign: i8,
+}
+
+/// By how much at most pieces of a cam of decimals miss each other where they are taken to meet.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+#[expect(missing_docs, reason = "the names say what each is")]
+pub struct Assumed {
+    pub lift_m: f64,
+    pub slope_m_rad: f64,
+}
+
+impl Certificate {
+    /// The middles of the map's balls.
+    pub fn map(&self) -> CornerMap {
+        self.sides.map(|side| SideMap {
+            a: Matrix2::from_fn(|row, column| side.a[row][column].value()),
+            b: Vector2::from_fn(|row, _| side.b[row].value()),
+        })
+    }
+
+    /// The fewest digits to which any of speed, state and map is proved; of what is 0 but for the ball's radius no digit is.
+    pub fn digits(&self) -> usize {
+        let sides = [&self.sides.minus, &self.sides.plus];
+        let map = sides.into_iter().flat_map(|side| side.a.iter().flatten().chain(&side.b));
+        let all = map.chain(&self.state).chain([&self.speed_rpm, &self.period_s]);
+        all.map(Ball::digits).filter(|digits| *digits > 0).min().unwrap_or(0)
+    }
+}
+
+/// Why there is no answer.
+#[derive(Debug, thiserror::Error)]
+pub enum CertifyError {
+    /// The model or its cam.
+    #[error("{0}")]
+    Model(#[from] ModelError),
+    /// The range.
+    #[error(transparent)]
+    Range(#[from] RangeError),
+    /// Python, or the script.
+    #[error("{0}")]
+    Python(String),
+}
+
+impl From<PythonError> for CertifyError {
+    fn from(error: PythonError) -> Self {
+        Self::Python(error.to_string())
+    }
+}
+
+/// Proves every corner impact that a search of `range` finds for orbits of `revolutions`, and everything that it refuses.
+///
+/// What is refused is handed on with its speed alone, so that a proof decides it again; it is told where the acceleration jumps.
+pub fn certify(model: &Model, range: Study, revolutions: u64, bits: u32) -> Result<Certified, CertifyError> {
+    let cam = Cam::new(model)?;
+    let looked_at = find_corner_impacts(model, &cam, range, revolutions)?;
+    let jumps = |angle: f64| looked_at.corners.iter().any(|corner| corner.angle == angle && corner.jump_order == 2);
+    let refused = looked_at.rejected.iter().filter(|one| jumps(one.cam_angle)).map(|one| {
+        let Rejected { cam_angle, speed_rpm, .. } = *one;
+        let place = json!({ "cam_angle_rad": cam_angle, "period_s": 60.0 / speed_rpm, "revolutions": revolutions });
+        (speed_rpm, cam_angle, false, place)
+    });
+    let found = looked_at.found.iter().map(|at| {
+        let is_border_collision = at.corner.jump_order == 2;
+        (at.speed_rpm(), at.corner.angle, is_border_collision, candidate(model, &cam, at))
+    });
+    let mut places: Vec<_> = found.chain(refused).collect();
+    places.sort_by(|one, other| one.0.total_cmp(&other.0));
+    let candidates = places.iter().map(|(.., place)| place.clone()).collect();
+    let (mut corner_impacts, mut refused) = (Vec::new(), Vec::new());
+    for ((speed_rpm, cam_angle, was_found, _), outcome) in places.into_iter().zip(prove(model, candidates, bits)?) {
+        match outcome {
+            Outcome::Certificate(certificate) => corner_impacts.push(*certificate),
+            Outcome::Refused(why) => refused.push(Unproved { speed_rpm, cam_angle, why, was_found }),
+        }
+    }
+    Ok(Certified { model: ModelLabel::of(model), range, bits, corner_impacts, refused })
+}
+
+/// What the script says of one place.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum Outcome {
+    Certificate(Box<Certificate>),
+    Refused(String),
+}
+
+/// Has the script prove what it can of `candidates`, in their order.
+pub(super) fn prove(model: &Model, candidates: Vec<serde_json::Value>, bits: u32) -> Result<Vec<Outcome>, PythonError> {
+    #[derive(Deserialize)]
+    struct Answer {
+        results: Vec<Outcome>,
+    }
+    let document = json!({ "follower": model.follower, "cam": model.cam, "bits": bits, "candidates": candidates });
+    Ok(python::run::<Answer>("certify.py", &document)?.results)
+}
+
+/// Where a corner impact is thought to be, its flights in order from the corner on.
+pub(super) fn candidate(model: &Model, cam: &Cam, at: &CornerImpact) -> serde_json::Value {
+    let machine = Machine::new(cam.clone(), &model.follower, at.angular_velocity());
+    let count = at.cycle.impacts.len();
+    let flight = |later: usize| {
+        let index = (at.impact + later) % count;
+        let (leaving, _) = at.cycle.flight(&machine, index);
+        json!({ "turn_rad": at.cycle.turn(index), "velocity_after_m_s": leaving.velocity })
+    };
+    json!({
+        "cam_angle_rad": at.corner.angle,
+        "period_s": at.period,
+        "revolutions": at.cycle.revolutions,
+        "impacts": (0..count).map(flight).collect::<Vec<_>>(),
+    })
+}

@@ -1,0 +1,245 @@
+//! Is a certificate what it says: right in every digit, narrow, and refused where there is nothing to certify?
+
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use crate::common::{self, corner_impact, text};
+use corner_impact::model::Model;
+use serde_json::{Value, json};
+
+/// The paper's corner impact, as doubles have it.
+const PERIOD: f64 = 0.089_121_999_691_593_72;
+/// P, rad.
+const CORNER: f64 = 2.621_124_501_166_232_3;
+
+#[track_caller]
+fn certified(arguments: &[&str]) -> Value {
+    let output = corner_impact([&["certify"], arguments, &["--json"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", text(output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// What the script says of one place, without the search that leads there.
+fn script(model: &Model, place: Value, bits: u32) -> Value {
+    let python = Path::new(common::ROOT).join(".venv/bin/python");
+    assert!(python.is_file(), "run `make test`, which sets up .venv");
+    let document = json!({ "follower": model.follower, "cam": model.cam, "bits": bits, "candidates": [place] });
+    let mut child = Command::new(python)
+        .args(["-B", "derivations/certify.py"])
+        .current_dir(common::ROOT)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    child.stdin.take().unwrap().write_all(document.to_string().as_bytes()).unwrap();
+    let answer: Value = serde_json::from_slice(&child.wait_with_output().unwrap().stdout).unwrap();
+    answer["results"][0].clone()
+}
+
+#[track_caller]
+fn refused(model: &Model, place: Value, bits: u32, why: &str) {
+    let result = script(model, place, bits);
+    assert!(result["refused"].as_str().is_some_and(|words| words.contains(why)), "{why}: {result}");
+}
+
+/// The radii of all balls in a document.
+fn radii(document: &Value) -> Vec<f64> {
+    match document {
+        Value::Object(fields) if fields.contains_key("rad") => vec![fields["rad"].as_str().unwrap().parse().unwrap()],
+        Value::Object(fields) => fields.values().flat_map(radii).collect(),
+        Value::Array(entries) => entries.iter().flat_map(radii).collect(),
+        _ => Vec::new(),
+    }
+}
+
+#[track_caller]
+fn has(ball: &Value, digits: &str) {
+    let mid = ball["mid"].as_str().unwrap();
+    assert!(mid.starts_with(digits), "{mid}, not {digits}");
+}
+
+fn sign(impact: &Value, name: &str) -> i64 {
+    let conditions = impact["conditions"].as_array().unwrap();
+    conditions.iter().find(|condition| condition["name"] == name).unwrap()["sign"].as_i64().unwrap()
+}
+
+#[test]
+fn every_corner_impact_is_proved_to_its_digits() {
+    for (model, speed, verdict) in [
+        ("damped-light", "680.406599562249702281862", "nonsmooth-fold"),
+        ("damped-heavy", "706.478083785854967392434", "nonsmooth-fold"),
+        ("overdamped", "667.614255380603524266329", "nonsmooth-fold"),
+        ("sharp-nose", "671.370481923295900503392", "nonsmooth-fold"),
+        ("preloaded", "701.188784033066269305003", "nonsmooth-fold"),
+        ("persistence", "493.827512921678820090498", "persistence"),
+        ("nonsmooth-flip", "877.655930381898969268375", "nonsmooth-flip"),
+    ] {
+        let found = certified(&[&format!("models/{model}.toml")]);
+        let impacts = found["corner_impacts"].as_array().unwrap();
+        let proved = impacts.iter().find(|impact| impact["speed_rpm"]["mid"].as_str().unwrap().starts_with(speed));
+        let proved = proved.unwrap_or_else(|| panic!("{model}: {found}"));
+        assert_eq!((proved["verdict"].as_str(), proved["proved"].as_bool()), (Some(verdict), Some(true)), "{model}");
+        // The flip's numbers are in the thousands.
+        assert!(radii(proved).iter().all(|radius| *radius <= 1e-28), "{model}: {:?}", radii(proved));
+    }
+}
+
+#[test]
+fn the_paper_s_corner_impacts_are_proved_and_its_solution_inside_of_the_cam_is_not() {
+    let found = certified(&["models/osorio-2008.toml"]);
+    let [one, two] = &found["corner_impacts"].as_array().unwrap()[..] else { panic!("{found}") };
+    has(&one["period_s"], "0.08912199969159371625692048105");
+    has(&one["speed_rpm"], "673.2344450038120023278237472");
+    has(&one["state"][0], "5.0970078818426217442089424163");
+    assert_eq!(one["state"][1]["mid"], "0");
+    has(&one["minus"]["A"][0][1], "0.0134653091565451123684");
+    has(&one["minus"]["eigenvalues"][0]["re"], "1.00514740546535501407817429659");
+    has(&one["plus"]["A"][1][0], "2.30988433707944790804");
+    has(&one["minus"]["B"][0], "-51.6275799029682509007");
+    has(&one["plus"]["B"][1], "-5051.9603090325984825");
+    has(&one["C"][0], "-0.13522424749437171215");
+    has(&one["D"], "259.74498640162738544");
+    assert_eq!(one["verdict"], "nonsmooth-fold");
+    assert!(radii(one).iter().all(|radius| *radius <= 1e-28), "{:?}", radii(one));
+    assert_eq!((sign(one, "det(I - A-)"), sign(one, "det(I - A+)")), (-1, 1));
+    for side in ["minus", "plus"] {
+        assert_eq!(one[side]["fixed_point_exists_for"], "faster");
+        assert_eq!(one[side]["stable"], side == "plus");
+    }
+    has(&two["speed_rpm"], "736.110814038711385786420");
+    assert_eq!((two["impacts"].as_array().unwrap().len(), two["verdict"].as_str()), (2, Some("nonsmooth-fold")));
+    assert!(radii(two).iter().all(|radius| *radius <= 1e-24), "{:?}", radii(two));
+    let [inside] = &found["refused"].as_array().unwrap()[..] else { panic!("{found}") };
+    assert!((inside["speed_rpm"].as_f64().unwrap() - 634.331_399).abs() < 1e-6, "{inside}");
+    assert!(inside["why"].as_str().unwrap().contains("into the cam"), "{inside}");
+}
+
+/// A decimal in units of 1e-24.
+fn fixed(decimal: &str) -> i128 {
+    let (whole, part) = decimal.trim_start_matches('-').split_once('.').unwrap_or((decimal, ""));
+    let digits: i128 = format!("{whole}{:0<24.24}", part).parse().unwrap();
+    if decimal.starts_with('-') { -digits } else { digits }
+}
+
+/// By how many units of its last digit each printed number is off, to a thousandth of a unit: more than doubles can tell.
+#[test]
+fn the_printed_digits_are_off_by_so_many_units_of_the_last() {
+    let found = certified(&["models/osorio-2008.toml"]);
+    let proved = &found["corner_impacts"][0];
+    let paper = std::fs::read_to_string("golden/published/osorio-2008.json").unwrap();
+    let paper: Value = serde_json::from_str(&paper).unwrap();
+    let flat = |value: &Value| -> Vec<String> {
+        fn mids(value: &Value) -> Vec<String> {
+            match value {
+                Value::Array(entries) => entries.iter().flat_map(mids).collect(),
+                ball => vec![ball["mid"].as_str().unwrap().to_owned()],
+            }
+        }
+        mids(value)
+    };
+    for (quantity, balls, units) in [
+        ("T_star", &proved["period_s"], &[-0.372][..]),
+        ("speed_rpm", &proved["speed_rpm"], &[-0.004]),
+        ("x_star", &proved["state"], &[-12.174, 0.0]),
+        ("A_minus", &proved["minus"]["A"], &[0.239, 0.489, 3.846, 0.239]),
+        ("B_minus", &proved["minus"]["B"], &[-0.175, 10.575]),
+        ("A_plus", &proved["plus"]["A"], &[-0.589, 0.207, 3.209, -0.589]),
+        ("B_plus", &proved["plus"]["B"], &[-0.913, 11.848]),
+        ("C", &proved["C"], &[-0.829, -0.282]),
+        ("D", &proved["D"], &[-73.854]),
+    ] {
+        let numbers = paper["numbers"].as_array().unwrap();
+        let printed = &numbers.iter().find(|number| number["quantity"] == quantity).unwrap()["printed"];
+        let off = printed.as_array().unwrap().iter().zip(flat(balls)).map(|(printed, ball)| {
+            let printed = printed.as_str().unwrap();
+            let places = printed.split_once('.').map_or(0, |(_, places)| places.len());
+            (fixed(printed) - fixed(&ball)) as f64 / 10_f64.powi(24 - places as i32)
+        });
+        for (off, units) in off.zip(units) {
+            assert!((off - units).abs() < 1e-3, "{quantity}: {off}, not {units}");
+        }
+    }
+}
+
+#[test]
+fn more_bits_prove_more_digits_and_too_few_prove_nothing() {
+    let model = common::osorio();
+    let place = json!({ "cam_angle_rad": CORNER, "period_s": PERIOD, "revolutions": 1 });
+    for (bits, least, most) in [(53, 1e-11, 1e-7), (400, 0.0, 1e-110)] {
+        let all = radii(&script(&model, place.clone(), bits)["certificate"]);
+        let largest = all.iter().copied().fold(0.0, f64::max);
+        assert!(all.len() > 40 && least <= largest && largest <= most, "{bits}: {largest}");
+    }
+    let result = script(&model, place, 18);
+    let why = result["refused"].as_str().unwrap();
+    assert!(
+        ["is not decided", "bits are too few", "not proved", "cannot be told"].iter().any(|part| why.contains(part)),
+        "{why}"
+    );
+}
+
+#[test]
+fn places_where_there_is_none_are_refused() {
+    let model = common::osorio();
+    let place = |angle: f64, period: f64| json!({ "cam_angle_rad": angle, "period_s": period, "revolutions": 1 });
+    refused(&model, place(CORNER, PERIOD * (1.0 + 1e-4)), 128, "no root of the equations is where it was looked for");
+    refused(&model, place(2.6, PERIOD), 128, "no corner of the cam is at 2.6 rad");
+    refused(&model, place(3.662_060_806_013_354, 60.0 / 634.331_398_999), 128, "sends the follower into the cam");
+    refused(&model, place(CORNER, 60.0 / 224.376_214_135), 128, "meets the cam elsewhere");
+    // Without restitution every impact leaves the follower on the cam.
+    let plastic = Model::parse("plastic.toml", &common::osorio_text(&[("restitution", "0.0")])).unwrap();
+    refused(&plastic, place(CORNER, PLASTIC_PERIOD), 128, "cannot be told from a graze");
+}
+
+/// Where a plastic follower that leaves P with the cam's velocity is back at P after a revolution, s.
+const PLASTIC_PERIOD: f64 = 0.072_917_459_437_368_74;
+
+#[test]
+fn a_root_off_the_piece_that_its_equations_are_of_is_refused() {
+    let file = "models/laws/polynomial.toml";
+    let found = certified(&[file, "--rpm", "443:444"]);
+    let proved = &found["corner_impacts"][0];
+    let number = |ball: &Value| ball["mid"].as_str().unwrap().parse::<f64>().unwrap();
+    let impacts = proved["impacts"].as_array().unwrap();
+    let angles: Vec<f64> = impacts.iter().map(|impact| number(&impact["cam_angle_rad"])).collect();
+    let other = angles[1];
+    let place = |second: f64| {
+        let mut angles = angles.clone();
+        angles[1] = second;
+        angles.push(angles[0] + std::f64::consts::TAU);
+        let flight = |(ends, impact): (&[f64], &Value)| json!({ "turn_rad": ends[1] - ends[0], "velocity_after_m_s": number(&impact["velocity_after_m_s"]) });
+        let flights: Vec<Value> = angles.windows(2).zip(impacts).map(flight).collect();
+        json!({ "cam_angle_rad": angles[0], "period_s": number(&proved["period_s"]), "revolutions": 1, "impacts": flights })
+    };
+    assert!(script(&common::read(Path::new(file)), place(other), 128)["certificate"].is_object());
+    // The same cam with its second parabola cut in two, right before the other impact.
+    let (cut, [a0, a1, a2]) = (other - 1e-8, [0.1, -0.062_831_853_071_795_87, 0.02_f64]);
+    let u = cut - 270.0_f64.to_radians();
+    assert!((0.0..1.5).contains(&u), "{other}");
+    let (value, slope) = (a0 + u * (a1 + u * a2), a1 + 2.0 * a2 * u);
+    let text = std::fs::read_to_string(file).unwrap()
+        + &format!("\n[[cam.segment]]\nstart_deg = {}\ncoefficients = [{value}, {slope}, {a2}]\n", cut.to_degrees());
+    let cut = Model::parse("cut.toml", &text).unwrap();
+    refused(&cut, place(other - 2e-8), 128, "off the piece of the cam");
+    assert!(script(&cut, place(other), 128)["certificate"].is_object());
+}
+
+#[test]
+fn a_cam_whose_decimals_meet_nearly_is_certified_with_that_hypothesis() {
+    let found = certified(&["models/laws/polynomial.toml", "--rpm", "443:444"]);
+    let assumed = &found["corner_impacts"][0]["assumed"];
+    let off = |name: &str| assumed[name].as_f64().unwrap();
+    assert!(off("lift_m") > 1e-18 && off("lift_m") < 1e-15 && off("slope_m_rad") < 1e-15, "{assumed}");
+    assert!(certified(&["models/osorio-2008.toml"])["corner_impacts"][0]["assumed"].is_null());
+    let page = corner_impact(["certify", "models/laws/polynomial.toml", "--rpm", "443:444"]);
+    assert!(text(page.stdout).contains("The pieces of the cam miss"));
+}
+
+#[test]
+fn without_python_it_says_so() {
+    let output = common::program(["certify"]).env("CORNER_IMPACT_PYTHON", "/nonexistent/python").output().unwrap();
+    assert_eq!((output.status.code(), output.stdout.as_slice()), (Some(2), &[][..]));
+    let words = text(output.stderr);
+    assert!(words.contains("/nonexistent/python") && words.contains("did not start"), "{words}");
+}
