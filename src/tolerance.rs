@@ -173,6 +173,8 @@ table! {
     LEAVING = 1e-2, "of its size: regions that close up have grown by less than half";
     /// The difference between the local map and the real one up to which it counts as valid.
     LINEAR_WITHIN = 0.1, "of the displacement that the local map predicts: the tenth that its range is asked for at";
+    /// The same for a prediction with terms of second order.
+    CURVED_WITHIN = 1e-4, "of the displacement: a ten-thousandth, four digits of it, is what such a prediction is for";
     /// Where the search for the end of the local map's range begins.
     LINEAR_FROM = 1e-8, "of T*: there what the local map leaves out is far below a tenth, and rounding of the real one still \
         is";

@@ -2,7 +2,8 @@
 //!
 //! The real map has terms of second order that the local one leaves out. For a period T* + dT the machine is run, and its
 //! displacement from x* is compared with the one that A and B predict; |dT| grows from almost nothing until they differ by a
-//! tenth of the prediction. Velocities count over the cam's angle, `|(q, v/omega)|`.
+//! tenth of the prediction. The same with the terms of second order of [`crate::corner::second_order`], until a tenth and until
+//! a ten-thousandth. Velocities count over the cam's angle, `|(q, v/omega)|`.
 
 use std::convert::Infallible;
 use std::f64::consts::TAU;
@@ -11,11 +12,13 @@ use nalgebra::Vector2;
 use serde::Serialize;
 
 use super::feigin::speeds_at;
-use super::local_map::LocalMap;
+use super::local_map::{LocalMap, PeriodicOrbit};
 use super::word::Word;
 use crate::bracket::{Width, halve};
-use crate::cam::Cam;
+use crate::cam::{Cam, Side};
 use crate::corner::CornerImpact;
+use crate::corner::map::Sides;
+use crate::corner::second_order::CurvedMap;
 use crate::flight::State;
 use crate::model::Model;
 use crate::section::StroboscopicMap;
@@ -26,11 +29,11 @@ use crate::tolerance;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Compared {
-    /// The image of x* after one revolution, `B dT`.
+    /// The image of x* after one revolution, to first order `B dT`.
     OneRevolution,
-    /// The fixed point before the corner, `(I - A-)^{-1} B- dT`.
+    /// The fixed point before the corner, to first order `(I - A-)^{-1} B- dT`.
     FixedPointMinus,
-    /// The fixed point after the corner, `(I - A+)^{-1} B+ dT`.
+    /// The fixed point after the corner, to first order `(I - A+)^{-1} B+ dT`.
     FixedPointPlus,
 }
 
@@ -38,8 +41,8 @@ pub enum Compared {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Ends {
-    /// The two differ by a tenth.
-    Tenth,
+    /// The two differ by as much as is allowed.
+    Differs,
     /// The real motion is not there any more, or has not one impact.
     OtherMotion,
     /// Nothing, up to half and twice the speed.
@@ -51,6 +54,10 @@ pub enum Ends {
 pub struct Range {
     /// Of what.
     pub compared: Compared,
+    /// To which order in dT, 1 or 2.
+    pub order: u32,
+    /// By how much the two may differ, of the prediction.
+    pub within: f64,
     /// Of dT: -1 for speeds above that of the corner impact, 1 for those below.
     pub sign: f64,
     /// The last change of the period for which it holds, s, with its sign; 0 where it never does.
@@ -65,6 +72,8 @@ pub struct Range {
 
 document!(Range as range {
     compared: range.compared,
+    order: range.order,
+    within: range.within,
     speeds: speeds_at(range.sign),
     period_change_s: range.period_change,
     speed_rpm: range.speed_rpm,
@@ -75,8 +84,9 @@ document!(Range as range {
 /// A real displacement and the relative difference from the predicted one.
 type Difference = Option<(Vector2<f64>, f64)>;
 
-/// The range of each prediction that there is, on either side of the corner-impact speed, faster speeds first.
-pub fn ranges(model: &Model, cam: &Cam, at: &CornerImpact, map: &LocalMap) -> Vec<Range> {
+/// The range of each prediction that there is, to first order and then to second, on either side of the corner-impact speed,
+/// faster speeds first.
+pub fn ranges(model: &Model, cam: &Cam, at: &CornerImpact, map: &LocalMap, curved: &Sides<CurvedMap>) -> Vec<Range> {
     let machine = Real {
         at,
         map: StroboscopicMap {
@@ -85,21 +95,39 @@ pub fn ranges(model: &Model, cam: &Cam, at: &CornerImpact, map: &LocalMap) -> Ve
         },
     };
     let mut found = Vec::new();
-    for sign in [-1.0, 1.0] {
-        let side = map.side(Vector2::zeros(), sign);
-        let image = map.of(side).b * sign;
-        found.push(machine.range(Compared::OneRevolution, sign, |dt, _| machine.revolution(dt, image * dt.abs())));
-        for (name, compared) in [("L", Compared::FixedPointMinus), ("R", Compared::FixedPointPlus)] {
-            let orbit = Word::read(name).and_then(|word| map.orbit(&word, sign)).filter(|orbit| orbit.admissible());
-            let Some(point) = orbit.and_then(|orbit| orbit.points.first().copied()) else { continue };
-            found.push(machine.range(compared, sign, |dt, before| {
+    let asked = [(1, tolerance::LINEAR_WITHIN), (2, tolerance::LINEAR_WITHIN), (2, tolerance::CURVED_WITHIN)];
+    for ((order, within), sign) in asked.into_iter().flat_map(|asked| [(asked, -1.0), (asked, 1.0)]) {
+        let within = within.value;
+        let asked = |compared| Range::asked(compared, order, within, sign);
+        let predicted = |[first, second]: [Vector2<f64>; 2], dt: f64| match order {
+            1 => first * dt,
+            _ => first * dt + second * (dt * dt),
+        };
+        let image = curved.of(map.side(Vector2::zeros(), sign)).image();
+        let image = |dt: f64, _| machine.revolution(dt, predicted(image, dt));
+        found.push(machine.range(asked(Compared::OneRevolution), image));
+        for (name, side, compared) in
+            [("L", Side::Minus, Compared::FixedPointMinus), ("R", Side::Plus, Compared::FixedPointPlus)]
+        {
+            let orbit = Word::read(name).and_then(|word| map.orbit(&word, sign)).filter(PeriodicOrbit::admissible);
+            let Some(point) = orbit.and_then(|_| curved.of(side).fixed_point()) else { continue };
+            found.push(machine.range(asked(compared), |dt, before| {
+                let predicted = predicted(point, dt);
                 // The real one where it was, moved on as the prediction is.
-                let guess = before.map_or(point * dt.abs(), |(real, at): (Vector2<f64>, f64)| real * (dt / at));
-                machine.fixed_point(dt, point * dt.abs(), guess)
+                let guess = before.map_or(predicted, |(real, at): (Vector2<f64>, f64)| real * (dt / at));
+                machine.fixed_point(dt, predicted, guess)
             }));
         }
     }
     found
+}
+
+impl Range {
+    /// One that is still to be found: it holds nowhere yet.
+    fn asked(compared: Compared, order: u32, within: f64, sign: f64) -> Self {
+        let (period_change, speed_rpm, difference, ends) = (0.0, f64::NAN, None, Ends::Nothing);
+        Self { compared, order, within, sign, period_change, speed_rpm, difference, ends }
+    }
 }
 
 struct Real<'a> {
@@ -148,22 +176,17 @@ impl Real<'_> {
     }
 
     /// The first |dT| at which a comparison fails, growing from [`tolerance::LINEAR_FROM`], then by halving.
-    fn range(
-        &self,
-        compared: Compared,
-        sign: f64,
-        compare: impl Fn(f64, Option<(Vector2<f64>, f64)>) -> Difference,
-    ) -> Range {
-        let period = self.at.period;
+    fn range(&self, asked: Range, compare: impl Fn(f64, Option<(Vector2<f64>, f64)>) -> Difference) -> Range {
+        let (period, Range { sign, within, .. }) = (self.at.period, asked);
         // The last dT that held with what was found there.
         let mut last: Option<(f64, Vector2<f64>, f64)> = None;
         let mut ends = Ends::Nothing;
         let mut fails = |dt: f64| {
             let found = compare(dt, last.map(|(dt, real, _)| (real, dt)));
             match found {
-                Some((real, apart)) if apart <= tolerance::LINEAR_WITHIN.value => last = Some((dt, real, apart)),
+                Some((real, apart)) if apart <= within => last = Some((dt, real, apart)),
                 other => {
-                    ends = if other.is_some() { Ends::Tenth } else { Ends::OtherMotion };
+                    ends = if other.is_some() { Ends::Differs } else { Ends::OtherMotion };
                     return Ok::<_, Infallible>(true);
                 }
             }
@@ -185,6 +208,6 @@ impl Real<'_> {
         }
         let period_change = last.map_or(0.0, |(dt, ..)| dt);
         let difference = last.map(|(.., apart)| apart);
-        Range { compared, sign, period_change, speed_rpm: 60.0 / (period + period_change), difference, ends }
+        Range { period_change, speed_rpm: 60.0 / (period + period_change), difference, ends, ..asked }
     }
 }

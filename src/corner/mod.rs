@@ -21,6 +21,8 @@
 //! | [`least_squares`] | is built on it: a polynomial fitted to simulated periods |
 //! | `external` | nothing: Python programs that get the model file's numbers and find the place themselves. The paper's orbits only |
 //!
+//! [`mod@second_order`] has what these matrices leave out next to the corner impact.
+//!
 //! [`jump_order`] has what a corner of any order makes of the map, predicted and measured.
 //!
 //! States here are the paper's x: position from the spring's equilibrium, and velocity.
@@ -40,6 +42,7 @@ pub mod map;
 pub mod one_sided;
 pub(crate) mod period_equation;
 pub mod range;
+pub mod second_order;
 pub(crate) mod simulated_orbit;
 pub mod variational;
 pub mod varied;

@@ -96,7 +96,7 @@ impl Subject {
             outcome.mu != 0.0 && outcome.fates.iter().all(|fate| matches!(fate.end, End::Escapes(_)))
         };
         let left = found.outcomes.iter().filter(leaves).map(|outcome| outcome.mu).collect();
-        let fixed = found.ranges.iter().filter(|range| range.compared != Compared::OneRevolution);
+        let fixed = found.ranges.iter().filter(|range| range.order == 1 && range.compared != Compared::OneRevolution);
         let held = fixed.map(|range| range.period_change.abs()).filter(|change| *change > 0.0);
         let least = held.fold(f64::INFINITY, f64::min);
         let reach = if least.is_finite() { BEYOND * least } else { 1e-3 * at.period };

@@ -3,11 +3,15 @@
 use crate::border_collision::feigin::{Speeds, speeds_at};
 use crate::border_collision::local_map::PeriodicOrbit;
 use crate::border_collision::validity::{Compared, Range};
+use nalgebra::Vector2;
+
 use crate::border_collision::{LocalOutcome, RobustChaos};
+use crate::cam::Side;
 use crate::show::block::{Block, Column, Span, Table, Words, words};
 use crate::show::digits::Digits;
 use crate::show::words;
 use crate::study::verify::Verification;
+use crate::tolerance;
 
 /// Where the second column begins.
 const COLUMN: usize = 20;
@@ -64,15 +68,19 @@ pub(crate) fn blocks(found: &Verification) -> Vec<Block> {
         blocks.push(Block::Details(title.into(), vec![Block::paragraph(Words::joined(orbits, ", "))]));
     }
     if !found.ranges.is_empty() {
-        let of = |compared| {
-            let ranges = found.ranges.iter().filter(move |range| range.compared == compared);
-            ranges.enumerate().map(move |(index, range)| {
-                (Words::from(if index > 0 { "" } else { words::compared(compared) }), range_words(range))
-            })
-        };
-        let all = [Compared::OneRevolution, Compared::FixedPointMinus, Compared::FixedPointPlus];
         blocks.push(Block::Heading("How far it holds: within 10 % of the simulated machine".into()));
-        blocks.push(Block::Entries(COLUMN, all.into_iter().flat_map(of).collect()));
+        blocks.push(Block::Entries(COLUMN, held(found, |range| range.order == 1).collect()));
+    }
+    if let Some(curved) = &found.second_order {
+        blocks.push(Block::Heading("With the terms of second order".into()));
+        let sides = [Side::Minus, Side::Plus].into_iter();
+        let branches = sides.filter_map(|side| Some(branch(side, curved.of(side).fixed_point()?)));
+        blocks.push(Block::Entries(COLUMN, branches.collect()));
+        for (within, title) in [(tolerance::LINEAR_WITHIN, "within 10 %:"), (tolerance::CURVED_WITHIN, "within 1e-4:")]
+        {
+            let held = held(found, move |range| range.order == 2 && range.within == within.value);
+            blocks.extend([Block::paragraph(title), Block::Entries(COLUMN, held.collect())]);
+        }
     }
     blocks
 }
@@ -115,6 +123,23 @@ fn listed(orbits: &[&PeriodicOrbit]) -> String {
         count if count > SHOWN => format!("{some} and {} more", count - SHOWN),
         _ => some,
     }
+}
+
+/// Some of the ranges, by what is compared.
+fn held(found: &Verification, asked: impl Fn(&Range) -> bool + Copy) -> impl Iterator<Item = (Words, Words)> {
+    let all = [Compared::OneRevolution, Compared::FixedPointMinus, Compared::FixedPointPlus].into_iter();
+    all.flat_map(move |compared| {
+        let ranges = found.ranges.iter().filter(move |range| asked(range) && range.compared == compared);
+        ranges.enumerate().map(move |(index, range)| {
+            (Words::from(if index > 0 { "" } else { words::compared(compared) }), range_words(range))
+        })
+    })
+}
+
+/// Where the fixed point of a side is.
+fn branch(side: Side, [first, second]: [Vector2<f64>; 2]) -> (Words, Words) {
+    let pair = |of: Vector2<f64>| Words::prose("({}, {})", [0, 1].map(|row| words![(of[row], Digits::Significant(8))]));
+    (format!("fixed point {side}").into(), words!["dx = ", pair(first), " dT + ", pair(second), " dT^2, m and m/s"])
 }
 
 fn range_words(range: &Range) -> Words {

@@ -137,7 +137,7 @@ pub(crate) fn compared(compared: Compared) -> &'static str {
 /// What ends the range of a prediction, behind where it ends.
 pub(crate) fn ends(ends: Ends) -> &'static str {
     match ends {
-        Ends::Tenth => "",
+        Ends::Differs => "",
         Ends::OtherMotion => ", where the real motion ends",
         Ends::Nothing => ", as far as was tried",
     }

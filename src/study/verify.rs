@@ -14,7 +14,8 @@ use crate::border_collision::{
 use crate::cam::{Cam, Side};
 use crate::corner::border::border;
 use crate::corner::external::{self, Outside, PROGRAMS, Program};
-use crate::corner::map::{RouteName, SideMap};
+use crate::corner::map::{RouteName, SideMap, Sides};
+use crate::corner::second_order::{CurvedMap, second_order};
 use crate::corner::{self, CornerImpact, CornerMap, LocateError, Route};
 use crate::corner::{closed_form, simulated_orbit};
 use crate::model::Model;
@@ -52,6 +53,8 @@ pub struct Verification {
     pub conditions: Vec<Condition>,
     /// The local map's own motions at dT = -1, 1 and 0; empty without a classification.
     pub outcomes: Vec<LocalOutcome>,
+    /// The map to second order; none without a classification.
+    pub second_order: Option<Sides<CurvedMap>>,
     /// How far the local map holds; empty without a classification.
     pub ranges: Vec<Range>,
     /// The paper's numbers; empty for another model.
@@ -76,6 +79,7 @@ document!(Verification as found {
     refusal: found.classification.as_ref().err().map(Refusal::to_string),
     conditions: found.conditions,
     local_map: found.outcomes,
+    second_order: found.second_order,
     linear_range: found.ranges,
     published: found.published,
     skipped: found.skipped,
@@ -253,9 +257,10 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
     watch.at("what the map does by itself", 0, 0);
     let local = LocalMap::new(&map, border);
     let (mut outcomes, mut ranges) = (Vec::new(), Vec::new());
-    if classification.is_ok() {
+    let curved = classification.is_ok().then(|| second_order(model, &cam, &at));
+    if let Some(curved) = &curved {
         outcomes.extend([-1.0, 1.0, 0.0].map(|mu| local.outcome(mu)));
-        ranges = validity::ranges(model, &cam, &at, &local);
+        ranges = validity::ranges(model, &cam, &at, &local, curved);
     }
     let published = match compare_published(model, &at, &map, normal_form.as_ref().ok()) {
         Err(error @ PublishedError::OtherModel) => {
@@ -281,6 +286,7 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
         classification,
         conditions: conditions(&local),
         outcomes,
+        second_order: curved,
         ranges,
         published,
         skipped: log.0,

@@ -45,6 +45,7 @@ mod python;
 mod random;
 mod random_orbits;
 mod routes;
+mod second_order;
 mod settled;
 mod simulate;
 mod snapshots;
