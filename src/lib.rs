@@ -13,6 +13,8 @@
 //!    ▼
 //!  orbit                 periodic orbits, their multipliers, branches of them and the points where these change
 //!    ▼
+//!  covering              chaos proved: boxes of impacts that the impact map stretches across each other
+//!    ▼
 //!  python                runs one script of `derivations/`
 //!    ▼
 //!  corner                where the corner impact is (x*, T*), and its map {A∓, B∓, C, D} by several routes
@@ -83,6 +85,8 @@ pub mod section;
 pub mod diagram;
 
 pub mod orbit;
+
+pub mod covering;
 
 pub mod python;
 

@@ -16,6 +16,7 @@ mod lift;
 mod polynomial;
 mod profile;
 mod program;
+mod round;
 mod sinusoid;
 mod table;
 

@@ -3,6 +3,7 @@
 mod basins;
 mod cam;
 mod certify;
+mod chaos;
 mod claims;
 mod complaint;
 mod completions;
@@ -100,6 +101,7 @@ subcommands! {
         Continue = continuation,
         Curve = curve,
         Basins = basins,
+        Chaos = chaos,
     "Getting started, and the shell":
         New = new,
         Completions = completions,

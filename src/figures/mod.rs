@@ -7,6 +7,7 @@ mod basins;
 mod branches;
 mod cam;
 mod cam_shape;
+mod chaos;
 mod composition;
 mod curve;
 mod discontinuity_mapping;
@@ -28,6 +29,7 @@ pub use basins::basins_figure;
 pub use branches::branches_figure;
 pub use cam::{CornerMark, cam_figure, corner_marks};
 pub use cam_shape::{Outline, Piece};
+pub use chaos::chaos_figure;
 pub use composition::{Composition, Line, Neighbour};
 pub use curve::curve_figure;
 pub use impacts::{impact_diagram, strobe_diagram};
@@ -40,7 +42,7 @@ pub use through_corner::through_corner;
 pub use trace::{Run, time_trace};
 
 /// Every figure of the report, in the paper's order.
-pub(crate) const FIGURES: [Entry; 14] = [
+pub(crate) const FIGURES: [Entry; 15] = [
     cam_shape::CAM_SHAPE,
     cam::CAM,
     trace::SLOW_TRACE,
@@ -52,6 +54,7 @@ pub(crate) const FIGURES: [Entry; 14] = [
     trace::CORNER_ORBIT,
     trace::BEYOND_TRACE,
     section::BEYOND_ATTRACTOR,
+    chaos::CHAOTIC_SET,
     composition::COMPOSITION,
     discontinuity_mapping::DISCONTINUITY_MAPPING,
     local_map::LOCAL_MAP,

@@ -4,6 +4,7 @@ mod basins;
 pub(crate) mod branches;
 pub mod cam;
 mod certify;
+mod chaos;
 pub mod claims;
 mod local_map;
 mod locate;

@@ -9,6 +9,8 @@ use crate::border_collision::long_run::{Chaos, End};
 use crate::border_collision::validity::{Compared, Ends};
 use crate::cam::Side;
 use crate::corner::map::RouteName;
+use crate::covering::Unproved;
+use crate::covering::prove::Relation;
 use crate::orbit::ending::{Ending, Kind};
 use crate::published::Verdict;
 use crate::show::block::{Mark, Symbol, Words, words};
@@ -91,6 +93,36 @@ pub(crate) fn meaning(scenario: Scenario, has_stable: bool) -> &'static str {
         Scenario::NonsmoothFlip => {
             "the fixed point crosses from one side to the other, and an orbit of period two is born"
         }
+    }
+}
+
+/// What must hold of a strip.
+pub(crate) fn relation(relation: Relation) -> &'static str {
+    match relation {
+        Relation::Apart => "that N is a parallelogram above the cam, and its strips are in it and apart,",
+        Relation::Flight => "that each flight ends with an impact that is the first",
+        Relation::Edges => "that its edges are carried beyond N",
+        Relation::Height => "that nothing of it is carried above or below N",
+        Relation::Cones => "that cones are kept",
+        Relation::Losses => "that impacts or flights have losses",
+    }
+}
+
+/// Why nothing is proved of a flight.
+pub(crate) fn unproved(why: Unproved) -> &'static str {
+    match why {
+        Unproved::NoImpact => "the follower may stay on the cam, or not come back to it for long",
+        Unproved::NotTransversal => "the next impact may be a graze",
+        Unproved::NotFirst => "the follower may meet the cam before",
+    }
+}
+
+/// Numbers one after another.
+pub(crate) fn listed(numbers: &[u64]) -> String {
+    let numbers: Vec<String> = numbers.iter().map(u64::to_string).collect();
+    match numbers.split_last() {
+        Some((last, before)) if !before.is_empty() => format!("{} and {last}", before.join(", ")),
+        _ => numbers.concat(),
     }
 }
 

@@ -4,6 +4,7 @@ pub mod attractors;
 pub mod basins;
 pub mod cam;
 pub mod certify;
+pub mod chaos;
 pub mod compared;
 pub mod continuation;
 pub mod curve;

@@ -94,6 +94,7 @@ fn the_figures_are_in_the_papers_order() {
         ("corner-orbit", "Figure 5(e)"),
         ("beyond-trace", "Figure 5(f)"),
         ("beyond-attractor", ""),
+        ("chaotic-set", ""),
         ("composition", "Figure 6"),
         ("discontinuity-mapping", "Figure 7"),
         ("local-map", "Figure 8"),

@@ -51,6 +51,67 @@ fn sine_and_cosine_are_held() {
     assert!(Interval::new(1.0, 8.0).sin_cos().0.width() == 2.0);
 }
 
+/// Of lines `angle low high low high`, with the ends of sine and cosine, how many hold what 200 bits say, and of how many.
+const BY_200_BITS: &str = "
+import sys
+from flint import arb, ctx
+ctx.prec = 200
+# No sine is beyond 1, which a ball about 1 does not say.
+inside = lambda low, x, high: (low == -1 or arb(low) <= x) and (high == 1 or x <= arb(high))
+held = count = 0
+for line in sys.stdin:
+    angle, *ends = map(float, line.split())
+    sin, cos = arb(angle).sin_cos()
+    count += 1
+    held += bool(inside(ends[0], sin, ends[1]) and inside(ends[2], cos, ends[3]))
+print(held, count)
+";
+
+/// A million angles, spread over all sizes, and those where a quarter of a turn ends, or a half of it: some ulps about each.
+#[test]
+#[ignore = "slow"]
+fn sine_and_cosine_are_held_at_a_million_angles() {
+    use std::io::Write;
+    let spread = parts(900_000)
+        .zip(parts(2_000_000).skip(1_000_000))
+        .map(|(part, power)| (2.0 * part - 1.0) * 2.0_f64.powf(40.0 * power - 20.0));
+    let ends = (0..20_000).flat_map(|step: i32| {
+        let eighths = if step < 10_000 { f64::from(step) } else { f64::from(step) * 97.0 };
+        let middle = eighths * std::f64::consts::FRAC_PI_4;
+        [middle.next_down().next_down(), middle.next_down(), middle, middle.next_up(), -middle.next_up().next_up()]
+    });
+    let nasty = [0.0, f64::MIN_POSITIVE, 5e-324, 1e-300, 1e-9, 1e6, 1_570_796.0, 1_570_797.0, 1e15, 1e300, f64::MAX];
+    let lines: String = spread
+        .chain(ends)
+        .chain(nasty)
+        .map(|angle| {
+            let (sin, cos) = Interval::from(angle).sin_cos();
+            format!("{angle:?} {:?} {:?} {:?} {:?}\n", sin.low(), sin.high(), cos.low(), cos.high())
+        })
+        .collect();
+    let python = std::path::Path::new(common::ROOT).join(".venv/bin/python");
+    let piped = std::process::Stdio::piped;
+    let mut child =
+        std::process::Command::new(python).args(["-c", BY_200_BITS]).stdin(piped()).stdout(piped()).spawn().unwrap();
+    child.stdin.take().unwrap().write_all(lines.as_bytes()).unwrap();
+    let said = common::text(child.wait_with_output().unwrap().stdout);
+    let count = lines.lines().count();
+    assert!(count > 1_000_000 - 100);
+    assert_eq!(said.trim(), format!("{count} {count}"));
+}
+
+/// A quotient is a product with a reciprocal, which is rounded first: one in a hundred needs room for both.
+#[test]
+fn a_quotient_is_held_whatever_its_reciprocal_is_rounded_to() {
+    for (a, b) in parts(50_000).zip(parts(100_000).skip(50_000)) {
+        let quotient = Interval::from(a) / Interval::from(b);
+        assert!(
+            quotient.low().mul_add(b, -a) <= 0.0 && quotient.high().mul_add(b, -a) >= 0.0,
+            "{a} / {b}: {quotient:?}"
+        );
+    }
+}
+
 #[test]
 fn what_is_no_number_says_nothing() {
     let (zero, all) = (Interval::new(-1.0, 1.0), Interval::EVERYTHING);
@@ -84,7 +145,14 @@ proptest! {
         let sum = a + b;
         let rest = if a.abs() > b.abs() { b - (sum - a) } else { a - (sum - b) };
         prop_assert!(holds(x + y, [sum, rest]) && holds(x - -y, [sum, rest]));
-        for (interval, size) in [(product, a * b), (quotient, a / b), (x + y, a + b)] {
+        // By a double instead of an interval of it.
+        let (product, quotient) = (x * b, x / b);
+        prop_assert!(a.mul_add(b, -product.low()) >= 0.0 && a.mul_add(b, -product.high()) <= 0.0);
+        prop_assert!(side(quotient.low()) <= 0.0 && side(quotient.high()) >= 0.0);
+        prop_assert!(holds(x + b, [sum, rest]) && holds(x - -b, [sum, rest]));
+        let square = x.squared();
+        prop_assert!(a.mul_add(a, -square.low()) >= 0.0 && a.mul_add(a, -square.high()) <= 0.0);
+        for (interval, size) in [(product, a * b), (quotient, a / b), (x + y, a + b), (square, a * a)] {
             prop_assert!(interval.width() <= 1e-15 * size.abs() && interval.width() > 0.0, "{:?}", interval);
         }
     }

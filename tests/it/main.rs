@@ -12,6 +12,7 @@ mod cam_corners;
 mod cam_laws;
 mod cam_table;
 mod certify;
+mod chaos;
 mod command_line;
 mod commands;
 mod common;

@@ -4,7 +4,6 @@
 //! |---|---|
 //! | `one_impact` | one equation in the impact's angle and the time of the flight, its roots, and what each of them is |
 //! | `two_impacts` | the same of two equations in the angles of both |
-//! | `varied` | numbers with their derivatives by two unknowns |
 //! | `clearance` | whether a flight is clear of the cam on its way |
 //!
 //! Angles where nothing can be decided, next to a fold, a graze or a corner, are told. What is proved is said of the machine whose
@@ -13,7 +12,6 @@
 mod clearance;
 mod one_impact;
 mod two_impacts;
-mod varied;
 
 use super::cycle::Cycle;
 use crate::interval::Interval;

@@ -19,12 +19,12 @@
 use std::f64::consts::{PI, TAU};
 
 use super::clearance::Hop;
-use super::varied::Varied;
 use super::{Solved, Standing, Struck, joined};
 use crate::cam::Lift;
 use crate::flight::Response;
 use crate::interval::Interval;
 use crate::interval::roots::{Isolated, Over, isolate};
+use crate::interval::varied::Varied;
 use crate::orbit::cycle::{Cycle, Impact};
 use crate::progress::Watch;
 use crate::simulate::Machine;
@@ -46,9 +46,9 @@ struct Flights {
     forces: [Interval; 2],
     responses: [Response<Interval>; 2],
     /// s1/t1, A and B.
-    mean: Varied,
-    short: Varied,
-    long: Varied,
+    mean: Varied<2>,
+    short: Varied<2>,
+    long: Varied<2>,
 }
 
 impl Pair<'_> {
@@ -104,7 +104,7 @@ impl Pair<'_> {
         let mean = Varied::of(mean, mean_by, by_1);
         let [x, y] = self.lift(&lifts, [by_x, by_y]);
         let spring = flight.omega0_squared();
-        let force = |lift: Varied| Varied { value: flight.force(lift.value), by: lift.by.map(|by| -(by * spring)) };
+        let force = |lift: Varied<2>| Varied { value: flight.force(lift.value), by: lift.by.map(|by| -(by * spring)) };
         let rise = Varied { value: rise, by: rise_by };
         let short = rise * omega - force(x) * Varied::of(step, step_by, by_1);
         let long = x - y - force(y) * Varied::of(two.step, two.impulse, by_2);
@@ -112,7 +112,7 @@ impl Pair<'_> {
     }
 
     /// c(x) and c(y).
-    fn lift(&self, lifts: &[Lift<Interval>; 2], by: [[Interval; 2]; 2]) -> [Varied; 2] {
+    fn lift(&self, lifts: &[Lift<Interval>; 2], by: [[Interval; 2]; 2]) -> [Varied<2>; 2] {
         [0, 1].map(|which| Varied::of(lifts[which].value, lifts[which].slope, by[which]))
     }
 

@@ -4,6 +4,8 @@ use std::error::Error;
 use std::ops::ControlFlow;
 
 use super::{corners, listed, machine, settles};
+use crate::covering::prove::prove;
+use crate::covering::{HSet, known};
 use crate::diagram::{exponent, growth};
 use crate::orbit::branch::{Branch, BranchPoint, Following, Kind};
 use crate::orbit::settle::settled;
@@ -99,12 +101,21 @@ pub(in crate::paper) fn chaos_below(context: &Context<'_>) -> Decision {
     let is_chaotic = below.growth.value > threshold && below.growth.value > SIGNIFICANT * below.growth.error;
     let periodic = machine(context, 680.0);
     let above = growth(&periodic, from_x_star(context, &periodic)?, 4000)?;
+    // Covering alone: that there is a motion for each sequence, and not that there is but one.
+    let kept = known(&context.model.name).into_iter().find(|set| set.rpm == [670.0; 2]).ok_or("no h-set is kept")?;
+    let set = HSet { cone_slope: None, ..kept };
+    let is_proved = prove(&chaotic, &set).is_ok();
     let evidence = format!(
         "largest Lyapunov exponent from x*: at 670 rpm, by {} blocks of {} revolutions, above {threshold} a revolution and \
-         more than {SIGNIFICANT} standard errors above 0: {is_chaotic}; at 680 rpm {above:.3}, the logarithm of r",
-        BLOCKS.0, BLOCKS.1
+         more than {SIGNIFICANT} standard errors above 0: {is_chaotic}; at 680 rpm {above:.3}, the logarithm of r. That a set of chaotic \
+         motions exists at 670 rpm, with a topological entropy of at least {:.5} a revolution, is proved: {is_proved}; that \
+         this run comes to it is not",
+        BLOCKS.0,
+        BLOCKS.1,
+        // Rounded down, as a bound from below must be.
+        (1e5 * set.entropy()).floor() / 1e5
     );
-    decide(is_chaotic && above < 0.0, Verdict::Refuted, evidence)
+    decide(is_chaotic && is_proved && above < 0.0, Verdict::Refuted, evidence)
 }
 
 /// Both ends of the line of one impact: at P, and, of the motion of two revolutions that it has flipped to, at Q.

@@ -1,28 +1,28 @@
-//! Numbers with their derivatives by two unknowns: a formula that is fed with them gives its own.
+//! Numbers with their derivatives by some unknowns: a formula that is fed with them gives its own.
 
 use std::ops::{Add, Mul, Neg, Sub};
 
-use crate::interval::Interval;
+use super::Interval;
 
 /// A number, and what it changes by with each unknown.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Varied {
+pub(crate) struct Varied<const N: usize> {
     pub value: Interval,
-    pub by: [Interval; 2],
+    pub by: [Interval; N],
 }
 
-impl Varied {
+impl<const N: usize> Varied<N> {
     /// A function of something that changes by `by`: its value and its derivative.
-    pub fn of(value: Interval, derivative: Interval, by: [Interval; 2]) -> Self {
+    pub fn of(value: Interval, derivative: Interval, by: [Interval; N]) -> Self {
         Self { value, by: by.map(|by| derivative * by) }
     }
 
     fn each(self, other: Self, value: Interval, by: impl Fn(Interval, Interval) -> Interval) -> Self {
-        Self { value, by: [by(self.by[0], other.by[0]), by(self.by[1], other.by[1])] }
+        Self { value, by: std::array::from_fn(|unknown| by(self.by[unknown], other.by[unknown])) }
     }
 }
 
-impl Neg for Varied {
+impl<const N: usize> Neg for Varied<N> {
     type Output = Self;
 
     fn neg(self) -> Self {
@@ -30,7 +30,7 @@ impl Neg for Varied {
     }
 }
 
-impl Add for Varied {
+impl<const N: usize> Add for Varied<N> {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
@@ -38,7 +38,7 @@ impl Add for Varied {
     }
 }
 
-impl Sub for Varied {
+impl<const N: usize> Sub for Varied<N> {
     type Output = Self;
 
     fn sub(self, other: Self) -> Self {
@@ -46,7 +46,7 @@ impl Sub for Varied {
     }
 }
 
-impl Mul for Varied {
+impl<const N: usize> Mul for Varied<N> {
     type Output = Self;
 
     #[expect(clippy::suspicious_arithmetic_impl, reason = "the derivative of a product is a sum")]
@@ -56,7 +56,7 @@ impl Mul for Varied {
     }
 }
 
-impl Mul<Interval> for Varied {
+impl<const N: usize> Mul<Interval> for Varied<N> {
     type Output = Self;
 
     fn mul(self, number: Interval) -> Self {

@@ -1,0 +1,57 @@
+//! The lift over a range of angles, from segment to segment and on into the next turn.
+
+use std::f64::consts::TAU;
+
+use super::{Cam, Lift};
+use crate::interval::Interval;
+
+impl Cam {
+    /// What certainly holds lift, slope and curvature over a range of angles, rad, with as many turns as they like; everything
+    /// where that is no range, and for the curvature where it passes a corner at which the velocity jumps.
+    ///
+    /// `sharp` are the segments that begin at such a corner. At any other, both sides' slopes are taken for one: that a lift law
+    /// goes on where the last one ends is how a model means it, and only rounding has it otherwise.
+    pub(crate) fn lift_over(&self, angles: Interval, sharp: &[usize]) -> Lift<Interval> {
+        let everything = Interval::EVERYTHING;
+        let mut over = Lift { value: everything, slope: everything, curvature: everything, third: everything };
+        if !(angles.width() < TAU) {
+            return over;
+        }
+        let turns = (angles.low() / TAU).floor();
+        let mut before = Interval::TURN * turns;
+        // The turn's own rounding may put the least angle at the end of the turn before.
+        if (angles - before).low() < 0.0 {
+            before = Interval::TURN * (turns - 1.0);
+        }
+        let mut segment = self.segment_at((angles - before).low());
+        let mut is_first = true;
+        loop {
+            let here = &self.segments()[segment];
+            let end = before + if segment + 1 == self.segments().len() { Interval::TURN } else { here.end.into() };
+            if let Some(part) = angles.common(Interval::new((before + here.start).low(), end.high())) {
+                let lift = here.law.lift_over(part - before);
+                over = match is_first {
+                    true => lift,
+                    false => Lift {
+                        value: over.value.hull(lift.value),
+                        slope: over.slope.hull(lift.slope),
+                        curvature: if sharp.contains(&segment) {
+                            everything
+                        } else {
+                            over.curvature.hull(lift.curvature)
+                        },
+                        third: everything,
+                    },
+                };
+                is_first = false;
+            }
+            if !(end.low() <= angles.high()) {
+                return over;
+            }
+            segment += 1;
+            if segment == self.segments().len() {
+                (segment, before) = (0, before + Interval::TURN);
+            }
+        }
+    }
+}

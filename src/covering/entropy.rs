@@ -1,0 +1,38 @@
+//! How many motions a full shift on strips of different lengths has, a revolution.
+
+use crate::interval::Interval;
+
+/// A number that the topological entropy of a full shift is certainly not below, per revolution, where each symbol takes so many.
+///
+/// It is the logarithm of the lambda at which the sum of `lambda^-k` over the symbols is 1; 0 for less than two symbols.
+pub fn entropy(revolutions: &[u64]) -> f64 {
+    /// A bracket of numbers near each other cannot be halved more often.
+    const HALVINGS: usize = 60;
+    if revolutions.len() < 2 || revolutions.contains(&0) {
+        return 0.0;
+    }
+    let sum = |lambda: f64| {
+        let part = Interval::from(1.0) / Interval::from(lambda);
+        let term = |count: &u64| (0..*count).fold(Interval::from(1.0), |power, _| power * part);
+        revolutions.iter().map(term).fold(Interval::from(0.0), |sum, term| sum + term)
+    };
+    // At lambda = 1 the sum is the number of symbols, at that number at most 1; what stays below is certain.
+    let (mut low, mut high) = (1.0, revolutions.len() as f64);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if sum(middle).low() >= 1.0 { low = middle } else { high = middle }
+    }
+    logarithm(low.into()).low().max(0.0)
+}
+
+/// The logarithm, from below: `ln x = 2 (z + z^3/3 + z^5/5 + ...)` with `z = (x - 1)/(x + 1)`, whose terms are all above 0 for x above 1.
+fn logarithm(number: Interval) -> Interval {
+    /// Up to 40 symbols this leaves out less than a tenth.
+    const TERMS: u32 = 60;
+    let z = (number - 1.0) / (number + 1.0);
+    let square = z.squared();
+    let inner = (0..TERMS)
+        .rev()
+        .fold(Interval::from(0.0), |sum, term| sum * square + Interval::from(1.0) / f64::from(2 * term + 1));
+    z * inner * 2.0
+}

@@ -1,0 +1,123 @@
+//! The coordinates of an h-set, and the images of boxes in them.
+
+use super::map::{Impact, ImpactMap, Over, Unproved};
+use super::{HSet, Strip};
+use crate::interval::centred::Centred;
+use crate::interval::{Interval, Number};
+
+/// x, y and the speed of the cam, rad/s.
+pub(super) type Place = [Interval; 3];
+
+/// The coordinates of an h-set.
+pub(super) struct Frame {
+    centre: [Interval; 2],
+    unstable: [Interval; 2],
+    stable: [Interval; 2],
+}
+
+/// Where a strip is carried, over a box of it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Image {
+    /// x and y at the box's centre.
+    pub centre: [Interval; 2],
+    /// x and y.
+    pub value: [Interval; 2],
+    /// Their derivatives by x, y and the speed.
+    pub by: [[Interval; 3]; 2],
+}
+
+/// Radians in a degree.
+fn degree() -> Interval {
+    Interval::TURN / 360.0
+}
+
+/// rad/s.
+pub(super) fn angular_velocities([low, high]: [f64; 2]) -> Interval {
+    Interval::new(low, high) * Interval::TURN / 60.0
+}
+
+impl Frame {
+    pub fn new(set: &HSet) -> Self {
+        let number = |pair: [f64; 2]| pair.map(Interval::from);
+        Self { centre: number(set.centre), unstable: number(set.unstable), stable: number(set.stable) }
+    }
+
+    /// The impact at x and y.
+    fn impact<'a>(&self, [x, y]: [Over<'a>; 2]) -> Impact<'a> {
+        let along = |side: usize| x * self.unstable[side] + y * self.stable[side] + self.centre[side];
+        Impact { angle: along(0) * degree(), velocity: along(1), turns: 0 }
+    }
+
+    /// x and y of an impact, so many turns on.
+    fn coordinates<'a>(&self, impact: &Impact<'a>, revolutions: u64) -> [Over<'a>; 2] {
+        let turns = (impact.turns - revolutions as i64) as f64;
+        let angle = (impact.angle + Interval::TURN * turns) * (Interval::from(1.0) / degree()) + -self.centre[0];
+        let velocity = impact.velocity + -self.centre[1];
+        let ([u0, u1], [s0, s1]) = (self.unstable, self.stable);
+        let determinant = u0 * s1 - u1 * s0;
+        [
+            angle * (s1 / determinant) + velocity * -(s0 / determinant),
+            angle * -(u1 / determinant) + velocity * (u0 / determinant),
+        ]
+    }
+
+    /// Where a box of a strip is carried.
+    pub fn image(&self, map: &ImpactMap<'_>, strip: &Strip, place: &Place) -> Result<Image, Unproved> {
+        let centre = place.map(|side| Interval::from(side.middle()));
+        let over = std::array::from_fn(|side| place[side] - centre[side]);
+        let [x, y, omega] = std::array::from_fn(|side| Centred::unknown(side, centre[side], &over));
+        let mut impact = self.impact([x, y]);
+        for _ in 0..strip.impacts {
+            impact = map.next(&impact, omega)?;
+        }
+        let image = self.coordinates(&impact, strip.revolutions);
+        Ok(Image {
+            centre: image.map(|side| side.centre),
+            value: image.map(|side| side.value()),
+            by: image.map(|side| side.whole.by),
+        })
+    }
+
+    /// The same at a point, at the middle of a range of speeds, rpm.
+    pub fn at_point(
+        &self,
+        map: &ImpactMap<'_>,
+        strip: &Strip,
+        [x, y]: [f64; 2],
+        rpm: [f64; 2],
+    ) -> Result<Image, Unproved> {
+        self.image(map, strip, &[x.into(), y.into(), angular_velocities(rpm).middle().into()])
+    }
+
+    /// The derivative by x and y of so many impacts at the centre, in doubles.
+    pub fn derivative(&self, map: &ImpactMap<'_>, impacts: u64, rpm: [f64; 2]) -> Option<[[f64; 2]; 2]> {
+        let strip = Strip { impacts, revolutions: 0, x: [0.0; 2] };
+        let image = self.at_point(map, &strip, [0.0; 2], rpm).ok()?;
+        Some(image.by.map(|row| [row[0].middle(), row[1].middle()]))
+    }
+}
+
+impl Image {
+    /// What differences within `|dy| <= L |dx|` are stretched by at least, where such cones are kept, with L the slope.
+    pub fn stretched(&self, slope: f64) -> Option<f64> {
+        let [[a, b, _], [c, d, _]] = self.by;
+        if a.holds_zero() || !(slope > 0.0) {
+            return None;
+        }
+        let size = |number: Interval| Interval::from(number.magnitude());
+        let least = if a.is_positive() { a.low() } else { -a.high() };
+        // |a| - L |b| > 1 and |c| + L |d| <= L (|a| - L |b|)
+        let growth = Interval::from(least) - size(b) * slope;
+        let is_kept = (growth * slope - size(c) - size(d) * slope).low() >= 0.0;
+        (growth.low() > 1.0 && is_kept).then_some(growth.low())
+    }
+
+    /// Whether cones cannot be kept at any point of the box.
+    pub fn misses(&self, slope: f64) -> bool {
+        let least =
+            |number: Interval| if number.holds_zero() { 0.0 } else { number.low().abs().min(number.high().abs()) };
+        let [[a, b, _], [c, d, _]] = self.by;
+        let most = a.magnitude() - slope * least(b);
+        most <= 1.0 || least(c) + slope * least(d) > slope * most
+    }
+}

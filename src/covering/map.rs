@@ -1,0 +1,249 @@
+//! From one impact to the next, over a box of impacts and speeds: enclosed, with its derivatives, and proved to be the first.
+//!
+//! An impact is the cam's angle theta and the velocity u after it relative to the cam, above 0. Of a flight from there,
+//!
+//! ```text
+//! g(t)  = c(theta) + v s(t) + f p(t) - c(theta + omega t)        v = omega c'(theta) + u, f the force at c(theta)
+//! g'(t) = v s'(t) + f s(t) - omega c'(theta + omega t)
+//! ```
+//!
+//! the next impact is at the first t > 0 with g = 0, and leaves with `u = -r g'(t)`. It is found by Newton's method on intervals,
+//! all over the box at once, with g' < 0: so it is transversal and its time a Lipschitz function of the box. That it is the first
+//! is shown from stretch to stretch of the flight: next to the launch by u, next to the landing by g' < 0, between the two by the Taylor sum
+//! about the middle of the stretch. Corners cost nothing: c'' is the hull of both sides' there.
+
+use std::f64::consts::TAU;
+use std::ops::ControlFlow;
+
+use serde::Serialize;
+
+use crate::cam::Lift;
+use crate::interval::Interval;
+use crate::interval::centred::Centred;
+use crate::simulate::{Event, EventKind, Machine};
+use crate::tolerance;
+
+/// A number over a box of two coordinates and the speed.
+pub(super) type Over<'a> = Centred<'a, 3>;
+
+/// Why nothing is proved of a flight.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Unproved {
+    /// The follower may stay on the cam, or not come back to it for long.
+    NoImpact,
+    /// The next impact may be a graze, or not the same one all over the box.
+    NotTransversal,
+    /// The follower may meet the cam before.
+    NotFirst,
+}
+
+named!(Unproved);
+
+/// An impact, over a box.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Impact<'a> {
+    /// theta, rad, less the turns.
+    pub angle: Over<'a>,
+    /// u, m/s.
+    pub velocity: Over<'a>,
+    /// Turns of the cam.
+    pub turns: i64,
+}
+
+/// Follower and cam at some time of a flight.
+struct Gap<'a> {
+    /// theta + omega t.
+    angle: Over<'a>,
+    /// g.
+    value: Over<'a>,
+    /// g'.
+    rate: Over<'a>,
+    /// What holds g''.
+    bend: Interval,
+}
+
+/// The impact map of a machine over a range of speeds.
+pub(super) struct ImpactMap<'a> {
+    machine: &'a Machine,
+    /// Segments of the cam that begin where its velocity jumps.
+    sharp: Vec<usize>,
+}
+
+/// A flight from an impact.
+struct Launch<'a, 'b> {
+    map: &'b ImpactMap<'b>,
+    angle: Over<'a>,
+    omega: Over<'a>,
+    lift: Over<'a>,
+    velocity: Over<'a>,
+    force: Over<'a>,
+}
+
+impl<'a> ImpactMap<'a> {
+    pub fn new(machine: &'a Machine) -> Self {
+        let corners = machine.cam().corners();
+        let sharp = corners.iter().filter(|corner| corner.jump_order == 1).map(|corner| corner.segment).collect();
+        Self { machine, sharp }
+    }
+
+    /// Lift and slope of the cam at an angle, and what holds the curvature.
+    fn lift<'b>(&self, angle: Over<'b>) -> ([Over<'b>; 2], Interval) {
+        let over = |angles: Interval| -> Lift<Interval> { self.machine.cam().lift_over(angles, &self.sharp) };
+        let (whole, centre) = (over(angle.value()), over(angle.centre));
+        let lift = angle.of(centre.value, whole.value, whole.slope);
+        ([lift, angle.of(centre.slope, whole.slope, whole.curvature)], whole.curvature)
+    }
+
+    /// The impact after one, at the cam's speed, rad/s.
+    pub fn next<'b>(&self, from: &Impact<'b>, omega: Over<'b>) -> Result<Impact<'b>, Unproved> {
+        if !from.velocity.value().is_positive() {
+            return Err(Unproved::NoImpact);
+        }
+        let ([lift, slope], _) = self.lift(from.angle);
+        let spring = -self.machine.flight().omega0_squared();
+        let force = |lift: Interval| self.machine.flight().force(lift);
+        let launch = Launch {
+            map: self,
+            angle: from.angle,
+            omega,
+            lift,
+            velocity: omega * slope + from.velocity,
+            force: lift.of(force(lift.centre), force(lift.value()), spring.into()),
+        };
+        let guess = self.guess(from, omega).ok_or(Unproved::NoImpact)?;
+        let time = launch.landing(guess)?;
+        if !launch.is_first(time.value(), from.velocity.value()) {
+            return Err(Unproved::NotFirst);
+        }
+        let landing = launch.gap(time);
+        let turns = (landing.angle.centre.middle() / TAU).floor();
+        Ok(Impact {
+            angle: landing.angle + -(Interval::TURN * turns),
+            // u = -r g'
+            velocity: landing.rate * Interval::from(-self.machine.restitution()),
+            turns: from.turns + turns as i64,
+        })
+    }
+
+    /// The time to the next impact from the centre, s, as simulated: where the proof begins to look.
+    fn guess(&self, from: &Impact<'_>, omega: Over<'_>) -> Option<f64> {
+        /// Turns of the cam that a flight may take.
+        const MOST_TURNS: u64 = 20;
+        let omega = omega.centre.middle();
+        let machine = self.machine.at_speed(omega);
+        let angle = from.angle.centre.middle();
+        let mut motion = machine.start_on_cam(angle, from.velocity.centre.middle()).ok()?;
+        let mut turned = None;
+        let goal = motion.after(MOST_TURNS);
+        let mut first = |event: &Event| {
+            turned = (event.kind == EventKind::Impact).then(|| event.turned_since(angle));
+            ControlFlow::Break(())
+        };
+        let _ = machine.advance(&mut motion, goal, &mut first).ok()?;
+        turned.map(|turned| turned / omega)
+    }
+}
+
+impl<'a> Launch<'a, '_> {
+    fn gap(&self, time: Over<'a>) -> Gap<'a> {
+        let flight = self.map.machine.flight();
+        let whole = flight.response_over(time.value());
+        let centre = if time.centre == time.value() { whole } else { flight.response_over(time.centre) };
+        let (damping, spring) = (2.0 * flight.zeta(), flight.omega0_squared());
+        let step = time.of(centre.step, whole.step, whole.impulse);
+        let impulse = time.of(centre.impulse, whole.impulse, whole.impulse_rate);
+        // s'' = -2 zeta s' - w0^2 s
+        let bend = -(whole.impulse_rate * damping + whole.impulse * spring);
+        let impulse_rate = time.of(centre.impulse_rate, whole.impulse_rate, bend);
+        let angle = self.angle + self.omega * time;
+        let ([lift, slope], curvature) = self.map.lift(angle);
+        let displacement = self.velocity * impulse + self.force * step;
+        let velocity = self.velocity * impulse_rate + self.force * impulse;
+        // q'' = f - w0^2 (q - q0) - 2 zeta q'
+        let acceleration = self.force.value() - displacement.value() * spring - velocity.value() * damping;
+        Gap {
+            angle,
+            value: displacement - (lift - self.lift),
+            rate: velocity - self.omega * slope,
+            bend: acceleration - self.omega.value().squared() * curvature,
+        }
+    }
+
+    fn over(&self, times: Interval) -> Gap<'a> {
+        self.gap(self.angle.fixed(times))
+    }
+
+    /// The time of the impact that is near a guess, s, all over the box, and how it changes.
+    fn landing(&self, guess: f64) -> Result<Over<'a>, Unproved> {
+        let centre = self.newton(guess, |gap| [gap.value.centre, gap.rate.centre]);
+        let centre = centre.ok_or(Unproved::NotTransversal)?;
+        let whole = self.newton(guess, |gap| [gap.value.value(), gap.rate.value()]);
+        let whole = whole.ok_or(Unproved::NotTransversal)?;
+        let gap = self.over(whole);
+        // dt = -dg/g'
+        let by = gap.value.whole.by.map(|by| -(by / gap.rate.value()));
+        Ok(gap.value.solved(centre, whole, by))
+    }
+
+    /// The one root of the gap near a guess, by `t - g(t)/g'(T)` over what it maps into itself: Newton's method on intervals.
+    fn newton(&self, guess: f64, of: impl Fn(&Gap<'a>) -> [Interval; 2]) -> Option<Interval> {
+        /// Each time the box is widened, or narrowed.
+        const TRIES: usize = 8;
+        let guessed = Interval::from(guess);
+        let [value, rate] = of(&self.over(guessed));
+        let mut image = guessed - value / rate;
+        for _ in 0..TRIES {
+            let room = 0.1 * image.width() + tolerance::ULP.value * guess;
+            let times = image + Interval::new(-room, room);
+            let [_, rate] = of(&self.over(times));
+            if !rate.is_negative() {
+                return None;
+            }
+            image = guessed - value / rate;
+            if image.is_inside(times) {
+                let [_, rate] = of(&self.over(image));
+                return Some((guessed - value / rate).and(image));
+            }
+        }
+        None
+    }
+
+    /// Whether the gap is above 0 from after the launch, with a velocity, to the landing at a time.
+    fn is_first(&self, landing: Interval, velocity: Interval) -> bool {
+        /// Parts of the flight: the step that it begins with, and one too short to go on.
+        const STEP: f64 = 0.125;
+        const SHORTEST: f64 = 1.0 / 8192.0;
+        let end = landing.low();
+        let (mut time, mut step) = (0.0, STEP * end);
+        while time < end {
+            let times = Interval::new(time, end.min(time + step));
+            // The last stretch is up to the landing everywhere in the box.
+            let is_last = times.high() == end;
+            let stretch = if is_last { times.hull(landing) } else { times };
+            let whole = self.over(stretch);
+            let away = stretch - times.middle();
+            let middle = || self.over(times.middle().into());
+            let is_clear = if times.low() == 0.0 {
+                // g = t (u + t/2 g''(...))
+                (velocity + times * whole.bend.half()).is_positive()
+            } else if is_last {
+                whole.rate.value().is_negative() || (middle().rate.value() + away * whole.bend).is_negative()
+            } else {
+                // g(m + x) = g(m) + x g'(m) + x^2/2 g''(...)
+                whole.value.value().is_positive() || {
+                    let Gap { value, rate, .. } = middle();
+                    (value.value() + away * rate.value() + away.squared().half() * whole.bend).is_positive()
+                }
+            };
+            if is_clear {
+                (time, step) = (times.high(), 1.5 * step);
+            } else if step < SHORTEST * end {
+                return false;
+            } else {
+                step *= 0.5;
+            }
+        }
+        true
+    }
+}

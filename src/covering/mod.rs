@@ -1,0 +1,79 @@
+//! Chaos, proved: boxes of impacts that the impact map stretches across each other.
+//!
+//! An h-set N is a parallelogram of impacts, with a direction that the map stretches and one that it shrinks. Strips of N, over its
+//! whole height, are each carried across N by a number of impacts. Then every sequence of strips, in both directions, is followed by a
+//! motion (covering relations: Zgliczynski and Gidea 2004), and where cones are kept as well by no more than one. That is a set of chaotic
+//! motions; it is not said that others come to it.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `map` | from one impact to the next, over a box: enclosed, with derivatives, the first one for certain |
+//! | `frame` | the coordinates of an h-set, and the images of boxes in them |
+//! | [`mod@prove`] | whether strips cover, and keep cones |
+//! | `entropy` | how many motions there are by that, a revolution |
+//! | `base`, `sample` | saddles that an h-set may begin at; impacts along a line, by simulation |
+//! | [`mod@find`] | an h-set for any machine, sought and then proved |
+//! | `known` | h-sets that are kept |
+
+mod base;
+mod entropy;
+pub mod find;
+mod frame;
+mod known;
+mod map;
+pub mod prove;
+pub(crate) mod sample;
+
+use serde::{Deserialize, Serialize};
+
+pub use entropy::entropy;
+pub use known::known;
+pub use map::Unproved;
+
+/// A parallelogram of impacts, `centre + x unstable + y stable`, with strips that are carried across it.
+///
+/// A plane point is the cam's angle at an impact, degrees, and the velocity after it relative to the cam, m/s.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HSet {
+    /// For every speed from one to another, rpm.
+    pub rpm: [f64; 2],
+    /// Where x and y are 0.
+    pub centre: [f64; 2],
+    /// The direction of x.
+    pub unstable: [f64; 2],
+    /// The direction of y.
+    pub stable: [f64; 2],
+    /// The range of x.
+    pub x: [f64; 2],
+    /// The range of y.
+    pub y: [f64; 2],
+    /// L of the cones `|dy| <= L |dx|`; nothing where the strips are to cover alone.
+    pub cone_slope: Option<f64>,
+    /// The strips, each over all of y.
+    pub strips: Vec<Strip>,
+}
+
+impl HSet {
+    /// What the topological entropy of a revolution is certainly not below, where its strips cover.
+    pub fn entropy(&self) -> f64 {
+        entropy(&self.strips.iter().map(|strip| strip.revolutions).collect::<Vec<_>>())
+    }
+
+    /// The cam's angle, degrees, and the velocity relative to the cam, m/s, at x and y.
+    pub(crate) fn at(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|side| self.centre[side] + x * self.unstable[side] + y * self.stable[side])
+    }
+}
+
+/// A part of an h-set, from one x to another, and what it comes back after.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Strip {
+    /// Impacts until it is carried across the h-set.
+    pub impacts: u64,
+    /// Turns of the cam until then.
+    pub revolutions: u64,
+    /// The range of x.
+    pub x: [f64; 2],
+}

@@ -1,0 +1,129 @@
+//! Where impacts along a line come back, by simulation: what to try to prove.
+
+use std::ops::ControlFlow;
+
+use super::HSet;
+use crate::simulate::{Event, EventKind, Machine};
+
+/// Impacts that are looked at after a start.
+pub(super) const MOST_IMPACTS: usize = 8;
+
+/// An impact in the coordinates of an h-set.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Arrival {
+    /// Turns of the cam, such that the angle is next to the h-set's.
+    pub revolutions: i64,
+    pub x: f64,
+    pub y: f64,
+}
+
+/// A line along x, with what comes of each of its points.
+pub(crate) struct Line {
+    /// The points.
+    pub x: Vec<f64>,
+    /// For each point the impacts after it, in order, as far as it flies.
+    pub arrivals: Vec<Vec<Arrival>>,
+}
+
+impl Line {
+    /// What comes of points of an h-set at one y on a machine.
+    pub fn new(machine: &Machine, set: &HSet, y: f64, x: Vec<f64>) -> Self {
+        let arrivals = x.iter().map(|x| arrivals(machine, set, [*x, y]).unwrap_or_default()).collect();
+        Self { x, arrivals }
+    }
+}
+
+/// The impacts after a start; none where it cannot start.
+fn arrivals(machine: &Machine, set: &HSet, point: [f64; 2]) -> Option<Vec<Arrival>> {
+    /// Turns of the cam that an impact is waited for.
+    const MOST_REVOLUTIONS: u64 = 30;
+    let [angle, velocity] = set.at(point);
+    let start = angle.rem_euclid(360.0);
+    if !(velocity > 0.0) {
+        return None;
+    }
+    let mut motion = machine.start_on_cam(start.to_radians(), velocity).ok()?;
+    let ([u0, u1], [s0, s1]) = (set.unstable, set.stable);
+    let determinant = u0 * s1 - u1 * s0;
+    let before = (angle - start) / 360.0;
+    let mut found = Vec::new();
+    let mut see = |event: &Event| {
+        if event.kind != EventKind::Impact {
+            return ControlFlow::Break(());
+        }
+        let angle = event.cam_angle.to_degrees() - set.centre[0];
+        let turns = -(angle / 360.0).round();
+        let (angle, velocity) = (angle + 360.0 * turns, event.velocity_after - event.cam_velocity - set.centre[1]);
+        found.push(Arrival {
+            revolutions: event.revolution as i64 + before as i64 - turns as i64,
+            x: (angle * s1 - velocity * s0) / determinant,
+            y: (velocity * u0 - angle * u1) / determinant,
+        });
+        if found.len() < MOST_IMPACTS { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    };
+    let goal = motion.after(MOST_REVOLUTIONS);
+    let _ = machine.advance(&mut motion, goal, &mut see).ok()?;
+    Some(found)
+}
+
+/// A stretch of a line that goes across an h-set.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Crossing {
+    pub impacts: usize,
+    pub revolutions: u64,
+    /// Where on the line, the ends beyond the h-set.
+    pub x: [f64; 2],
+    /// The range of y on the way across.
+    pub y: [f64; 2],
+}
+
+impl Crossing {
+    /// What goes across where either does.
+    pub fn hull(&self, other: &Self) -> Self {
+        let hull = |one: [f64; 2], two: [f64; 2]| [one[0].min(two[0]), one[1].max(two[1])];
+        Self { x: hull(self.x, other.x), y: hull(self.y, other.y), ..*self }
+    }
+}
+
+impl Line {
+    /// The stretches within a range of x that go across that range after some impacts, without a jump.
+    pub(super) fn crossings(&self, [low, high]: [f64; 2]) -> Vec<Crossing> {
+        /// Points on the way across at least; of fewer some may be on the two sides of a jump.
+        const FEWEST: usize = 6;
+        let mut found = Vec::new();
+        let from = self.x.partition_point(|x| *x <= low);
+        let to = self.x.partition_point(|x| *x < high);
+        for impacts in 1..=MOST_IMPACTS {
+            // The side that it came from, where it was last there, and how many points and which y since.
+            let mut last: Option<(bool, usize, i64)> = None;
+            let (mut count, mut y) = (0, [f64::INFINITY, f64::NEG_INFINITY]);
+            for index in from..to {
+                let Some(arrival) = self.arrivals[index].get(impacts - 1) else {
+                    last = None;
+                    continue;
+                };
+                let side = (arrival.x <= low).then_some(true).or((arrival.x >= high).then_some(false));
+                let Some(is_left) = side else {
+                    count += 1;
+                    y = [y[0].min(arrival.y), y[1].max(arrival.y)];
+                    if last.is_some_and(|(_, _, revolutions)| revolutions != arrival.revolutions) {
+                        last = None;
+                    }
+                    continue;
+                };
+                if let Some((was_left, begun, revolutions)) = last
+                    && was_left != is_left
+                    && revolutions == arrival.revolutions
+                    && revolutions > 0
+                    && count >= FEWEST
+                {
+                    let x = [self.x[begun], self.x[index]];
+                    found.push(Crossing { impacts, revolutions: revolutions as u64, x, y });
+                }
+                last = Some((is_left, index, arrival.revolutions));
+                (count, y) = (0, [f64::INFINITY, f64::NEG_INFINITY]);
+            }
+        }
+        found
+    }
+}

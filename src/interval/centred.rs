@@ -1,0 +1,110 @@
+//! Numbers over a box of unknowns, in mean value form: what they are at its centre, and how they change from there.
+//!
+//! With the centre m of a box X and the derivative of a number f anywhere in the box,
+//!
+//! ```text
+//! f(X) is in f(m) + f'(X) (X - m)
+//! ```
+//!
+//! which overestimates by the square of the box, where intervals alone do by its size. A formula that is fed with such numbers
+//! gives its own: enclosure, value at the centre and derivative. Across a corner a derivative is the hull of both sides', and the
+//! same holds, since the way from the centre is straight.
+
+use std::ops::{Add, Mul, Neg, Sub};
+
+use super::Interval;
+use super::varied::Varied;
+
+/// A number over a box, with N unknowns.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Centred<'a, const N: usize> {
+    /// What holds it at the centre.
+    pub centre: Interval,
+    /// What holds it, and its derivatives, all over the box.
+    pub whole: Varied<N>,
+    /// X - m, for each unknown.
+    over: &'a [Interval; N],
+}
+
+impl<'a, const N: usize> Centred<'a, N> {
+    fn new(centre: Interval, whole: Varied<N>, over: &'a [Interval; N]) -> Self {
+        let away = whole.by.iter().zip(over).map(|(by, over)| *by * *over);
+        let value = whole.value.and(away.fold(centre, Interval::add));
+        Self { centre, whole: Varied { value, ..whole }, over }
+    }
+
+    /// A number that the unknowns leave as it is.
+    pub fn fixed(self, value: Interval) -> Self {
+        Self { centre: value, whole: Varied { value, by: [Interval::from(0.0); N] }, ..self }
+    }
+
+    /// One of the unknowns, with what it is at the centre.
+    pub fn unknown(which: usize, centre: Interval, over: &'a [Interval; N]) -> Self {
+        let by = std::array::from_fn(|unknown| Interval::from(if unknown == which { 1.0 } else { 0.0 }));
+        Self::new(centre, Varied { value: Interval::EVERYTHING, by }, over)
+    }
+
+    /// A number that solves an equation: what it is at the centre and all over the box, and its derivatives.
+    pub fn solved(self, centre: Interval, whole: Interval, by: [Interval; N]) -> Self {
+        Self::new(centre, Varied { value: whole, by }, self.over)
+    }
+
+    /// A function of this number: its values at the centre and all over the box, and its derivative there.
+    pub fn of(self, centre: Interval, whole: Interval, derivative: Interval) -> Self {
+        Self::new(centre, Varied::of(whole, derivative, self.whole.by), self.over)
+    }
+
+    /// What holds it all over the box.
+    pub fn value(&self) -> Interval {
+        self.whole.value
+    }
+}
+
+impl<const N: usize> Neg for Centred<'_, N> {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self { centre: -self.centre, whole: -self.whole, ..self }
+    }
+}
+
+impl<const N: usize> Add for Centred<'_, N> {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self::new(self.centre + other.centre, self.whole + other.whole, self.over)
+    }
+}
+
+impl<const N: usize> Sub for Centred<'_, N> {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl<const N: usize> Mul for Centred<'_, N> {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        Self::new(self.centre * other.centre, self.whole * other.whole, self.over)
+    }
+}
+
+impl<const N: usize> Mul<Interval> for Centred<'_, N> {
+    type Output = Self;
+
+    fn mul(self, number: Interval) -> Self {
+        Self::new(self.centre * number, self.whole * number, self.over)
+    }
+}
+
+impl<const N: usize> Add<Interval> for Centred<'_, N> {
+    type Output = Self;
+
+    fn add(self, number: Interval) -> Self {
+        let whole = Varied { value: self.whole.value + number, ..self.whole };
+        Self { centre: self.centre + number, whole, ..self }
+    }
+}

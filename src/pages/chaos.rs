@@ -1,0 +1,135 @@
+//! The page of `chaos`: the theorem first, then what it rests on, then where nothing is proved.
+
+use crate::covering::prove::Refused;
+use crate::show::block::{Block, Column, Mark, Table, words};
+use crate::show::digits::Digits;
+use crate::show::{Paged, words};
+use crate::study::chaos::{Chaos, Open, Theorem};
+
+impl Paged for Chaos {
+    fn blocks(&self) -> Vec<Block> {
+        let [low, high] = self.rpm;
+        let speeds = if low < high { format!("{low} to {high} rpm") } else { format!("{low} rpm") };
+        let mut page =
+            vec![Block::Line((Mark::Heading, format!("{} at {speeds}", self.model).as_str()).into()), Block::Gap];
+        page.push(Block::paragraph(statement(self)));
+        page.push(match self.theorems.as_slice() {
+            [theorem] if low == high => Block::Table(strips(theorem)),
+            [] => Block::Gap,
+            _ => Block::Table(ranges(self)),
+        });
+        page.extend(self.theorems.first().map(hypotheses));
+        page.extend(
+            self.theorems.iter().flat_map(|theorem| &theorem.refused).map(|why| Block::paragraph(refused(why))),
+        );
+        page.extend(self.open.iter().map(open));
+        page
+    }
+}
+
+/// What is proved, in a sentence or two.
+pub(crate) fn statement(found: &Chaos) -> String {
+    let Some(least) = found.theorems.iter().min_by(|one, two| one.set.entropy().total_cmp(&two.set.entropy())) else {
+        return "No set of chaotic motions is proved to exist.".into();
+    };
+    let where_at = match (found.rpm[0] < found.rpm[1], found.open.is_empty()) {
+        (false, _) => "",
+        (true, true) => " at every speed of this range",
+        (true, false) => " at every speed of this range but for those below",
+    };
+    let symbols: Vec<u64> = least.set.strips.iter().map(|strip| strip.impacts).collect();
+    let cones = match found.theorems.iter().all(|theorem| theorem.set.cone_slope.is_some()) {
+        true => "exactly one motion",
+        false => "a motion",
+    };
+    let shift = match found.theorems.as_slice() {
+        [_] => format!(
+            "For every sequence of the numbers {}, endless in both directions, there is {cones} that comes back to the h-set after so many \
+             impacts again and again.",
+            words::listed(&symbols)
+        ),
+        _ => format!(
+            "For every sequence of {} or more symbols, endless in both directions, there is {cones} that follows it.",
+            found.theorems.iter().map(|theorem| theorem.set.strips.len()).min().unwrap_or(0)
+        ),
+    };
+    format!(
+        "Proved: a set of chaotic motions exists{where_at}. {shift} The topological entropy of a revolution is at least {:.5}. It is not \
+         said that other motions come to this set.",
+        // Rounded down, as a bound from below must be.
+        (1e5 * least.set.entropy()).floor() / 1e5
+    )
+}
+
+/// The strips, with what is proved of each.
+pub(crate) fn strips(theorem: &Theorem) -> Table {
+    let head = ["impacts", "revolutions", "strip, x", "image, y", "growth", "boxes"];
+    let least = [7, 11, 18, 18, 7, 6];
+    let columns: Vec<Column> =
+        head.iter().zip(least).map(|(head, least)| Column { gap: 2, ..Column::right(*head, least) }).collect();
+    let mut table = Table::new("Strips that cover the h-set", columns);
+    for (strip, covered) in theorem.set.strips.iter().zip(&theorem.strips) {
+        table.row([
+            strip.impacts.to_string().into(),
+            strip.revolutions.to_string().into(),
+            words::range(strip.x, Digits::Fixed(4)).into(),
+            words::range(covered.image_y, Digits::Fixed(4)).into(),
+            covered.growth.map_or_else(|| "".into(), |growth| words![(growth, Digits::Fixed(1))]),
+            covered.boxes.to_string().into(),
+        ]);
+    }
+    table
+}
+
+/// Ranges of speeds with the same symbols, one next to the other.
+fn ranges(found: &Chaos) -> Table {
+    let right = |head: &str, least: usize| Column { gap: 2, ..Column::right(head, least) };
+    let columns = [right("from (rpm)", 10), right("to (rpm)", 10), right("h-sets", 6), Column::left("impacts", 2, 0)];
+    let mut table = Table::new("Sets of chaotic motions by speed", columns);
+    let symbols = |theorem: &Theorem| {
+        let symbols: Vec<u64> = theorem.set.strips.iter().map(|strip| strip.impacts).collect();
+        words::listed(&symbols)
+    };
+    let meets = |one: &Theorem, two: &Theorem| one.set.rpm[1] == two.set.rpm[0] && symbols(one) == symbols(two);
+    for run in found.theorems.chunk_by(meets) {
+        let [Some(first), Some(last)] = [run.first(), run.last()] else { continue };
+        table.row([
+            words![(first.set.rpm[0], Digits::UpTo(6))],
+            words![(last.set.rpm[1], Digits::UpTo(6))],
+            run.len().to_string().into(),
+            symbols(first).into(),
+        ]);
+    }
+    table
+}
+
+fn hypotheses(theorem: &Theorem) -> Block {
+    Block::paragraph(format!("Taken for granted: {}.", theorem.hypotheses.join("; ")))
+}
+
+/// Why a strip was given up.
+fn refused(why: &Refused) -> String {
+    let how = if why.is_refuted { "does not hold" } else { "could not be decided" };
+    let flight = why.flight.map_or_else(String::new, |flight| format!(" ({})", words::unproved(flight)));
+    let [x, y] = why.at;
+    format!(
+        "The strip of {} was given up: {} {how}{flight}, at x = {x:.5}, y = {y:.5}.",
+        words::many(why.impacts, "impact"),
+        words::relation(why.relation)
+    )
+}
+
+fn open(open: &Open) -> Block {
+    let [low, high] = open.rpm;
+    let speeds = if low < high { format!("{low} to {high} rpm") } else { format!("{low} rpm") };
+    let short = &open.short;
+    let tried = match (short.saddles, short.strips) {
+        (0, _) => "there is no saddle of few impacts to begin with".to_owned(),
+        (saddles, 0) => {
+            format!("about {} no two strips come back across", words::many(saddles as u64, "impact of a saddle"))
+        }
+        (_, strips) => format!("{} came back across as sampled", words::many(strips as u64, "strip")),
+    };
+    let refused: Vec<String> = short.refused.iter().map(refused).collect();
+    Block::paragraph(format!("Not proved at {speeds}: {tried}. {}", refused.join(" ")))
+}

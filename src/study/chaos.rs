@@ -1,0 +1,170 @@
+//! Is there a set of chaotic motions, at a speed or at every speed of a range? Proved, or how far it came.
+
+use std::ops::ControlFlow;
+
+use crate::cam::Cam;
+use crate::covering::find::{Proved, Short, Wanted, find};
+use crate::covering::prove::{Covered, Refused, prove};
+use crate::covering::sample::Line;
+use crate::covering::{HSet, known};
+use crate::known::Known;
+use crate::model::Model;
+use crate::progress::Watch;
+use crate::simulate::{Event, EventKind};
+use crate::study::{StudyError, machine};
+
+/// What is proved of a model's chaos: the document of `chaos --json`.
+#[derive(Clone, Debug)]
+pub struct Chaos {
+    /// The model's name.
+    pub model: String,
+    /// From which speed to which, rpm.
+    pub rpm: [f64; 2],
+    /// By rising speed.
+    pub theorems: Vec<Theorem>,
+    /// Where nothing is proved.
+    pub open: Vec<Open>,
+}
+
+document!(Chaos as it {
+    schema: "corner-impact/chaos/1",
+    model: it.model,
+    rpm: it.rpm,
+    known: Known::Proved,
+    theorems: it.theorems,
+    open: it.open,
+});
+
+/// A set of chaotic motions at every speed of a range.
+#[derive(Clone, Debug)]
+pub struct Theorem {
+    /// The h-set, for this range of speeds, with the strips that are proved to cover it.
+    pub set: HSet,
+    /// What is proved of each strip.
+    pub strips: Vec<Covered>,
+    /// Strips that were tried in vain.
+    pub refused: Vec<Refused>,
+    /// What is taken for granted.
+    pub hypotheses: Vec<&'static str>,
+}
+
+document!(Theorem as it {
+    rpm: it.set.rpm,
+    symbols: it.set.strips.iter().map(|strip| strip.impacts).collect::<Vec<_>>(),
+    entropy_per_revolution: it.set.entropy(),
+    cones: it.set.cone_slope.is_some(),
+    proved: true,
+    hypotheses: it.hypotheses,
+    h_set: it.set,
+    strips: it.strips,
+    refused: it.refused,
+});
+
+/// Speeds at which no chaos is proved, and how far it came.
+#[derive(Clone, Debug)]
+pub struct Open {
+    /// From which speed to which, rpm.
+    pub rpm: [f64; 2],
+    /// What was found.
+    pub short: Short,
+}
+
+document!(Open as it {
+    rpm: it.rpm,
+    saddles: it.short.saddles,
+    strips: it.short.strips,
+    refused: it.short.refused,
+});
+
+/// What holds of the machine that a theorem is about.
+fn hypotheses(cam: &Cam) -> Vec<&'static str> {
+    let doubles = "the machine is the one whose numbers are the doubles that those of the model file became";
+    let meets = "where one law of the lift ends the next goes on with the same lift and the same slope, as the model means it, but at corners \
+                 where the velocity jumps";
+    if cam.segments().len() > 1 { vec![doubles, meets] } else { vec![doubles] }
+}
+
+/// The widest and the narrowest range of speeds, rpm, that one h-set is looked for. A narrower one is like a speed: as much is proved
+/// there as can be.
+const WIDEST: f64 = 0.5;
+const NARROWEST: f64 = 0.03;
+
+/// Looks for sets of chaotic motions at a speed, or at every speed of a range, rpm.
+pub fn chaos(model: &Model, rpm: [f64; 2], watch: &dyn Watch) -> Result<Chaos, StudyError> {
+    let mut found = Chaos { model: model.name.clone(), rpm, theorems: Vec::new(), open: Vec::new() };
+    let is_one = |[low, high]: [f64; 2]| high - low <= NARROWEST;
+    let wanted = match is_one(rpm) {
+        true => Wanted { strips: 8, cones: true },
+        false => Wanted { strips: 3, cones: false },
+    };
+    let kept: Vec<HSet> = known(&model.name).into_iter().filter(|set| is_one(set.rpm) == is_one(rpm)).collect();
+    let hypotheses = hypotheses(&Cam::new(model)?);
+    let (mut from, mut width) = (rpm[0], WIDEST);
+    loop {
+        watch.at("h-sets that cover themselves: rpm", (from - rpm[0]) as u64, (rpm[1] - rpm[0]) as u64);
+        let machine = machine(model, from)?;
+        let holds = |set: &&HSet| set.rpm[0] <= from && (from < set.rpm[1] || rpm[1] <= set.rpm[1]);
+        let by_known = kept.iter().find(holds).and_then(|set| {
+            let set = HSet { rpm: [from, rpm[1].min(set.rpm[1])], ..set.clone() };
+            Some(Proved { strips: prove(&machine, &set).ok()?, set, refused: Vec::new() })
+        });
+        let next = kept.iter().map(|set| set.rpm[0]).filter(|next| *next > from).fold(rpm[1], f64::min);
+        let to = by_known.as_ref().map_or(next.min(from + width), |proved| proved.set.rpm[1]);
+        match by_known.map_or_else(|| find(&machine, [from, to], wanted), |proved| Ok(Ok(proved)))? {
+            Ok(Proved { set, strips, refused }) => {
+                found.theorems.push(Theorem { set, strips, refused, hypotheses: hypotheses.clone() });
+                width = WIDEST.min(2.0 * width);
+            }
+            Err(_) if to - from > NARROWEST => {
+                width = 0.5 * (to - from);
+                continue;
+            }
+            Err(short) => found.open.push(Open { rpm: [from, to], short }),
+        }
+        from = to;
+        if from >= rpm[1] {
+            return Ok(found);
+        }
+    }
+}
+
+/// What a theorem is drawn with: impacts of a long run, and the strips' images, in degrees of the cam and m/s relative to it.
+#[derive(Clone, Debug)]
+pub struct Portrait {
+    /// The impacts of a run that starts in the h-set.
+    pub impacts: Vec<[f64; 2]>,
+    /// For each strip the outline of where it is carried, as far as that is seen.
+    pub images: Vec<Vec<[f64; 2]>>,
+}
+
+/// Draws the numbers of a theorem at its lowest speed.
+pub fn portrait(model: &Model, set: &HSet) -> Result<Portrait, StudyError> {
+    /// Impacts of the run, and those that are left out before.
+    const SHOWN: usize = 400_000;
+    const SETTLING: usize = 500;
+    /// Points along each side of an image.
+    const POINTS: usize = 400;
+    let machine = machine(model, set.rpm[0])?;
+    let mut impacts = Vec::new();
+    let mut motion = machine.start_on_cam(set.centre[0].to_radians(), set.centre[1])?;
+    let mut see = |event: &Event| {
+        if event.kind == EventKind::Impact {
+            impacts.push([event.cam_angle.to_degrees(), event.velocity_after - event.cam_velocity]);
+        }
+        if impacts.len() < SHOWN { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    };
+    let goal = motion.after(SHOWN as u64);
+    let _ = machine.advance(&mut motion, goal, &mut see)?;
+    impacts.drain(..SETTLING.min(impacts.len()));
+    let images = set.strips.iter().map(|strip| {
+        let points = |part: usize| strip.x[0] + (strip.x[1] - strip.x[0]) * part as f64 / POINTS as f64;
+        let side = |y: f64| {
+            let line = Line::new(&machine, set, y, (0..=POINTS).map(points).collect());
+            let arrived = line.arrivals.iter().filter_map(|arrivals| arrivals.get(strip.impacts as usize - 1));
+            arrived.map(|arrival| set.at([arrival.x, arrival.y])).collect::<Vec<_>>()
+        };
+        let [low, high] = set.y.map(side);
+        low.into_iter().chain(high.into_iter().rev()).collect()
+    });
+    Ok(Portrait { impacts, images: images.collect() })
+}

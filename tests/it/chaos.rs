@@ -1,0 +1,168 @@
+//! Is chaos proved where it is, and not where it is not?
+
+use corner_impact::cam::Cam;
+use corner_impact::covering::find::{Wanted, find};
+use corner_impact::covering::prove::{Relation, prove};
+use corner_impact::covering::{HSet, entropy, known};
+use corner_impact::model::Model;
+use corner_impact::simulate::{Machine, angular_velocity};
+
+use crate::common;
+
+fn machine(model: &Model, rpm: f64) -> Machine {
+    Machine::new(Cam::new(model).unwrap(), &model.follower, angular_velocity(rpm))
+}
+
+/// The h-set that is kept for one speed of the paper's machine.
+fn kept(rpm: f64) -> HSet {
+    let at = |set: &HSet| set.rpm[0] <= rpm && rpm <= set.rpm[1] && set.rpm[1] - set.rpm[0] < 1e-3;
+    known("osorio-2008").into_iter().find(at).unwrap()
+}
+
+/// The h-set at 670 rpm with one strip, changed, and without cones.
+fn changed(impacts: u64, change: impl Fn(&mut HSet)) -> HSet {
+    let mut set = HSet { cone_slope: None, ..kept(670.0) };
+    set.strips.retain(|strip| strip.impacts == impacts);
+    change(&mut set);
+    set
+}
+
+#[test]
+fn at_670_rpm_five_strips_cover_and_keep_cones() {
+    let set = kept(670.0);
+    let proved = prove(&machine(&common::osorio(), 670.0), &set).unwrap();
+    let symbols: Vec<u64> = proved.iter().map(|strip| strip.impacts).collect();
+    assert_eq!(symbols, [2, 3, 4, 5, 6]);
+    assert!(
+        proved.iter().all(|strip| strip.revolutions + 1 == strip.impacts && strip.growth.unwrap() > 2.0),
+        "{proved:?}"
+    );
+    // The sum of lambda^-k, k = 1 to 5, is 1 at lambda = 1.965948.
+    assert!((0.67597..0.67598).contains(&set.entropy()), "{}", set.entropy());
+    for strip in &proved {
+        let [low, high] = strip.image_y;
+        assert!(set.y[0] < low && low < high && high < set.y[1], "{strip:?}");
+    }
+}
+
+/// On both sides of the corner impact there is chaos, and at it: it is not what creates it.
+#[test]
+#[ignore = "slow"]
+fn at_the_corner_impact_and_above_it_strips_cover_and_keep_cones() {
+    for (rpm, symbols) in [(673.2344455, 2..=6), (680.0, 2..=7)] {
+        let proved = prove(&machine(&common::osorio(), rpm), &kept(rpm)).unwrap();
+        assert_eq!(proved.iter().map(|strip| strip.impacts).collect::<Vec<_>>(), symbols.collect::<Vec<_>>(), "{rpm}");
+        assert!(proved.iter().all(|strip| strip.growth.unwrap() > 1.0), "{proved:?}");
+    }
+}
+
+#[test]
+fn an_h_set_that_is_off_is_refused() {
+    let machine = machine(&common::osorio(), 670.0);
+    let move_by = |impacts: u64, by: [f64; 2]| {
+        changed(impacts, |set| set.strips[0].x = [set.strips[0].x[0] + by[0], set.strips[0].x[1] + by[1]])
+    };
+    assert!(prove(&machine, &changed(3, |_| {})).is_ok());
+    let cases = [
+        ("moved", move_by(3, [0.1, 0.1]), Relation::Edges),
+        ("moved back", move_by(3, [-0.1, -0.1]), Relation::Edges),
+        ("too narrow on the right", move_by(3, [0.0, -0.015]), Relation::Edges),
+        ("too narrow on the left", move_by(3, [0.015, 0.0]), Relation::Edges),
+        ("N too low", changed(6, |set| set.y[1] = 1.2), Relation::Height),
+        ("N too high up", changed(2, |set| set.y[0] = 0.05), Relation::Height),
+        ("another number of turns", changed(3, |set| set.strips[0].revolutions = 3), Relation::Edges),
+        ("not in N", changed(3, |set| set.x = [-1.2, 0.2]), Relation::Apart),
+        ("no parallelogram", changed(3, |set| set.stable = set.unstable), Relation::Apart),
+        ("below the cam", changed(3, |set| set.centre[1] = 0.1), Relation::Apart),
+        ("cones too flat", changed(3, |set| set.cone_slope = Some(0.01)), Relation::Cones),
+        ("cones too steep", changed(3, |set| set.cone_slope = Some(1e3)), Relation::Cones),
+    ];
+    for (what, set, relation) in cases {
+        let refused = prove(&machine, &set).expect_err(what);
+        assert_eq!(refused.relation, relation, "{what}: {refused:?}");
+    }
+    let mut twice = kept(670.0);
+    twice.strips[1] = twice.strips[0].clone();
+    assert_eq!(prove(&machine, &twice).unwrap_err().relation, Relation::Apart);
+}
+
+/// Between x = -1.7 and -1.75 the third flight just touches the cam: on one side it is struck there, on the other half a turn later.
+#[test]
+#[ignore = "slow"]
+fn a_strip_with_a_graze_in_it_is_refused() {
+    let set = changed(3, |set| set.strips[0].x = [-1.8, -1.1365]);
+    let refused = prove(&machine(&common::osorio(), 670.0), &set).unwrap_err();
+    assert!(refused.relation == Relation::Flight && !refused.is_refuted, "{refused:?}");
+    assert!((-1.8..-1.7).contains(&refused.at[0]), "{refused:?}");
+}
+
+/// Without losses the motions of one sequence need not be one.
+#[test]
+fn without_losses_cones_say_nothing() {
+    let set = HSet { cone_slope: Some(8.0), ..changed(3, |_| {}) };
+    let mut model = common::osorio();
+    model.follower.restitution = 1.0;
+    assert!(prove(&machine(&model, 670.0), &set).is_err());
+}
+
+#[test]
+fn entropy_is_a_bound_from_below() {
+    assert_eq!(entropy(&[1]), 0.0);
+    let two = entropy(&[1, 1]);
+    assert!(two <= std::f64::consts::LN_2 && two > std::f64::consts::LN_2 - 1e-12, "{two}");
+    let golden = (0.5 + 1.25_f64.sqrt()).ln();
+    let found = entropy(&[1, 2]);
+    assert!(found <= golden && found > golden - 1e-12, "{found}");
+}
+
+/// Where no h-set is kept for a speed, those next to each other are for ranges: there is chaos on all of one.
+#[test]
+fn at_every_speed_of_a_range_three_strips_cover() {
+    let is_range = |set: &HSet| set.rpm[1] - set.rpm[0] > 0.1;
+    let tiles: Vec<HSet> = known("osorio-2008").into_iter().filter(is_range).collect();
+    assert!(tiles.windows(2).all(|two| two[0].rpm[1] == two[1].rpm[0] && two[0].strips.len() == 3), "a gap");
+    let [first, last] = [tiles.first(), tiles.last()].map(|tile| tile.unwrap().rpm);
+    assert!(first[0] <= 667.0 && last[1] >= 673.25, "{first:?} {last:?}");
+    // Each takes a second or two; those around the corner impact stand for the others.
+    let tile = tiles.iter().find(|tile| tile.rpm[0] < 673.234445 && 673.234446 < tile.rpm[1]).unwrap();
+    let proved = prove(&machine(&common::osorio(), 670.0), tile).unwrap();
+    assert_eq!(proved.iter().map(|strip| strip.impacts).collect::<Vec<_>>(), [2, 3, 4]);
+    let wider = HSet { rpm: [tile.rpm[0] - 8.0, tile.rpm[1]], ..tile.clone() };
+    assert!(prove(&machine(&common::osorio(), 670.0), &wider).is_err(), "not for any range");
+}
+
+/// Found from nothing but the model: at a speed of a machine that no h-set is kept for.
+#[test]
+#[ignore = "slow"]
+fn chaos_of_other_machines_is_found_and_proved() {
+    for (file, rpm) in [("damped-light", 675.0)] {
+        let model = common::read(std::path::Path::new(&format!("{}/models/{file}.toml", common::ROOT)));
+        let found = find(&machine(&model, rpm), [rpm; 2], Wanted { strips: 2, cones: true }).unwrap();
+        let found = found.unwrap_or_else(|short| panic!("{file} at {rpm} rpm: {short:?}"));
+        assert!(prove(&machine(&model, rpm), &found.set).is_ok());
+    }
+}
+
+/// Where a motion settles from everywhere no h-set is found.
+#[test]
+fn where_there_is_no_saddle_no_chaos_is_found() {
+    let found = find(&machine(&common::osorio(), 160.0), [160.0; 2], Wanted { strips: 8, cones: true }).unwrap();
+    assert!(found.is_err(), "{found:?}");
+}
+
+#[test]
+fn the_command_keeps_its_fields() {
+    let output = common::corner_impact(["chaos", "models/osorio-2008.toml", "--rpm", "673.2:673.4", "--json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", common::text(output.stderr));
+    let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(document["schema"], "corner-impact/chaos/1");
+    let theorem = &document["theorems"][0];
+    assert_eq!(theorem["rpm"], serde_json::json!([673.2, 673.4]));
+    assert_eq!(theorem["symbols"], serde_json::json!([2, 3, 4]));
+    assert!(theorem["proved"] == true && theorem["cones"] == false, "{theorem}");
+    assert_eq!(theorem["hypotheses"].as_array().unwrap().len(), 2);
+    // The sum of lambda^-k, k = 1 to 3, is 1 at the tribonacci number.
+    let entropy = theorem["entropy_per_revolution"].as_f64().unwrap();
+    assert!((0.609377..0.609378).contains(&entropy), "{entropy}");
+    assert_eq!(document["open"], serde_json::json!([]));
+}
