@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::interval::Interval;
+
 /// A ball, as proofs in many digits write it: the number lies within `rad` of `mid`.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Ball {
@@ -12,6 +14,13 @@ pub struct Ball {
 }
 
 impl Ball {
+    /// An interval that holds it.
+    pub(crate) fn interval(&self) -> Interval {
+        let [mid, rad] = [&self.mid, &self.rad].map(|digits| digits.parse::<f64>().unwrap_or(f64::NAN));
+        // Reading rounds to the nearest double.
+        Interval::new(mid.next_down(), mid.next_up()) + Interval::new(-rad.next_up(), rad.next_up())
+    }
+
     /// The double nearest to the middle; not a number where the text is none, which no comparison lets pass.
     pub fn value(&self) -> f64 {
         self.mid.parse().unwrap_or(f64::NAN)

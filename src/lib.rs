@@ -65,10 +65,11 @@ pub mod known;
 
 pub mod progress;
 
-pub mod ball;
 pub mod bracket;
 pub mod estimate;
 pub mod interval;
+
+pub mod ball;
 
 pub mod draw;
 

@@ -178,6 +178,9 @@ table! {
     /// Where the search for the end of the local map's range begins.
     LINEAR_FROM = 1e-8, "of T*: there what the local map leaves out is far below a tenth, and rounding of the real one still \
         is";
+    /// By how much the speed of a nonsmooth fold may move where its corner is rounded.
+    ROUNDED_AWAY = 1e-4, "rpm, absolute: far finer than a machine's speed is held or measured, so that within it the corner may be \
+        taken as sharp";
     /// How closely the end of the local map's range is bracketed.
     LINEAR_BRACKET = 1e-6, "of dT: four digits more than the tenth means";
 }

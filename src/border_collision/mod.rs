@@ -10,6 +10,7 @@
 //! | [`mod@robust_chaos`] | when chaos is a theorem |
 //! | [`long_run`], `outcome` | where its motions end, on either side of the corner impact |
 //! | [`validity`], [`passage`] | how far it holds; how the machine leaves the place where its orbit was |
+//! | [`mod@rounded`] | how far a fold moves where the corner is rounded |
 //! | `impact_curve` | what happens along a curve of corner impacts in two numbers of the model |
 
 pub mod conditions;
@@ -21,6 +22,7 @@ pub mod normal_form;
 pub(crate) mod outcome;
 pub mod passage;
 pub mod robust_chaos;
+pub mod rounded;
 pub mod trapping;
 pub mod validity;
 pub mod word;
@@ -32,6 +34,7 @@ pub use local_map::LocalMap;
 pub use normal_form::{NormalForm, normal_form};
 pub use outcome::LocalOutcome;
 pub use robust_chaos::RobustChaos;
+pub use rounded::{RoundedCorner, rounded};
 
 use crate::cam::Side;
 

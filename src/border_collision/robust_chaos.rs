@@ -22,6 +22,8 @@ use super::conditions::{Condition, Decides};
 use super::local_map::LocalMap;
 use super::word::Word;
 use crate::cam::Side;
+use crate::corner::SideMap;
+use crate::interval::{Interval, Number};
 use crate::known::Known;
 use crate::orbit::Eigenvalue;
 use crate::tolerance;
@@ -54,34 +56,55 @@ impl RobustChaos {
     }
 }
 
+/// What must be positive, each with the sum of its terms' sizes, from the traces and determinants of L and of R.
+fn hypotheses<N: Number>([tau_l, tau_r]: [N; 2], [delta_l, delta_r]: [N; 2]) -> [(N, f64); 5] {
+    let one = N::from(1.0);
+    // l = (tau_L + sqrt(tau_L^2 - 4 delta_L))/2
+    let l = (tau_l + (tau_l * tau_l - delta_l * 4.0).sqrt()) * 0.5;
+    // phi = l (l - delta_L) + (l - 1)(l tau_R - delta_R)
+    let (rise, fall) = (l * (l - delta_l), (l - one) * (l * tau_r - delta_r));
+    [
+        (delta_l, delta_l.magnitude()),
+        (delta_r, delta_r.magnitude()),
+        (tau_l - delta_l - one, tau_l.magnitude() + delta_l.magnitude() + 1.0),
+        (-tau_r - delta_r - one, tau_r.magnitude() + delta_r.magnitude() + 1.0),
+        (rise + fall, rise.magnitude() + fall.magnitude()),
+    ]
+}
+
+/// Name of each, and what its failing would mean.
+const NAMES: [[&str; 2]; 5] = [
+    ["delta_L", "the map does not keep the sense of turning"],
+    ["delta_R", "the map does not keep the sense of turning"],
+    ["tau_L - (1 + delta_L)", "L has no saddle with an eigenvalue above 1"],
+    ["-tau_R - (1 + delta_R)", "R has no saddle with an eigenvalue below -1"],
+    ["phi", "the saddle's unstable manifold leaves"],
+];
+
+impl RobustChaos {
+    /// Says that it is proved, where it is so for all matrices A of L and of R, by rows, whose entries lie in these intervals.
+    pub fn prove(&mut self, matrices: [[[Interval; 2]; 2]; 2]) {
+        let traces = matrices.map(|[[a, _], [_, d]]| a + d);
+        let determinants = matrices.map(|[[a, b], [c, d]]| a * d - b * c);
+        if hypotheses(traces, determinants).iter().all(|(value, _)| value.is_positive()) {
+            self.known = Known::Proved;
+        }
+    }
+}
+
 impl LocalMap {
     /// The theorem at `mu`; `None` where its saddles are not there.
     pub fn robust_chaos(&self, mu: f64) -> Option<RobustChaos> {
         let sides = [(Side::Minus, Side::Plus, "L"), (Side::Plus, Side::Minus, "R")];
         sides.into_iter().find_map(|(saddle, other, word)| {
-            let (first, second) = (self.of(saddle), self.of(other));
-            let ([Eigenvalue { re: l, .. }, _], [_, Eigenvalue { re: minus_k, .. }]) =
-                (first.eigenvalues(), second.eigenvalues());
-            let [tau_l, tau_r] = [first, second].map(|side| side.a.trace());
-            let [delta_l, delta_r] = [first, second].map(|side| side.a.determinant());
-            let one = |name, meaning, terms: &[f64]| Condition {
-                name,
-                meaning,
-                value: terms.iter().sum(),
-                distance: terms.iter().sum::<f64>() / terms.iter().map(|term| term.abs()).sum::<f64>(),
-                least: tolerance::DEGENERATE,
-                decides: Decides::RobustChaos,
-            };
-            let (no_inside, lost) =
-                ("the map does not keep the sense of turning", "the saddle's unstable manifold leaves");
-            let hypotheses = [
-                one("delta_L", no_inside, &[delta_l]),
-                one("delta_R", no_inside, &[delta_r]),
-                one("tau_L - (1 + delta_L)", "L has no saddle with an eigenvalue above 1", &[tau_l, -1.0, -delta_l]),
-                one("-tau_R - (1 + delta_R)", "R has no saddle with an eigenvalue below -1", &[-tau_r, -1.0, -delta_r]),
-                // phi = l (l - delta_L) + (l - 1)(l tau_R - delta_R)
-                one("phi", lost, &[l * l, -l * delta_l, (l - 1.0) * l * tau_r, (1.0 - l) * delta_r]),
-            ];
+            let both = [self.of(saddle), self.of(other)];
+            let [[Eigenvalue { re: l, .. }, _], [_, Eigenvalue { re: minus_k, .. }]] = both.map(SideMap::eigenvalues);
+            let found = hypotheses(both.map(|side| side.a.trace()), both.map(|side| side.a.determinant()));
+            let hypotheses: [Condition; 5] = std::array::from_fn(|index| {
+                let ([name, meaning], (value, terms)) = (NAMES[index], found[index]);
+                let (distance, least, decides) = (value / terms, tolerance::DEGENERATE, Decides::RobustChaos);
+                Condition { name, meaning, value, distance, least, decides }
+            });
             // Where one saddle is on its own side, so is the other.
             let is_there = self.orbit(&Word::read(word)?, mu)?.admissible();
             (is_there && hypotheses.iter().take(4).all(Condition::holds)).then(|| RobustChaos {

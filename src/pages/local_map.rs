@@ -5,7 +5,7 @@ use crate::border_collision::local_map::PeriodicOrbit;
 use crate::border_collision::validity::{Compared, Range};
 use nalgebra::Vector2;
 
-use crate::border_collision::{LocalOutcome, RobustChaos};
+use crate::border_collision::{LocalOutcome, RobustChaos, RoundedCorner};
 use crate::cam::Side;
 use crate::show::block::{Block, Column, Span, Table, Words, words};
 use crate::show::digits::Digits;
@@ -81,6 +81,16 @@ pub(crate) fn blocks(found: &Verification) -> Vec<Block> {
             let held = held(found, move |range| range.order == 2 && range.within == within.value);
             blocks.extend([Block::paragraph(title), Block::Entries(COLUMN, held.collect())]);
         }
+    }
+    if let Some(RoundedCorner { rpm_per_degree, degrees }) = found.rounded_corner {
+        let [moved, degrees, within] =
+            [rpm_per_degree, degrees, tolerance::ROUNDED_AWAY.value].map(|value| words![(value, Digits::Power(2))]);
+        blocks.push(Block::Heading("If the corner is rounded".into()));
+        let told = "the fold is smooth, and {} rpm from omega* for each degree that it is rounded over: no more than {} rpm up to {} deg";
+        blocks.push(Block::Entries(
+            COLUMN,
+            vec![("by a polynomial".into(), Words::prose(told, [moved, within, degrees]))],
+        ));
     }
     blocks
 }

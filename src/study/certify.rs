@@ -9,8 +9,9 @@ use serde_json::json;
 
 use super::ModelLabel;
 use crate::ball::Ball;
+use crate::border_collision::RobustChaos;
 use crate::border_collision::feigin::{Scenario, Speeds};
-use crate::cam::Cam;
+use crate::cam::{Cam, Side};
 use crate::corner::map::Sides;
 use crate::corner::range::{RangeError, Rejected, find_corner_impacts};
 use crate::corner::{CornerImpact, CornerMap, SideMap};
@@ -164,6 +165,15 @@ impl Certificate {
             a: Matrix2::from_fn(|row, column| side.a[row][column].value()),
             b: Vector2::from_fn(|row, _| side.b[row].value()),
         })
+    }
+
+    /// Holds the theorem of robust chaos at these speeds against the proved matrices, and says so where its hypotheses follow.
+    pub(crate) fn prove(&self, chaos: &mut RobustChaos, speeds: Speeds) {
+        let other = if chaos.saddle == Side::Minus { Side::Plus } else { Side::Minus };
+        let sides = [chaos.saddle, other].map(|side| self.sides.of(side));
+        if sides.iter().all(|side| side.fixed_point_exists_for == speeds) {
+            chaos.prove(sides.map(|side| side.a.each_ref().map(|row| row.each_ref().map(Ball::interval))));
+        }
     }
 
     /// The fewest digits to which any of speed, state and map is proved; of what is 0 but for the ball's radius no digit is.

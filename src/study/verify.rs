@@ -7,9 +7,11 @@ use nalgebra::{RowVector2, Vector2};
 use serde::Serialize;
 
 use crate::agreement::{Agreement, NamedOrbit, Quantity, compare_orbits, fewest_shared_decimals};
+use crate::border_collision::feigin::Speeds;
 use crate::border_collision::validity::{self, Range};
 use crate::border_collision::{
-    Classification, Condition, Degenerate, LocalMap, LocalOutcome, NormalForm, Refusal, conditions, normal_form,
+    Classification, Condition, Degenerate, LocalMap, LocalOutcome, NormalForm, Refusal, RoundedCorner, conditions,
+    normal_form, rounded,
 };
 use crate::cam::{Cam, Side};
 use crate::corner::border::border;
@@ -55,6 +57,8 @@ pub struct Verification {
     pub outcomes: Vec<LocalOutcome>,
     /// The map to second order; none without a classification.
     pub second_order: Option<Sides<CurvedMap>>,
+    /// What rounding the corner does, where it is a nonsmooth fold.
+    pub rounded_corner: Option<RoundedCorner>,
     /// How far the local map holds; empty without a classification.
     pub ranges: Vec<Range>,
     /// The paper's numbers; empty for another model.
@@ -80,6 +84,7 @@ document!(Verification as found {
     conditions: found.conditions,
     local_map: found.outcomes,
     second_order: found.second_order,
+    rounded_corner if_any: found.rounded_corner,
     linear_range: found.ranges,
     published: found.published,
     skipped: found.skipped,
@@ -257,9 +262,17 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
     watch.at("what the map does by itself", 0, 0);
     let local = LocalMap::new(&map, border);
     let (mut outcomes, mut ranges) = (Vec::new(), Vec::new());
+    let rounded_corner = classification.as_ref().ok().and_then(|kind| rounded(kind, &at));
     let curved = classification.is_ok().then(|| second_order(model, &cam, &at));
     if let Some(curved) = &curved {
         outcomes.extend([-1.0, 1.0, 0.0].map(|mu| local.outcome(mu)));
+        let chaos =
+            outcomes.iter_mut().filter_map(|outcome| Some((Speeds::of(outcome.mu)?, outcome.robust_chaos.as_mut()?)));
+        for (speeds, chaos) in chaos {
+            if let Some(certificate) = &certificate {
+                certificate.prove(chaos, speeds);
+            }
+        }
         ranges = validity::ranges(model, &cam, &at, &local, curved);
     }
     let published = match compare_published(model, &at, &map, normal_form.as_ref().ok()) {
@@ -287,6 +300,7 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
         conditions: conditions(&local),
         outcomes,
         second_order: curved,
+        rounded_corner,
         ranges,
         published,
         skipped: log.0,

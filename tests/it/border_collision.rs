@@ -11,6 +11,8 @@ use corner_impact::border_collision::long_run::{End, Escape};
 use corner_impact::border_collision::word::Word;
 use corner_impact::cam::Side;
 use corner_impact::estimate::Estimate;
+use corner_impact::interval::Interval;
+use corner_impact::known::Known;
 use nalgebra::Vector2;
 
 /// What a motion from 0 does, in a word.
@@ -275,6 +277,19 @@ fn the_theorem_of_robust_chaos_has_its_hypotheses() {
     assert_relative_eq!(l, 1.5, max_relative = 1e-15);
     assert_relative_eq!(theorem.hypotheses[4].value, 0.575, max_relative = 1e-14);
     assert_relative_eq!(theorem.least_exponent, (0.75 + 0.3625_f64.sqrt()).ln(), max_relative = 1e-14);
+    // Proved for matrices in intervals, as long as none of these has a hypothesis that fails: at phi = 0.575, 0.1 is too wide.
+    for (width, known) in [(1e-3, Known::Proved), (0.1, Known::Computed)] {
+        let around = |entry: f64| Interval::new(entry - width, entry + width);
+        let matrices =
+            [map.minus, map.plus].map(|side| [0, 1].map(|row| [0, 1].map(|column| around(side.a[(row, column)]))));
+        let mut theorem = map.robust_chaos(1.0).unwrap();
+        assert_eq!(theorem.known, Known::Computed);
+        theorem.prove(matrices);
+        assert_eq!(theorem.known, known, "{width}");
+        theorem.known = Known::Computed;
+        theorem.prove([matrices[1], matrices[0]]);
+        assert_eq!(theorem.known, Known::Computed, "the sides exchanged");
+    }
     for (traces, determinants) in
         [([1.29, -1.5], [0.3, 0.2]), ([1.7, -1.19], [0.3, 0.2]), ([1.7, -1.5], [-0.1, 0.2]), ([1.7, -1.5], [0.3, 0.0])]
     {

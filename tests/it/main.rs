@@ -45,6 +45,7 @@ mod published;
 mod python;
 mod random;
 mod random_orbits;
+mod rounded;
 mod routes;
 mod second_order;
 mod settled;
