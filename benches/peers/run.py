@@ -1,6 +1,6 @@
 """The same cam by every peer, on this machine, in one go: time beside accuracy.
 
-  python run.py [--quick] [--only NAME] [--question time|grazes|chattering] [--markdown FILE]
+  python run.py [--quick] [--only NAME] [--question time|grazes|chattering|attractors] [--markdown FILE]
 
 Prints one table per question, in Markdown, with the machine and the versions above them; `--markdown` writes the same to a
 file. What is asked, and how each peer is started, is in README.md.
@@ -21,6 +21,7 @@ from pathlib import Path
 
 import mpmath as mp
 
+import attractors
 from reference import Reference
 
 HERE = Path(__file__).resolve().parent
@@ -273,10 +274,19 @@ def chattering(peers, quick):
     return ["by", "how", "what it does", "impacts", "last jump of the velocity, m/s", "time"], rows
 
 
+def global_answer(peers, quick):
+    """What runs end on over twenty speeds, and how many starts on each."""
+    loop = ROOT / "target/release/examples/baseline"
+    reference = Reference(model(), 700)
+    circles = task_for(reference, 700.0, [], 0.0)["problem"]["arcs"]
+    return attractors.table(loop, PROGRAM, MODEL, circles, float(reference.restitution))
+
+
 QUESTIONS = {
     "time": ("Time and accuracy", speed_and_accuracy),
     "grazes": ("Grazes", grazes),
     "chattering": ("Chattering at 183 rpm", chattering),
+    "attractors": ("What runs end on", global_answer),
 }
 
 
