@@ -100,8 +100,11 @@ fn bars(found: &Speeds) -> Panel {
             of_kind.flat_map(|(attractor, lane)| [BREAK, [attractor.rpm[0], *lane], [attractor.rpm[1], *lane]]);
         Series::line(words::kind(*kind), Colour::Ink, *stroke, points).if_any()
     });
-    let names =
-        placed.iter().map(|(attractor, lane)| Word::new([attractor.rpm[0], *lane], &attractor.id, Beside::AboveRight));
+    // At the right edge there is no room beside the bar's beginning but on the left.
+    let beside = |from: f64| if from + NAME * span > found.rpm[1] { Beside::AboveLeft } else { Beside::AboveRight };
+    let names = placed
+        .iter()
+        .map(|(attractor, lane)| Word::new([attractor.rpm[0], *lane], &attractor.id, beside(attractor.rpm[0])));
     let series = bars.chain(Series::words(names).if_any()).collect();
     let lanes = [-(lanes.len() as f64) + 0.5, 0.9];
     let axis = Axis { spacing: Spacing::Nothing, ..Axis::new("attractor", "").over(lanes) };

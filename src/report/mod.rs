@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::agreement::by_quantity;
 use crate::cam::{Cam, Jet, Side};
-use crate::figures::{Plate, Subject, plates, through_corner};
+use crate::figures::{Drawn, Plate, Subject, corner_marks, plates, speeds_figure, through_corner};
 use crate::model::{Model, ModelError};
 use crate::paper::{Claims, Context, LedgerError};
 use crate::progress::Watch;
@@ -37,6 +37,8 @@ pub struct Report {
     pub claims: Option<Claims>,
     /// What the follower does at other speeds, or why that is not known.
     pub speeds: Result<Speeds, String>,
+    /// The picture of that.
+    pub attractors: Option<Plate>,
     /// The figures, in the paper's order.
     pub plates: Vec<Plate>,
     /// Commands that do all this again, each with what it does.
@@ -152,6 +154,7 @@ impl Report {
         let range = usual_range(model);
         let resolution = Resolution { step: Step::for_speeds(range, SPEEDS), starts: STARTS };
         let speeds = speeds(model, range, resolution, &part(HELD, SURVEYED)).map_err(|error| error.to_string());
+        let attractors = speeds.as_ref().ok().map(|found| attractors(model, &cam, found));
         part(SURVEYED, THROUGH).at("the orbits on both sides of the corner impact", 0, 1);
         let through = verification.as_ref().map_err(String::clone).and_then(|found| through(model, &cam, found));
         let subject = Subject::with(model, verification.clone())?;
@@ -167,7 +170,7 @@ impl Report {
             cam: CamSheet::new(model, &cam, Jet::HIGHEST_JUMP),
         };
         let commands = commands(model, verification.is_ok());
-        Ok(Self { agrees, is_paper, model: sheet, verification, through, claims, speeds, plates, commands })
+        Ok(Self { agrees, is_paper, model: sheet, verification, through, claims, speeds, attractors, plates, commands })
     }
 
     /// Comparisons and printed numbers by what came of them; none without a corner impact.
@@ -185,6 +188,17 @@ impl Report {
     pub(crate) fn claims_otherwise(&self) -> usize {
         self.claims.iter().flat_map(|ledger| &ledger.claims).filter(|claim| !claim.as_found).count()
     }
+}
+
+/// What runs end on, drawn.
+fn attractors(model: &Model, cam: &Cam, found: &Speeds) -> Plate {
+    let figure = speeds_figure(found, &corner_marks(cam));
+    let title = figure.title.clone();
+    let caption = "What runs end on against the speed: where its impacts are on the cam, a bar for each attractor, and the share of \
+                   the starts that end on it."
+        .to_owned();
+    let command = command("speeds", model, "--out attractors.svg");
+    Plate { id: "attractors", place: "", title, command, drawn: Ok(Drawn { figure, caption }) }
 }
 
 /// The motion on either side of the corner impact, or why there is none.

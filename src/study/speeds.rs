@@ -226,7 +226,12 @@ pub fn speeds(
                 attractors: over.rows.iter().map(|index| name(*index)).collect(),
             })
             .collect(),
-        failed: grid.iter().filter_map(|found| found.as_ref().err()).map(failed).collect(),
+        failed: grid
+            .iter()
+            .filter_map(|found| found.as_ref().err())
+            .filter(|(rpm, _)| is_inside(*rpm))
+            .map(failed)
+            .collect(),
     })
 }
 

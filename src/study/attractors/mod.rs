@@ -85,8 +85,7 @@ impl Step {
         while self.times(last) < high {
             last += 1;
         }
-        // Nothing turns at speed 0.
-        (first..=last).map(move |count| if count == 0 { low } else { self.times(count) })
+        (first..=last).map(move |count| self.times(count))
     }
 }
 
@@ -141,6 +140,8 @@ pub enum AttractorsError {
     Simulate { rpm: f64, error: SimulateError },
 }
 
+/// How far beyond a range attractors are looked for, in steps.
+const MARGIN: f64 = 8.0;
 /// The most speeds of one grid.
 const MOST_SPEEDS: f64 = 200_000.0;
 
@@ -160,7 +161,14 @@ pub fn attractors(
         return Err(AttractorsError::TooFine { low, high, step });
     }
     let machine = machine(model, low)?;
-    let speeds: Vec<f64> = resolution.step.over(range).collect();
+    // What lives between two speeds of the grid is found from attractors next to it, which may lie outside of the range.
+    let around = MARGIN * step;
+    let mut speeds: Vec<f64> = resolution.step.over([(low - around).max(0.0), high + around]).collect();
+    // Nothing turns at speed 0.
+    speeds.retain(|rpm| *rpm > 0.0);
+    if speeds.first().is_some_and(|first| low < *first) {
+        speeds.insert(0, low);
+    }
     let (done, total) = (AtomicU64::new(0), speeds.len() as u64);
     let at = |rpm: &f64| {
         watch.at("what runs end on", done.fetch_add(1, Ordering::Relaxed), total);

@@ -54,7 +54,7 @@ pub fn render(report: &Report) -> Result<String, HtmlError> {
         Some(slider::section(report)?),
         titled("local-map", "What the local map does by itself", local_map::blocks),
         ledger::section(report),
-        Some(speeds::section(report)),
+        Some(speeds::section(report)?),
         plates::section(report)?,
         Some(reproduce::section(report)),
     ]

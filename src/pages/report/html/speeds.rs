@@ -1,16 +1,21 @@
 //! What the follower does at other speeds.
 
+use crate::pages::report::html::HtmlError;
+use crate::pages::report::html::plates::plate;
 use crate::pages::speeds::{detachment, how, rests, table, together};
 use crate::report::Report;
 use crate::show::block::{Block, Section, Words, words};
 use crate::study::speeds::Speeds;
 
-pub(crate) fn section(report: &Report) -> Section {
-    let blocks = match &report.speeds {
+pub(crate) fn section(report: &Report) -> Result<Section, HtmlError> {
+    let mut blocks = match &report.speeds {
         Ok(found) => attractors(found),
         Err(why) => vec![Block::paragraph(format!("Not known: {why}."))],
     };
-    Section { id: "speeds", title: "At other speeds".into(), blocks }
+    if let Some(picture) = &report.attractors {
+        blocks.push(Block::Markup(plate(picture, report)?));
+    }
+    Ok(Section { id: "speeds", title: "At other speeds".into(), blocks })
 }
 
 fn attractors(found: &Speeds) -> Vec<Block> {
