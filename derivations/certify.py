@@ -3,20 +3,21 @@
 One JSON document on stdin: the model's "follower" and "cam", "bits", and "candidates", places in doubles where corner impacts
 are thought to be. One on stdout: "results", for each candidate in turn a "certificate", with a ball for every number, or "refused"
 with why. Everything said in a certificate is proved, for the machine whose constants are the decimals of the model; the
-candidates are only where corner impacts are looked for.
+candidates are only where corner impacts are looked for. With "orbits_at_rpm" there are "orbits" and "complete" besides.
 """
 
 import json
 import sys
 
 try:
-    from flint import ctx
+    from flint import arb, ctx
 except ImportError:
     sys.exit("certify.py: the Python package python-flint is missing")
 
 from balls.corner_impact import CornerImpact
 from balls.motion import Machine
 from balls.numbers import Refused, ball, decimal
+from balls.orbits import Orbits
 from balls.verdict import SIDES, Verdict
 
 # With fewer bits nothing is proved; with more a number takes longer than anyone waits.
@@ -93,7 +94,36 @@ def answer(document, candidates):
             results.append({"certificate": certificate(machine, candidate)})
         except (Refused, ZeroDivisionError) as error:
             results.append({"refused": str(error)})
-    return {"results": results}
+    return {"results": results, **orbits(machine, document)}
+
+
+def orbits(machine, document):
+    """All orbits of one impact and of two in one revolution at "orbits_at_rpm", where that is asked for: each with its kind; and
+    for which numbers of impacts the list is proved to be all."""
+    if "orbits_at_rpm" not in document:
+        return {}
+    all_of = Orbits(machine, machine.cam.turn * arb(decimal(document["orbits_at_rpm"])) / 60)
+    found, complete = [], []
+    for count in (1, 2):
+        some, undecided = all_of.of(count)
+        found += [
+            {
+                "revolutions": 1,
+                "impacts": [
+                    {"cam_angle_rad": ball(one_turn(machine, angle)), "relative_velocity_m_s": ball(velocity)}
+                    for angle, velocity in orbit.impacts
+                ],
+                "kind": orbit.kind,
+            }
+            for orbit in some
+        ]
+        complete += [] if undecided else [count]
+    return {"orbits": found, "complete": complete}
+
+
+def one_turn(machine, angle):
+    """An angle less whole turns."""
+    return angle - machine.cam.turn * int(float(angle) // float(machine.cam.turn))
 
 
 def main():

@@ -9,4 +9,10 @@ proved, and what cannot be decided raises. Nothing here knows a result of anothe
     profiles    the [cam] table of a model as laws, and how they meet
     cam         the cam: which law holds at a ball of angles, its corners
     motion      one flight over the cam: its gap, its first contact, and the impact map with its derivative
+    duals       numbers with derivatives, for implicit differentiation
+    krawczyk    a root near a guess, proved to be there and alone
+    corner_impact  an orbit with an impact on a corner, and its map on either side
+    verdict     what a border collision does, every sign proved
+    roots       all roots of a system in a box
+    orbits      all orbits of one impact and of two in one revolution
 """

@@ -15,7 +15,7 @@ from flint import arb, arb_mat
 
 from .cam import Cam
 from .flight import Follower
-from .numbers import Refused, Undecided, between
+from .numbers import Excluded, Refused, Undecided, between
 
 # Steps of a proof that no contact comes before: the first part of a revolution that is tried, and how often it is halved.
 FIRST_STEP = 1 / 16
@@ -177,7 +177,7 @@ class Flight:
                 step *= 1.5
                 continue
             if contact is not None and contact > reached + step and self.gap(arb(reached + step)) < 0:
-                raise Refused(f"the flight meets the cam elsewhere, within {reached + step:.6g} s after it began")
+                raise Excluded(f"the flight meets the cam elsewhere, within {reached + step:.6g} s after it began")
             step /= 2
             if step < shortest:
                 raise Refused(f"the flight is not proved to be clear of the cam {reached:.6g} s after it began: it may touch")

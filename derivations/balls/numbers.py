@@ -14,6 +14,10 @@ class Refused(Exception):
     """What was to be proved is not so, or is no model: the sentence says what was found."""
 
 
+class Excluded(Refused):
+    """It is proved not to be so."""
+
+
 class Undecided(Refused):
     """The balls are too wide to tell."""
 

@@ -4,7 +4,9 @@ use crate::ball::Ball;
 use crate::show::block::{Block, Column, Mark, Table, Words, words};
 use crate::show::digits::Digits;
 use crate::show::{Paged, words};
-use crate::study::certify::{Certificate, Certified, ProvedEigenvalue, ProvedSide, Unproved};
+use crate::study::certify::{
+    Certificate, Certified, ProvedEigenvalue, ProvedOrbits, ProvedSide, ProvedStart, Unproved,
+};
 
 impl Paged for Certified {
     fn blocks(&self) -> Vec<Block> {
@@ -23,6 +25,30 @@ impl Paged for Certified {
         ];
         self.corner_impacts.iter().for_each(|one| page.extend(certificate(one)));
         page.extend(refused(&self.refused));
+        page
+    }
+}
+
+impl Paged for ProvedOrbits {
+    fn blocks(&self) -> Vec<Block> {
+        let mut page = vec![Block::Title(format!("Periodic orbits at {} rpm, proved", self.speed_rpm).into())];
+        for orbit in &self.orbits {
+            let start = |start: &ProvedStart| {
+                let words =
+                    words![&start.cam_angle_rad.mid, " rad, leaves at ", &start.relative_velocity_m_s.mid, " m/s"];
+                ("impact".into(), words)
+            };
+            let (impacts, kind) = (words::many(orbit.impacts.len() as u64, "impact"), orbit.kind.to_string());
+            page.push(Block::paragraph(words![format!("{impacts}, "), (Mark::Strong, kind.as_str())]));
+            page.push(Block::Entries(9, orbit.impacts.iter().map(start).collect()));
+        }
+        for count in [1, 2] {
+            let impacts = words::many(count as u64, "impact");
+            page.push(Block::paragraph(match self.complete.contains(&count) {
+                true => format!("Orbits of {impacts} in 1 revolution: there are no others, which is proved."),
+                false => format!("Orbits of {impacts} in 1 revolution: there may be others, that is not decided."),
+            }));
+        }
         page
     }
 }

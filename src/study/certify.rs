@@ -234,6 +234,70 @@ pub fn certify(model: &Model, range: Study, revolutions: u64, bits: u32) -> Resu
     Ok(Certified { model: ModelLabel::of(model), range, bits, corner_impacts, refused })
 }
 
+/// The periodic orbits of one impact and of two in one revolution at a speed, found and proved by the script alone.
+#[derive(Clone, Debug, Deserialize)]
+pub struct ProvedOrbits {
+    /// Speed, rpm; the decimal that it is written as.
+    #[serde(skip)]
+    pub speed_rpm: f64,
+    /// Bits that the balls were computed with.
+    #[serde(skip)]
+    pub bits: u32,
+    /// Each once.
+    pub orbits: Vec<ProvedOrbit>,
+    /// The numbers of impacts for which there are proved to be no others.
+    pub complete: Vec<usize>,
+}
+
+document!(ProvedOrbits as it {
+    schema: "corner-impact/certify/1",
+    speed_rpm: it.speed_rpm,
+    bits: it.bits,
+    known: Known::Proved,
+    orbits: it.orbits,
+    complete: it.complete,
+});
+
+/// A periodic orbit: its flights are clear of the cam, and it is alone near its impacts.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[expect(missing_docs, reason = "the names say what each is")]
+pub struct ProvedOrbit {
+    pub revolutions: u64,
+    pub impacts: Vec<ProvedStart>,
+    pub kind: OrbitKind,
+}
+
+/// Where a flight of an orbit starts: the velocity after the impact, relative to the cam.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[expect(missing_docs, reason = "the names say what each is")]
+pub struct ProvedStart {
+    pub cam_angle_rad: Ball,
+    pub relative_velocity_m_s: Ball,
+}
+
+/// What the multipliers of an orbit are proved to be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum OrbitKind {
+    /// Both inside of the unit circle.
+    Stable,
+    /// One is above 1.
+    Saddle,
+    /// One is below -1.
+    Flip,
+    /// A pair outside of the unit circle.
+    Unstable,
+}
+
+named!(OrbitKind);
+
+/// All orbits of one impact and of two in one revolution at a speed, rpm.
+pub fn proved_orbits(model: &Model, speed_rpm: f64, bits: u32) -> Result<ProvedOrbits, CertifyError> {
+    let document = json!({ "follower": model.follower, "cam": model.cam, "bits": bits, "orbits_at_rpm": speed_rpm });
+    let found: ProvedOrbits = python::run("certify.py", &document)?;
+    Ok(ProvedOrbits { speed_rpm, bits, ..found })
+}
+
 /// What the script says of one place.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "snake_case")]

@@ -236,6 +236,41 @@ fn a_cam_whose_decimals_meet_nearly_is_certified_with_that_hypothesis() {
     assert!(text(page.stdout).contains("The pieces of the cam miss"));
 }
 
+/// The list is found by another program than `orbit`'s, and neither may have an orbit that the other lacks.
+#[test]
+fn all_orbits_of_one_and_of_two_impacts_are_proved_and_orbit_has_the_same() {
+    let file = "models/osorio-2008.toml";
+    let found = certified(&[file, "--orbits", "--rpm", "700"]);
+    assert_eq!(found["complete"], json!([1, 2]), "{found}");
+    let orbits = found["orbits"].as_array().unwrap();
+    let first = |orbit: &Value| orbit["impacts"][0]["cam_angle_rad"]["mid"].as_str().unwrap().parse::<f64>().unwrap();
+    let mut seen: Vec<(usize, f64, &str)> = orbits
+        .iter()
+        .map(|orbit| {
+            let count = orbit["impacts"].as_array().unwrap().len();
+            (count, first(orbit).to_degrees(), orbit["kind"].as_str().unwrap())
+        })
+        .collect();
+    seen.sort_by(|one, other| one.0.cmp(&other.0).then(one.1.total_cmp(&other.1)));
+    let kinds: Vec<_> = seen.iter().map(|(count, _, kind)| (*count, *kind)).collect();
+    assert_eq!(kinds, [(1, "saddle"), (1, "stable"), (2, "flip")], "{seen:?}");
+    for (angle, expected) in [(seen[0].1, 104.160_829_387_844_75), (seen[1].1, 155.303_685_602_748_75)] {
+        assert!((angle - expected).abs() < 1e-12, "{angle}");
+    }
+    let other = corner_impact(["orbit", file, "--rpm", "700", "--json"]);
+    let other: Value = serde_json::from_slice(&other.stdout).unwrap();
+    let impacts = |orbit: &Value| -> Vec<f64> {
+        orbit["impacts"].as_array().unwrap().iter().map(|impact| impact["cam_angle_rad"].as_f64().unwrap()).collect()
+    };
+    let theirs: Vec<Vec<f64>> = other["orbits"].as_array().unwrap().iter().map(impacts).collect();
+    assert_eq!(theirs.iter().filter(|angles| angles.len() <= 2).count(), orbits.len(), "{theirs:?}");
+    for orbit in orbits {
+        let (count, angle) = (orbit["impacts"].as_array().unwrap().len(), first(orbit));
+        let has = |angles: &Vec<f64>| angles.len() == count && angles.iter().any(|other| (other - angle).abs() < 1e-9);
+        assert!(theirs.iter().any(has), "{orbit} is none of {theirs:?}");
+    }
+}
+
 #[test]
 fn without_python_it_says_so() {
     let output = common::program(["certify"]).env("CORNER_IMPACT_PYTHON", "/nonexistent/python").output().unwrap();
