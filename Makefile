@@ -7,7 +7,7 @@ CARGO ?= cargo
 RELEASE := --release --locked
 
 .DEFAULT_GOAL := help
-.PHONY: help verify report quick test check derive derive-check claims pictures review mutants bench bench-each bench-peers clean
+.PHONY: help verify report quick test check derive derive-check theorems claims pictures review mutants bench bench-each bench-peers clean
 
 # Python and its packages, once; again when the list of packages changes.
 PYTHON ?= python3
@@ -47,6 +47,9 @@ derive: $(VENV) ## redo the derivations by computer algebra and write golden/der
 
 derive-check: $(VENV) ## redo them, and fail if golden/derived is not what comes out
 	.venv/bin/python derivations/derive.py --check
+
+theorems: $(VENV) ## prove the chaos at 670 rpm again in ball arithmetic, by a program of its own
+	.venv/bin/python derivations/chaos.py --rpm 670
 
 claims: ## write docs/claims.md: what the paper states, and what was found
 	$(CARGO) build $(RELEASE) --quiet

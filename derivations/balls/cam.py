@@ -113,29 +113,21 @@ class Cam:
                 return piece
         raise Undecided(f"it is not proved on which piece of the cam the angle {angle.str(8)} lies")
 
-    def derivatives(self, angle):
-        """(c, c', c'', c''') over the ball: the hull of all pieces that it may meet, each over its part."""
-        parts, _ = self.parts(angle)
+    def seen(self, angle):
+        """(c, c', c'', c''') over the ball, the hull of all pieces that it may meet, each over its part; and whether c and c' are
+        continuous over it for certain, so that Taylor's formula holds with the hull of c''."""
+        parts, smooth = self.parts(angle)
         each = [law.derivatives(part) for law, part in parts]
         lift, slope, curvature, third = each[0] if len(each) == 1 else tuple(hull(order) for order in zip(*each))
-        return lift + self.slack[0], slope + self.slack[1], curvature, third
+        return (lift + self.slack[0], slope + self.slack[1], curvature, third), smooth
+
+    def derivatives(self, angle):
+        """(c, c', c'', c''') over the ball."""
+        return self.seen(angle)[0]
 
     def is_smooth(self, angle):
-        """Whether c and c' are continuous over the ball for certain, so that Taylor's formula holds with the hull of c''."""
+        """Whether c and c' are continuous over the ball for certain."""
         return self.parts(angle)[1]
-
-
-@dataclass(frozen=True)
-class Piece:
-    """A law with the angles between which it holds, rad, of one revolution."""
-
-    start: arb
-    end: arb
-    law: object
-
-    def holds(self, angle):
-        """Whether all of a ball is proved to lie between its ends."""
-        return bool(angle > self.start and angle < self.end)
 
 
 class Turned:

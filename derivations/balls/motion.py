@@ -15,7 +15,7 @@ from flint import arb, arb_mat
 
 from .cam import Cam
 from .flight import Follower
-from .numbers import Excluded, Refused, Undecided, between
+from .numbers import Excluded, Refused, Undecided, between, overlap
 
 # Steps of a proof that no contact comes before: the first part of a revolution that is tried, and how often it is halved.
 FIRST_STEP = 1 / 16
@@ -59,7 +59,10 @@ class Flight:
 
     def __init__(self, machine, start, law=None):
         self.machine, self.start, self.law = machine, start, law
-        lift, slope, curvature, _ = (law or machine.cam).derivatives(start.angle)
+        if law is None:
+            (lift, slope, curvature, _), self.starts_smoothly = machine.cam.seen(start.angle)
+        else:
+            (lift, slope, curvature, _), self.starts_smoothly = law.derivatives(start.angle), True
         self.slope, self.curvature, self.position = slope, curvature, lift
         self.velocity = slope * start.speed + start.velocity
         offsets = start.offsets()
@@ -76,14 +79,16 @@ class Flight:
         return self.machine.follower.fly(self.machine.follower.response(time), self.position, self.velocity)
 
     def _kinematics(self, time):
-        """What every enclosure needs at a ball of times: response, state, and (c, c', c'') under the follower."""
+        """What every enclosure needs at a ball of times: response, state, (c, c', c'') under the follower, and whether Taylor's
+        formula holds."""
         follower = self.machine.follower
         response = follower.response(time)
-        return response, follower.fly(response, self.position, self.velocity), self.machine.cam.derivatives(self.angle(time))
+        lifts, smooth = self.machine.cam.seen(self.angle(time))
+        return response, follower.fly(response, self.position, self.velocity), lifts, smooth and self.starts_smoothly
 
     def gap_by_start(self, time, seen=None):
         """(g_theta, g_u, g_omega) over the ball."""
-        (p, s, _), _, (_, slope, _, _) = seen or self._kinematics(time)
+        (p, s, _), _, (_, slope, _, _), _ = seen or self._kinematics(time)
         omega0_squared, speed = self.machine.follower.omega0_squared, self.start.speed
         # q_theta = (1 - w0^2 p) c'(theta) + s c''(theta) omega, q_u = s, q_omega = s c'(theta)
         of_angle = (1 - omega0_squared * p) * self.slope + s * self.curvature * speed - slope
@@ -91,7 +96,7 @@ class Flight:
 
     def rate_by_start(self, time, seen=None):
         """(g'_theta, g'_u, g'_omega) over the ball, ' by time."""
-        (_, s, s1), _, (_, slope, curvature, _) = seen or self._kinematics(time)
+        (_, s, s1), _, (_, slope, curvature, _), _ = seen or self._kinematics(time)
         omega0_squared, speed = self.machine.follower.omega0_squared, self.start.speed
         # v_theta = -w0^2 s c'(theta) + s' c''(theta) omega, v_u = s', v_omega = s' c'(theta)
         of_angle = -omega0_squared * s * self.slope + s1 * self.curvature * speed - curvature * speed
@@ -99,19 +104,19 @@ class Flight:
 
     def _rate_rate(self, seen):
         """g'' = q'' - c'' omega^2 over the ball."""
-        _, (position, velocity), (_, _, curvature, _) = seen
+        _, (position, velocity), (_, _, curvature, _), _ = seen
         return self.machine.follower.acceleration(position, velocity) - curvature * self.start.speed**2
 
-    def _at(self, time):
+    def _at(self, time, seen=None):
         """(g, g') as they come out, without any form that keeps them narrow."""
-        _, (position, velocity), (lift, slope, _, _) = self._kinematics(time)
+        _, (position, velocity), (lift, slope, _, _), _ = seen or self._kinematics(time)
         return position - lift, velocity - slope * self.start.speed
 
     def gap(self, time):
         """g over a ball of times and all starts."""
-        if not self.machine.cam.is_smooth(self.angle(time)) or not self._starts_smoothly():
-            return self._at(time)[0]
         seen, middle = self._kinematics(time), time.mid()
+        if not seen[-1]:
+            return self._at(time, seen)[0]
         gap, rate = self.centre._at(middle)
         later = time - middle
         gap += (rate + self._rate_rate(seen) * later / 2) * later
@@ -119,21 +124,18 @@ class Flight:
 
     def gap_rate(self, time):
         """g' over a ball of times and all starts."""
-        if not self.machine.cam.is_smooth(self.angle(time)) or not self._starts_smoothly():
-            return self._at(time)[1]
         seen, middle = self._kinematics(time), time.mid()
+        if not seen[-1]:
+            return self._at(time, seen)[1]
         rate = self.centre._at(middle)[1] + self._rate_rate(seen) * (time - middle)
         return rate if self.is_point else rate + _along(self.rate_by_start(time, seen), self.offsets)
 
-    def _starts_smoothly(self):
-        return self.law is not None or self.machine.cam.is_smooth(self.start.angle)
-
-    def contact_near(self, time):
+    def contact_near(self, time, known=False):
         """A ball that holds a contact of each flight, one and no other within `time`, by interval Newton; None if not proved.
 
-        Nor is it where the lift or its slope may jump under the ball.
+        Nor is it where the lift or its slope may jump under the ball. With `known`, that there is one within `time` is proved before.
         """
-        if not (self._starts_smoothly() and self.machine.cam.is_smooth(self.angle(time))):
+        if not (self.starts_smoothly and self.machine.cam.is_smooth(self.angle(time))):
             return None
         for _ in range(NEWTON):
             rate, middle = self.gap_rate(time), time.mid()
@@ -141,9 +143,9 @@ class Flight:
                 return None
             # All of N(T) = m - g(m)/g'(T) in T: each start has one contact in T, and it lies in N(T).
             step = middle - self.gap(middle) / rate
-            if not time.contains(step):
-                return None
-            if not step.rad() < time.rad() * 0.75:
+            known = known or time.contains(step)
+            step = overlap(time, step) if known else None
+            if step is None or not step.rad() < time.rad() * 0.75:
                 return step
             time = step
         return time
@@ -169,9 +171,10 @@ class Flight:
             if landing is None and not self.centre._at(arb(reached + step))[0] > 0:
                 landing = self.centre._closed(reached, reached + step)
             if landing is not None and reached + 2 * step >= landing:
-                found = self._lands(reached, landing, contact)
-                if found is not None:
-                    return found
+                if contact is None:
+                    contact = self._contact_about(landing)
+                if contact > reached and self.gap_rate(between(reached, contact)) < 0:
+                    return contact
             if self.gap(between(reached, reached + step)) > 0:
                 reached += step
                 step *= 1.5
@@ -190,23 +193,18 @@ class Flight:
             low, high = (middle, high) if self._at(arb(middle))[0] > 0 else (low, middle)
         return (low + high) / 2
 
-    def _lands(self, reached, landing, contact):
-        """The contact near a guess, or the one that is known, if g' < 0 from `reached` on to it; None if that is not proved."""
-        if contact is None:
-            contact = self._contact_about(landing)
-        if contact is None or not contact > reached or not self.gap_rate(between(reached, contact)) < 0:
-            return None
-        return contact
-
     def _contact_about(self, landing):
-        """The contact near a guess, proved to be one; None without a proof."""
+        """The contact near a guess, proved to be one."""
         # As wide as the starts make it, and more than the guess is off by.
         rate = self.centre._at(arb(landing))[1]
         if not rate < 0:
-            return None
+            raise Undecided(f"the flight is not proved to land about {landing:.6g} s after it began: it may touch")
         spread = abs(_along(self.gap_by_start(arb(landing)), self.offsets) / rate).upper() if not self.is_point else arb(0)
         reach = 2 * spread + abs(self.centre._at(arb(landing))[0] / rate).upper() * 2 + arb(landing) * 2**-40
-        return self.contact_near(arb(landing) + arb(0, reach))
+        contact = self.contact_near(arb(landing) + arb(0, reach))
+        if contact is None:
+            raise Undecided(f"the flight is not proved to land once about {landing:.6g} s after it began")
+        return contact
 
 
 def _along(gradient, offsets):
@@ -215,9 +213,11 @@ def _along(gradient, offsets):
 
 @dataclass(frozen=True)
 class Impact:
-    """What the impact map makes of a ball of starts: the next start, all of it, its derivative, and the flight's time."""
+    """What the impact map makes of a ball of starts: the next start, of all and of the middle one, its derivative, and the
+    flight's time."""
 
     start: Start
+    centre: Start
     derivative: arb_mat
     time: arb
 
@@ -226,7 +226,7 @@ def derivative(flight, time):
     """d(theta', u')/d(theta, u, omega), 2x3, over all starts whose contact is within `time`; c'' is the hull across corners."""
     machine, (_, _, speed) = flight.machine, flight.start
     seen = flight._kinematics(time)
-    (_, s, s1), (position, velocity), (_, slope, curvature, _) = seen
+    (_, s, s1), (position, velocity), (_, slope, curvature, _), _ = seen
     follower = machine.follower
     rate, acceleration = velocity - slope * speed, follower.acceleration(position, velocity)
     at_start = flight.slope, flight.curvature * speed
@@ -251,13 +251,15 @@ def impact_map(machine, start, horizon):
     derivative's hull, and the mean value form holds all the same.
     """
     flight = Flight(machine, start)
-    time = flight.first_contact(horizon)
-    jacobian = derivative(flight, time)
-    at_centre = flight.centre.contact_near(time) or time
-    _, velocity = flight.centre.state(at_centre)
-    angle = flight.centre.angle(at_centre)
-    slope = machine.cam.derivatives(angle)[1]
-    image = [angle, machine.follower.restitution * (slope * flight.centre.start.speed - velocity)]
-    if not flight.is_point:
-        image = [value + _along([jacobian[row, k] for k in range(3)], flight.offsets) for row, value in enumerate(image)]
-    return Impact(Start(image[0], image[1], start.speed), jacobian, time)
+    return impact(flight, flight.first_contact(horizon))
+
+
+def impact(flight, time):
+    """The impact map, where `time` is proved to hold one contact of each flight, and that is its first."""
+    jacobian, centre, follower = derivative(flight, time), flight.centre, flight.machine.follower
+    at_centre = centre.contact_near(time, known=True) or time
+    angle, (_, velocity), speed = centre.angle(at_centre), centre.state(at_centre), centre.start.speed
+    slope = flight.machine.cam.derivatives(angle)[1]
+    image = angle, follower.restitution * (slope * speed - velocity)
+    whole = [value + _along([jacobian[row, k] for k in range(3)], flight.offsets) for row, value in enumerate(image)]
+    return Impact(Start(*whole, flight.start.speed), Start(*image, speed), jacobian, time)

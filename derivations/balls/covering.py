@@ -1,0 +1,233 @@
+"""Covering relations and cones of the impact map: boxes of impacts that it stretches across each other.
+
+An h-set is N = centre + x unstable + y stable, x and y in ranges. A strip S, a part of it over all of y, is carried by n impacts
+k revolutions on. It covers N where
+
+    f^n(S) nowhere meets x in N's range with y outside of N's,
+    the left edge of S goes beyond one side of N and the right edge beyond the other,
+
+and keeps the cones |dy| <= L |dx|, stretching what is in them, where with Df^n = [[a, b], [c, d]] in x and y
+
+    a has one sign on all of S,   |c| + L |d| <= L (|a| - L |b|),   |a| - L |b| > 1.
+
+The matrices with these two for a sign of a are a convex set, so that they need hold on no more than each box of S.
+"""
+
+from dataclasses import dataclass
+
+from flint import arb, arb_mat, fmpq
+
+from .motion import Flight, Start, impact
+from .numbers import Refused, Undecided, between, decimal, within
+
+# How often a box is halved before what it is to show counts as not proved.
+HALVINGS = 40
+
+
+def _pair(entry, name):
+    pair = entry[name]
+    if not isinstance(pair, list) or len(pair) != 2:
+        raise Refused(f"{name} is no pair of numbers")
+    return tuple(decimal(number) for number in pair)
+
+
+def _range(entry, name):
+    low, high = _pair(entry, name)
+    if low > high:
+        raise Refused(f"{name} is no range")
+    return low, high
+
+
+@dataclass(frozen=True)
+class Strip:
+    """A part of N over all of its height, and after how many impacts and revolutions it is back."""
+
+    x: tuple
+    impacts: int
+    revolutions: int
+
+
+class HSet:
+    """N and its strips as a data file has them: rationals, in degrees of cam angle and in m/s after an impact, relative to the cam."""
+
+    def __init__(self, entry):
+        self.rpm, self.x, self.y = (_range(entry, name) for name in ("rpm", "x", "y"))
+        self.centre, self.unstable, self.stable = (_pair(entry, name) for name in ("centre", "unstable", "stable"))
+        slope = entry["cone_slope"]
+        self.cone_slope = None if slope is None else arb(decimal(slope))
+        self.strips = [Strip(_range(strip, "x"), int(strip["impacts"]), int(strip["revolutions"])) for strip in entry["strips"]]
+        (a, c), (b, d) = self.unstable, self.stable
+        size = a * d - b * c
+        if size == 0:
+            raise Refused("the two directions of N are parallel")
+        degree = arb.pi() / 180
+        # (rad, m/s) = middle + turned (x, y), and back.
+        self.middle = arb_mat([[self.centre[0] * degree], [arb(self.centre[1])]])
+        self.turned = arb_mat([[a * degree, b * degree], [arb(c), arb(d)]])
+        self.back = arb_mat([[d / size / degree, arb(-b / size)], [-c / size / degree, arb(a / size)]])
+        self._stands()
+
+    def _stands(self):
+        """Refused unless what a theorem asks of N and its strips before anything moves holds; rationals decide all of it."""
+        corners = [[o + x * a + y * b for o, a, b in zip(self.centre, self.unstable, self.stable)] for x in self.x for y in self.y]
+        if not min(velocity for _, velocity in corners) > 0:
+            raise Refused("N has impacts after which the follower does not leave the cam")
+        angles = [angle for angle, _ in corners]
+        if not max(angles) - min(angles) < 360:
+            raise Refused("N is wider than a revolution")
+        for strip in self.strips:
+            if not (self.x[0] < strip.x[0] < strip.x[1] < self.x[1]):
+                raise Refused(f"the strip of {strip.impacts} impacts is not inside of N")
+            if strip.impacts < 1 or strip.revolutions < 1:
+                raise Refused("a strip takes at least one impact and one revolution")
+        ordered = sorted(strip.x for strip in self.strips)
+        if any(not before[1] < after[0] for before, after in zip(ordered, ordered[1:])):
+            raise Refused("two strips of N meet")
+
+    def entropy(self):
+        """The entropy of a revolution of the full shift on the strips, a ball: log of lambda, the sum of lambda^-k being 1."""
+        # At 1 the sum is the number of strips, at that number at most 1; between them it falls.
+        low, high = fmpq(1), fmpq(len(self.strips))
+        while high - low > fmpq(1, 2**30):
+            middle = (low + high) / 2
+            if sum((1 / arb(middle) ** strip.revolutions for strip in self.strips), arb(0)) > 1:
+                low = middle
+            else:
+                high = middle
+        return arb(low).log()
+
+
+class Journey:
+    """The starts of a box of x and y, at the speeds of an h-set, followed from impact to impact.
+
+    Each start is at `middle` + `matrix` (dx, dy, domega) + `rest`: a point, the derivative over all of the box, and what the
+    middle is uncertain by. So the box is not packed into a box of angle and velocity at each impact.
+    """
+
+    def __init__(self, machine, h_set, x, y):
+        self.machine, self.h_set, self.times = machine, h_set, []
+        ranges = [between(*x), between(*y), between(*h_set.rpm) * arb.pi() / 30]
+        self.speed = ranges[2]
+        self.offsets = arb_mat([[arb(0, one.rad())] for one in ranges])
+        at = h_set.middle + h_set.turned * arb_mat([[one.mid()] for one in ranges[:2]])
+        turned = h_set.turned
+        self.matrix = arb_mat([[turned[row, 0], turned[row, 1], 0] for row in range(2)])
+        self._put(at, arb_mat(2, 1))
+        # How far the box reaches by x and by y, as seen in N, at its widest.
+        self.reach = [arb(0), arb(0)]
+
+    def _put(self, at, rest):
+        """The middle becomes a point: what it is uncertain by joins the rest."""
+        self.middle = [at[row, 0].mid() for row in range(2)]
+        self.rest = rest + arb_mat([[arb(0, at[row, 0].rad())] for row in range(2)])
+
+    def go(self, horizon, known=None):
+        """To the next impact. `known` are times that the first contacts are known to lie within; where they are shown to hold one
+        contact of each flight nearby, too, the formulas speak of the first."""
+        for axis in range(2):
+            column = self.h_set.back * arb_mat([[self.matrix[row, axis] * self.offsets[axis, 0]] for row in range(2)])
+            self.reach[axis] = max(self.reach[axis], *(column[row, 0].abs_upper() for row in range(2)))
+        off = self.matrix * self.offsets + self.rest
+        # The ball's middle is `middle` itself, from which the image of the middle is computed.
+        state = [arb(middle, off[row, 0].abs_upper()) for row, middle in enumerate(self.middle)]
+        flight = Flight(self.machine, Start(*state, self.speed))
+        time = None if known is None else flight.contact_near(known)
+        time = flight.first_contact(horizon) if time is None else time
+        self.times.append(time)
+        there = impact(flight, time)
+        by_state = arb_mat([[there.derivative[row, column] for column in range(2)] for row in range(2)])
+        moved = by_state * self.matrix
+        self.matrix = arb_mat([[moved[row, 0], moved[row, 1], moved[row, 2] + there.derivative[row, 2]] for row in range(2)])
+        self._put(arb_mat([[there.centre.angle], [there.centre.velocity]]), by_state * self.rest)
+
+    def seen(self, revolutions):
+        """In x and y of N, some revolutions on: the image of the middle, of the box, and the derivative by x and y."""
+        turns = arb_mat([[2 * arb.pi() * revolutions], [arb(0)]])
+        back, at = self.h_set.back, arb_mat([[middle] for middle in self.middle])
+        middle = back * (at + self.rest - turns - self.h_set.middle)
+        matrix = back * self.matrix
+        whole = middle + matrix * self.offsets
+        return [middle[row, 0] for row in range(2)], [whole[row, 0] for row in range(2)], matrix
+
+
+class Proof:
+    """Of one strip of an h-set: that it covers N, and that it keeps the cones if there are any."""
+
+    def __init__(self, machine, h_set, strip):
+        self.machine, self.h_set, self.strip = machine, h_set, strip
+        self.growth, self.signs, self.boxes = None, set(), 0
+        self.x, self.y = between(*h_set.x), between(*h_set.y)
+        # No flight of a strip that is back after k revolutions takes more than k, and one for the widths of N.
+        self.horizon = (strip.revolutions + 1) * 60 / float(h_set.rpm[0])
+
+    def prove(self):
+        """Refused, or Undecided, with a sentence that says what fails where."""
+        sides = [set(self._pieces((edge, edge), self._beyond)) for edge in self.strip.x]
+        if not (len(sides[0]) == len(sides[1]) == 1 and sides[0] != sides[1]):
+            raise Refused(f"{self._name()}: its edges do not go beyond different sides of N")
+        for growth in self._pieces(self.strip.x, self._covers):
+            self.boxes += 1
+            if growth is not None:
+                self.growth = growth if self.growth is None else min(self.growth, growth)
+        if len(self.signs) > 1:
+            raise Refused(f"{self._name()}: it is folded, as a has both signs")
+
+    def _name(self):
+        return f"the strip of {self.strip.impacts} impacts"
+
+    def _pieces(self, x, judge):
+        """What `judge` says of each box of the strip, which are halved until it says something; it says None or why not."""
+        waiting = [(x, self.h_set.y, (), HALVINGS)]
+        while waiting:
+            x, y, known, left = waiting.pop()
+            journey = Journey(self.machine, self.h_set, x, y)
+            try:
+                # A part of a box has its contacts where the box has them.
+                for index in range(self.strip.impacts):
+                    journey.go(self.horizon, known[index] if index < len(known) else None)
+                yield judge(*journey.seen(self.strip.revolutions))
+                continue
+            except Violated:
+                raise
+            except Refused as reason:
+                if left == 0:
+                    raise Undecided(f"{self._name()}, about x = {float(x[0]):.6g}, y = {float(y[0]):.6g}: {reason}") from reason
+            if journey.reach[0] > journey.reach[1]:
+                middle = (x[0] + x[1]) / 2
+                halves = ((x[0], middle), y), ((middle, x[1]), y)
+            else:
+                middle = (y[0] + y[1]) / 2
+                halves = (x, (y[0], middle)), (x, (middle, y[1]))
+            waiting += [(*half, tuple(journey.times), left - 1) for half in halves]
+
+    def _beyond(self, middle, whole, _):
+        """Beyond which side of N all of the image is."""
+        if whole[0] < self.x.lower():
+            return "left"
+        if whole[0] > self.x.upper():
+            return "right"
+        if within(middle[0], self.x):
+            raise Violated(f"{self._name()}: an edge does not go beyond N, but to x = {middle[0].str(6)}")
+        raise Undecided("an edge is not proved to go beyond N")
+
+    def _covers(self, middle, whole, matrix):
+        """The least growth in the cones; None without cones."""
+        if whole[0].overlaps(self.x) and not within(whole[1], self.y):
+            if within(middle[0], self.x) and not middle[1].overlaps(self.y):
+                raise Violated(f"{self._name()}: its image leaves N at x = {middle[0].str(6)}, y = {middle[1].str(6)}")
+            raise Undecided("the image is not proved to stay between top and bottom of N")
+        slope = self.h_set.cone_slope
+        if slope is None:
+            return None
+        a, b, c, d = (abs(matrix[row, column]) for row in range(2) for column in range(2))
+        if matrix[0, 0].overlaps(arb(0)):
+            raise Undecided("the sign of a is not proved")
+        growth = a - slope * b
+        if not (growth > 1 and c + slope * d <= slope * growth):
+            raise Undecided(f"the cones are not proved to be kept: growth {growth.str(4)}")
+        self.signs.add(bool(matrix[0, 0] > 0))
+        return growth.lower()
+
+
+class Violated(Refused):
+    """What was to be proved is proved not to be so."""

@@ -1,0 +1,135 @@
+"""Sets of chaotic motions, proved in ball arithmetic from the h-sets of golden/chaos.
+
+    python derivations/chaos.py                    every h-set
+    python derivations/chaos.py --rpm 670          those for that speed; LO:HI: those for speeds of that range
+    python derivations/chaos.py --json FILE ...    those of other files, as one JSON document
+
+A line a strip and a line a theorem, as soon as it is known; exit 1 if one is not proved. A theorem says that a set of chaotic
+motions exists at every speed that its h-set is for, not that other motions come to it. balls/covering.py says why it follows.
+"""
+
+import argparse
+import json
+import math
+import sys
+import tomllib
+from pathlib import Path
+
+try:
+    from flint import ctx
+except ImportError:
+    sys.exit("chaos.py: the Python package python-flint is missing")
+
+from balls.covering import HSet, Proof
+from balls.motion import Machine
+from balls.numbers import Refused, decimal
+
+ROOT = Path(__file__).resolve().parent.parent
+# Digits enough that a middle, followed over the impacts of any strip, is far narrower than the smallest box.
+BITS = 64
+HYPOTHESES = [
+    "the machine is the one whose numbers are the decimals of the model file",
+    "0 < restitution < 1, or restitution = 1 with damping: the impact map has an inverse, and shrinks areas u dtheta du",
+    "after every impact in N the follower leaves the cam; the strips lie in N, apart",
+    "every contact is proved to be the first of its flight, and the follower comes to the cam at it with a velocity",
+]
+
+
+def machine_of(name):
+    """The machine of models/NAME.toml; Refused where the theorem does not speak of it."""
+    machine = Machine(tomllib.loads((ROOT / "models" / f"{name}.toml").read_text(), parse_float=str))
+    if any(corner.assumed for corner in machine.cam.corners):
+        raise Refused("the pieces of the cam meet only nearly")
+    follower = machine.follower
+    if not (follower.restitution > 0 and (follower.restitution < 1 or follower.zeta > 0)):
+        raise Refused("without a loss at impacts or in flight, or without restitution, nothing is said")
+    return machine
+
+
+def theorem(machine, h_set, say):
+    """What is proved of one h-set, strip by strip: a dictionary, in which `proved` holds where all of it is."""
+    strips = []
+    for strip in h_set.strips:
+        proof, result = Proof(machine, h_set, strip), {"impacts": strip.impacts, "revolutions": strip.revolutions}
+        try:
+            proof.prove()
+            result |= {"boxes": proof.boxes, "growth": proof.growth and below(proof.growth)}
+            kept = f", and keeps the cones, stretching {at_least(result['growth'])} times or more" if proof.growth else ""
+            say(True, f"the strip of {strip.impacts} impacts covers N{kept} ({proof.boxes} boxes)")
+        except Refused as error:
+            result["refused"] = str(error)
+            say(False, str(error))
+        strips.append(result)
+    cones, symbols = h_set.cone_slope is not None, [strip.impacts for strip in h_set.strips]
+    proved, entropy = all("refused" not in strip for strip in strips), below(h_set.entropy())
+    told = ", ".join(map(str, symbols))
+    how_many = "one motion and no other" if cones else "a motion"
+    say(proved, f"{how_many} for every sequence of {told}, endless both ways; entropy of a revolution at least {at_least(entropy)}")
+    return {
+        "symbols": symbols,
+        "entropy_per_revolution": entropy,
+        "cones": cones,
+        "proved": proved,
+        "hypotheses": HYPOTHESES,
+        "strips": strips,
+    }
+
+
+def below(number):
+    """A double that a ball is certainly not below."""
+    return math.nextafter(float(number.lower()), -math.inf)
+
+
+def at_least(number):
+    """Six decimals of a number, rounded down."""
+    return f"{math.floor(number * 10**6) / 10**6:g}"
+
+
+def theorems(path, speeds, say):
+    """The theorem of each h-set of a file that is for speeds of a range, if there is one."""
+    document = json.loads(path.read_text(), parse_float=str, parse_int=str)
+    name = document["model"]
+    machine = machine_of(name)
+    for entry in document["h_sets"]:
+        low, high = (decimal(speed) for speed in entry["rpm"])
+        if speeds is not None and not (speeds[0] <= low and high <= speeds[1]):
+            continue
+        at = f"{name}, {entry['rpm'][0]} rpm" if low == high else f"{name}, {' to '.join(entry['rpm'])} rpm"
+        told = lambda proved, what, at=at: say(proved, f"{at}: {what}")  # noqa: E731
+        try:
+            result = theorem(machine, HSet(entry), told)
+        except Refused as error:
+            told(False, str(error))
+            result = {"proved": False, "refused": str(error)}
+        yield {"model": name, "rpm": [float(speed) for speed in entry["rpm"]], **result}
+
+
+def main():
+    parser = argparse.ArgumentParser(description="Prove sets of chaotic motions from their h-sets.")
+    parser.add_argument("files", nargs="*", type=Path, metavar="FILE", help="h-sets; those of golden/chaos")
+    parser.add_argument("--rpm", help="only h-sets for this speed, or for speeds within LO:HI")
+    parser.add_argument("--json", action="store_true", help="one JSON document instead of lines")
+    options = parser.parse_args()
+    ctx.prec = BITS
+
+    def say(proved, what):
+        if not options.json:
+            print(f"{'proved    ' if proved else 'NOT PROVED'}  {what}", flush=True)
+
+    found = []
+    try:
+        ends = options.rpm and options.rpm.split(":")
+        speeds = ends and (decimal(ends[0]), decimal(ends[-1]))
+        for path in options.files or sorted((ROOT / "golden" / "chaos").glob("*.json")):
+            found += theorems(path, speeds, say)
+    except (Refused, OSError, ValueError, KeyError, TypeError) as error:
+        sys.exit(f"chaos.py: {error!r}")
+    if options.json:
+        print(json.dumps({"theorems": found}, indent=1))
+    if not found:
+        sys.exit("chaos.py: no h-set is for these speeds")
+    sys.exit(0 if all(one["proved"] for one in found) else 1)
+
+
+if __name__ == "__main__":
+    main()
