@@ -15,4 +15,5 @@ proved, and what cannot be decided raises. Nothing here knows a result of anothe
     verdict     what a border collision does, every sign proved
     roots       all roots of a system in a box
     orbits      all orbits of one impact and of two in one revolution
+    covering    boxes of impacts that the impact map stretches across each other, and the cones that it keeps
 """

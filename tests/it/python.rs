@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use crate::common;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 /// The interpreter that `make` sets up; without it these questions cannot be asked, and that is a failure, not a pass.
 fn interpreter() -> PathBuf {
@@ -165,4 +165,51 @@ fn left_out_on_purpose_is_listed_and_agrees() {
         page.contains("NOT RUN") && page.contains("symbolic: left out") && page.contains("scipy: left out"),
         "{page}"
     );
+}
+
+/// The second program that proves chaos: an h-set that is off is refused, with the reason, and the same one is proved as it stands.
+#[test]
+#[ignore = "slow"]
+fn an_h_set_that_is_off_is_refused_in_balls_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let golden = std::fs::read_to_string(Path::new(common::ROOT).join("golden/chaos/osorio-2008.json")).unwrap();
+    let mut golden: Value = serde_json::from_str(&golden).unwrap();
+    let kept = golden["h_sets"][0].take();
+    // Each with one strip, the one of so many impacts.
+    type Change = fn(&mut Value);
+    let cases: [(u64, &str, Change); 13] = [
+        (5, "", |_| {}),
+        (5, "go beyond", |set| set["strips"][0]["x"] = json!([-3.6901, -3.6141])),
+        (5, "go beyond", |set| set["strips"][0]["x"] = json!([-3.8901, -3.8141])),
+        (5, "does not go beyond N", |set| set["strips"][0]["x"] = json!([-3.7751, -3.7141])),
+        (5, "does not go beyond N", |set| set["strips"][0]["x"] = json!([-3.7901, -3.7291])),
+        (6, "leaves N at", |set| set["y"] = json!([-0.159, 1.2])),
+        (2, "leaves N at", |set| set["y"] = json!([0.05, 1.386])),
+        // The flights of a part of it touch the cam; its edges are carried across all the same.
+        (2, "is not proved to", |set| set["strips"][0]["x"] = json!([-0.3, 0.201])),
+        (5, "go beyond", |set| set["strips"][0]["revolutions"] = json!(5)),
+        (5, "cones are not proved", |set| set["cone_slope"] = json!(0.01)),
+        (5, "is not inside of N", |set| set["x"] = json!([-3.75, 0.211])),
+        (5, "are parallel", |set| set["stable"] = set["unstable"].clone()),
+        (5, "does not leave the cam", |set| set["centre"] = json!([158.29, 0.1])),
+    ];
+    let files: Vec<PathBuf> =
+        (0..).map(|index| folder.path().join(format!("{index}.json"))).take(cases.len()).collect();
+    for (file, (impacts, _, change)) in files.iter().zip(&cases) {
+        let mut set = kept.clone();
+        set["strips"].as_array_mut().unwrap().retain(|strip| strip["impacts"] == *impacts);
+        change(&mut set);
+        std::fs::write(file, json!({ "model": "osorio-2008", "h_sets": [set] }).to_string()).unwrap();
+    }
+    let script = Path::new(common::ROOT).join("derivations/chaos.py");
+    let output = Command::new(interpreter()).arg(script).arg("--json").args(&files).output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "{}", String::from_utf8_lossy(&output.stderr));
+    let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let theorems = document["theorems"].as_array().unwrap();
+    assert_eq!(theorems.len(), cases.len());
+    for (theorem, (_, why, _)) in theorems.iter().zip(&cases) {
+        assert_eq!(theorem["proved"], why.is_empty(), "{theorem}");
+        let refused = [&theorem["refused"], &theorem["strips"][0]["refused"]].into_iter().find_map(Value::as_str);
+        assert!(refused.unwrap_or_default().contains(why), "{why}: {theorem}");
+    }
 }
