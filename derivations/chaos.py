@@ -5,7 +5,7 @@
     python derivations/chaos.py --json FILE ...    those of other files, as one JSON document
 
 A line a strip and a line a theorem, as soon as it is known; exit 1 if one is not proved. A theorem says that a set of chaotic
-motions exists at every speed that its h-set is for, not that other motions come to it. balls/covering.py says why it follows.
+motions exists at every speed that its h-set is for, not that other motions come to it. docs/theorems.md says why it follows.
 """
 
 import argparse
