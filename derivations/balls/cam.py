@@ -130,6 +130,19 @@ class Cam:
         return self.parts(angle)[1]
 
 
+@dataclass(frozen=True)
+class Piece:
+    """A law with the angles between which it holds, rad, of one revolution."""
+
+    start: arb
+    end: arb
+    law: object
+
+    def holds(self, angle):
+        """Whether all of a ball is proved to lie between its ends."""
+        return bool(angle > self.start and angle < self.end)
+
+
 class Turned:
     """A law some revolutions on."""
 

@@ -16,7 +16,7 @@ use super::{Colour, Figure};
 /// The widest image that is made.
 const WIDEST: u32 = 10_000;
 /// Rows of pixels that are drawn at a time; what is clipped takes five times as many beside them.
-const BAND: u32 = 16;
+const BAND: u32 = 8;
 
 /// Why there is no image.
 #[derive(Debug, thiserror::Error)]

@@ -102,7 +102,7 @@ pub(in crate::paper) fn chaos_below(context: &Context<'_>) -> Decision {
     let periodic = machine(context, 680.0);
     let above = growth(&periodic, from_x_star(context, &periodic)?, 4000)?;
     // Covering alone: that there is a motion for each sequence, and not that there is but one.
-    let kept = known(&context.model.name).into_iter().find(|set| set.rpm == [670.0; 2]).ok_or("no h-set is kept")?;
+    let kept = known("osorio-2008").into_iter().find(|set| set.rpm == [670.0; 2]).ok_or("no h-set is kept")?;
     let set = HSet { cone_slope: None, ..kept };
     let is_proved = prove(&chaotic, &set).is_ok();
     let evidence = format!(
