@@ -195,14 +195,15 @@ impl<'a> Launch<'a, '_> {
         let mut image = guessed - value / rate;
         for _ in 0..TRIES {
             let room = 0.1 * image.width() + tolerance::ULP.value * guess;
-            let times = image + Interval::new(-room, room);
+            // The theorem needs the guess among them: the mean value of g' is taken from there.
+            let times = (image + Interval::new(-room, room)).hull(guessed);
             let [_, rate] = of(&self.over(times));
             if !rate.is_negative() {
                 return None;
             }
             image = guessed - value / rate;
             if image.is_inside(times) {
-                let [_, rate] = of(&self.over(image));
+                let [_, rate] = of(&self.over(image.hull(guessed)));
                 return Some((guessed - value / rate).and(image));
             }
         }
