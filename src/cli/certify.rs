@@ -1,6 +1,6 @@
 //! `corner-impact certify [MODEL]`.
 
-use super::start::{rpm, rpm_range};
+use super::start::rpm_or_range;
 use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::model::Study;
 use crate::orbit::Search;
@@ -19,7 +19,7 @@ pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
     /// Range of speeds, rpm; with --orbits one speed [default: the model's [study]].
-    #[arg(long, value_name = "LO:HI", value_parser = speeds)]
+    #[arg(long, value_name = "LO:HI", value_parser = rpm_or_range)]
     rpm: Option<[f64; 2]>,
     /// Turns of the cam after which the orbits repeat, and no fewer.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=Search::MOST_REVOLUTIONS))]
@@ -33,11 +33,6 @@ pub(super) struct Arguments {
     /// Print one JSON document instead of the page.
     #[arg(long)]
     json: bool,
-}
-
-/// `LO:HI`, or `R` for a range of one speed.
-fn speeds(text: &str) -> Result<[f64; 2], String> {
-    if text.contains(':') { rpm_range(text) } else { rpm(text).map(|rpm| [rpm; 2]) }
 }
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {

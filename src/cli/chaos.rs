@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::picture::{Canvas, picture};
-use super::start::{rpm, rpm_range};
+use super::start::rpm_or_range;
 use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::figures::chaos_figure;
 use crate::study::chaos::{chaos, portrait};
@@ -20,7 +20,7 @@ pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
     /// Speed of the cam, or lowest and highest.
-    #[arg(long, value_name = "R|LO:HI", value_parser = speeds, allow_hyphen_values = true)]
+    #[arg(long, value_name = "R|LO:HI", value_parser = rpm_or_range, allow_hyphen_values = true)]
     rpm: [f64; 2],
     /// Print one JSON document instead of the page.
     #[arg(long)]
@@ -28,11 +28,6 @@ pub(super) struct Arguments {
     /// A picture (.svg, .png) of the h-set, its strips and where they are carried, at the lowest speed with a proof.
     #[arg(long, value_name = "FILE", value_parser = picture)]
     out: Option<PathBuf>,
-}
-
-/// One speed or two.
-fn speeds(text: &str) -> Result<[f64; 2], String> {
-    if text.contains(':') { rpm_range(text) } else { rpm(text).map(|rpm| [rpm; 2]) }
 }
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {

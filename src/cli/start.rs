@@ -76,6 +76,11 @@ pub(super) fn rpm_range(text: &str) -> Result<[f64; 2], String> {
     ends(text, rpm)
 }
 
+/// `LO:HI`, speeds, or `R` for a range of one.
+pub(super) fn rpm_or_range(text: &str) -> Result<[f64; 2], String> {
+    if text.contains(':') { rpm_range(text) } else { rpm(text).map(|rpm| [rpm; 2]) }
+}
+
 /// `NAME=LO:HI`.
 pub(super) fn parameter(text: &str) -> Result<(String, [f64; 2]), String> {
     let Some((name, ends)) = text.split_once('=').filter(|(_, ends)| ends.contains(':')) else {
