@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+use super::model::Changes;
 use super::progress::{Progress, watched};
 use super::{CommandError, Exit, ModelArgument, Session, picture};
 use crate::figures::{FIGURES, Listed, Plate, Subject, listed};
@@ -23,6 +24,8 @@ pub(super) struct Arguments {
     /// Model file (TOML) [default: the paper's], then the figure to draw, from the list; a name with a dot or a slash is a file.
     #[arg(value_name = "MODEL] [ID", num_args = 0..=2)]
     words: Vec<String>,
+    #[command(flatten)]
+    changes: Changes,
     /// The picture (.svg or .png).
     #[arg(long, value_name = "FILE", value_parser = picture::picture)]
     out: Option<PathBuf>,
@@ -62,7 +65,7 @@ fn named(words: &[String]) -> Result<(Option<&str>, Option<&str>), CommandError>
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let (file, id) = named(&arguments.words)?;
-    let model = ModelArgument::of(file.map(Path::new)).read(session)?;
+    let model = ModelArgument::of(file.map(Path::new), &arguments.changes).read(session)?;
     if id.is_none() && arguments.out.is_some() {
         return Err(CommandError::Words("--out is for one figure: name it, from the list without --out".into()));
     }

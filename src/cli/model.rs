@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{CommandError, progress::watched, session::Session};
+use super::{CommandError, progress::watched, session::Session, start::finite};
 use crate::model::Model;
 
 /// Which model a command is about.
@@ -11,26 +11,44 @@ pub(super) struct ModelArgument {
     /// Model file (TOML) [default: the paper's model, osorio-2008, which is built in].
     #[arg(value_name = "MODEL")]
     file: Option<PathBuf>,
+    #[command(flatten)]
+    changes: Changes,
+}
+
+/// Which numbers of the model are others than in its file.
+#[derive(clap::Args, Clone)]
+pub(super) struct Changes {
+    /// Take VALUE for a number of the model: restitution=0.7, or a whole path, follower.mass=2 (may be repeated).
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = change)]
+    numbers: Vec<(String, f64)>,
+}
+
+/// `NAME=VALUE`.
+fn change(text: &str) -> Result<(String, f64), String> {
+    let (name, number) =
+        text.split_once('=').ok_or("must be NAME=VALUE: a number of the model, and what it is to be")?;
+    Ok((name.trim().into(), finite(number)?))
 }
 
 impl ModelArgument {
-    /// The model in a file, or the one that is built in.
-    pub(super) fn of(file: Option<&Path>) -> Self {
-        Self { file: file.map(Path::to_path_buf) }
+    /// The model in a file, or the one that is built in, with some numbers changed.
+    pub(super) fn of(file: Option<&Path>, changes: &Changes) -> Self {
+        Self { file: file.map(Path::to_path_buf), changes: changes.clone() }
     }
 
     /// Reads the model; says on standard error which one it is where none is named.
     pub(super) fn read(&self, session: &mut Session<'_>) -> Result<Model, CommandError> {
-        match &self.file {
+        let model = match &self.file {
             Some(path) => {
                 // A table of a million lifts takes its time.
-                Ok(watched("reading the model", |_| Model::read(path))?)
+                watched("reading the model", |_| Model::read(path))?
             }
             None => {
                 let model = Model::built_in()?;
                 session.note(&format!("no MODEL given: using the paper's, {}, which is built in", model.name));
-                Ok(model)
+                model
             }
-        }
+        };
+        Ok(model.changed(&self.changes.numbers)?)
     }
 }

@@ -7,7 +7,7 @@ use super::picture::ends_in;
 use super::progress::watched;
 use super::{CommandError, Exit, ModelArgument, Session};
 use crate::cli::file::Output;
-use crate::model::Model;
+use crate::model::{Model, ModelError};
 use crate::pages::report::html;
 use crate::report::Report;
 use crate::show::json;
@@ -52,7 +52,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let path = match (&arguments.out, arguments.json) {
         (Some(path), _) => Some(path.clone()),
         (None, true) => None,
-        (None, false) => Some(default_name(&model)),
+        (None, false) => Some(default_name(&model)?),
     };
     // The file is begun before the work: a name that cannot be is told at once.
     let file = match &path {
@@ -78,8 +78,14 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     Ok(if report.agrees { Exit::Agrees } else { Exit::Disagrees })
 }
 
-/// Named after the model file, where the command is run.
-fn default_name(model: &Model) -> PathBuf {
-    let stem = model.path().and_then(Path::file_stem).map(|stem| stem.to_string_lossy().into_owned());
-    PathBuf::from(format!("{}-report.html", stem.unwrap_or_else(|| model.name.clone())))
+/// Named after the model file and the numbers that are changed, where the command is run.
+fn default_name(model: &Model) -> Result<PathBuf, ModelError> {
+    let mut name = match model.path().and_then(Path::file_stem) {
+        Some(stem) => stem.to_string_lossy().into_owned(),
+        None => Model::built_in()?.name,
+    };
+    for (path, number) in model.changes() {
+        name = format!("{name}-{path}-{number}");
+    }
+    Ok(PathBuf::from(format!("{name}-report.html")))
 }

@@ -63,7 +63,8 @@ enum Value {
 
 #[derive(Clone, Debug)]
 struct Field {
-    line: usize,
+    /// None of a number that the file does not say: a default, or one that was put there in its place.
+    line: Option<usize>,
     /// Of its name in the text; of an element of an array, of its value.
     key: Range<usize>,
     /// Of its value in the text.
@@ -155,7 +156,7 @@ impl Fields {
             DeValue::Float(float) => float.as_str().parse().map_or(Value::Other, Value::Number),
             _ => Value::Other,
         };
-        self.fields.insert(path.into(), Field { line, key, span: spanned.span(), written, value });
+        self.fields.insert(path.into(), Field { line: Some(line), key, span: spanned.span(), written, value });
     }
 
     pub(super) fn file(&self) -> &str {
@@ -163,7 +164,7 @@ impl Fields {
     }
 
     /// Path and value of every number in `tables`.
-    pub(super) fn numbers_in<'a>(&'a self, tables: &'a [&str]) -> impl Iterator<Item = (&'a str, f64)> {
+    pub(super) fn numbers_in<'a>(&'a self, tables: &[&str]) -> impl Iterator<Item = (&'a str, f64)> {
         let inside = |path: &str| path.split_once('.').is_some_and(|(table, _)| tables.contains(&table));
         self.fields.iter().filter_map(move |(path, field)| match field.value {
             Value::Number(number) if inside(path) => Some((path.as_str(), number)),
@@ -178,6 +179,7 @@ impl Fields {
             Some(field @ Field { value: Value::Number(_), .. }) => {
                 field.value = Value::Number(number);
                 field.written = number.to_string();
+                field.line = None;
                 fields.text = None;
                 Ok(fields)
             }
@@ -195,12 +197,6 @@ impl Fields {
             Value::Number(number) if allowed.contains(number) => Ok(number),
             _ => Err(self.reject(path, allowed.to_string())),
         }
-    }
-
-    /// A finite number within `allowed`, or `default` where the field is missing.
-    pub(super) fn number_or(&mut self, path: &str, allowed: Allowed, default: f64) -> Result<f64, ModelError> {
-        self.known.insert(path.into());
-        if self.has(path) { self.number(path, allowed) } else { Ok(default) }
     }
 
     /// How many elements an array has, at least one and at most `most`.
@@ -276,11 +272,12 @@ impl Fields {
         let field = self.fields.get(&in_table(at, written))?;
         let is_table = shown.starts_with('[');
         let written = if is_table { format!("[{written}]") } else { written.to_owned() };
+        let line = field.line?;
         Some(ModelError {
-            line: Some(field.line),
+            line: Some(line),
             ..self
                 .reject(path, "is missing")
-                .meaning(Some(format!("did you mean {shown} where line {} says {written}?", field.line)))
+                .meaning(Some(format!("did you mean {shown} where line {line} says {written}?")))
                 .at(self.text.clone(), Some(field.key.clone()))
         })
     }
@@ -295,7 +292,7 @@ impl Fields {
         let field = self.fields.get(path);
         let table = path.rsplit_once('.').and_then(|(table, _)| self.fields.get(table));
         ModelError {
-            line: field.or(table).map(|field| field.line),
+            line: field.or(table).and_then(|field| field.line),
             field: Some(path.into()),
             value: field.and_then(Field::shown),
             ..ModelError::file(&self.file, allowed.into())

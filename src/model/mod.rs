@@ -4,6 +4,7 @@
 //! (circles that cannot touch) is found in [`crate::cam`], which reports it through
 //! [`Model::reject`], so that every complaint about a file names file, line, field and value.
 
+mod changed;
 mod complaint;
 mod fields;
 mod nearest;
@@ -40,6 +41,7 @@ pub struct Model {
     /// Where to look for a corner impact.
     pub study: Option<Study>,
     fields: Fields,
+    changes: Vec<(String, f64)>,
 }
 
 /// `m q'' + b q' + k (q - rest_position) = -m g` while `q > c(theta)`, and Newton's restitution.
@@ -114,17 +116,12 @@ impl Model {
             None
         };
         fields.finish()?;
-        Ok(Self { name, source, follower, cam, study, fields })
+        Ok(Self { name, source, follower, cam, study, fields, changes: Vec::new() })
     }
 
     /// The fields that hold a number and shape the motion, by dotted path, with their values: what a study may vary.
     pub fn numbers(&self) -> impl Iterator<Item = (&str, f64)> {
         self.fields.numbers_in(&["follower", "cam"])
-    }
-
-    /// The same model with another number in `field`, a dotted path, checked as the file is.
-    pub fn with_number(&self, field: &str, number: f64) -> Result<Self, ModelError> {
-        Self::from_fields(self.fields.with_number(field, number)?)
     }
 
     /// Whether follower and cam are the paper's, whatever the model is called.

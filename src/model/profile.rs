@@ -231,10 +231,10 @@ fn motion_segment(fields: &mut Fields, index: usize) -> Result<MotionSegment, Mo
     let path = |name: &str| format!("cam.segment[{index}].{name}");
     let motion = fields.choice(&path("motion"), &Motion::NAMES)?;
     let span_deg = fields.number(&path("span_deg"), Allowed::above(0.0, 360.0))?;
-    let rise = if motion == Motion::Dwell {
-        fields.number_or(&path("rise"), Allowed::FINITE, 0.0)?
-    } else {
-        fields.number(&path("rise"), Allowed::FINITE)?
+    fields.may_hold(&path("rise"));
+    let rise = match motion {
+        Motion::Dwell if !fields.has(&path("rise")) => 0.0,
+        _ => fields.number(&path("rise"), Allowed::FINITE)?,
     };
     if motion == Motion::Dwell && rise != 0.0 {
         return Err(fields.reject(&path("rise"), "must be 0: a dwell does not rise"));

@@ -1,7 +1,7 @@
 //! Machines that differ in a few numbers: what a branch of orbits is followed through.
 
 use crate::cam::Cam;
-use crate::model::{Model, ModelError, nearest};
+use crate::model::{Model, ModelError};
 use crate::simulate::{Machine, angular_velocity};
 
 /// A number that may be varied.
@@ -22,12 +22,6 @@ pub enum FamilyError {
     /// The cam would not turn.
     #[error("{rpm} rpm: the speed must be a finite number above 0")]
     Speed { rpm: f64 },
-    /// Nothing in the model has this name.
-    #[error("no number called \"{name}\" to vary; there are: {there}{}", meant.as_ref().map_or(String::new(), |meant| format!("; did you mean {meant}?")))]
-    Unknown { name: String, there: String, meant: Option<String> },
-    /// A name that more than one field has.
-    #[error("\"{name}\" may be any of {fields}: write the whole path")]
-    Ambiguous { name: String, fields: String },
 }
 
 impl Parameter {
@@ -36,21 +30,7 @@ impl Parameter {
         if name == "rpm" {
             return Ok(Self::Speed);
         }
-        let ends = |path: &str| path == name || path.strip_suffix(name).is_some_and(|head| head.ends_with('.'));
-        let fields: Vec<&str> = model.numbers().map(|(path, _)| path).filter(|path| ends(path)).collect();
-        match fields.as_slice() {
-            [field] => Ok(Self::Field((*field).into())),
-            [] => {
-                let paths: Vec<&str> = model.numbers().map(|(path, _)| path).collect();
-                // Nearest by the whole path, or by its end where the name has no dot.
-                let ends = paths.iter().map(|path| path.rsplit('.').next().unwrap_or(path));
-                let names: Vec<&str> = if name.contains('.') { paths.clone() } else { ends.collect() };
-                let meant = nearest(name, names.into_iter().chain(["rpm"])).map(str::to_owned);
-                let there = format!("rpm, {}", paths.join(", "));
-                Err(FamilyError::Unknown { name: name.into(), there, meant })
-            }
-            _ => Err(FamilyError::Ambiguous { name: name.into(), fields: fields.join(", ") }),
-        }
+        Ok(Self::Field(model.path_of(name, &["rpm"])?.into()))
     }
 
     /// Its name in tables and messages.

@@ -8,7 +8,7 @@ use crate::common::{PROGRAM, ROOT, corner_impact, program, text};
 use rayon::prelude::*;
 use tempfile::TempDir;
 
-const COMMANDS: [&str; 18] = [
+pub const COMMANDS: [&str; 18] = [
     "verify",
     "report",
     "claims",

@@ -48,6 +48,7 @@ mod random_orbits;
 mod rounded;
 mod routes;
 mod second_order;
+mod set;
 mod settled;
 mod simulate;
 mod snapshots;

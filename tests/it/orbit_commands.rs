@@ -178,7 +178,7 @@ fn a_branch_in_another_number_ends_at_the_edge_with_a_plain_word() {
     assert!(table.rows.iter().all(|row| table.number(row, "rpm") == 700.0));
     let most = table.rows.iter().map(|row| table.number(row, "value")).fold(0.0, f64::max);
     assert!(179.0 < most && most < 180.0, "{most}");
-    let edge = "the edge of what the model allows: models/osorio-2008.toml:20: cam.nose_end_deg = 180";
+    let edge = "the edge of what the model allows: models/osorio-2008.toml: cam.nose_end_deg = 180";
     assert!(account.contains(edge) && account.contains("the end of the range"), "{account}");
 }
 
@@ -294,7 +294,7 @@ fn what_begins_and_ends_between_two_speeds_is_found() {
 #[test]
 fn what_cannot_be_followed_is_refused_with_a_reason() {
     let followed = |parameter: &str| refused(&["continue", MODEL, "--from-rpm", "700", "--parameter", parameter]);
-    assert!(followed("spring=1:2").contains("no number called \"spring\" to vary; there are: rpm, cam.base_radius"));
+    assert!(followed("spring=1:2").contains("spring is not a number of this model; there are: rpm, cam.base_radius"));
     assert!(followed("restitution=0.9:0.95").contains("outside of 0.9:0.95"));
     assert!(followed("restitution=0.9").contains("must be NAME=LO:HI"));
     assert!(followed("restitution=0.9:0.1").contains("is not below"));

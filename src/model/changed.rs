@@ -1,0 +1,59 @@
+//! A model with other numbers than its file has, each under the name that a user calls it by.
+
+use super::{Model, ModelError, nearest};
+
+impl Model {
+    /// The dotted path of the number of follower or cam that a user calls `name`: the path itself, or the end of one that no
+    /// other has. `beside` are names that are allowed as well, for a complaint to tell.
+    pub fn path_of(&self, name: &str, beside: &[&str]) -> Result<&str, ModelError> {
+        self.path_in(&["follower", "cam"], name, beside)
+    }
+
+    fn path_in(&self, tables: &[&str], name: &str, beside: &[&str]) -> Result<&str, ModelError> {
+        let ends = |path: &str| path == name || path.strip_suffix(name).is_some_and(|head| head.ends_with('.'));
+        let paths: Vec<&str> = self.fields.numbers_in(tables).map(|(path, _)| path).collect();
+        match paths.iter().copied().filter(|path| ends(path)).collect::<Vec<_>>().as_slice() {
+            [path] => Ok(path),
+            [] => {
+                // Nearest by the whole path, or by its end where the name has no dot.
+                let ends = paths.iter().map(|path| path.rsplit('.').next().unwrap_or(path));
+                let names: Vec<&str> = if name.contains('.') { paths.clone() } else { ends.collect() };
+                let meant = nearest(name, names.into_iter().chain(beside.iter().copied()));
+                let there: Vec<&str> = beside.iter().chain(&paths).copied().collect();
+                let words = format!("is not a number of this model; there are: {}", there.join(", "));
+                Err(self.reject(name, words).meaning(meant.map(|meant| format!("did you mean {meant}?"))))
+            }
+            several => Err(self.reject(name, format!("may be any of {}: write the whole path", several.join(", ")))),
+        }
+    }
+
+    /// The same model with another number in `field`, a dotted path, checked as the file is.
+    pub fn with_number(&self, field: &str, number: f64) -> Result<Self, ModelError> {
+        Self::from_fields(self.fields.with_number(field, number)?)
+    }
+
+    /// The same model with other numbers, of [study] as well, each named as for [`Self::path_of`], checked together as the file is; they become
+    /// a part of its name.
+    pub fn changed(&self, numbers: &[(String, f64)]) -> Result<Self, ModelError> {
+        let (mut fields, mut changes) = (self.fields.clone(), self.changes.clone());
+        for (name, number) in numbers {
+            let path = self.path_in(&["follower", "cam", "study"], name, &[])?.to_owned();
+            if changes.iter().any(|(changed, _)| *changed == path) {
+                return Err(ModelError::file(self.file(), format!("{path} is set twice")));
+            }
+            fields = fields.with_number(&path, *number)?;
+            changes.push((path, *number));
+        }
+        let mut model = Self::from_fields(fields)?;
+        if !numbers.is_empty() {
+            let words: Vec<String> = changes.iter().map(|(path, number)| format!("{path} = {number}")).collect();
+            model.name = format!("{} with {}", model.name, words.join(", "));
+        }
+        Ok(Self { changes, ..model })
+    }
+
+    /// The numbers that are not those of the file, by dotted path.
+    pub fn changes(&self) -> &[(String, f64)] {
+        &self.changes
+    }
+}
