@@ -3,7 +3,8 @@
 One JSON document on stdin: the model's "follower" and "cam", "bits", and "candidates", places in doubles where corner impacts
 are thought to be. One on stdout: "results", for each candidate in turn a "certificate", with a ball for every number, or "refused"
 with why. Everything said in a certificate is proved, for the machine whose constants are the decimals of the model; the
-candidates are only where corner impacts are looked for. With "orbits_at_rpm" there are "orbits" and "complete" besides.
+candidates are only where corner impacts are looked for. With "orbits_at_rpm" there are "orbits" and "complete" besides, with
+"orbits_over_rpm", [low, high], "counts", "undecided" and "events".
 """
 
 import json
@@ -14,6 +15,7 @@ try:
 except ImportError:
     sys.exit("certify.py: the Python package python-flint is missing")
 
+from balls.branches import ORBIT, UNDECIDED, Branches
 from balls.corner_impact import CornerImpact
 from balls.motion import Machine
 from balls.numbers import Refused, ball, decimal
@@ -94,7 +96,7 @@ def answer(document, candidates):
             results.append({"certificate": certificate(machine, candidate)})
         except (Refused, ZeroDivisionError) as error:
             results.append({"refused": str(error)})
-    return {"results": results, **orbits(machine, document)}
+    return {"results": results, **orbits(machine, document), **counts(machine, document)}
 
 
 def orbits(machine, document):
@@ -119,6 +121,34 @@ def orbits(machine, document):
         ]
         complete += [] if undecided else [count]
     return {"orbits": found, "complete": complete}
+
+
+def counts(machine, document):
+    """How many orbits of one impact in one revolution there are at every speed of "orbits_over_rpm", and of which kinds: in doubles
+    from where to where, the nearest ones to what is told in balls with the events; and the speeds at which that is not decided."""
+    if "orbits_over_rpm" not in document:
+        return {}
+    stretches = Branches(machine).over(*(float(decimal(bound)) for bound in document["orbits_over_rpm"]))
+    decided = [one for one in stretches if UNDECIDED not in one.kinds]
+    kinds = {id(one): [None if kind == ORBIT else kind for kind in one.kinds] for one in decided}
+    events = [(before, after) for before, after in zip(stretches, stretches[1:]) if after.event is not None and after.event.kind]
+    return {
+        "counts": [
+            {"from_rpm": float(one.low), "to_rpm": float(one.high), "one_impact_orbits": len(one.kinds), "kinds": kinds[id(one)]}
+            for one in decided
+        ],
+        "undecided": [[float(one.low), float(one.high)] for one in stretches if UNDECIDED in one.kinds],
+        "events": [
+            {
+                "kind": after.event.kind,
+                "speed_rpm": ball(60 / after.event.period),
+                "cam_angle_rad": ball(one_turn(machine, after.event.angle)),
+                "before": kinds.get(id(before)),
+                "after": kinds.get(id(after)),
+            }
+            for before, after in events
+        ],
+    }
 
 
 def one_turn(machine, angle):

@@ -14,9 +14,10 @@ use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 /// The scripts, with the modules that they import and the file that they read, by their places in the project.
-const FILES: [(&str, &str); 18] = [
+const FILES: [(&str, &str); 19] = [
     ("derivations/arithmetic.py", include_str!("../derivations/arithmetic.py")),
     ("derivations/balls/__init__.py", include_str!("../derivations/balls/__init__.py")),
+    ("derivations/balls/branches.py", include_str!("../derivations/balls/branches.py")),
     ("derivations/balls/cam.py", include_str!("../derivations/balls/cam.py")),
     ("derivations/balls/corner_impact.py", include_str!("../derivations/balls/corner_impact.py")),
     ("derivations/balls/duals.py", include_str!("../derivations/balls/duals.py")),

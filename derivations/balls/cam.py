@@ -37,6 +37,11 @@ class Corner:
         """Law after less law before: of c, c' and c''."""
         return tuple(after - before for before, after in zip(*self.sides()))
 
+    def bends(self):
+        """Whether c'' is proved to jump, and by more than the decimals of the pieces are off."""
+        size = sum(abs(side[2]) for side in self.sides())
+        return bool(abs(self.jumps()[2]) > (NEARLY * size if self.assumed else 0))
+
 
 class Cam:
     """The [cam] table, 2 pi periodic; angles may be any number, of as many revolutions as it takes.

@@ -15,7 +15,6 @@ from flint import arb, arb_mat, fmpq
 
 from arithmetic import evaluate
 
-from .cam import NEARLY
 from .duals import Dual, lift, response
 from .krawczyk import root
 from .motion import Flight, Start
@@ -68,8 +67,7 @@ class CornerImpact:
         corner = corners[0]
         if corner.smooth < 2:
             raise Refused("the cam's velocity jumps there: the map has a gap, and no matrices meet on a border")
-        size = sum(abs(side[2]) for side in corner.sides())
-        if corner.smooth > 2 or (corner.assumed and not abs(corner.jumps()[2]) > NEARLY * size):
+        if corner.smooth > 2 or not corner.bends():
             raise Refused("the cam's acceleration does not jump there, or by no more than its decimals are off: the map is smooth")
         return corner
 

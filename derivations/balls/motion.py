@@ -150,11 +150,25 @@ class Flight:
             time = step
         return time
 
-    def first_contact(self, horizon, contact=None):
+    def lowest(self, time):
+        """A ball of times in which each flight is lowest over `time`, by interval Newton; None if it is not proved that the gap falls
+        where that begins, rises where it ends, and has g'' > 0 in between."""
+        seen = self._kinematics(time)
+        if not (seen[-1] and self._rate_rate(seen) > 0 and self.gap_rate(time.lower()) < 0 < self.gap_rate(time.upper())):
+            return None
+        for _ in range(NEWTON):
+            middle = time.mid()
+            step = overlap(time, middle - self.gap_rate(middle) / self._rate_rate(self._kinematics(time)))
+            if step is None or not step.rad() < time.rad() * 0.75:
+                break
+            time = step
+        return time
+
+    def first_contact(self, horizon, contact=None, skipped=None):
         """The time of the first contact of each flight, proved to be the first: 0 < g before it, g' < 0 at it.
 
         Looked for up to `horizon`, s; or it is `contact`, a ball of which it is known that g is 0 in it. Refused where the
-        flight touches, or where a proof would take steps too short.
+        flight touches, or where a proof would take steps too short. Nothing is said of the time from one end of `skipped` to the other.
         """
         revolution = 2 * arb.pi() / self.start.speed.mid()
         shortest = float(revolution.mid()) * FIRST_STEP / 2**HALVINGS
@@ -168,6 +182,12 @@ class Flight:
                 raise Undecided("the follower is not proved to get clear of the cam")
         reached, landing = step, contact and float(contact)
         while reached < horizon:
+            if skipped is not None and reached <= skipped[0] < reached + step:
+                if not (reached == skipped[0] or self.gap(between(reached, skipped[0])) > 0):
+                    step = (skipped[0] - reached) * 0.75
+                else:
+                    reached = skipped[1]
+                continue
             if landing is None and not self.centre._at(arb(reached + step))[0] > 0:
                 landing = self.centre._closed(reached, reached + step)
             if landing is not None and reached + 2 * step >= landing:

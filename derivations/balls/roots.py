@@ -30,7 +30,7 @@ def all_roots(equations, box, excluded):
             if excluded(balls) or _misses(equations, balls):
                 continue
             wide = [ball.mid() + arb(0, ball.rad() * WIDER) for ball in balls]
-            image = _krawczyk(equations, wide)
+            image = krawczyk(equations, wide)
         except Undecided:
             # The equations say nothing of so wide a part.
             image = None
@@ -67,7 +67,7 @@ def _misses(equations, balls):
     return False
 
 
-def _krawczyk(equations, balls):
+def krawczyk(equations, balls):
     """What Krawczyk's operator makes of a box: every root in the box lies in it; None where the derivative has no inverse."""
     count = len(balls)
     over = equations(Dual.varied(balls))
@@ -87,7 +87,7 @@ def _krawczyk(equations, balls):
 def closed_in(equations, balls, times=60):
     """The root that a box holds alone, in balls as narrow as the precision allows."""
     for _ in range(times):
-        image = _krawczyk(equations, balls)
+        image = krawczyk(equations, balls)
         both = [overlap(one, ball) for one, ball in zip(image, balls)] if image is not None else [None]
         if None in both:
             raise Undecided("a root is lost in rounding")

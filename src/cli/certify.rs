@@ -4,7 +4,7 @@ use super::start::rpm_or_range;
 use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::model::Study;
 use crate::orbit::Search;
-use crate::study::certify::{BITS, CertifyError, certify, proved_orbits};
+use crate::study::certify::{BITS, CertifyError, certify, proved_counts, proved_orbits};
 
 /// Proves that corner impacts exist, with their maps and verdicts, in ball arithmetic.
 #[derive(clap::Args)]
@@ -12,13 +12,14 @@ use crate::study::certify::{BITS, CertifyError, certify, proved_orbits};
     \x20 corner-impact certify\n\
     \x20 corner-impact certify models/osorio-2008.toml --rpm 600:760 --bits 400 --json\n\
     \x20 corner-impact certify --orbits --rpm 700\n\
+    \x20 corner-impact certify --orbits --rpm 600:760\n\
     \n\
     Needs Python with the packages that `make verify` sets up.\n\
     Exit code: 0 every border collision that `locate` finds is proved, 1 one is not, 2 bad model file or usage, or no Python.")]
 pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
-    /// Range of speeds, rpm; with --orbits one speed [default: the model's [study]].
+    /// Range of speeds, rpm, or with --orbits one speed [default: the model's [study]].
     #[arg(long, value_name = "LO:HI", value_parser = rpm_or_range)]
     rpm: Option<[f64; 2]>,
     /// Turns of the cam after which the orbits repeat, and no fewer.
@@ -27,7 +28,7 @@ pub(super) struct Arguments {
     /// Bits that the balls are computed with.
     #[arg(long, value_name = "N", default_value_t = BITS, value_parser = clap::value_parser!(u32).range(16..=16384))]
     bits: u32,
-    /// Prove all periodic orbits of one impact and of two in one revolution at the speed of --rpm, instead of corner impacts.
+    /// Prove all periodic orbits of one impact and of two in one revolution at the speed of --rpm, instead of corner impacts; at every speed of a range, how many there are of one impact.
     #[arg(long, requires = "rpm", conflicts_with = "revolutions")]
     orbits: bool,
     /// Print one JSON document instead of the page.
@@ -39,10 +40,12 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let model = arguments.model.read(session)?;
     if let (true, Some([low, high])) = (arguments.orbits, arguments.rpm) {
         if low < high {
-            return Err(CommandError::Words(format!("--orbits takes one speed, not {low}:{high} rpm")));
+            let found = watched("proving orbits", |_| proved_counts(&model, [low, high], arguments.bits))?;
+            session.answer(&found, arguments.json)?;
+        } else {
+            let found = watched("proving orbits", |_| proved_orbits(&model, low, arguments.bits))?;
+            session.answer(&found, arguments.json)?;
         }
-        let found = watched("proving orbits", |_| proved_orbits(&model, low, arguments.bits))?;
-        session.answer(&found, arguments.json)?;
         return Ok(Exit::Agrees);
     }
     let range = match arguments.rpm {

@@ -5,7 +5,7 @@ use crate::show::block::{Block, Column, Mark, Table, Words, words};
 use crate::show::digits::Digits;
 use crate::show::{Paged, words};
 use crate::study::certify::{
-    Certificate, Certified, ProvedEigenvalue, ProvedOrbits, ProvedSide, ProvedStart, Unproved,
+    Certificate, Certified, OrbitKind, ProvedCounts, ProvedEigenvalue, ProvedOrbits, ProvedSide, ProvedStart, Unproved,
 };
 
 impl Paged for Certified {
@@ -51,6 +51,60 @@ impl Paged for ProvedOrbits {
         }
         page
     }
+}
+
+impl Paged for ProvedCounts {
+    fn blocks(&self) -> Vec<Block> {
+        let [low, high] = self.range_rpm;
+        let mut counts = Table::new(
+            "At every speed between",
+            [Column::right("from (rpm)", 14), Column::right("to (rpm)", 14), Column::left("orbits", 2, 0)],
+        );
+        for count in &self.counts {
+            let speed = |rpm: f64| words![(rpm, Digits::Significant(9))];
+            counts.row([speed(count.from_rpm), speed(count.to_rpm), kinds(&count.kinds)]);
+        }
+        let mut page = vec![
+            Block::Title(format!("Orbits of 1 impact in 1 revolution, {low} to {high} rpm, proved").into()),
+            Block::Table(counts),
+        ];
+        for event in &self.events {
+            let changes = |kinds_there: &Option<Vec<_>>| match kinds_there {
+                Some(all) => kinds(all),
+                None => "not decided".into(),
+            };
+            page.push(Block::paragraph(words![(Mark::Strong, words::spoken(&event.kind.to_string()).as_str())]));
+            page.push(Block::Entries(
+                9,
+                vec![
+                    ("rpm".into(), words![&event.speed_rpm.mid]),
+                    ("impact".into(), words![&event.cam_angle_rad.mid, " rad"]),
+                    (
+                        "orbits".into(),
+                        words![changes(&event.before), " before it, ", changes(&event.after), " after it"],
+                    ),
+                ],
+            ));
+        }
+        let undecided = self.undecided.iter().map(|[low, high]| format!("{low} to {high} rpm").as_str().into());
+        page.push(Block::paragraph(match self.undecided[..] {
+            [] => "There are no others at any speed of the range, which is proved. Each digit of an event is, but for one unit of the last.".into(),
+            _ => words!["The number is not decided from ", Words::joined(undecided, ", from "), "."],
+        }));
+        page
+    }
+}
+
+/// How many orbits there are of each kind.
+fn kinds(all: &[Option<OrbitKind>]) -> Words {
+    if all.is_empty() {
+        return "none".into();
+    }
+    let parts = all.chunk_by(|one, other| one == other).map(|same| {
+        let kind = same[0].map_or("of a kind not decided".into(), |kind| kind.to_string());
+        format!("{} {kind}", same.len()).as_str().into()
+    });
+    Words::joined(parts, ", ")
 }
 
 fn certificate(of: &Certificate) -> Vec<Block> {

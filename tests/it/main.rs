@@ -41,6 +41,7 @@ mod planted;
 mod pointed;
 mod progress;
 mod properties;
+mod proved_orbits;
 mod published;
 mod python;
 mod random;

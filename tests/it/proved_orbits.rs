@@ -1,0 +1,127 @@
+//! Is every periodic orbit there that is proved to be, and none that is proved not to be?
+
+use crate::common::{corner_impact, text};
+use serde_json::{Value, json};
+
+#[track_caller]
+fn document(arguments: &[&str]) -> Value {
+    let output = corner_impact([arguments, &["--json"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", text(output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+fn number(ball: &Value) -> f64 {
+    ball["mid"].as_str().unwrap().parse().unwrap()
+}
+
+/// The kinds of the orbits of one impact that `orbit` finds at a speed, by their multipliers.
+fn found_at(file: &str, rpm: f64) -> Vec<&'static str> {
+    let found = document(&["orbit", file, "--rpm", &rpm.to_string()]);
+    let one =
+        found["orbits"].as_array().unwrap().iter().filter(|orbit| orbit["impacts"].as_array().unwrap().len() == 1);
+    let mut kinds: Vec<_> = one
+        .map(|orbit| {
+            let beyond = |sign: f64| {
+                let all = orbit["multipliers"].as_array().unwrap().iter();
+                all.map(|one| (one["re"].as_f64().unwrap(), one["im"].as_f64().unwrap()))
+                    .any(|(re, im)| im == 0.0 && sign * re > 1.0)
+            };
+            if beyond(1.0) {
+                "saddle"
+            } else if beyond(-1.0) {
+                "flip"
+            } else {
+                "stable"
+            }
+        })
+        .collect();
+    kinds.sort_unstable();
+    kinds
+}
+
+/// (speed, what happens) of each special orbit of one impact on the branches through those that `orbit` finds at a speed.
+fn followed(file: &str, from: &str, rpm: &str) -> Vec<(f64, String)> {
+    let output = corner_impact(["continue", file, "--from-rpm", from, "--parameter", &format!("rpm={rpm}")]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(output.stderr));
+    let table = text(output.stdout);
+    let mut lines = table.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let head = lines.next().unwrap();
+    let column = |name: &str| head.iter().position(|one| *one == name).unwrap();
+    let (speed, impacts, special) = (column("rpm"), column("impacts"), column("special"));
+    let mut all: Vec<_> = lines
+        .filter(|row| row[impacts] == "1" && !row[special].is_empty())
+        .map(|row| (row[speed].parse().unwrap(), row[special].replace("corner", "corner-impact")))
+        .collect();
+    all.sort_by(|one: &(f64, String), other| one.0.total_cmp(&other.0));
+    all
+}
+
+/// What is proved over a range is held against what `orbit` finds between the events, and against the special orbits of `continue`,
+/// of which neither may have one that the other lacks.
+#[track_caller]
+fn held(file: &str, rpm: &str, from: &str) -> Value {
+    let proved = document(&["certify", file, "--orbits", "--rpm", rpm]);
+    assert_eq!(proved["undecided"], json!([]), "{proved}");
+    for count in proved["counts"].as_array().unwrap() {
+        let middle = (count["from_rpm"].as_f64().unwrap() + count["to_rpm"].as_f64().unwrap()) / 2.0;
+        assert_eq!(json!(found_at(file, middle)), count["kinds"], "{middle} rpm");
+        assert_eq!(count["kinds"].as_array().unwrap().len() as u64, count["one_impact_orbits"].as_u64().unwrap());
+    }
+    let events = proved["events"].as_array().unwrap();
+    let followed = followed(file, from, rpm);
+    let agree = |(event, (speed, kind)): (&Value, &(f64, String))| {
+        event["kind"] == kind.as_str() && (number(&event["speed_rpm"]) - speed).abs() < 1e-9
+    };
+    assert!(events.len() == followed.len() && events.iter().zip(&followed).all(agree), "{events:#?}\n{followed:?}");
+    proved
+}
+
+#[track_caller]
+fn event(proved: &Value, kind: &str, speed: &str, degrees: f64) {
+    let is_it =
+        |event: &&Value| event["kind"] == kind && event["speed_rpm"]["mid"].as_str().unwrap().starts_with(speed);
+    let found = proved["events"].as_array().unwrap().iter().find(is_it).unwrap_or_else(|| panic!("{kind}: {proved}"));
+    assert!((number(&found["cam_angle_rad"]).to_degrees() - degrees).abs() < 0.005, "{found}");
+    assert!(found["speed_rpm"]["rad"].as_str().unwrap().parse::<f64>().unwrap() < 1e-30, "{found}");
+}
+
+#[test]
+fn the_paper_s_machine_has_no_orbit_of_one_impact_below_its_corner_impact_and_two_beyond_at_every_speed() {
+    let proved = held("models/osorio-2008.toml", "600:800", "700");
+    event(&proved, "corner-impact", "673.2344450038120023278237472", 150.1794);
+    event(&proved, "flip", "739.3197802160016157043598311", 157.4192);
+    let kinds: Vec<_> = proved["counts"].as_array().unwrap().iter().map(|count| count["kinds"].clone()).collect();
+    assert_eq!(kinds, [json!([]), json!(["saddle", "stable"]), json!(["flip", "saddle"]), json!(["flip"])]);
+    // The corner impact is the one that has a certificate, and the only one of one impact that `locate` finds.
+    let certified = document(&["certify", "models/osorio-2008.toml", "--rpm", "600:800"]);
+    let of_one = |found: &Value| -> Vec<Value> {
+        let all = found["corner_impacts"].as_array().unwrap().iter();
+        all.filter(|one| one["impacts"] == 1 || one["impacts"].as_array().is_some_and(|all| all.len() == 1))
+            .cloned()
+            .collect()
+    };
+    let [certificate] = &of_one(&certified)[..] else { panic!("{certified}") };
+    assert_eq!(
+        certificate["speed_rpm"]["mid"].as_str().unwrap()[..30],
+        proved["events"][0]["speed_rpm"]["mid"].as_str().unwrap()[..30]
+    );
+    let located = document(&["locate", "models/osorio-2008.toml", "--rpm", "600:800"]);
+    assert_eq!(of_one(&located).len(), 1, "{located}");
+}
+
+#[test]
+fn folds_and_grazes_are_proved_where_branches_have_them() {
+    let proved = held("models/persistence.toml", "485:570", "500");
+    event(&proved, "fold", "493.811509867092714", 131.75);
+    event(&proved, "corner-impact", "493.82751292167882009", 134.1765);
+    let proved = held("models/nonsmooth-flip.toml", "810:890", "850");
+    event(&proved, "fold", "813.366199080021228", 82.78);
+    // A cam without corners, one of decimals, and a follower without a spring.
+    for (file, rpm, from) in [
+        ("models/laws/harmonic.toml", "440:610", "450"),
+        ("models/laws/polynomial.toml", "607:622", "607.9"),
+        ("models/ballistic.toml", "690:710", "695"),
+    ] {
+        held(file, rpm, from);
+    }
+}
