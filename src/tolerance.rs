@@ -87,6 +87,12 @@ table! {
         rounding stops the iteration";
     /// How near two impacts are that are the same, rad.
     SAME_ORBIT = 1e-6, "absolute, rad: a cycle is known to ten digits, or half of them near a graze or a fold";
+    /// How far from a touch a simulated flight has left it behind, or has not come to it yet, rad.
+    TOUCH = 1e-3, "absolute, rad: the gap there is a millionth of the cam's bend, far above its rounding, and no two contacts \
+        of one flight are as near but where the follower chatters";
+    /// How small the cam's lift is beside velocities, over omega, that are said to grow without bound along a branch.
+    UNBOUNDED = 1e-5, "of the velocity, times a radian: a thousandth of what orbits of designed cams have; the determinant of a \
+        matrix of such sizes keeps six digits";
     /// How short the turn between two impacts of a cycle is where a branch that ends does so in chattering, rad.
     CHATTERING_TURN = 1e-3, "absolute, rad: with restitution 0.8 thirty impacts more are within the rounding of an angle, and \
         no segment of a designed cam is as short";

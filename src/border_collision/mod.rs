@@ -11,11 +11,11 @@
 //! | [`long_run`], `outcome` | where its motions end, on either side of the corner impact |
 //! | [`validity`], [`passage`] | how far it holds; how the machine leaves the place where its orbit was |
 //! | [`mod@rounded`] | how far a fold moves where the corner is rounded |
-//! | `impact_curve` | what happens along a curve of corner impacts in two numbers of the model |
+//! | `event_curve` | curves of corner impacts, folds, flips, grazes in two numbers of the model; what happens at a corner impact |
 
 pub mod conditions;
+pub(crate) mod event_curve;
 pub mod feigin;
-pub(crate) mod impact_curve;
 pub mod local_map;
 pub mod long_run;
 pub mod normal_form;
@@ -28,8 +28,8 @@ pub mod validity;
 pub mod word;
 
 pub use conditions::{Condition, conditions};
+pub(crate) use event_curve::EventCurve;
 pub use feigin::{Classification, classify, scenario};
-pub(crate) use impact_curve::{AtCorner, ImpactCurve};
 pub use local_map::LocalMap;
 pub use normal_form::{NormalForm, normal_form};
 pub use outcome::LocalOutcome;

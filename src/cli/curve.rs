@@ -8,29 +8,33 @@ use super::start::{parameter, positive, rpm_range};
 use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::draw::{extent, layout::widened};
 use crate::figures::curve_figure;
-use crate::orbit::branch::Following;
+use crate::orbit::branch::{Bifurcation, Following};
 use crate::orbit::{Parameter, Search};
 use crate::pages;
-use crate::show::csv;
+use crate::show::{csv, words};
 use crate::study::curve::{Curves, curves};
 
-/// Follows corner impacts through a number of the model: their speed, and where their type changes.
+/// Follows corner impacts, folds, flips and grazes through a number of the model: their speed, and where their type changes.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact curve --rpm 600:760 --parameter restitution=0.5:0.95\n\
     \x20 corner-impact curve --rpm 600:760 --parameter restitution=0.5:0.95 --out curve.svg\n\
+    \x20 corner-impact curve --rpm 600:760 --parameter restitution=0.5:0.95 --event fold --event flip\n\
     \n\
     Prints the table; what each curve passes and where it ends goes to standard error.\n\
     Exit code: 0 done, also where there is none, 2 bad model file, usage or file.")]
 pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
-    /// Speeds between which corner impacts of the model are looked for.
+    /// Speeds between which events of the model are looked for.
     #[arg(long, value_name = "LO:HI", value_parser = rpm_range, allow_hyphen_values = true)]
     rpm: [f64; 2],
     /// What changes, and from where to where: a number of the model file, such as restitution.
     #[arg(long, value_name = "NAME=LO:HI", value_parser = parameter)]
     parameter: (String, [f64; 2]),
+    /// Which events are followed; may be repeated [default: all].
+    #[arg(long = "event", value_name = "EVENT", value_parser = event)]
+    events: Vec<Bifurcation>,
     /// Turns of the cam in one period.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=Search::MOST_REVOLUTIONS))]
     revolutions: u64,
@@ -45,7 +49,13 @@ pub(super) struct Arguments {
     out: PathBuf,
 }
 
-/// Corner impacts on a curve after which it is given up, in either direction.
+fn event(text: &str) -> Result<Bifurcation, String> {
+    let names = Bifurcation::ALL.map(|event| event.to_string());
+    let found = Bifurcation::ALL.into_iter().zip(&names).find(|(_, name)| *name == text);
+    found.map(|(event, _)| event).ok_or_else(|| format!("must be one of: {}", names.join(", ")))
+}
+
+/// Points of a curve after which it is given up, in either direction.
 const MOST_POINTS: usize = 2000;
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
@@ -55,21 +65,25 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let target = Target::create(&arguments.out, &mut *session.out)?;
     let wanted = Search { revolutions: arguments.revolutions, impacts: arguments.impacts };
     let following = Following { parameter, range: *range, longest_step: arguments.step, most_points: MOST_POINTS };
-    let Curves { own, curves } = watched("", |watch| curves(&model, arguments.rpm, &wanted, &following, watch))?;
+    let events = if arguments.events.is_empty() { &Bifurcation::ALL } else { arguments.events.as_slice() };
+    let Curves { own, curves } =
+        watched("", |watch| curves(&model, arguments.rpm, &wanted, events, &following, watch))?;
     let (name, [low, high]) = (following.parameter.name(), arguments.rpm);
-    let accounts = curves.iter().zip(1..).map(|(found, index)| pages::branches::curve(found, name, index));
+    let accounts = curves.iter().zip(1..).map(|(found, index)| pages::branches::curve(found, (name, own), index));
     let mut accounts: String = accounts.collect();
     if curves.is_empty() {
         let turns = wanted.revolutions;
-        accounts =
-            format!("no corner impact of an orbit of {turns} revolution(s) found between {low} and {high} rpm\n");
+        accounts = format!(
+            "no {} of an orbit of {turns} revolution(s) found between {low} and {high} rpm\n",
+            words::any_of(events)
+        );
     }
     // Nobody is left to tell where standard error is closed.
     let _ = session.err.write_all(accounts.as_bytes());
     let table = |table: &mut dyn Write| Ok(table.write_all(csv::curves(name, &curves).as_bytes())?);
     target.fill(table, || {
-        let title = format!("{}: corner impacts against {name}", model.name);
-        let speeds = curves.iter().flat_map(|found| &found.impacts).map(|impact| impact.rpm);
+        let title = format!("{}: events against {name}", model.name);
+        let speeds = curves.iter().flat_map(|found| &found.points).map(|point| point.rpm);
         let found = extent(speeds);
         let shown = if found[0] < found[1] { widened(found, 0.04) } else { arguments.rpm };
         Ok(curve_figure(&title, (name, *range, own), shown, &curves))

@@ -9,7 +9,7 @@ use super::confirm::Candidate;
 use super::period_equation::at_corner;
 use crate::cam::{Cam, Side};
 use crate::model::{Model, Study};
-use crate::orbit::branch::{BranchPoint, Kind, corner_impacts};
+use crate::orbit::branch::{BranchPoint, Kind, special_points};
 use crate::orbit::{Course, Impact, Search};
 use crate::tolerance;
 
@@ -34,7 +34,8 @@ pub struct Candidates {
 /// The corner impacts over a range of speeds of orbits of several impacts in `revolutions`.
 pub fn candidates(model: &Model, cam: &Cam, range: Study, revolutions: u64) -> Candidates {
     let wanted = Search { revolutions, impacts: None };
-    match corner_impacts(model, [range.rpm_min, range.rpm_max], &wanted) {
+    let is_corner = |kind| matches!(kind, Kind::Corner { .. });
+    match special_points(model, [range.rpm_min, range.rpm_max], &wanted, is_corner) {
         Ok(found) => Candidates {
             list: found.points.iter().filter_map(|point| candidate(cam, point)).collect(),
             speeds: found.speeds,

@@ -1,9 +1,10 @@
-//! Curves of corner impacts in the plane of the speed and a number of the model, by what happens at them.
+//! Curves of events in the plane of the speed and a number of the model, corner impacts by what happens at them.
 
+use crate::border_collision::EventCurve;
+use crate::border_collision::event_curve::{EventPoint, Happening};
 use crate::border_collision::feigin::Scenario;
-use crate::border_collision::impact_curve::{Happening, ImpactCurve};
 use crate::draw::{Axis, BREAK, Colour, Figure, Mark, Marker, Panel, Series, Stroke};
-use crate::orbit::branch::Kind;
+use crate::orbit::branch::Bifurcation;
 
 /// Kinds of corner impact, with the way in which they are drawn.
 const KINDS: [(Happening, Colour, Stroke); 5] = [
@@ -14,32 +15,52 @@ const KINDS: [(Happening, Colour, Stroke); 5] = [
     (Happening::Degenerate, Colour::Grey, Stroke::Thin),
 ];
 
+/// Other events, likewise.
+const EVENTS: [(Bifurcation, &str, Colour, Stroke); 3] = [
+    (Bifurcation::Fold, "fold", Colour::Ink, Stroke::Solid),
+    (Bifurcation::Flip, "flip", Colour::Ink, Stroke::Dashed),
+    (Bifurcation::Graze, "graze", Colour::Green, Stroke::Dotted),
+];
+
+/// Points where a curve changes its type, by the name of what changes.
+const MARKED: [(&str, &str, Marker); 3] = [
+    ("type", "a multiplier is 1 or -1", Marker::Ring),
+    ("cusp", "cusp", Marker::Diamond),
+    ("degenerate-graze", "degenerate graze", Marker::Triangle),
+];
+
 /// Speed up, the parameter across; its name, its range, and its value in the model, which is marked.
 pub fn curve_figure(
     title: &str,
     (name, range, own): (&str, [f64; 2], f64),
     speeds: [f64; 2],
-    curves: &[ImpactCurve],
+    curves: &[EventCurve],
 ) -> Figure {
     let mut series = Vec::new();
     for (kind, colour, stroke) in KINDS {
-        let pieces = curves.iter().flat_map(ImpactCurve::pieces).filter(|(_, happening)| *happening == kind);
-        let pieces = pieces.map(|([from, to], _)| [[from.value, from.rpm], [to.value, to.rpm]]);
-        series.extend(Series::line(&kind.to_string(), colour, stroke, joined(pieces)).if_any());
+        let pieces = curves.iter().flat_map(EventCurve::pieces).filter(|(_, happening)| *happening == Some(kind));
+        series.extend(Series::line(&kind.to_string(), colour, stroke, joined(pieces.map(|(ends, _)| ends))).if_any());
     }
-    let all = curves.iter().flat_map(|curve| &curve.impacts);
-    let changes = all.filter(|point| point.special.is_some_and(|special| matches!(special.kind, Kind::Type { .. })));
-    let changes = changes.map(|point| [point.value, point.rpm]);
-    series.extend(Series::points("a multiplier is 1 or -1", Colour::Ink, Marker::Ring, changes).if_any());
-    let panel = Panel::new(Axis::new("speed of the corner impact", "rpm").over(speeds), 0.52, series);
+    for (event, name, colour, stroke) in EVENTS {
+        let of_event = curves.iter().filter(|curve| curve.kind.bifurcation() == Some(event));
+        let pieces = of_event.flat_map(EventCurve::pieces).map(|(ends, _)| ends);
+        series.extend(Series::line(name, colour, stroke, joined(pieces)).if_any());
+    }
+    for (kind, name, marker) in MARKED {
+        let all = curves.iter().flat_map(|curve| &curve.points);
+        let points = all.filter(|point| point.special.is_some_and(|special| special.kind.name() == kind));
+        let points = points.map(|point| [point.value, point.rpm]);
+        series.extend(Series::points(name, Colour::Ink, marker, points).if_any());
+    }
+    let panel = Panel::new(Axis::new("speed", "rpm").over(speeds), 0.52, series);
     let marks = vec![Mark { at: own, label: format!("the model, {own}") }];
     Figure { marks, ..Figure::new(title, Axis::new(name, "").over(range), vec![panel]) }
 }
 
 /// Pieces that meet, as one line: dashes run on.
-fn joined(pieces: impl Iterator<Item = [[f64; 2]; 2]>) -> Vec<[f64; 2]> {
+fn joined<'a>(pieces: impl Iterator<Item = [&'a EventPoint; 2]>) -> Vec<[f64; 2]> {
     let mut line: Vec<[f64; 2]> = Vec::new();
-    for [from, to] in pieces {
+    for [from, to] in pieces.map(|ends| ends.map(|point| [point.value, point.rpm])) {
         match line.last() {
             Some(last) if *last == from => line.push(to),
             _ => line.extend([BREAK, from, to]),

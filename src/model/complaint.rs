@@ -37,6 +37,11 @@ impl ModelError {
         Self { file: file.into(), line: None, field: None, value: None, allowed, pointer: Box::default() }
     }
 
+    /// What is allowed, of which field.
+    pub fn rule(&self) -> String {
+        self.field.as_ref().map_or_else(|| self.allowed.clone(), |field| format!("{field} {}", self.allowed))
+    }
+
     /// The same complaint, pointing at `span` of `text`.
     pub(super) fn at(mut self, text: Option<Arc<str>>, span: Option<Range<usize>>) -> Self {
         (self.pointer.text, self.pointer.span) = (text, span);

@@ -62,9 +62,20 @@ pub fn step<E: Equations>(
     along: &DVector<f64>,
     step: f64,
 ) -> Result<CurvePoint, NoPoint<E::Error>> {
+    closed(equations, from, along, step, from + along * step)
+}
+
+/// The same from a guess.
+pub fn closed<E: Equations>(
+    equations: &E,
+    from: &DVector<f64>,
+    along: &DVector<f64>,
+    step: f64,
+    guess: DVector<f64>,
+) -> Result<CurvePoint, NoPoint<E::Error>> {
     /// A step that needs more is too long.
     const STEPS: usize = 12;
-    let mut unknowns = from + along * step;
+    let mut unknowns = guess;
     let mut last = f64::INFINITY;
     for steps in 1..=STEPS {
         let (residual, jacobian) = equations.linear(&unknowns)?;

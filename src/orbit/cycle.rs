@@ -35,6 +35,13 @@ pub struct Impact {
     pub velocity_before: f64,
 }
 
+impl Impact {
+    /// The angle that the cam has turned since angle 0 of revolution 0, rad.
+    pub fn turned(&self) -> f64 {
+        self.revolution as f64 * TAU + self.cam_angle
+    }
+}
+
 /// A motion that repeats, as its impacts in order: at least one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cycle {
@@ -112,14 +119,16 @@ impl Cycle {
         self.equations(machine).0
     }
 
-    /// [`Cycle::residual`] and its derivative by angle, rad, and velocity over omega, m/rad, of each impact in turn.
-    pub fn linear(&self, machine: &Machine) -> (DVector<f64>, DMatrix<f64>) {
+    /// [`Cycle::residual`] and its derivative by angle, rad, and velocity over omega, m/rad, of each impact in turn; those of
+    /// the first impact one period on are `next_period` times as much.
+    pub fn linear(&self, machine: &Machine, next_period: f64) -> (DVector<f64>, DMatrix<f64>) {
         let count = self.impacts.len();
         let (residual, links) = self.equations(machine);
         let mut rows = DMatrix::zeros(2 * count, 2 * count);
         for (index, link) in links.into_iter().enumerate() {
             let next = (index + 1) % count;
-            for (column, by) in [(index, link.leaving), (next, link.coming)] {
+            let coming = if next == 0 { link.coming * next_period } else { link.coming };
+            for (column, by) in [(index, link.leaving), (next, coming)] {
                 let mut block = rows.fixed_view_mut::<2, 2>(2 * index, 2 * column);
                 block += by;
             }

@@ -19,6 +19,8 @@ pub enum Departure {
         /// Index of the impact that the flight starts at.
         impact: usize,
         event: Event,
+        /// How far from that impact, rad.
+        turned: f64,
     },
     /// The flight that starts at this impact does not come to the next; or there is none, since the follower sticks.
     Elsewhere {
@@ -30,6 +32,16 @@ pub enum Departure {
 impl Cycle {
     /// Where the cam as it is leaves this cycle, flight by flight, by simulation; `None` where it does not.
     pub fn departure(&self, machine: &Machine) -> Result<Option<Departure>, SimulateError> {
+        self.departure_but_for(machine, None)
+    }
+
+    /// The same of an orbit that grazes, one of whose impacts is a `touch`: the flight that it cuts in two is simulated up to
+    /// there, and on from where the gap has opened again.
+    pub fn departure_but_for(
+        &self,
+        machine: &Machine,
+        touch: Option<usize>,
+    ) -> Result<Option<Departure>, SimulateError> {
         let segments = machine.cam().segments();
         let count = self.impacts.len();
         for (index, impact) in self.impacts.iter().enumerate() {
@@ -40,7 +52,9 @@ impl Cycle {
             }
             let struck = self.struck(machine, index);
             let scale = struck.cam_velocity.abs() + impact.velocity_before.abs();
-            if !(struck.cam_velocity - impact.velocity_before > tolerance::GRAZING.value * scale) {
+            if touch != Some(index)
+                && !(struck.cam_velocity - impact.velocity_before > tolerance::GRAZING.value * scale)
+            {
                 return Ok(Some(Departure::Tangent { impact: index }));
             }
         }
@@ -49,33 +63,52 @@ impl Cycle {
             if !(turn > 0.0) {
                 return Ok(Some(Departure::Elsewhere { impact: index }));
             }
-            let Some((met, turned)) = self.next_event(machine, index, turn)? else {
+            let since = if touch == Some(index) { tolerance::TOUCH.value.min(0.5 * turn) } else { 0.0 };
+            let to_touch = touch == Some((index + 1) % count);
+            let Some((event, turned)) = self.next_event(machine, index, turn, since)? else {
+                if to_touch {
+                    continue;
+                }
                 return Ok(Some(Departure::Elsewhere { impact: index }));
             };
-            if turned < turn - tolerance::SAME_ORBIT.value {
-                return Ok(Some(Departure::Earlier { impact: index, event: met }));
+            let room = if to_touch { tolerance::TOUCH.value } else { tolerance::SAME_ORBIT.value };
+            if turned < turn - room {
+                return Ok(Some(Departure::Earlier { impact: index, event, turned }));
             }
         }
         Ok(None)
     }
 
-    /// The first event after a impact, and the angle turned to it, rad; `None` where there is none for somewhat longer than
-    /// `turn`.
-    fn next_event(&self, machine: &Machine, index: usize, turn: f64) -> Result<Option<(Event, f64)>, SimulateError> {
+    /// The first event after an impact, seen from `since`, rad, on, and the angle turned to it from the impact, rad; `None`
+    /// where there is none for somewhat longer than `turn`.
+    fn next_event(
+        &self,
+        machine: &Machine,
+        index: usize,
+        turn: f64,
+        since: f64,
+    ) -> Result<Option<(Event, f64)>, SimulateError> {
         let impact = &self.impacts[index];
         let struck = self.struck(machine, index);
         // A impact that rounding puts outside of its revolution is at the end of it.
-        let cam_angle = if impact.cam_angle >= TAU || impact.cam_angle < 0.0 { 0.0 } else { impact.cam_angle };
-        let relative = struck.leaving.velocity - machine.angular_velocity() * machine.cam().lift(cam_angle).slope;
-        if relative <= 0.0 {
-            return Ok(None);
-        }
-        let mut motion = machine.start_on_cam(cam_angle, relative)?;
-        let end = cam_angle + turn + tolerance::SAME_ORBIT.value;
+        let on_cam = |angle: f64| if (0.0..TAU).contains(&angle) { angle } else { 0.0 };
+        let from = on_cam(impact.cam_angle);
+        let mut motion = if since > 0.0 {
+            let (_, state) = machine.flight().fly(struck.leaving, since / machine.angular_velocity());
+            machine.start(on_cam((from + since) % TAU), state)?
+        } else {
+            let relative = struck.leaving.velocity - machine.angular_velocity() * machine.cam().lift(from).slope;
+            if relative <= 0.0 {
+                return Ok(None);
+            }
+            machine.start_on_cam(from, relative)?
+        };
+        let begun = motion.cam_angle;
+        let end = begun + turn - since + tolerance::SAME_ORBIT.value;
         let goal = Goal { revolution: (end / TAU) as u64, cam_angle: end % TAU };
         let mut met = None;
         let _ = machine.advance(&mut motion, goal, &mut |event: &Event| {
-            met = Some((*event, event.turned_since(cam_angle)));
+            met = Some((*event, since + event.turned_since(begun)));
             ControlFlow::Break(())
         })?;
         Ok(met)

@@ -1,8 +1,9 @@
-//! The accounts of `continue` and `curve`: what a branch of orbits and a curve of corner impacts pass, and where they end.
+//! The accounts of `continue` and `curve`: what a branch of orbits and a curve of events pass, and where they end.
 
-use crate::border_collision::ImpactCurve;
-use crate::border_collision::impact_curve::CurveImpact;
+use crate::border_collision::EventCurve;
+use crate::border_collision::event_curve::EventPoint;
 use crate::orbit::branch::{Branch, BranchPoint, Kind, Special};
+use crate::show::words;
 
 /// What a branch passes and where it ends.
 pub(crate) fn branch(branch: &Branch, parameter: &str, index: usize) -> String {
@@ -36,48 +37,64 @@ fn passed(point: &BranchPoint, kind: Kind) -> String {
             let angle = point.orbit.impacts().nth(impact).map_or(f64::NAN, |impact| impact.cam_angle.to_degrees());
             format!("corner impact: impact {} at {angle:.4} deg, jump of order {jump_order}", impact + 1)
         }
-        Kind::Graze { before, after } => format!("graze: from {before} to {after} impacts"),
-        Kind::Type { after_corner, multiplier } => of_type(after_corner, multiplier),
+        Kind::Graze { before, after, .. } => format!("graze: from {before} to {after} impacts"),
+        Kind::Type { .. } | Kind::Cusp | Kind::DegenerateGraze | Kind::Turn => on_curve(kind),
         Kind::Chatter => "chatter: the follower ceases to stick to the cam".into(),
         Kind::Detachment => "detachment: the follower leaves the cam for the first time".into(),
     }
 }
 
-fn of_type(after_corner: bool, multiplier: f64) -> String {
-    let side = if after_corner { "after" } else { "before" };
-    format!("a multiplier with the law {side} the corner is {multiplier}")
+/// What changes along a curve.
+fn on_curve(kind: Kind) -> String {
+    match kind {
+        Kind::Type { after_corner, multiplier } => {
+            let side = match after_corner {
+                Some(true) => "with the law after the corner",
+                Some(false) => "with the law before the corner",
+                None => "of the orbit without the touch",
+            };
+            format!("a multiplier {side} is {multiplier}")
+        }
+        Kind::Cusp => "cusp: two folds meet".into(),
+        Kind::DegenerateGraze => "degenerate graze: follower and cam have one acceleration where they touch".into(),
+        Kind::Turn => "the curve turns round".into(),
+        Kind::Corner { impact, .. } => format!("impact {} of the orbit is at a corner", impact + 1),
+        Kind::Graze { before, after, .. } => format!("a flight touches: from {before} to {after} impacts"),
+        _ => kind.name().into(),
+    }
 }
 
-/// What a curve passes and where it ends.
-pub(crate) fn curve(curve: &ImpactCurve, parameter: &str, index: usize) -> String {
-    let (Some(first), Some(last)) = (curve.impacts.first(), curve.impacts.last()) else { return String::new() };
-    let (at, count, impacts) = (curve.at, curve.impacts.len(), first.impacts);
-    let (angle, impact, order) = (first.cam_angle.to_degrees(), at.impact + 1, at.jump_order);
-    let place = |impact: &CurveImpact| format!("{parameter} = {:.9}, {:.6} rpm", impact.value, impact.rpm);
+/// What a curve passes and where it ends, in the number of this name, which is `own` in the model.
+pub(crate) fn curve(curve: &EventCurve, (parameter, own): (&str, f64), index: usize) -> String {
+    let (Some(first), Some(last)) = (curve.points.first(), curve.points.last()) else { return String::new() };
+    let here = curve.points.iter().find(|point| point.value == own).unwrap_or(first);
+    let (count, impacts, angle) = (curve.points.len(), here.impacts, here.cam_angle.to_degrees());
+    let place = |point: &EventPoint| format!("{parameter} = {:.9}, {:.6} rpm", point.value, point.rpm);
+    let what = words::events(curve.kind);
+    let of_what = match curve.kind {
+        Kind::Corner { impact, jump_order, .. } => {
+            format!("impact {} of {impacts} at {angle:.4} deg, jump of order {jump_order}", impact + 1)
+        }
+        Kind::Graze { .. } => format!("from {impacts} to {} impacts, at {angle:.4} deg", impacts + 1),
+        _ => format!("of {impacts} impact(s) in {} revolution(s)", here.revolutions),
+    };
     let mut lines = vec![
-        format!(
-            "curve {index}: {count} corner impacts, impact {impact} of {impacts} at {angle:.4} deg, jump of order {order}"
-        ),
+        format!("curve {index}: {count} {what}, {of_what}"),
         format!("  begins at {}: {}", place(first), curve.ends[0].words()),
     ];
+    // The last one is the second of a pair below.
+    lines.extend(first.special.map(|special| format!("  {}: {}", place(first), on_curve(special.kind))));
     let (mut before, mut from) = (None, first);
-    for pair in curve.impacts.windows(2) {
+    for pair in curve.points.windows(2) {
         let [point, next] = pair else { continue };
-        let now = point.happening;
-        if point.special.is_none() && before != Some(now) {
+        if let Some(now) = point.happening.filter(|now| point.special.is_none() && before != Some(*now)) {
             // From the special point on, if one came right before.
             lines.push(format!("  {}: {now} from here", place(from)));
             before = Some(now);
         }
         from = if next.special.is_some() || point.special.is_none() { next } else { from };
         if let Some(Special { kind, .. }) = next.special {
-            let what = match kind {
-                Kind::Type { after_corner, multiplier } => of_type(after_corner, multiplier),
-                Kind::Fold => "the curve turns round".into(),
-                Kind::Corner { impact, .. } if impact == at.impact => "the model as it is".into(),
-                Kind::Corner { .. } => "another impact of the orbit is at a corner".into(),
-                _ => kind.name().into(),
-            };
+            let what = if next.value == own { "the model as it is".into() } else { on_curve(kind) };
             lines.push(format!("  {}: {what}", place(next)));
         }
     }

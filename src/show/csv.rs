@@ -3,7 +3,7 @@
 
 use std::fmt::{Display, Write};
 
-use crate::border_collision::ImpactCurve;
+use crate::border_collision::EventCurve;
 use crate::diagram::{Block, Row, Section, Seen, Starts, Sweep};
 use crate::flight::State;
 use crate::orbit::Eigenvalue;
@@ -154,21 +154,26 @@ pub(crate) fn branches(parameter: &str, branches: &[Branch]) -> String {
     lines
 }
 
-/// Every corner impact of every curve.
-pub(crate) fn curves(parameter: &str, curves: &[ImpactCurve]) -> String {
+/// Every event of every curve; what a corner impact alone has is empty for others.
+pub(crate) fn curves(parameter: &str, curves: &[EventCurve]) -> String {
     let mut lines = String::from(
         "rpm,parameter,value,revolutions,impacts,cam_angle_rad,jump_order,scenario,multiplier_minus_1_re,\
          multiplier_minus_1_im,multiplier_minus_2_re,multiplier_minus_2_im,multiplier_plus_1_re,multiplier_plus_1_im,\
-         multiplier_plus_2_re,multiplier_plus_2_im,special,curve\n",
+         multiplier_plus_2_re,multiplier_plus_2_im,special,curve,event\n",
     );
-    let impacts =
-        curves.iter().zip(1..).flat_map(|(curve, index)| curve.impacts.iter().map(move |i| (curve, index, i)));
-    for (curve, index, impact) in impacts {
-        let (rpm, value, angle, turns) = (impact.rpm, impact.value, impact.cam_angle, impact.revolutions);
-        let (count, order, happening) = (impact.impacts, curve.at.jump_order, impact.happening);
+    let points = curves.iter().zip(1..).flat_map(|(curve, index)| curve.points.iter().map(move |p| (curve, index, p)));
+    for (curve, index, point) in points {
+        let (rpm, value, angle, turns) = (point.rpm, point.value, point.cam_angle, point.revolutions);
+        let order = if let Kind::Corner { jump_order, .. } = curve.kind { Some(jump_order) } else { None };
+        let (count, order, happening) = (point.impacts, cell(order), cell(point.happening));
         let _ = write!(lines, "{rpm},{parameter},{value},{turns},{count},{angle},{order},{happening}");
-        impact.multipliers.iter().for_each(|value| lines.extend([format!(",{},{}", value.re, value.im)]));
-        let _ = writeln!(lines, ",{},{index}", impact.special.map_or("", |special| special.kind.name()));
+        let each = |index: usize| point.multipliers.get(index).map(|value| [value.re, value.im]);
+        let _ = (0..4).try_for_each(|index| {
+            let [re, im] = [0, 1].map(|part| cell(each(index).map(|value| value[part])));
+            write!(lines, ",{re},{im}")
+        });
+        let (special, event) = (cell(point.special.map(|special| special.kind.name())), cell(curve.kind.bifurcation()));
+        let _ = writeln!(lines, ",{special},{index},{event}");
     }
     lines
 }

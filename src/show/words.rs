@@ -11,6 +11,7 @@ use crate::cam::Side;
 use crate::corner::map::RouteName;
 use crate::covering::Unproved;
 use crate::covering::prove::Relation;
+use crate::orbit::branch::{self, Bifurcation};
 use crate::orbit::ending::{Ending, Kind};
 use crate::published::Verdict;
 use crate::show::block::{Mark, Symbol, Words, words};
@@ -48,6 +49,27 @@ pub(crate) fn sign(side: Side) -> &'static str {
         Side::Minus => "\u{2212}",
         Side::Plus => "+",
     }
+}
+
+/// Several events of the kind of one.
+pub(crate) fn events(kind: branch::Kind) -> &'static str {
+    kind.bifurcation().map_or("points", |event| match event {
+        Bifurcation::Corner => "corner impacts",
+        Bifurcation::Fold => "folds",
+        Bifurcation::Flip => "flips",
+        Bifurcation::Graze => "grazes",
+    })
+}
+
+/// One of several events.
+pub(crate) fn any_of(events: &[Bifurcation]) -> String {
+    let word = |event: &Bifurcation| match event {
+        Bifurcation::Corner => "corner impact",
+        Bifurcation::Fold => "fold",
+        Bifurcation::Flip => "flip",
+        Bifurcation::Graze => "graze",
+    };
+    events.iter().map(word).collect::<Vec<_>>().join(" or ")
 }
 
 /// The decimals that two values share.

@@ -60,8 +60,8 @@ pub enum StudyError {
     /// A search found no orbit.
     #[error("{file}: no periodic orbit of {revolutions} revolution(s) found at {rpm} rpm to follow")]
     NothingToFollow { file: String, revolutions: u64, rpm: f64 },
-    /// A curve of corner impacts tells their speed.
-    #[error("--parameter must be a number of the model: the speed is what the corner impacts are at")]
+    /// A curve of events tells their speed.
+    #[error("--parameter must be a number of the model: the speed is what the events are at")]
     SpeedFollowed,
     /// A run up to a number of impacts has no more of them.
     #[error(

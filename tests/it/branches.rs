@@ -207,7 +207,7 @@ fn grazes_are_where_the_number_of_impacts_changes() {
     for orbit in orbits(&model, 442.0, 1) {
         let branch = follow(&model, 442.0, &orbit, "rpm", [400.0, 480.0]);
         for (index, point) in branch.points.iter().enumerate() {
-            let Some(Kind::Graze { before, after }) = point.special.map(|special| special.kind) else { continue };
+            let Some(Kind::Graze { before, after, .. }) = point.special.map(|special| special.kind) else { continue };
             seen.push(point.value);
             let near = [&branch.points[index - 1], &branch.points[index + 1]].map(simulated_impacts(&model));
             let mut expected = [before, after];

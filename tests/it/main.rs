@@ -18,6 +18,7 @@ mod commands;
 mod common;
 mod complete;
 mod corner_maps;
+mod curves;
 mod derived;
 mod digits;
 mod drawing;

@@ -30,7 +30,9 @@ pub(super) fn half(
         let next = if (edge - at).abs() <= step { edge } else { at + direction * step };
         let (orbit, rpm) = match orbit_at(next, anchor) {
             Ok(found) => found,
-            Err(OrbitError::Family(error)) => return Ok((points, End::Edge(error.to_string()))),
+            Err(OrbitError::Family(error)) => {
+                return Ok((points, End::Edge { largest: direction > 0.0, why: error.to_string() }));
+            }
             Err(error) => return Err(error),
         };
         // The stretch on the cam moves with the parameter; its middle is the last to go.
@@ -43,7 +45,7 @@ pub(super) fn half(
                 let bracket = [at.min(next), at.max(next)];
                 let special =
                     detaches.then_some(Special { kind: Kind::Detachment, bracket, residual: bracket[1] - bracket[0] });
-                points.push(BranchPoint { sides: None, rpm, value: next, orbit, special });
+                points.push(BranchPoint { held: None, rpm, value: next, orbit, special });
                 (at, step) = (next, longest.min(2.0 * step.max(closest)));
             }
             None if step > closest => step *= 0.5,

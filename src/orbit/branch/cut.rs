@@ -2,13 +2,14 @@
 
 use nalgebra::DVector;
 
-use super::problem::{Pinned, Problem, Units};
+use super::held::Held;
+use super::problem::{Problem, Units};
 use super::switch::{self, Exit};
-use super::{Following, Kind, Special, gap, halved};
+use super::{BranchPoint, Following, Kind, OnCurve, Special, gap, halved};
 use crate::bracket::{Seen, regula_falsi};
 use crate::orbit::curve::{self, CurvePoint, NoPoint};
-use crate::orbit::{Cycle, Family, FamilyError};
-use crate::simulate::Machine;
+use crate::orbit::{Cycle, Departure, Family, FamilyError, PeriodicOrbit};
+use crate::simulate::{Machine, SimulateError};
 use crate::tolerance;
 
 /// A cut of the step at hand.
@@ -26,8 +27,12 @@ pub(super) enum Cut {
     Flip,
     /// The second half of a period becomes the same as the first.
     Halved,
-    /// On one side of the corner that an impact is pinned to, a multiplier passes 1 or -1.
+    /// Along a curve: with the law on one side of the corner, or without the touch, a multiplier passes 1 or -1.
     Type { side: usize, multiplier: f64 },
+    /// Along a curve of folds: it goes back in both numbers.
+    Cusp,
+    /// Along a curve of grazes: the gap does not open again.
+    Degenerate,
 }
 
 pub(super) struct Located {
@@ -46,7 +51,7 @@ pub(super) struct Stride<'a> {
     pub(super) following: &'a Following,
     pub(super) units: Units,
     pub(super) spans: Vec<f64>,
-    pub(super) pinned: Option<Pinned>,
+    pub(super) held: Option<Held>,
     pub(super) pattern: Cycle,
     pub(super) from: CurvePoint,
     pub(super) step: f64,
@@ -55,7 +60,15 @@ pub(super) struct Stride<'a> {
 impl Stride<'_> {
     /// The equations of the cycle.
     pub(super) fn problem(&self) -> Problem<'_> {
-        Problem::new(self.family, &self.pattern, self.units, &self.spans, self.pinned)
+        Problem::new(self.family, &self.pattern, self.units, &self.spans, self.held)
+    }
+
+    /// Where the cam as it is leaves the cycle, beside what is held.
+    pub(super) fn departure(&self, cycle: &Cycle, machine: &Machine) -> Result<Option<Departure>, SimulateError> {
+        match self.held {
+            Some(Held::Touch(impact)) => cycle.departure_but_for(machine, Some(impact)),
+            _ => cycle.departure_but_for(machine, None),
+        }
     }
 
     /// The parameter, of the unknowns.
@@ -69,7 +82,7 @@ impl Stride<'_> {
         problem: &Problem<'_>,
         next: &CurvePoint,
     ) -> Result<Option<Located>, NoPoint<FamilyError>> {
-        if self.pinned.is_some() || self.pattern.second_half(0).is_none() {
+        if self.held.is_some() || self.pattern.second_half(0).is_none() {
             return Ok(None);
         }
         let (one, two) = (problem.unpack(&self.from.unknowns)?.0, problem.unpack(&next.unknowns)?.0);
@@ -94,11 +107,14 @@ impl Stride<'_> {
 
     /// What may be passed without a change of the cycle.
     pub(super) fn passed(&self) -> Vec<Cut> {
-        if self.pinned.is_none() {
-            return vec![Cut::Fold, Cut::Flip, Cut::Branching];
-        }
         let of_side = |side| [1.0, -1.0].map(|multiplier| Cut::Type { side, multiplier });
-        [0, 1].into_iter().flat_map(of_side).chain([Cut::Fold]).collect()
+        match self.held {
+            None => vec![Cut::Fold, Cut::Flip, Cut::Branching],
+            Some(Held::Corner(_)) => [0, 1].into_iter().flat_map(of_side).chain([Cut::Fold]).collect(),
+            Some(Held::Touch(_)) => of_side(0).into_iter().chain([Cut::Fold]).collect(),
+            Some(Held::Multiplier(1.0)) => vec![Cut::Cusp, Cut::Fold],
+            Some(Held::Multiplier(_)) => vec![Cut::Fold],
+        }
     }
 
     /// What the equations show to have been passed at `unknowns`.
@@ -119,16 +135,19 @@ impl Stride<'_> {
         }
         for (index, impact) in cycle.impacts.iter().enumerate() {
             let segment = &machine.cam().segments()[impact.segment];
-            let pinned = self.pinned.is_some_and(|pinned| pinned.impact == index);
+            let pinned = matches!(self.held, Some(Held::Corner(pinned)) if pinned.impact == index);
             if impact.cam_angle > segment.end && !pinned {
                 cuts.push(Cut::Exit(Exit::Corner { impact: index, past_end: true }));
             }
             if impact.cam_angle < segment.start && !pinned {
                 cuts.push(Cut::Exit(Exit::Corner { impact: index, past_end: false }));
             }
-            if cycle.approach(&machine, index) <= 0.0 {
+            if self.held != Some(Held::Touch(index)) && cycle.approach(&machine, index) <= 0.0 {
                 cuts.push(Cut::Exit(Exit::Tangent { impact: index }));
             }
+        }
+        if self.held.and_then(|held| held.opening(&cycle, &machine)).is_some_and(|opening| opening <= 0.0) {
+            cuts.push(Cut::Degenerate);
         }
         Ok(cuts)
     }
@@ -167,10 +186,16 @@ impl Stride<'_> {
                 1.0 + matrix.trace() + matrix.determinant()
             }
             Cut::Type { side, multiplier } => {
-                let pinned = self.pinned.ok_or(NoPoint::NotClosed)?;
-                let matrix = pinned.sides(&cycle, &machine)[side];
+                let sides = self.held.map(|held| held.sides(&cycle, &machine)).unwrap_or_default();
+                let matrix = sides.get(side).ok_or(NoPoint::NotClosed)?;
                 1.0 - multiplier * matrix.trace() + matrix.determinant()
             }
+            Cut::Cusp => {
+                // The two numbers go one way along the curve, more slowly towards the cusp, and back from there.
+                let numbers = |tangent: &DVector<f64>| tangent.rows(tangent.len() - 2, 2).into_owned();
+                numbers(&at.tangent).dot(&numbers(&self.from.tangent).normalize())
+            }
+            Cut::Degenerate => self.held.and_then(|held| held.opening(&cycle, &machine)).ok_or(NoPoint::NotClosed)?,
         })
     }
 
@@ -201,6 +226,22 @@ impl Stride<'_> {
         Ok(Located { step: best.at, cut, point: best.with, bracket, residual })
     }
 
+    /// The orbit at a point.
+    pub(super) fn branch_point(
+        &self,
+        problem: &Problem<'_>,
+        point: &CurvePoint,
+        special: Option<Special>,
+    ) -> Result<BranchPoint, NoPoint<FamilyError>> {
+        let (cycle, machine, rpm) = problem.unpack(&point.unknowns)?;
+        let residual = problem.residual(&point.unknowns)?.amax();
+        let held =
+            self.held.map(|held| OnCurve { cam_angle: held.cam_angle(&cycle), sides: held.sides(&cycle, &machine) });
+        let cycle = self.held.map_or_else(|| cycle.clone(), |held| held.orbit(&cycle));
+        let orbit = PeriodicOrbit::of_cycle(&machine, cycle, residual);
+        Ok(BranchPoint { held, rpm, value: self.value(&point.unknowns), orbit, special })
+    }
+
     pub(super) fn special(
         &self,
         problem: &Problem<'_>,
@@ -209,10 +250,16 @@ impl Stride<'_> {
         let (cycle, machine, _) = problem.unpack(&located.point.unknowns)?;
         let kind = match located.cut {
             Cut::Range(_) => return Ok(None),
+            Cut::Fold if self.held.is_some() => Kind::Turn,
             Cut::Fold => Kind::Fold,
+            Cut::Cusp => Kind::Cusp,
+            Cut::Degenerate => Kind::DegenerateGraze,
             Cut::Flip | Cut::Halved => Kind::Flip,
             Cut::Branching => Kind::Branching,
-            Cut::Type { side, multiplier } => Kind::Type { after_corner: side == 1, multiplier },
+            Cut::Type { side, multiplier } => {
+                let after_corner = matches!(self.held, Some(Held::Corner(_))).then_some(side == 1);
+                Kind::Type { after_corner, multiplier }
+            }
             Cut::Exit(exit) => match (exit, self.order(exit, &cycle, &machine)) {
                 (Exit::Corner { .. }, None) => return Ok(None),
                 // Contacts are numbered as those of the orbit, from angle 0 on.

@@ -1,8 +1,6 @@
 //! Orbits of twice the period that branch off: at a flip, and at a corner impact or a graze, where the second period may go
 //! on otherwise than the first.
 
-use std::f64::consts::TAU;
-
 use nalgebra::DVector;
 
 use super::problem::{Problem, Units};
@@ -11,7 +9,7 @@ use super::{Branch, Following, Kind};
 use crate::orbit::curve::{self, Equations, NoPoint};
 use crate::orbit::cycle::lift_size;
 use crate::orbit::{Course, Cycle, Family, FamilyError, Impact, PeriodicOrbit};
-use crate::simulate::{Event, Machine};
+use crate::simulate::Machine;
 use crate::tolerance;
 
 /// How far from the special point the orbit is that is given, of the longest step.
@@ -31,7 +29,7 @@ fn at(family: &Family, following: &Following, branch: &Branch, index: usize) -> 
     let exits = match special.kind {
         Kind::Flip => vec![None],
         Kind::Corner { segment, .. } => on_corner(cycle, &machine, segment).map(Some).collect(),
-        Kind::Graze { .. } => touch(branch, index, cycle).into_iter().map(Some).collect(),
+        Kind::Graze { turned, .. } => switch::touch(cycle, turned).into_iter().map(Some).collect(),
         _ => Vec::new(),
     };
     exits.into_iter().filter_map(|exit| beyond(family, following, point.value, &cycle.twice(), exit)).collect()
@@ -77,23 +75,6 @@ fn on_corner(cycle: &Cycle, machine: &Machine, segment: usize) -> impl Iterator<
         let past_start = *on == segment && near(*cam_angle, segments[segment].start);
         (past_end || past_start).then_some(Exit::Corner { impact, past_end })
     })
-}
-
-/// The touch that the orbit at a graze has, from the slowest impact of its neighbour on the branch that has one impact more.
-fn touch(branch: &Branch, index: usize, cycle: &Cycle) -> Option<Exit> {
-    let count = cycle.impacts.len();
-    let beside = [index.checked_sub(1), index.checked_add(1)].into_iter().flatten();
-    let mut beside = beside.filter_map(|index| branch.points.get(index)).map(|point| &point.orbit);
-    let more = beside.find(|orbit| orbit.revolutions == cycle.revolutions && orbit.impacts().count() == count + 1)?;
-    let approach = |event: &&Event| event.cam_velocity - event.velocity_before;
-    let slowest = more.impacts().min_by(|one, two| approach(one).total_cmp(&approach(two)))?;
-    let since = |impact: &Impact| {
-        let turns = slowest.revolution as f64 - impact.revolution as f64;
-        (turns * TAU + slowest.cam_angle - impact.cam_angle).rem_euclid(cycle.revolutions as f64 * TAU)
-    };
-    let flights = cycle.impacts.iter().map(since).enumerate();
-    let (impact, turned) = flights.min_by(|one, two| one.1.total_cmp(&two.1))?;
-    Some(Exit::Touch { impact, turned })
 }
 
 /// The unit direction from a flip in which the two halves of a period part.

@@ -1,4 +1,4 @@
-//! The branches through given orbits and what branches off from them; those of a range of speeds, and the corner impacts on
+//! The branches through given orbits and what branches off from them; those of a range of speeds, and the special points on
 //! them, of which a range has those of any wider one.
 //!
 //! Orbits are looked for at speeds of a grid, which is the same for every range, as are its cells. The corner impacts of a cell
@@ -66,9 +66,9 @@ impl FoundBranches {
     }
 }
 
-/// The corner impacts on the branches of a range of speeds, and how they were looked for.
+/// The special points on the branches of a range of speeds, and how they were looked for.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct MetCorners {
+pub struct MetPoints {
     /// By rising speed, each once.
     pub points: Vec<BranchPoint>,
     /// Speeds at which orbits were searched for, rpm.
@@ -154,20 +154,25 @@ pub fn find_branches(model: &Model, range: [f64; 2], wanted: &Search) -> Result<
     Ok(Searched::at(model, step_at(range[0])..step_at(range[1]) + 1, wanted)?.branches(range))
 }
 
-/// The corner impacts between two speeds, rpm, of orbits of `wanted.revolutions` that have `wanted.impacts` where they were
-/// found: those of any wider range that are in this one.
-pub fn corner_impacts(model: &Model, range: [f64; 2], wanted: &Search) -> Result<MetCorners, FamilyError> {
+/// The special points of some kinds between two speeds, rpm, of orbits of `wanted.revolutions` that have `wanted.impacts` where
+/// they were found: those of any wider range that are in this one.
+pub fn special_points(
+    model: &Model,
+    range: [f64; 2],
+    wanted: &Search,
+    is_wanted: impl Fn(Kind) -> bool + Sync,
+) -> Result<MetPoints, FamilyError> {
     let [first, last] = range.map(|rpm| step_at(rpm).div_euclid(CELL));
     let searched = Searched::at(model, CELL * first - MARGIN..CELL * (last + 1) + MARGIN, wanted)?;
     let of_cell = |cell: i32| {
         let window = [CELL * cell - MARGIN, CELL * (cell + 1) + MARGIN];
         let found = searched.branches(window.map(|step| grid(f64::from(step))));
-        let mut points = corners_on(&found.branches);
+        let mut points = points_on(&found.branches, &is_wanted);
         points.retain(|point| step_at(point.rpm).div_euclid(CELL) == cell);
         (points, found)
     };
     let cells: Vec<_> = (first..=last).into_par_iter().map(of_cell).collect();
-    let mut all = MetCorners { speeds: searched.speeds, ..MetCorners::default() };
+    let mut all = MetPoints { speeds: searched.speeds, ..MetPoints::default() };
     for (points, found) in cells {
         all.points.extend(points.into_iter().filter(|point| range[0] <= point.rpm && point.rpm <= range[1]));
         all.branches += found.branches.len();
@@ -176,14 +181,15 @@ pub fn corner_impacts(model: &Model, range: [f64; 2], wanted: &Search) -> Result
     Ok(all)
 }
 
-/// The corner impacts on `branches`, each once, by rising speed.
-fn corners_on(branches: &[Branch]) -> Vec<BranchPoint> {
-    let is_corner =
-        |point: &&BranchPoint| matches!(point.special, Some(special) if matches!(special.kind, Kind::Corner { .. }));
+/// The special points of some kinds on `branches`, each once, by rising speed.
+fn points_on(branches: &[Branch], is_wanted: impl Fn(Kind) -> bool) -> Vec<BranchPoint> {
+    let kind = |point: &BranchPoint| point.special.map(|special| special.kind);
+    let is_met = |point: &&BranchPoint| kind(point).is_some_and(&is_wanted);
     let mut found: Vec<BranchPoint> = Vec::new();
-    for point in branches.iter().flat_map(|branch| &branch.points).filter(is_corner) {
+    for point in branches.iter().flat_map(|branch| &branch.points).filter(is_met) {
         let same = |known: &BranchPoint| {
             (known.rpm - point.rpm).abs() <= tolerance::SAME_ORBIT.value * point.rpm
+                && kind(known).map(|kind| kind.name()) == kind(point).map(|kind| kind.name())
                 && known.orbit.is_same(&point.orbit)
         };
         if !found.iter().any(same) {

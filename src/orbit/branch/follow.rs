@@ -1,11 +1,16 @@
 //! One direction of a branch: steps along the curve, cut where something changes.
 
+use std::convert::Infallible;
+
+use nalgebra::DVector;
+
 use super::cut::{Cut, Located, Stride};
-use super::problem::{Pinned, Problem, Units};
+use super::held::Held;
+use super::problem::{Problem, Units};
 use super::switch::{self, Exit};
-use super::{BranchPoint, End, Following, Special, gap};
+use super::{BranchPoint, End, Following, HalfBranch, Special, gap};
+use crate::bracket::{Width, halve};
 use crate::orbit::curve::{self, CurvePoint, NoPoint};
-use crate::orbit::cycle::lift_size;
 use crate::orbit::{Cycle, Departure, Family, FamilyError, OrbitError, PeriodicOrbit};
 use crate::tolerance;
 
@@ -13,6 +18,8 @@ use crate::tolerance;
 const MOST_IMPACTS: usize = 24;
 /// The first step, and the one after each change of the cycle, of the longest.
 const FIRST: f64 = 0.02;
+/// Halvings that leave nothing of an interval of doubles.
+const BINARY_DIGITS: u32 = 60;
 /// How far the curve may turn in one step: the cosine.
 const STRAIGHT: f64 = 0.985;
 
@@ -23,34 +30,65 @@ pub(super) struct Start<'a> {
     pub(super) values: &'a [f64],
     /// Of the free numbers.
     pub(super) spans: &'a [f64],
-    pub(super) pinned: Option<Pinned>,
+    pub(super) held: Option<Held>,
 }
 
-/// The branch in one direction: the sign of the last free number's first change.
+impl<'a> Stride<'a> {
+    /// The first, from where a walk starts, in no direction yet.
+    fn begun(family: &'a Family, start: &Start<'_>, following: &'a Following) -> Result<Self, OrbitError> {
+        let Start { cycle, values, spans, held } = *start;
+        let machine = family.machine(values)?.0;
+        let units = Units::of(cycle, &machine);
+        let unknowns = Problem::new(family, cycle, units, spans, held).unknowns(cycle, &machine, values);
+        let tangent = DVector::zeros(unknowns.len());
+        let from = CurvePoint { unknowns, tangent, steps: 0 };
+        let (spans, pattern, step) = (spans.to_vec(), cycle.clone(), FIRST * following.longest_step);
+        Ok(Self { family, following, units, spans, held, pattern, from, step })
+    }
+
+    /// The branch in one direction: the sign of the last free number's first change.
+    fn half(mut self, direction: f64) -> Result<HalfBranch, OrbitError> {
+        let Ok(tangent) = curve::first_tangent(&self.problem(), &self.from.unknowns) else {
+            return Ok((Vec::new(), End::Lost));
+        };
+        let ahead = tangent[tangent.len() - 1] * direction >= 0.0;
+        self.from.tangent = if ahead { tangent } else { -tangent };
+        Walk { stride: self, fresh: None, points: Vec::new() }.run()
+    }
+}
+
+/// The branch in one direction from an orbit.
 pub(super) fn half(
     family: &Family,
     start: &Start<'_>,
     following: &Following,
     direction: f64,
-) -> Result<(Vec<BranchPoint>, End), OrbitError> {
-    let Start { cycle, values, spans, pinned } = *start;
-    let machine = family.machine(values)?.0;
-    let units = Units::of(cycle, &machine);
-    let problem = Problem::new(family, cycle, units, spans, pinned);
-    let unknowns = problem.unknowns(cycle, &machine, values);
-    let Ok(tangent) = curve::first_tangent(&problem, &unknowns) else { return Ok((Vec::new(), End::Lost)) };
-    let ahead = tangent[unknowns.len() - 1] * direction >= 0.0;
-    let stride = Stride {
-        family,
-        following,
-        units,
-        spans: spans.to_vec(),
-        pinned,
-        pattern: cycle.clone(),
-        from: CurvePoint { unknowns, tangent: if ahead { tangent } else { -tangent }, steps: 0 },
-        step: FIRST * following.longest_step,
+) -> Result<HalfBranch, OrbitError> {
+    Stride::begun(family, start, following)?.half(direction)
+}
+
+/// The curve of what is held, in both directions from what is there at the last number's first value: the point there, if there
+/// is one, and the halves.
+pub(super) fn curve(
+    family: &Family,
+    start: &Start<'_>,
+    following: &Following,
+    special: Option<Special>,
+) -> Result<Option<(BranchPoint, [HalfBranch; 2])>, OrbitError> {
+    let begun = || Stride::begun(family, start, following);
+    let mut stride = begun()?;
+    let count = stride.from.unknowns.len();
+    let along = DVector::from_fn(count, |row, _| f64::from(row + 1 == count));
+    let guess = stride.from.unknowns.clone();
+    // A located point has half of the digits of its own equations.
+    let Ok(point) = curve::closed(&stride.problem(), &guess, &along, 0.0, guess.clone()) else { return Ok(None) };
+    stride.from = point;
+    let Ok(middle) = stride.branch_point(&stride.problem(), &stride.from, special) else { return Ok(None) };
+    let half = |direction: f64| {
+        let from = stride.from.clone();
+        Stride { from, ..begun()? }.half(direction)
     };
-    Walk { stride, fresh: None, points: Vec::new() }.run()
+    Ok(Some((middle, [half(-1.0)?, half(1.0)?])))
 }
 
 /// A walk along a branch, in one direction.
@@ -62,28 +100,30 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    fn run(mut self) -> Result<(Vec<BranchPoint>, End), OrbitError> {
+    fn run(mut self) -> Result<HalfBranch, OrbitError> {
         let mut begin = (self.stride.pattern.clone(), self.stride.from.clone());
         loop {
             if self.points.len() >= self.stride.following.most_points {
                 return Ok((self.points, End::MostPoints));
             }
             match self.advance() {
-                Ok(None) => self.rescale(&mut begin),
+                Ok(None) if self.rescale(&mut begin) => return Ok((self.points, End::Unbounded)),
+                Ok(None) => {}
                 Ok(Some(end)) => return Ok((self.points, end)),
                 Err(error) => {
-                    if matches!(error, NoPoint::Outside(_))
-                        && let Some(last) = self.at_bound()
+                    if let NoPoint::Outside(why) = &error
+                        && let Some((last, end)) = self.at_bound(why)
                     {
                         self.points.push(last);
-                        return Ok((self.points, End::Range));
+                        return Ok((self.points, end));
                     }
                     self.stride.step *= 0.5;
                     if self.stride.step < tolerance::SHORTEST_STEP.value * self.stride.following.longest_step {
                         let end = match (error, self.fresh) {
-                            (NoPoint::Outside(error), _) => End::Edge(error.to_string()),
+                            (NoPoint::Outside(why), _) => self.edge(&why),
                             (_, Some(Exit::Touch { .. } | Exit::Tangent { .. })) => End::Graze,
                             _ if self.chatters() => End::Chatter,
+                            _ if self.grazes() => End::Graze,
                             _ => End::Lost,
                         };
                         return Ok((self.points, end));
@@ -115,11 +155,21 @@ impl Walk<'_> {
         here.is_ok_and(|(cycle, ..)| closest(cycle) < tolerance::CHATTERING_TURN.value)
     }
 
-    /// The same curve in units of the velocities that it has come to.
-    fn rescale(&mut self, home: &mut (Cycle, CurvePoint)) {
+    /// Whether some impact is next to a touch.
+    fn grazes(&self) -> bool {
+        let here = self.stride.problem().unpack(&self.stride.from.unknowns);
+        here.is_ok_and(|(cycle, machine, _)| {
+            let approach = |index: usize| cycle.approach(&machine, index) / machine.angular_velocity();
+            let slowest = (0..cycle.impacts.len()).map(approach).fold(f64::INFINITY, f64::min);
+            slowest < tolerance::TOUCH.value * self.stride.units.velocity
+        })
+    }
+
+    /// The same curve in units of the velocities that it has come to; and whether these grow without bound.
+    fn rescale(&mut self, home: &mut (Cycle, CurvePoint)) -> bool {
         /// From which factor on.
         const FACTOR: f64 = 1.5;
-        let Ok((cycle, machine, _)) = self.stride.problem().unpack(&self.stride.from.unknowns) else { return };
+        let Ok((cycle, machine, _)) = self.stride.problem().unpack(&self.stride.from.unknowns) else { return false };
         let units = Units::of(&cycle, &machine);
         let factor = units.velocity / self.stride.units.velocity;
         if !(1.0 / FACTOR..FACTOR).contains(&factor) {
@@ -127,30 +177,49 @@ impl Walk<'_> {
             self.stride.units.convert(&mut home.1, home.0.impacts.len(), units);
             self.stride.units = units;
         }
+        units.lift < tolerance::UNBOUNDED.value * units.velocity
     }
 
-    /// The orbit at the bound of the range that the branch runs into, where the model allows nothing beyond.
-    fn at_bound(&self) -> Option<BranchPoint> {
-        let from = &self.stride.from.unknowns;
-        let (value, slope) = (self.stride.value(from), self.stride.value(&self.stride.from.tangent));
-        let bound = self.stride.following.range[usize::from(slope > 0.0)];
-        let step = (bound - value) / slope;
-        if !(step.is_finite() && (0.0..=self.stride.step).contains(&step)) {
+    /// That the model allows no further value, in the direction of the walk, and why.
+    fn edge(&self, why: &FamilyError) -> End {
+        let largest = self.stride.value(&self.stride.from.tangent) > 0.0;
+        let why = match why {
+            FamilyError::Model(error) => error.rule(),
+            other => other.to_string(),
+        };
+        End::Edge { largest, why }
+    }
+
+    /// The orbit at the last value that the model allows, where the branch runs into it.
+    fn at_bound(&self, why: &FamilyError) -> Option<(BranchPoint, End)> {
+        let from = &self.stride.from;
+        let (count, problem) = (from.unknowns.len(), self.stride.problem());
+        let span = self.stride.spans[self.stride.spans.len() - 1];
+        let with = |value: f64| {
+            let mut unknowns = from.unknowns.clone();
+            unknowns[count - 1] = value / span;
+            unknowns
+        };
+        let is_refused = |value: f64| Ok::<_, Infallible>(problem.unpack(&with(value)).is_err());
+        let (value, slope) = (self.stride.value(&from.unknowns), from.tangent[count - 1]);
+        let beyond = value + 2.0 * slope * span * self.stride.step;
+        if is_refused(beyond) != Ok(true) {
             return None;
         }
-        // A pinned cycle closes at one speed only, and not at this one.
-        if self.stride.pinned.is_some() {
-            return None;
-        }
-        let (machine, rpm) = self.stride.family.machine(&[bound]).ok()?;
-        let problem = self.stride.problem();
-        let mut unknowns = from + &self.stride.from.tangent * step;
-        unknowns[problem.column(0)] = bound / self.stride.spans[0];
-        let (guess, _, _) = problem.unpack(&unknowns).ok()?;
-        let (cycle, residual) = guess.closed(&machine).ok()?;
-        let is_orbit = matches!(cycle.departure(&machine), Ok(None));
-        let orbit = PeriodicOrbit::of_cycle(&machine, cycle, residual);
-        is_orbit.then_some(BranchPoint { sides: None, rpm, value: bound, orbit, special: None })
+        let Ok([bound, _]) = halve([value, beyond], Width::Halvings(BINARY_DIGITS), is_refused);
+        // Halving comes to 0 as near as there are doubles.
+        let is_zero = bound.abs() <= tolerance::ULP.value * span && is_refused(0.0) == Ok(false);
+        let bound = if is_zero { 0.0 } else { bound };
+        // Along the number alone: nothing is asked of the model beyond its bound.
+        let along = DVector::from_fn(count, |row, _| f64::from(row + 1 == count));
+        let mut guess = &from.unknowns + &from.tangent * ((bound - value) / (slope * span));
+        guess[count - 1] = bound / span;
+        let point = curve::closed(&problem, &with(bound), &along, 0.0, guess).ok()?;
+        let (cycle, machine, _) = problem.unpack(&point.unknowns).ok()?;
+        // What has no rebound leaves the cam as the orbits before it do, which no simulated flight begins with.
+        let is_orbit = matches!(self.stride.departure(&cycle, &machine), Ok(None | Some(Departure::Elsewhere { .. })));
+        let point = self.stride.branch_point(&problem, &point, None).ok().filter(|_| is_orbit)?;
+        Some((point, self.edge(why)))
     }
 
     /// One step, or the part of it up to where the cycle changes.
@@ -182,11 +251,9 @@ impl Walk<'_> {
             None => (next.clone(), self.stride.step),
         };
         let (cycle, at, _) = problem.unpack(&clear.unknowns)?;
-        match cycle.departure(&at) {
+        match self.stride.departure(&cycle, &at) {
             Ok(None) => {}
-            Ok(Some(Departure::Earlier { impact, event })) => {
-                let turned = (event.revolution as f64) * std::f64::consts::TAU + event.cam_angle
-                    - cycle.impacts[impact].cam_angle.rem_euclid(std::f64::consts::TAU);
+            Ok(Some(Departure::Earlier { impact, turned, .. })) => {
                 let touch = Exit::Touch { impact, turned };
                 let located = self.stride.locate(&problem, Cut::Exit(touch), reach)?;
                 reach = located.step;
@@ -221,7 +288,7 @@ impl Walk<'_> {
                 }
                 points.push((
                     located.step,
-                    self.branch_point(&problem, &located.point, self.stride.special(&problem, &located)?)?,
+                    self.stride.branch_point(&problem, &located.point, self.stride.special(&problem, &located)?)?,
                 ));
             }
         }
@@ -230,11 +297,13 @@ impl Walk<'_> {
             Some(located) => self.stride.special(&problem, located)?,
             None => None,
         };
-        let mut last = self.branch_point(&problem, &end_point, special)?;
+        let mut last = self.stride.branch_point(&problem, &end_point, special)?;
         if let Some(Located { cut: Cut::Exit(exit @ Exit::Tangent { .. }), .. }) = first {
             // The impact that is none has no saltation matrix; the orbit without it has one.
             let (cycle, machine, _) = problem.unpack(&end_point.unknowns)?;
-            if let Some(without) = switch::beyond(exit, &cycle, &machine) {
+            if self.stride.held.is_none()
+                && let Some(without) = switch::beyond(exit, &cycle, &machine)
+            {
                 last.orbit = PeriodicOrbit::of_cycle(&machine, without.shortest(), last.orbit.residual);
             }
         }
@@ -255,6 +324,7 @@ impl Walk<'_> {
         match first {
             Some(Located { cut: Cut::Range(_), .. }) => Ok(Some(End::Range)),
             Some(Located { cut: Cut::Halved, .. }) => Ok(Some(End::Shorter)),
+            Some(Located { cut: Cut::Degenerate, .. }) => Ok(Some(End::Degenerate)),
             Some(Located { cut: Cut::Exit(exit), .. }) => self.go_over(exit),
             _ => {
                 self.fresh = None;
@@ -264,27 +334,12 @@ impl Walk<'_> {
         }
     }
 
-    fn branch_point(
-        &self,
-        problem: &Problem<'_>,
-        point: &CurvePoint,
-        special: Option<Special>,
-    ) -> Result<BranchPoint, NoPoint<FamilyError>> {
-        let (cycle, machine, rpm) = problem.unpack(&point.unknowns)?;
-        let residual = cycle.residual(&machine).amax() / lift_size(&machine);
-        let sides = self.stride.pinned.map(|pinned| pinned.sides(&cycle, &machine));
-        let orbit = PeriodicOrbit::of_cycle(&machine, cycle, residual);
-        Ok(BranchPoint { sides, rpm, value: self.stride.value(&point.unknowns), orbit, special })
-    }
-
     /// Goes over to the cycle beyond an exit.
     fn go_over(&mut self, exit: Exit) -> Result<Option<End>, NoPoint<FamilyError>> {
-        if self.stride.pinned.is_some() {
-            return Ok(Some(if matches!(exit, Exit::Corner { .. }) { End::Corner } else { End::Graze }));
-        }
-        let values = [self.stride.value(&self.stride.from.unknowns)];
-        let machine = self.stride.family.machine(&values)?.0;
-        let (cycle, _, _) = self.stride.problem().unpack(&self.stride.from.unknowns)?;
+        let problem = self.stride.problem();
+        let values = problem.values(&self.stride.from.unknowns);
+        let (cycle, machine, _) = problem.unpack(&self.stride.from.unknowns)?;
+        drop(problem);
         let exit = match exit {
             Exit::Touch { impact, turned } => match gap::least(&cycle, &machine, impact, turned) {
                 Some((_, turned)) => Exit::Touch { impact, turned },
@@ -298,17 +353,25 @@ impl Walk<'_> {
             return Ok(Some(exhausted));
         }
         let Some(beyond) = switch::beyond(exit, &cycle, &machine) else { return Ok(Some(End::Graze)) };
+        let ended = if matches!(exit, Exit::Corner { .. }) { End::Corner } else { End::Graze };
+        let held = match self.stride.held.map(|held| switch::held_beyond(held, exit)) {
+            Some(None) => return Ok(Some(ended)),
+            held => held.flatten(),
+        };
         if beyond.repeats_sooner() {
             return Ok(Some(End::Shorter));
         }
         if beyond.impacts.len() > MOST_IMPACTS * beyond.revolutions as usize {
             return Ok(Some(End::Chatter));
         }
-        self.stride.pattern = beyond.clone();
+        if held.and_then(|held| held.opening(&beyond, &machine)).is_some_and(|opening| opening <= 0.0) {
+            return Ok(Some(End::Degenerate));
+        }
+        (self.stride.pattern, self.stride.held) = (beyond.clone(), held);
         let problem = self.stride.problem();
         let unknowns = problem.unknowns(&beyond, &machine, &values);
         if problem.residual(&unknowns)?.amax() > tolerance::SAME_ORBIT.value {
-            return Ok(Some(End::Gap));
+            return Ok(Some(if held.is_some() { ended } else { End::Gap }));
         }
         let Ok(tangent) = switch::direction(exit, &cycle, &problem, &unknowns) else { return Ok(Some(exhausted)) };
         drop(problem);

@@ -10,7 +10,7 @@
 //! | `find` | the branches through given orbits and what branches off; those of a range of speeds, and its corner impacts |
 //! | `doubled` | orbits of twice the period next to a special point |
 //! | `follow` | one direction of a branch, step by step; `chatter` where the follower sticks |
-//! | `problem` | the equations, with numbers of the model free, or an impact pinned to a corner |
+//! | `problem`, `held` | the equations, with numbers of the model free; what holds besides along a curve in two of them |
 //! | `cut`, `gap`, `halved` | what a step passes, and where: corners, folds, flips; grazes; the end of a doubled period |
 //! | `switch` | the cycle beyond a corner or a graze, and which way leads there |
 //! | `special` | the points where something changes; which impact of an orbit is which of the next |
@@ -22,6 +22,7 @@ mod find;
 mod follow;
 mod gap;
 mod halved;
+mod held;
 mod problem;
 mod special;
 mod switch;
@@ -32,10 +33,9 @@ use super::{Family, OrbitError, Parameter, PeriodicOrbit};
 use crate::model::Model;
 use crate::tolerance;
 pub(crate) use doubled::doubled;
-pub(crate) use find::{FoundBranches, GRID_RATIO, corner_impacts, find_branches};
-pub(crate) use problem::Pinned;
-pub use special::Kind;
+pub(crate) use find::{FoundBranches, GRID_RATIO, find_branches, special_points};
 pub(crate) use special::Special;
+pub use special::{Bifurcation, Kind};
 
 /// What is followed, and how far.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,10 +59,19 @@ pub struct BranchPoint {
     pub value: f64,
     /// The orbit.
     pub orbit: PeriodicOrbit,
-    /// On a curve of corner impacts: its matrix with the law before the corner and with the law after it, 2x2 each.
-    pub sides: Option<[Matrix2<f64>; 2]>,
+    /// On a curve in two numbers: the event that it is of.
+    pub held: Option<OnCurve>,
     /// What changes here, if anything.
     pub special: Option<Special>,
+}
+
+/// The event that a curve is of, at one of its points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OnCurve {
+    /// Where the impact on the corner is, or the touch; of others the first impact; rad.
+    pub cam_angle: f64,
+    /// The matrix of one period; of a corner impact that with the law before the corner and that with the law after it.
+    pub sides: Vec<Matrix2<f64>>,
 }
 
 /// Why a branch goes no further in one direction.
@@ -73,14 +82,23 @@ pub enum End {
     /// It came back to where it started.
     Closed,
     /// The model allows no further value.
-    Edge(String),
+    Edge {
+        /// Whether it is the largest that is allowed; the smallest otherwise.
+        largest: bool,
+        /// What is allowed.
+        why: String,
+    },
+    /// Velocities that grow without bound.
+    Unbounded,
+    /// A touch at which the gap does not open again.
+    Degenerate,
     /// As many points as were asked for.
     MostPoints,
     /// Impacts without number: the follower begins to chatter there, or ceases to.
     Chatter,
     /// The orbit never meets the cam: it is followed no further.
     Clear,
-    /// Another impact of the orbit at a corner.
+    /// An impact of the orbit at a corner, beyond which its curve is none.
     Corner,
     /// A graze beyond which no orbit nearby continues the branch.
     Graze,
@@ -98,11 +116,15 @@ impl End {
         match self {
             Self::Range => "the end of the range".into(),
             Self::Closed => "its own start: the branch is closed".into(),
-            Self::Edge(why) => format!("the edge of what the model allows: {why}"),
+            Self::Edge { largest, why } => {
+                format!("the {} there is: {why}", if *largest { "largest" } else { "smallest" })
+            }
+            Self::Unbounded => "impacts that become faster without bound".into(),
+            Self::Degenerate => "a degenerate graze: the flight that touches does not leave the cam again".into(),
             Self::MostPoints => "the number of points that was asked for".into(),
             Self::Chatter => "the onset of chattering".into(),
             Self::Clear => "it stays clear of the cam, and is followed no further".into(),
-            Self::Corner => "another impact of the orbit at a corner".into(),
+            Self::Corner => "an impact at a corner, beyond which nothing continues it".into(),
             Self::Graze => "a graze, beyond which no orbit continues it".into(),
             Self::Shorter => "an orbit of fewer revolutions, which it branches off from".into(),
             Self::Gap => "a corner where the cam's velocity jumps, beyond which no orbit continues it".into(),
@@ -119,6 +141,9 @@ pub struct ImpactLine {
     /// The parameter, and the cam angle of the impact, rad.
     pub points: Vec<[f64; 2]>,
 }
+
+/// A branch in one direction from where it starts, and why it ends.
+type HalfBranch = (Vec<BranchPoint>, End);
 
 /// A branch, from one end to the other.
 #[derive(Clone, Debug, PartialEq)]
@@ -140,58 +165,51 @@ impl Branch {
     fn at(family: &Family, value: f64, orbit: &PeriodicOrbit, following: &Following) -> Result<Self, OrbitError> {
         let (_, rpm) = family.machine(&[value])?;
         let spans = [following.range[1] - following.range[0]];
-        let halves = [-1.0, 1.0].map(|direction| match &orbit.course {
+        let half = |direction| match &orbit.course {
             super::Course::Impacts(cycle) => {
-                let start = follow::Start { cycle, values: &[value], spans: &spans, pinned: None };
+                let start = follow::Start { cycle, values: &[value], spans: &spans, held: None };
                 follow::half(family, &start, following, direction)
             }
             super::Course::Sticking(anchor) => {
                 chatter::half(family, value, (*anchor, orbit.revolutions), following, direction)
             }
             super::Course::Free => Ok((Vec::new(), End::Clear)),
-        });
-        let middle = BranchPoint { sides: None, rpm, value, orbit: orbit.clone(), special: None };
-        Self::joined(halves, middle)
+        };
+        let middle = BranchPoint { held: None, rpm, value, orbit: orbit.clone(), special: None };
+        Ok(Self::joined([half(-1.0)?, half(1.0)?], middle))
     }
 
-    /// The curve of corner impacts through one of them, in the plane of the speed and what is followed.
-    ///
-    /// `corner` is a special point of a branch in the speed; speeds are compared over `speeds`, rpm.
-    pub fn of_corner_impacts(
+    /// The curve, in the plane of the speed and what is followed, of the event at `point`, a special point of a branch in the
+    /// speed; `None` where it is no such event. Speeds are compared over `speeds`, rpm.
+    pub fn of_event(
         model: &Model,
-        corner: &BranchPoint,
+        point: &BranchPoint,
         speeds: [f64; 2],
         following: &Following,
-    ) -> Result<Self, OrbitError> {
-        let (Some(Special { kind: Kind::Corner { impact, segment, .. }, .. }), super::Course::Impacts(cycle)) =
-            (corner.special, &corner.orbit.course)
-        else {
-            return Ok(Self { points: Vec::new(), ends: [End::Lost, End::Lost] });
+    ) -> Result<Option<Self>, OrbitError> {
+        let (Some(special), super::Course::Impacts(cycle)) = (point.special, &point.orbit.course) else {
+            return Ok(None);
         };
-        let family = Family::new(model, corner.rpm, vec![Parameter::Speed, following.parameter.clone()])?;
-        let value = following.parameter.value(model, corner.rpm).unwrap_or(f64::NAN);
+        let family = Family::new(model, point.rpm, vec![Parameter::Speed, following.parameter.clone()])?;
+        let value = following.parameter.value(model, point.rpm).unwrap_or(f64::NAN);
+        let (machine, _) = family.machine(&[point.rpm, value])?;
+        let Some((cycle, held)) = switch::held(special.kind, cycle, &machine) else { return Ok(None) };
         let spans = [speeds[1] - speeds[0], following.range[1] - following.range[0]];
-        let pinned = Pinned { impact, at_end: cycle.impacts[impact].segment != segment };
-        let values = [corner.rpm, value];
-        let start = follow::Start { cycle, values: &values, spans: &spans, pinned: Some(pinned) };
-        let halves = [-1.0, 1.0].map(|direction| follow::half(&family, &start, following, direction));
-        let sides = Some(pinned.sides(cycle, &family.machine(&values)?.0));
-        let middle = BranchPoint { sides, value, ..corner.clone() };
-        Self::joined(halves, middle)
+        let start = follow::Start { cycle: &cycle, values: &[point.rpm, value], spans: &spans, held: Some(held) };
+        Ok(match follow::curve(&family, &start, following, Some(special))? {
+            Some((middle, halves)) => Some(Self::joined(halves, middle)),
+            None => Some(Self { points: vec![BranchPoint { value, ..point.clone() }], ends: [End::Lost, End::Lost] }),
+        })
     }
 
     /// Both directions from a point in the middle.
-    fn joined(
-        [backward, forward]: [Result<(Vec<BranchPoint>, End), OrbitError>; 2],
-        middle: BranchPoint,
-    ) -> Result<Self, OrbitError> {
-        let ((mut points, first), (onward, last)) = (backward?, forward?);
+    fn joined([(mut points, first), (onward, last)]: [HalfBranch; 2], middle: BranchPoint) -> Self {
         points.reverse();
         points.push(middle);
         if first != End::Closed {
             points.extend(onward);
         }
-        Ok(Self { points, ends: [first, last] })
+        Self { points, ends: [first, last] }
     }
 
     /// The impacts along the branch, of orbits that do not stick: each impact is followed from orbit to orbit, whatever its

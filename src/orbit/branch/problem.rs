@@ -1,50 +1,12 @@
 //! The equations of a cycle with numbers of the model free, in units in which a curve of solutions is followed.
 
-use std::f64::consts::TAU;
+use nalgebra::{DMatrix, DVector};
 
-use nalgebra::{DMatrix, DVector, Matrix2};
-
+use super::held::Held;
 use crate::orbit::curve::{CurvePoint, Equations};
 use crate::orbit::cycle::lift_size;
 use crate::orbit::{Cycle, Family, FamilyError};
 use crate::simulate::Machine;
-
-/// An impact that stays at an end of its segment.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Pinned {
-    pub impact: usize,
-    /// Whether it stays at the end of its segment; at the start otherwise.
-    pub at_end: bool,
-}
-
-impl Pinned {
-    /// The matrices of the orbit, at angle 0, with the law before the corner and with the law after it, 2x2 each.
-    pub fn sides(&self, cycle: &Cycle, machine: &Machine) -> [Matrix2<f64>; 2] {
-        let other = self.other_side(cycle, machine);
-        let (own, other) = (cycle.at_section(machine, 0.0).1, other.at_section(machine, 0.0).1);
-        if self.at_end { [own, other] } else { [other, own] }
-    }
-
-    /// The same cycle, the pinned impact named after the segment on the other side of the corner.
-    pub(super) fn other_side(&self, cycle: &Cycle, machine: &Machine) -> Cycle {
-        let last = machine.cam().segments().len() - 1;
-        let mut other = cycle.clone();
-        let impact = &mut other.impacts[self.impact];
-        match (self.at_end, impact.segment) {
-            (true, segment) if segment == last => {
-                (impact.segment, impact.cam_angle, impact.revolution) =
-                    (0, impact.cam_angle - TAU, impact.revolution + 1);
-            }
-            (true, _) => impact.segment += 1,
-            (false, 0) => {
-                (impact.segment, impact.cam_angle, impact.revolution) =
-                    (last, impact.cam_angle + TAU, impact.revolution - 1);
-            }
-            (false, _) => impact.segment -= 1,
-        }
-        other
-    }
-}
 
 /// What lengths are measured by.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,13 +43,13 @@ pub struct Problem<'a> {
     /// Of the cam's lift, m, and of velocities over omega, m/rad.
     units: Units,
     spans: Vec<f64>,
-    pinned: Option<Pinned>,
+    held: Option<Held>,
 }
 
 impl<'a> Problem<'a> {
     /// The cycle of the pattern's revolutions and segments.
-    pub fn new(family: &'a Family, pattern: &Cycle, units: Units, spans: &[f64], pinned: Option<Pinned>) -> Self {
-        Self { family, pattern: pattern.clone(), units, spans: spans.to_vec(), pinned }
+    pub fn new(family: &'a Family, pattern: &Cycle, units: Units, spans: &[f64], held: Option<Held>) -> Self {
+        Self { family, pattern: pattern.clone(), units, spans: spans.to_vec(), held }
     }
 
     /// The unknowns of `cycle` with these numbers.
@@ -107,11 +69,6 @@ impl<'a> Problem<'a> {
         unknowns.iter().skip(count).zip(&self.spans).map(|(value, span)| value * span).collect()
     }
 
-    /// Where the unknown of the free number `index` stands.
-    pub fn column(&self, index: usize) -> usize {
-        2 * self.pattern.impacts.len() + index
-    }
-
     /// The cycle and the machine that unknowns stand for, and its speed, rpm.
     pub fn unpack(&self, unknowns: &DVector<f64>) -> Result<(Cycle, Machine, f64), FamilyError> {
         let (machine, rpm) = self.family.machine(&self.values(unknowns))?;
@@ -128,26 +85,19 @@ impl<'a> Problem<'a> {
         cycle
     }
 
-    /// How far the pinned impact is from its corner, rad, if one is pinned.
-    fn off_corner(&self, unknowns: &DVector<f64>, machine: &Machine) -> Option<f64> {
-        let Pinned { impact, at_end } = self.pinned?;
-        let segment = &machine.cam().segments()[self.pattern.impacts[impact].segment];
-        Some(unknowns[2 * impact] - if at_end { segment.end } else { segment.start })
-    }
-
-    /// Those of the cycle, of its size, and of the pinned impact, if one is.
-    fn with_pinned(&self, of_cycle: DVector<f64>, unknowns: &DVector<f64>, machine: &Machine) -> DVector<f64> {
+    /// Those of the cycle, of its size, and of what is held, if anything is.
+    fn with_held(&self, of_cycle: DVector<f64>, cycle: &Cycle, machine: &Machine) -> DVector<f64> {
         let of_cycle = of_cycle / self.units.lift;
-        match self.off_corner(unknowns, machine) {
-            Some(off) => of_cycle.push(off),
+        match self.held {
+            Some(held) => of_cycle.push(held.off(cycle, machine, self.units.velocity)),
             None => of_cycle,
         }
     }
 
     /// What the equations are off by.
     pub(super) fn residual(&self, unknowns: &DVector<f64>) -> Result<DVector<f64>, FamilyError> {
-        let (machine, _) = self.family.machine(&self.values(unknowns))?;
-        Ok(self.with_pinned(self.cycle(unknowns, &machine).residual(&machine), unknowns, &machine))
+        let (cycle, machine, _) = self.unpack(unknowns)?;
+        Ok(self.with_held(cycle.residual(&machine), &cycle, &machine))
     }
 }
 
@@ -155,22 +105,26 @@ impl Equations for Problem<'_> {
     type Error = FamilyError;
 
     fn linear(&self, unknowns: &DVector<f64>) -> Result<(DVector<f64>, DMatrix<f64>), FamilyError> {
-        /// Of the span of a free number: its column steers Newton's method and the tangent, and needs six digits.
+        /// Of a radian and of the span of a free number: it steers Newton's method and the tangent, and needs six digits.
         const DIFFERENCE: f64 = 1e-7;
         let count = 2 * self.pattern.impacts.len();
-        let (machine, _) = self.family.machine(&self.values(unknowns))?;
-        let (residual, by_impacts) = self.cycle(unknowns, &machine).linear(&machine);
-        let residual = self.with_pinned(residual, unknowns, &machine);
-        let rows = count + usize::from(self.pinned.is_some());
-        let mut jacobian = DMatrix::zeros(rows, unknowns.len());
+        let (cycle, machine, _) = self.unpack(unknowns)?;
+        let (residual, by_impacts) = cycle.linear(&machine, 1.0);
+        let residual = self.with_held(residual, &cycle, &machine);
+        let mut jacobian = DMatrix::zeros(residual.len(), unknowns.len());
         for column in 0..count {
             let unit = if column % 2 == 0 { 1.0 } else { self.units.velocity } / self.units.lift;
             for row in 0..count {
                 jacobian[(row, column)] = by_impacts[(row, column)] * unit;
             }
-        }
-        if let Some(pinned) = self.pinned {
-            jacobian[(count, 2 * pinned.impact)] = 1.0;
+            if let Some(held) = self.held {
+                let off = |step: f64| {
+                    let mut moved = unknowns.clone();
+                    moved[column] += step;
+                    held.off(&self.cycle(&moved, &machine), &machine, self.units.velocity)
+                };
+                jacobian[(count, column)] = (off(DIFFERENCE) - off(-DIFFERENCE)) / (2.0 * DIFFERENCE);
+            }
         }
         for column in count..unknowns.len() {
             let moved = |step: f64| {

@@ -2,6 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use serde::Serialize;
+
 use crate::orbit::{Course, Impact, PeriodicOrbit};
 
 /// What changes.
@@ -28,21 +30,62 @@ pub enum Kind {
         before: usize,
         /// Impacts after.
         after: usize,
+        /// Where the touch is, as the angle that the cam has turned since angle 0 of revolution 0, rad.
+        turned: f64,
     },
-    /// Along a curve of corner impacts: a multiplier of the map on one side of the corner passes 1 or -1.
+    /// Along a curve of corner impacts or grazes: a multiplier of the map on one side of the corner, or of the orbit without
+    /// the touch, passes 1 or -1: a fold or a flip meets the curve.
     Type {
-        /// Whether that side is the one after the corner.
-        after_corner: bool,
+        /// Whether that side is the one after the corner; none of a graze.
+        after_corner: Option<bool>,
         /// 1 or -1.
         multiplier: f64,
     },
+    /// Along a curve of folds: a cusp, where two of them meet.
+    Cusp,
+    /// Along a curve of grazes: follower and cam have one acceleration at the touch.
+    DegenerateGraze,
+    /// A curve turns round in the number that is followed.
+    Turn,
     /// The follower begins to chatter, or ceases to.
     Chatter,
     /// The follower leaves the cam for the first time, or never does beyond.
     Detachment,
 }
 
+/// The kinds of event that are followed in two numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Bifurcation {
+    /// An impact is at a corner of the cam.
+    Corner,
+    /// A multiplier is 1.
+    Fold,
+    /// A multiplier is -1.
+    Flip,
+    /// A flight touches the cam.
+    Graze,
+}
+
+named!(Bifurcation);
+
+impl Bifurcation {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Corner, Self::Fold, Self::Flip, Self::Graze];
+}
+
 impl Kind {
+    /// What its curve is one of, if it has one.
+    pub fn bifurcation(&self) -> Option<Bifurcation> {
+        match self {
+            Self::Corner { .. } => Some(Bifurcation::Corner),
+            Self::Fold => Some(Bifurcation::Fold),
+            Self::Flip => Some(Bifurcation::Flip),
+            Self::Graze { .. } => Some(Bifurcation::Graze),
+            _ => None,
+        }
+    }
+
     /// Its name in tables.
     pub fn name(&self) -> &'static str {
         match self {
@@ -52,6 +95,9 @@ impl Kind {
             Self::Corner { .. } => "corner",
             Self::Graze { .. } => "graze",
             Self::Type { .. } => "type",
+            Self::Cusp => "cusp",
+            Self::DegenerateGraze => "degenerate-graze",
+            Self::Turn => "turn",
             Self::Chatter => "chatter",
             Self::Detachment => "detachment",
         }
@@ -80,14 +126,13 @@ pub(super) fn apart(one: &PeriodicOrbit, other: &PeriodicOrbit) -> Option<(f64, 
         return None;
     }
     let period = from.revolutions as f64 * TAU;
-    let turned = |impact: &Impact| impact.revolution as f64 * TAU + impact.cam_angle;
     let moved = |further: usize| {
         let pairs = (0..count).map(|index| (&from.impacts[index], &to.impacts[(index + further) % count]));
         // An orbit may begin with any of its revolutions.
-        let turns = |(here, there): (&Impact, &Impact)| ((turned(there) - turned(here)) / TAU).round();
+        let turns = |(here, there): (&Impact, &Impact)| ((there.turned() - here.turned()) / TAU).round();
         let later = pairs.clone().next().map_or(0.0, turns);
         pairs.fold(0.0_f64, |most, (here, there)| {
-            let apart = (turned(there) - turned(here) - later * TAU).rem_euclid(period);
+            let apart = (there.turned() - here.turned() - later * TAU).rem_euclid(period);
             most.max(apart.min(period - apart))
         })
     };

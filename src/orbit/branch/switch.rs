@@ -1,8 +1,11 @@
 //! How a branch goes on beyond a corner or a graze: the cycle there, and the direction that leads away from it.
 
+use std::f64::consts::TAU;
+
 use nalgebra::DVector;
 
-use super::problem::{Pinned, Problem};
+use super::held::{Held, Pinned};
+use super::problem::Problem;
 use super::{gap, special::Kind};
 use crate::orbit::curve::{NoPoint, first_tangent};
 use crate::orbit::{Cycle, FamilyError, Impact};
@@ -22,15 +25,59 @@ pub(super) enum Exit {
 /// What the exit is called, on a cam whose corner there has this order.
 pub(super) fn kind(exit: Exit, cycle: &Cycle, machine: &Machine, order: usize) -> Kind {
     let count = cycle.impacts.len();
+    let turned_at = |impact: usize| cycle.impacts[impact].turned();
     match exit {
         Exit::Corner { impact, past_end } => {
             let segment = cycle.impacts[impact].segment;
             let next = (segment + 1) % machine.cam().segments().len();
             Kind::Corner { impact, segment: if past_end { next } else { segment }, jump_order: order }
         }
-        Exit::Tangent { .. } => Kind::Graze { before: count, after: count - 1 },
-        Exit::Touch { .. } => Kind::Graze { before: count, after: count + 1 },
+        Exit::Tangent { impact } => Kind::Graze { before: count, after: count - 1, turned: turned_at(impact) },
+        Exit::Touch { impact, turned } => {
+            let turned = gap::least(cycle, machine, impact, turned).map_or(turned, |(_, least)| least);
+            Kind::Graze { before: count, after: count + 1, turned: turned_at(impact) + turned }
+        }
     }
+}
+
+/// The touch of an orbit when the cam has turned by `turned`, rad, since angle 0 of revolution 0.
+pub(super) fn touch(cycle: &Cycle, turned: f64) -> Option<Exit> {
+    let since = |impact: &Impact| (turned - impact.turned()).rem_euclid(cycle.revolutions as f64 * TAU);
+    let flights = cycle.impacts.iter().map(since).enumerate();
+    let (impact, turned) = flights.min_by(|one, two| one.1.total_cmp(&two.1))?;
+    Some(Exit::Touch { impact, turned })
+}
+
+/// What holds at a special point, and the cycle that it holds of.
+pub(super) fn held(kind: Kind, cycle: &Cycle, machine: &Machine) -> Option<(Cycle, Held)> {
+    match kind {
+        Kind::Corner { impact, segment, .. } => {
+            let at_end = cycle.impacts[impact].segment != segment;
+            Some((cycle.clone(), Held::Corner(Pinned { impact, at_end })))
+        }
+        Kind::Fold => Some((cycle.clone(), Held::Multiplier(1.0))),
+        Kind::Flip => Some((cycle.clone(), Held::Multiplier(-1.0))),
+        Kind::Graze { turned, .. } => {
+            let touch = touch(cycle, turned)?;
+            Some((beyond(touch, cycle, machine)?, Held::Touch(moved_impact(touch)?)))
+        }
+        _ => None,
+    }
+}
+
+/// What is held in the cycle beyond `exit`; `None` where it is of the impact that the exit takes away.
+pub(super) fn held_beyond(held: Held, exit: Exit) -> Option<Held> {
+    let moved = |index: usize| match exit {
+        Exit::Tangent { impact } if impact == index => None,
+        Exit::Tangent { impact } if impact < index => Some(index - 1),
+        Exit::Touch { impact, .. } if impact < index => Some(index + 1),
+        _ => Some(index),
+    };
+    Some(match held {
+        Held::Corner(pinned) => Held::Corner(Pinned { impact: moved(pinned.impact)?, ..pinned }),
+        Held::Touch(impact) => Held::Touch(moved(impact)?),
+        Held::Multiplier(_) => held,
+    })
 }
 
 /// The cycle on the other side of `exit`, at the same angles; `None` where no impact would be left.
@@ -47,9 +94,9 @@ pub(super) fn beyond(exit: Exit, cycle: &Cycle, machine: &Machine) -> Option<Cyc
         Exit::Touch { impact, turned } => {
             let from = &cycle.impacts[impact];
             let angle = from.cam_angle + turned;
-            let turns = (angle / std::f64::consts::TAU).floor();
-            let cam_angle = angle - turns * std::f64::consts::TAU;
-            let segment = machine.cam().segment_at(cam_angle.clamp(0.0, std::f64::consts::TAU));
+            let turns = (angle / TAU).floor();
+            let cam_angle = angle - turns * TAU;
+            let segment = machine.cam().segment_at(cam_angle.clamp(0.0, TAU));
             let slope = segments[segment].law.lift(cam_angle).slope;
             let revolution = from.revolution + turns as i64;
             let velocity_before = machine.angular_velocity() * slope;

@@ -82,13 +82,15 @@ impl Change {
             // Where another branch crosses, a multiplier passes 1 as well.
             (Kind::Fold | Kind::Branching, _) => Cause::Fold,
             (Kind::Flip, _) => Cause::Flip,
-            (Kind::Graze { before, after }, _) => Cause::Graze { impacts: [before, after] },
+            (Kind::Graze { before, after, .. }, _) => Cause::Graze { impacts: [before, after] },
             (Kind::Corner { impact, jump_order, .. }, Course::Impacts(cycle)) => {
                 let cam_angle = cycle.impacts.get(impact).map_or(f64::NAN, |impact| impact.cam_angle);
                 Cause::CornerImpact { cam_angle: cam_angle.rem_euclid(std::f64::consts::TAU), jump_order }
             }
             (Kind::Detachment, _) => Cause::Detachment,
-            (Kind::Corner { .. } | Kind::Chatter | Kind::Type { .. }, _) => Cause::Runs,
+            (Kind::Corner { .. } | Kind::Chatter, _) => Cause::Runs,
+            // Of curves in two numbers.
+            (Kind::Type { .. } | Kind::Cusp | Kind::DegenerateGraze | Kind::Turn, _) => Cause::Runs,
         };
         Self { rpm, bracket: special.bracket, cause }
     }

@@ -1,0 +1,92 @@
+//! A curve of one kind of event in the plane of the speed and a number of the model; of corner impacts also what happens at each.
+
+use serde::Serialize;
+
+use super::feigin::{Scenario, scenario};
+use crate::orbit::branch::{Branch, BranchPoint, End, Kind, Special};
+use crate::orbit::{Eigenvalue, eigenvalues};
+
+/// What happens at a corner impact, by the eigenvalues of its map alone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Happening {
+    /// A derivative jumps that gives no such map.
+    NotPiecewiseLinear,
+    /// An eigenvalue on a boundary of the counts.
+    Degenerate,
+    /// Two matrices meet: Feigin's scenario.
+    #[serde(untagged)]
+    BorderCollision(Scenario),
+}
+
+named!(Happening);
+
+/// One point of a curve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EventPoint {
+    /// Its speed, rpm.
+    pub rpm: f64,
+    /// What the other number is.
+    pub value: f64,
+    /// Where the impact is that is at the corner, or the touch, or the first impact, rad.
+    pub cam_angle: f64,
+    /// Turns of the cam in one period.
+    pub revolutions: u64,
+    pub impacts: usize,
+    /// At a corner impact.
+    pub happening: Option<Happening>,
+    /// Two of the orbit; at a corner impact two with the law before the corner, then two with the law after it.
+    pub multipliers: Vec<Eigenvalue>,
+    /// What changes along the curve here, if anything.
+    pub special: Option<Special>,
+}
+
+impl EventPoint {
+    fn new(point: &BranchPoint, kind: Kind) -> Self {
+        let BranchPoint { rpm, value, orbit, held, special } = point;
+        let sides = held.as_ref().map(|held| held.sides.as_slice()).unwrap_or_default();
+        let of_sides = |sides: [_; 2]| scenario(&sides).map_or(Happening::Degenerate, Happening::BorderCollision);
+        let happening = match (kind, sides) {
+            (Kind::Corner { jump_order: 2, .. }, [minus, plus]) => Some(of_sides([*minus, *plus])),
+            (Kind::Corner { .. }, _) => Some(Happening::NotPiecewiseLinear),
+            _ => None,
+        };
+        Self {
+            rpm: *rpm,
+            value: *value,
+            cam_angle: held.as_ref().map_or(f64::NAN, |held| held.cam_angle),
+            revolutions: orbit.revolutions,
+            impacts: orbit.impacts().count(),
+            happening,
+            multipliers: sides.iter().flat_map(eigenvalues).collect(),
+            special: *special,
+        }
+    }
+}
+
+/// A curve of one kind of event.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EventCurve {
+    /// The event where the model is as it is.
+    pub kind: Kind,
+    pub points: Vec<EventPoint>,
+    /// Why it starts and ends where it does.
+    pub ends: [End; 2],
+}
+
+impl EventCurve {
+    /// The events along a curve of what is `kind` where the model is as it is.
+    pub fn new(curve: &Branch, kind: Kind) -> Self {
+        let points = curve.points.iter().map(|point| EventPoint::new(point, kind)).collect();
+        Self { kind, points, ends: curve.ends.clone() }
+    }
+
+    /// From each point to the next, with what happens in between: as at the end that is no point of change.
+    pub fn pieces(&self) -> impl Iterator<Item = ([&EventPoint; 2], Option<Happening>)> {
+        self.points.windows(2).filter_map(|pair| {
+            let [from, to] = pair else { return None };
+            let of = if from.special.is_some() { to } else { from };
+            Some(([from, to], of.happening))
+        })
+    }
+}

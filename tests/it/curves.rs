@@ -1,0 +1,123 @@
+//! Are the events of a curve where a branch of the model with that number has them, does a curve end with a reason, and do
+//! curves meet where they must?
+
+use std::path::Path;
+
+use crate::common;
+use corner_impact::cam::Cam;
+use corner_impact::model::Model;
+use corner_impact::orbit::branch::{Bifurcation, Branch, End, Following, Kind};
+use corner_impact::orbit::{Parameter, Search, search};
+use corner_impact::progress::Unwatched;
+use corner_impact::simulate::{Machine, angular_velocity};
+use corner_impact::study::curve::{Curves, curves};
+
+fn model(name: &str) -> Model {
+    common::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("models/{name}.toml")))
+}
+
+fn followed(model: &Model, rpm: [f64; 2], events: &[Bifurcation], name: &str, range: [f64; 2]) -> Curves {
+    let parameter = Parameter::named(model, name).unwrap();
+    let following = Following { parameter, range, longest_step: 0.02, most_points: 2000 };
+    curves(model, rpm, &Search { revolutions: 1, impacts: None }, events, &following, &Unwatched).unwrap()
+}
+
+/// The speeds near `rpm` at which branches have an event, found by searches a little below and above it.
+fn on_branches(model: &Model, rpm: f64, event: Bifurcation) -> Vec<f64> {
+    let range = [0.99, 1.01].map(|part| part * rpm);
+    let following = Following { parameter: Parameter::Speed, range, longest_step: 0.02, most_points: 400 };
+    let mut found = Vec::new();
+    for beside in [0.9985, 1.0015].map(|part| part * rpm) {
+        let machine = Machine::new(Cam::new(model).unwrap(), &model.follower, angular_velocity(beside));
+        for orbit in search(&machine, &Search { revolutions: 1, impacts: None }).unwrap() {
+            let branch = Branch::through(model, beside, &orbit, &following).unwrap();
+            let is_event = |kind: Kind| kind.bifurcation() == Some(event);
+            let points =
+                branch.points.iter().filter(|point| point.special.is_some_and(|special| is_event(special.kind)));
+            found.extend(points.map(|point| point.rpm));
+        }
+    }
+    found
+}
+
+/// The events of one model and number, against branches in the speed at three values of the number.
+fn is_on_branches(name: &str, rpm: [f64; 2], event: Bifurcation, parameter: &str, range: [f64; 2]) {
+    let model = model(name);
+    let Parameter::Field(path) = Parameter::named(&model, parameter).unwrap() else { panic!("{parameter}") };
+    let found = followed(&model, rpm, &[event], parameter, range);
+    assert!(!found.curves.is_empty(), "{name} {event}");
+    for curve in &found.curves {
+        assert_eq!(curve.kind.bifurcation(), Some(event));
+        assert!(curve.points.len() > 10, "{name} {event} {:?}", curve.ends);
+        for part in [1, 2, 3] {
+            let point = &curve.points[part * curve.points.len() / 4];
+            let there = model.with_number(&path, point.value).unwrap();
+            let speeds = on_branches(&there, point.rpm, event);
+            let off = speeds.iter().map(|rpm| (rpm - point.rpm).abs() / point.rpm).fold(f64::INFINITY, f64::min);
+            assert!(off < 1e-9, "{name} {event} {parameter} = {}: {} rpm, not in {speeds:?}", point.value, point.rpm);
+        }
+    }
+}
+
+#[test]
+fn events_of_a_curve_are_where_branches_have_them() {
+    use Bifurcation::{Corner, Flip, Fold, Graze};
+    is_on_branches("osorio-2008", [740.0, 745.0], Fold, "restitution", [0.7, 0.9]);
+    is_on_branches("osorio-2008", [738.0, 745.0], Flip, "restitution", [0.7, 0.9]);
+    is_on_branches("osorio-2008", [441.0, 444.0], Graze, "restitution", [0.7, 0.9]);
+    is_on_branches("osorio-2008", [670.0, 676.0], Corner, "nose_radius", [0.14, 0.16]);
+    is_on_branches("persistence", [490.0, 496.0], Fold, "stiffness", [500.0, 800.0]);
+    is_on_branches("nonsmooth-flip", [810.0, 816.0], Fold, "restitution", [0.45, 0.6]);
+    is_on_branches("damped-heavy", [750.0, 754.0], Graze, "damping", [60.0, 90.0]);
+}
+
+/// Where the type of a corner impact changes, and where a graze has a multiplier of 1, a curve of folds or flips ends, by
+/// other equations.
+#[test]
+fn curves_end_on_each_other() {
+    let ends_on = |model: &str, rpm: [f64; 2], event: Bifurcation, on: Bifurcation| {
+        let found = followed(&self::model(model), rpm, &[on, event], "restitution", [0.3, 0.9]);
+        let (hosts, guests): (Vec<_>, Vec<_>) =
+            found.curves.iter().partition(|curve| curve.kind.bifurcation() == Some(on));
+        let all = hosts.iter().flat_map(|curve| &curve.points);
+        let is_type = |kind| matches!(kind, Kind::Type { .. });
+        let types: Vec<_> = all.filter(|point| point.special.is_some_and(|special| is_type(special.kind))).collect();
+        let mut met = 0;
+        for curve in &guests {
+            for (end, point) in curve.ends.iter().zip([curve.points.first().unwrap(), curve.points.last().unwrap()]) {
+                if matches!(end, End::Corner | End::Graze) {
+                    let off = |[value, rpm]: [f64; 2]| (value - point.value).abs().max((rpm / point.rpm - 1.0).abs());
+                    assert!(types.iter().any(|at| off([at.value, at.rpm]) < 1e-9), "{model} {event}: {point:?}");
+                    met += 1;
+                }
+            }
+        }
+        met
+    };
+    use Bifurcation::{Corner, Flip, Fold, Graze};
+    assert_eq!(ends_on("osorio-2008", [660.0, 760.0], Fold, Corner), 1);
+    assert_eq!(ends_on("osorio-2008", [660.0, 760.0], Flip, Corner), 2);
+    assert_eq!(ends_on("nonsmooth-flip", [800.0, 830.0], Fold, Graze), 1);
+}
+
+/// Restitution 0 and 1 are bounds of the model: a curve that comes to one says so, and where the number alone is what ends it,
+/// the last point is on it.
+#[test]
+fn a_bound_of_the_model_ends_a_curve_with_a_sentence() {
+    let all = &Bifurcation::ALL;
+    for (range, bound) in [([0.5, 1.0], 1.0), ([0.5, 1.5], 1.0), ([0.0, 0.9], 0.0), ([-1.0, 0.9], 0.0)] {
+        let found = followed(&common::osorio(), [660.0, 760.0], all, "restitution", range);
+        let mut at_bound = 0;
+        for curve in &found.curves {
+            for (end, point) in curve.ends.iter().zip([curve.points.first().unwrap(), curve.points.last().unwrap()]) {
+                assert!(!matches!(end, End::Lost | End::MostPoints), "{range:?} {:?}: {end:?} {point:?}", curve.kind);
+                if let End::Edge { largest, why } = end {
+                    assert_eq!((point.value, *largest), (bound, bound > 0.5), "{why}");
+                    assert_eq!(why, "follower.restitution must be a finite number from 0 to 1");
+                    at_bound += 1;
+                }
+            }
+        }
+        assert!(at_bound > 0, "{range:?}");
+    }
+}
