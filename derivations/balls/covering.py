@@ -104,17 +104,18 @@ class Journey:
     middle is uncertain by. So the box is not packed into a box of angle and velocity at each impact.
     """
 
-    def __init__(self, machine, h_set, x, y):
+    def __init__(self, machine, h_set, box):
         self.machine, self.h_set, self.times = machine, h_set, []
-        ranges = [between(*x), between(*y), between(*h_set.rpm) * arb.pi() / 30]
+        x, y, rpm = (between(*side) for side in box)
+        ranges = [x, y, rpm * arb.pi() / 30]
         self.speed = ranges[2]
         self.offsets = arb_mat([[arb(0, one.rad())] for one in ranges])
         at = h_set.middle + h_set.turned * arb_mat([[one.mid()] for one in ranges[:2]])
         turned = h_set.turned
         self.matrix = arb_mat([[turned[row, 0], turned[row, 1], 0] for row in range(2)])
         self._put(at, arb_mat(2, 1))
-        # How far the box reaches by x and by y, as seen in N, at its widest.
-        self.reach = [arb(0), arb(0)]
+        # How far the box reaches by x, by y and by the speed, as seen in N, at its widest.
+        self.reach = [arb(0), arb(0), arb(0)]
 
     def _put(self, at, rest):
         """The middle becomes a point: what it is uncertain by joins the rest."""
@@ -124,7 +125,7 @@ class Journey:
     def go(self, horizon, known=None):
         """To the next impact. `known` are times that the first contacts are known to lie within; where they are shown to hold one
         contact of each flight nearby, too, the formulas speak of the first."""
-        for axis in range(2):
+        for axis in range(3):
             column = self.h_set.back * arb_mat([[self.matrix[row, axis] * self.offsets[axis, 0]] for row in range(2)])
             self.reach[axis] = max(self.reach[axis], *(column[row, 0].abs_upper() for row in range(2)))
         off = self.matrix * self.offsets + self.rest
@@ -177,10 +178,10 @@ class Proof:
 
     def _pieces(self, x, judge):
         """What `judge` says of each box of the strip, which are halved until it says something; it says None or why not."""
-        waiting = [(x, self.h_set.y, (), HALVINGS)]
+        waiting = [((x, self.h_set.y, self.h_set.rpm), (), HALVINGS)]
         while waiting:
-            x, y, known, left = waiting.pop()
-            journey = Journey(self.machine, self.h_set, x, y)
+            box, known, left = waiting.pop()
+            journey = Journey(self.machine, self.h_set, box)
             try:
                 # A part of a box has its contacts where the box has them.
                 for index in range(self.strip.impacts):
@@ -191,14 +192,12 @@ class Proof:
                 raise
             except Refused as reason:
                 if left == 0:
-                    raise Undecided(f"{self._name()}, about x = {float(x[0]):.6g}, y = {float(y[0]):.6g}: {reason}") from reason
-            if journey.reach[0] > journey.reach[1]:
-                middle = (x[0] + x[1]) / 2
-                halves = ((x[0], middle), y), ((middle, x[1]), y)
-            else:
-                middle = (y[0] + y[1]) / 2
-                halves = (x, (y[0], middle)), (x, (middle, y[1]))
-            waiting += [(*half, tuple(journey.times), left - 1) for half in halves]
+                    at = ", ".join(f"{name} = {float(side[0]):.9g}" for name, side in zip(("x", "y", "rpm"), box))
+                    raise Undecided(f"{self._name()}, about {at}: {reason}") from reason
+            axis = max(range(3), key=lambda side: journey.reach[side])
+            low, high = box[axis]
+            for half in (low, (low + high) / 2), ((low + high) / 2, high):
+                waiting.append(((*box[:axis], half, *box[axis + 1 :]), tuple(journey.times), left - 1))
 
     def _beyond(self, middle, whole, _):
         """Beyond which side of N all of the image is."""
