@@ -63,20 +63,38 @@ pub fn find(machine: &Machine, rpm: [f64; 2], wanted: Wanted) -> Result<Result<P
     let middle = 0.5 * (rpm[0] + rpm[1]);
     let machine = machine.at_speed(angular_velocity(middle));
     let bases = bases(&machine, middle)?;
-    let mut sized: Vec<HSet> = bases.par_iter().flat_map_iter(|base| sizes(&machine, base, wanted.strips)).collect();
-    sized.sort_by(promising);
-    sized.truncate(SAMPLED);
-    let mut sets: Vec<HSet> = sized.into_par_iter().filter_map(|set| ready(&machine, HSet { rpm, ..set })).collect();
+    let made_ready = |mut sized: Vec<HSet>| {
+        sized.sort_by(promising);
+        sized.truncate(SAMPLED);
+        sized.into_par_iter().filter_map(|set| ready(&machine, HSet { rpm, ..set })).collect::<Vec<_>>()
+    };
+    let everywhere = [lengths(SHORTER), lengths(SHORTER)];
+    let sized = bases.par_iter().flat_map_iter(|base| sizes(&machine, base, &everywhere, wanted.strips)).collect();
+    let mut sets = made_ready(sized);
+    // One strip more may lie between an end of the best and the next.
+    if let Some(best) = sets.iter().min_by(|one, two| promising(one, two)) {
+        let lengths = [near(-best.x[0]), near(best.x[1])];
+        sets.extend(made_ready(sizes(&machine, best, &lengths, wanted.strips)));
+    }
     sets.sort_by(promising);
     let strips = sets.first().map_or(0, |set| set.strips.len());
     let mut short = Short { saddles: bases.len(), strips, refused: Vec::new() };
+    let mut best: Option<Proved> = None;
     for set in sets.into_iter().take(TRIES) {
         match proved(&machine, set, wanted) {
-            Ok(proved) => return Ok(Ok(proved)),
+            Ok(proved) => {
+                let is_all = proved.refused.is_empty();
+                if best.as_ref().is_none_or(|best| promising(&proved.set, &best.set).is_lt()) {
+                    best = Some(proved);
+                }
+                if is_all {
+                    break;
+                }
+            }
             Err(refused) => short.refused.extend(refused),
         }
     }
-    Ok(Err(short))
+    Ok(best.ok_or(short))
 }
 
 /// The one with more motions first; of two with as many the smaller one, which strips get across sooner.
@@ -85,26 +103,36 @@ fn promising(one: &HSet, two: &HSet) -> Ordering {
     two.entropy().total_cmp(&one.entropy()).then(size(one).total_cmp(&size(two)))
 }
 
-/// For a saddle the sizes of N that have most motions, for heights of many sizes, with strips as they are along the middle.
-fn sizes(machine: &Machine, base: &HSet, strips: usize) -> Vec<HSet> {
+/// Each length is `part` of the one before, down to the shortest.
+fn lengths(part: f64) -> Vec<f64> {
+    let shorter = |length: &f64| Some(part * length);
+    std::iter::successors(Some(FARTHEST), shorter).take_while(|length| *length > SHORTEST).collect()
+}
+
+/// Lengths about one, from the next shorter to the next longer.
+fn near(length: f64) -> Vec<f64> {
+    const STEPS: i32 = 4;
+    (-STEPS..=STEPS).map(|step| length * SHORTER.powf(f64::from(step) / f64::from(STEPS))).collect()
+}
+
+/// For a saddle the sizes of N, of some lengths to either side, that have most motions for heights of many sizes, with strips as they
+/// are along the middle.
+fn sizes(machine: &Machine, base: &HSet, [lefts, rights]: &[Vec<f64>; 2], strips: usize) -> Vec<HSet> {
     let points = (0..=POINTS).map(|index| FARTHEST * (2.0 * index as f64 / POINTS as f64 - 1.0));
     let line = Line::new(machine, base, 0.0, points.collect());
-    let lengths = |part: f64| {
-        std::iter::successors(Some(FARTHEST), move |length| Some(part * length)).take_while(|length| *length > SHORTEST)
-    };
-    let heights: Vec<f64> = lengths(0.5).collect();
+    let heights = lengths(0.5);
     let mut all = Vec::new();
-    for left in lengths(SHORTER) {
+    for left in lefts {
         let mut best: Vec<Option<HSet>> = vec![None; heights.len()];
-        for right in lengths(SHORTER) {
-            let crossings = line.crossings([-left, right]);
+        for right in rights {
+            let x = [-left, *right];
+            let crossings = line.crossings(x);
             for (highest, best) in heights.iter().zip(&mut best) {
                 let is_low = |crossing: &&Crossing| crossing.y.iter().all(|y| y.abs() < *highest);
                 let mut apart = apart(crossings.iter().filter(is_low).copied().collect());
                 apart.truncate(strips);
-                let set = base.sized([-left, right], &apart);
                 let is_more = |set: &HSet| best.as_ref().is_none_or(|best| promising(set, best).is_lt());
-                *best = set.filter(is_more).or_else(|| best.take());
+                *best = base.sized(x, &apart).filter(is_more).or_else(|| best.take());
             }
         }
         all.extend(best.into_iter().flatten());
