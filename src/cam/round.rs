@@ -11,7 +11,7 @@ impl Cam {
     ///
     /// `sharp` are the segments that begin at such a corner. At any other, both sides' slopes are taken for one: that a lift law
     /// goes on where the last one ends is how a model means it, and only rounding has it otherwise.
-    pub(crate) fn lift_over(&self, angles: Interval, sharp: &[usize]) -> Lift<Interval> {
+    pub fn lift_over(&self, angles: Interval, sharp: &[usize]) -> Lift<Interval> {
         let everything = Interval::EVERYTHING;
         let mut over = Lift { value: everything, slope: everything, curvature: everything, third: everything };
         if !(angles.width() < TAU) {

@@ -6,10 +6,11 @@ use crate::interval::centred::Centred;
 use crate::interval::{Interval, Number};
 
 /// x, y and the speed of the cam, rad/s.
-pub(super) type Place = [Interval; 3];
+pub type Place = [Interval; 3];
 
 /// The coordinates of an h-set.
-pub(super) struct Frame {
+#[derive(Debug)]
+pub struct Frame {
     centre: [Interval; 2],
     unstable: [Interval; 2],
     stable: [Interval; 2],
@@ -17,7 +18,7 @@ pub(super) struct Frame {
 
 /// Where a strip is carried, over a box of it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Image {
+pub struct Image {
     /// x and y at the box's centre.
     pub centre: [Interval; 2],
     /// x and y.
@@ -37,6 +38,7 @@ pub(super) fn angular_velocities([low, high]: [f64; 2]) -> Interval {
 }
 
 impl Frame {
+    /// Those of an h-set.
     pub fn new(set: &HSet) -> Self {
         let number = |pair: [f64; 2]| pair.map(Interval::from);
         Self { centre: number(set.centre), unstable: number(set.unstable), stable: number(set.stable) }
@@ -79,7 +81,7 @@ impl Frame {
     }
 
     /// The same at a point, at the middle of a range of speeds, rpm.
-    pub fn at_point(
+    pub(super) fn at_point(
         &self,
         map: &ImpactMap<'_>,
         strip: &Strip,
@@ -90,7 +92,7 @@ impl Frame {
     }
 
     /// The derivative by x and y of so many impacts at the centre, in doubles.
-    pub fn derivative(&self, map: &ImpactMap<'_>, impacts: u64, rpm: [f64; 2]) -> Option<[[f64; 2]; 2]> {
+    pub(super) fn derivative(&self, map: &ImpactMap<'_>, impacts: u64, rpm: [f64; 2]) -> Option<[[f64; 2]; 2]> {
         let strip = Strip { impacts, revolutions: 0, x: [0.0; 2] };
         let image = self.at_point(map, &strip, [0.0; 2], rpm).ok()?;
         Some(image.by.map(|row| [row[0].middle(), row[1].middle()]))

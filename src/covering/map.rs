@@ -64,7 +64,8 @@ struct Gap<'a> {
 }
 
 /// The impact map of a machine over a range of speeds.
-pub(super) struct ImpactMap<'a> {
+#[derive(Debug)]
+pub struct ImpactMap<'a> {
     machine: &'a Machine,
     /// Segments of the cam that begin where its velocity jumps.
     sharp: Vec<usize>,
@@ -81,6 +82,7 @@ struct Launch<'a, 'b> {
 }
 
 impl<'a> ImpactMap<'a> {
+    /// That of a machine, at any speed.
     pub fn new(machine: &'a Machine) -> Self {
         let corners = machine.cam().corners();
         let sharp = corners.iter().filter(|corner| corner.jump_order == 1).map(|corner| corner.segment).collect();
@@ -96,7 +98,7 @@ impl<'a> ImpactMap<'a> {
     }
 
     /// The impact after one, at the cam's speed, rad/s.
-    pub fn next<'b>(&self, from: &Impact<'b>, omega: Over<'b>) -> Result<Impact<'b>, Unproved> {
+    pub(super) fn next<'b>(&self, from: &Impact<'b>, omega: Over<'b>) -> Result<Impact<'b>, Unproved> {
         if !from.velocity.value().is_positive() {
             return Err(Unproved::NoImpact);
         }

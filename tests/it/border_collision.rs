@@ -290,6 +290,19 @@ fn the_theorem_of_robust_chaos_has_its_hypotheses() {
         theorem.prove([matrices[1], matrices[0]]);
         assert_eq!(theorem.known, Known::Computed, "the sides exchanged");
     }
+    // Nor for matrices of which one hypothesis alone fails, whichever.
+    for (failing, traces, determinants) in [
+        (0, [1.7, -1.5], [-0.1, 0.2]),
+        (1, [1.7, -1.5], [0.3, -0.1]),
+        (2, [1.25, -1.5], [0.3, 0.2]),
+        (3, [1.7, -1.1], [0.3, 0.2]),
+        (4, [1.7, -2.5], [0.3, 0.2]),
+    ] {
+        let side = |side: usize| [[traces[side], 1.0], [-determinants[side], 0.0]].map(|row| row.map(Interval::from));
+        let mut theorem = map.robust_chaos(1.0).unwrap();
+        theorem.prove([side(0), side(1)]);
+        assert_eq!(theorem.known, Known::Computed, "{failing}");
+    }
     for (traces, determinants) in
         [([1.29, -1.5], [0.3, 0.2]), ([1.7, -1.19], [0.3, 0.2]), ([1.7, -1.5], [-0.1, 0.2]), ([1.7, -1.5], [0.3, 0.0])]
     {

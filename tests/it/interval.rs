@@ -217,6 +217,66 @@ fn every_law_stays_in_its_ranges() {
     assert_eq!(kinds.into_iter().collect::<Vec<_>>(), ["arc", "dwell", "harmonics", "polynomial", "sinusoid"]);
 }
 
+/// The lift of a whole cam over ranges of any turn, from segment to segment and across the end of a turn: it holds what every
+/// segment has in them, on both sides of a corner, and hardly more; but for the curvature where the velocity jumps.
+#[test]
+fn every_cam_stays_in_its_ranges() {
+    let files = ["osorio-2008", "laws/polynomial", "laws/program", "laws/rectified-sine"];
+    for name in files {
+        let model = common::read(std::path::Path::new(&format!("{}/models/{name}.toml", common::ROOT)));
+        let cam = Cam::new(&model).unwrap();
+        let sharp: Vec<usize> =
+            cam.corners().iter().filter(|corner| corner.jump_order == 1).map(|corner| corner.segment).collect();
+        assert_eq!(sharp.is_empty(), !name.ends_with("sine"), "{name}");
+        let corners: Vec<f64> = cam.segments().iter().map(|segment| segment.start).collect();
+        let mut passed = 0;
+        for index in 0..600 {
+            let turn = std::f64::consts::TAU * (f64::from(index % 7) - 3.0);
+            let part = |number: f64| (f64::from(index + 1) * number.sqrt()).fract();
+            let width = 2.0 * part(3.0).powi(4) + 1e-6;
+            // Every other one is about a corner.
+            let about = if index % 2 == 0 { 6.2 * part(2.0) } else { corners[index as usize / 2 % corners.len()] };
+            let low = turn + about - width * part(5.0);
+            let angles = Interval::new(low, low + width);
+            let over = cam.lift_over(angles, &sharp);
+            // What each segment has where it and the range meet, in the turn before, in this one and in the next.
+            let mut seen = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
+            let mut is_sharp = false;
+            for from in [turn - std::f64::consts::TAU, turn, turn + std::f64::consts::TAU] {
+                for (number, segment) in cam.segments().iter().enumerate() {
+                    let begin = (angles.low() - from).max(segment.start);
+                    let end = (angles.high() - from).min(segment.end);
+                    if begin > end {
+                        continue;
+                    }
+                    is_sharp |= sharp.contains(&number) && angles.low() < from + segment.start;
+                    passed += u32::from(angles.low() < from + segment.start);
+                    for step in 0..=40 {
+                        let lift = segment.law.lift((begin + (end - begin) * f64::from(step) / 40.0).min(end));
+                        for (seen, value) in seen.iter_mut().zip([lift.value, lift.slope, lift.curvature]) {
+                            *seen = [seen[0].min(value), seen[1].max(value)];
+                        }
+                    }
+                }
+            }
+            let case = format!("{name} {angles:?}: {over:?} {seen:?}");
+            assert_eq!(over.curvature == Interval::EVERYTHING, is_sharp, "{case}");
+            let size = 1.0 + seen[2][0].abs().max(seen[2][1].abs());
+            for (range, [low, high]) in [over.value, over.slope, over.curvature].into_iter().zip(seen) {
+                // An angle's own rounding, in the turn that it is counted by; and of second order what intervals take more.
+                let room = 1e-12 * size;
+                assert!(range.low() - room <= low && high <= range.high() + room, "{case}");
+                let more = 3.0 * width * size + room;
+                let is_tight = low - range.low() <= more && range.high() - high <= more;
+                assert!(range == Interval::EVERYTHING || is_tight, "{case}");
+            }
+        }
+        assert!(passed > 200, "{name}: {passed}");
+    }
+    let cam = Cam::new(&common::osorio()).unwrap();
+    assert_eq!(cam.lift_over(Interval::new(-1.0, 6.0), &[]).value, Interval::EVERYTHING);
+}
+
 /// The responses over a range of times hold those at times in it, whatever the damping, and meet those in doubles.
 #[test]
 fn every_flight_stays_in_its_ranges() {

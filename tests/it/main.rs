@@ -25,6 +25,7 @@ mod drawing;
 mod dynamics;
 mod figures;
 mod global;
+mod impact_map;
 mod interval;
 mod jump_order;
 mod labels;

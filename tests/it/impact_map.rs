@@ -1,0 +1,115 @@
+//! Is what is proved of a box of impacts so of the impacts in it, as they are simulated?
+
+use std::ops::ControlFlow;
+
+use corner_impact::cam::Cam;
+use corner_impact::covering::{Frame, HSet, Image, ImpactMap, Strip, Unproved};
+use corner_impact::interval::Interval;
+use corner_impact::model::Model;
+use corner_impact::simulate::{Event, EventKind, Machine, angular_velocity};
+
+use crate::common;
+
+/// Angle, degrees, and velocity of the impact that is so many after one, simulated; none where the follower rests before.
+fn simulated(machine: &Machine, [angle, velocity, omega]: [f64; 3], impacts: u64) -> Option<[f64; 2]> {
+    let machine = machine.at_speed(omega);
+    let turns = (angle / 360.0).floor();
+    let mut motion = machine.start_on_cam((angle - 360.0 * turns).to_radians(), velocity).unwrap();
+    let mut found = (0, None);
+    let mut see = |event: &Event| {
+        let at = 360.0 * (event.revolution as f64 + turns) + event.cam_angle.to_degrees();
+        found = (found.0 + 1, Some([at, event.velocity_after - event.cam_velocity]));
+        if event.kind == EventKind::Impact && found.0 < impacts {
+            ControlFlow::Continue(())
+        } else {
+            ControlFlow::Break(())
+        }
+    };
+    let goal = motion.after(40);
+    let _ = machine.advance(&mut motion, goal, &mut see).unwrap();
+    if found.0 == impacts { found.1 } else { None }
+}
+
+/// The image of a box about a centre, in degrees, m/s and rad/s, and what some of its starts come to, corners first.
+type Looked = (Result<Image, Unproved>, Vec<([f64; 3], Option<[f64; 2]>)>);
+
+fn look(machine: &Machine, centre: [f64; 3], half: [f64; 3], impacts: u64) -> Looked {
+    let set = HSet {
+        rpm: [0.0; 2],
+        centre: [0.0; 2],
+        unstable: [1.0, 0.0],
+        stable: [0.0, 1.0],
+        x: [0.0; 2],
+        y: [0.0; 2],
+        cone_slope: None,
+        strips: Vec::new(),
+    };
+    let place = [0, 1, 2].map(|side| Interval::new(centre[side] - half[side], centre[side] + half[side]));
+    let strip = Strip { impacts, revolutions: 0, x: [0.0; 2] };
+    let image = Frame::new(&set).image(&ImpactMap::new(machine), &strip, &place);
+    let start = |index: u32| -> [f64; 3] {
+        std::array::from_fn(|side| match index {
+            0..8 => [place[side].low(), place[side].high()][usize::from(index & (1 << side) != 0)],
+            _ => centre[side] + half[side] * (2.0 * part(index, side + 5) - 1.0),
+        })
+    };
+    let starts = (0..24).map(start).map(|start| (start, simulated(machine, start, impacts)));
+    (image, starts.collect())
+}
+
+/// A number from 0 to 1 that is the same in every run, of several that go through all places alike.
+fn part(index: u32, which: usize) -> f64 {
+    let primes = [2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0, 19.0];
+    (f64::from(index + 1) * f64::sqrt(primes[which])).fract()
+}
+
+/// Of boxes of all sizes everywhere, one to three impacts on, with corners and grazes in them.
+fn check(model: &Model, rpm: f64, boxes: u32) -> [u32; 2] {
+    let machine = Machine::new(Cam::new(model).unwrap(), &model.follower, angular_velocity(rpm));
+    let (mut proved, mut all) = (0, 0);
+    for index in 0..boxes {
+        let velocity = 10.0_f64.powf(1.0 - 3.0 * part(index, 1));
+        let width = 10.0_f64.powf(-0.5 - 3.0 * part(index, 2));
+        let centre = [360.0 * part(index, 0), velocity, angular_velocity(rpm)];
+        let half = [20.0 * width * part(index, 3), width * velocity, if index % 2 == 0 { 0.0 } else { 0.05 * width }];
+        let (image, starts) = look(&machine, centre, half, 1 + u64::from(index % 3));
+        all += 1;
+        let Ok(image) = image else { continue };
+        proved += 1;
+        let case = format!("{} {centre:?} {half:?} {}: {image:?}", model.name, 1 + index % 3);
+        // What the simulation rounds is stretched from impact to impact.
+        let room =
+            |side: usize| 1e-9 * image.by[side].iter().fold(1.0, |sum, by| sum + by.low().abs().max(by.high().abs()));
+        for (start, end) in &starts {
+            let end = end.unwrap_or_else(|| panic!("{start:?} rests: {case}"));
+            for side in 0..2 {
+                let range = image.value[side];
+                let is_in = range.low() - room(side) <= end[side] && end[side] <= range.high() + room(side);
+                assert!(is_in, "{start:?} {end:?} {case}");
+            }
+        }
+        for pair in starts.windows(2) {
+            let [(one, Some(to)), (two, Some(there))] = pair else { unreachable!() };
+            for side in 0..2 {
+                let change = (0..3).fold(Interval::from(0.0), |sum, by| sum + image.by[side][by] * (two[by] - one[by]));
+                let off = there[side] - to[side];
+                assert!(
+                    change.low() - room(side) <= off && off <= change.high() + room(side),
+                    "{one:?} {two:?} {case}"
+                );
+            }
+        }
+    }
+    [proved, all]
+}
+
+#[test]
+fn what_is_proved_of_a_box_is_so_of_the_impacts_in_it() {
+    let [proved, all] = check(&common::osorio(), 670.0, 3000);
+    assert!(proved > all / 3, "{proved} of {all}");
+    for name in ["damped-heavy", "laws/polynomial", "laws/rectified-sine"] {
+        let model = common::read(&std::path::Path::new(common::ROOT).join(format!("models/{name}.toml")));
+        let [proved, all] = check(&model, 670.0, 500);
+        assert!(proved > all / 10, "{name}: {proved} of {all}");
+    }
+}
