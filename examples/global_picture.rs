@@ -38,7 +38,7 @@ fn map(model: &Model, findings: &Verification, rpm: f64) -> Result<StroboscopicM
 fn exponents(model: &Model, findings: &Verification) -> Done {
     println!("rpm exponent standard_error blocks rests");
     let speeds = Speeds { low: 660.0, high: 682.0, count: 23 };
-    for rpm in (0..speeds.count).map(|index| speeds.rpm(index)) {
+    for rpm in (0..speeds.count).map(|index| speeds.value(index)) {
         let machine = map(model, findings, rpm)?.machine;
         let mut motion = machine.start_on_cam(0.0, 0.0)?;
         let goal = motion.after(300);
@@ -55,7 +55,7 @@ fn exponents(model: &Model, findings: &Verification) -> Done {
 fn endings(model: &Model, findings: &Verification) -> Done {
     let speeds = Speeds { low: 660.0, high: 682.0, count: 441 };
     let (mut orbits, mut resting) = (0, 0);
-    for rpm in (0..speeds.count).map(|index| speeds.rpm(index)) {
+    for rpm in (0..speeds.count).map(|index| speeds.value(index)) {
         let machine = map(model, findings, rpm)?.machine;
         match Settling::new(&machine, 64)?.ending(machine.start_on_cam(0.0, 0.0)?, 3000)? {
             Ending::Orbit(orbit) => {

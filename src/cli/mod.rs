@@ -4,6 +4,7 @@ mod basins;
 mod cam;
 mod certify;
 mod chaos;
+mod chart;
 mod claims;
 mod complaint;
 mod completions;
@@ -95,6 +96,7 @@ subcommands! {
         Simulate = simulate,
         Speeds = speeds,
         Diagram = diagram,
+        Chart = chart,
         Figure = figure,
     "Periodic orbits and what lies between them":
         Orbit = orbit,

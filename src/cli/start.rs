@@ -91,17 +91,32 @@ pub(super) fn parameter(text: &str) -> Result<(String, [f64; 2]), String> {
 
 /// `LO:HI:N`.
 pub(super) fn speeds(text: &str) -> Result<Speeds, String> {
+    spaced(text, rpm, "speed")
+}
+
+/// `NAME=LO:HI:N`.
+pub(super) fn axis(text: &str) -> Result<(String, Speeds), String> {
+    let Some((name, values)) = text.split_once('=') else {
+        return Err("must be NAME=LO:HI:N: what changes, from where to where, and at how many values".into());
+    };
+    let name = name.trim();
+    let values = if name == "rpm" { speeds(values) } else { spaced(values, finite, "value") };
+    Ok((name.into(), values?))
+}
+
+/// `LO:HI:N` of what `number` takes.
+fn spaced(text: &str, number: fn(&str) -> Result<f64, String>, what: &str) -> Result<Speeds, String> {
     let parts: Vec<&str> = text.split(':').collect();
     let [low, high, count] = parts.as_slice() else {
-        return Err("must be LO:HI:N: lowest speed, highest speed, how many".into());
+        return Err(format!("must be LO:HI:N: lowest {what}, highest {what}, how many"));
     };
-    let (low, high) = (rpm(low)?, rpm(high)?);
-    let count: usize = count.trim().parse().map_err(|_| format!("\"{count}\" is not a number of speeds"))?;
-    match (high >= low, count) {
-        (false, _) => Err(format!("the highest speed, {high}, is below the lowest, {low}")),
-        (_, 0) => Err("must be 1 speed or more".into()),
-        (true, 1) if high > low => Err("1 speed needs LO and HI to be the same".into()),
-        _ if count > Speeds::MOST => Err(format!("must be {} speeds or fewer", Speeds::MOST)),
+    let (low, high) = (number(low)?, number(high)?);
+    let count: usize = count.trim().parse().map_err(|_| format!("\"{count}\" is not a number of {what}s"))?;
+    match (high >= low && (high - low).is_finite(), count) {
+        (false, _) => Err(format!("the highest {what}, {high}, is below the lowest, {low}")),
+        (_, 0) => Err(format!("must be 1 {what} or more")),
+        (true, 1) if high > low => Err(format!("1 {what} needs LO and HI to be the same")),
+        _ if count > Speeds::MOST => Err(format!("must be {} {what}s or fewer", Speeds::MOST)),
         _ => Ok(Speeds { low, high, count }),
     }
 }

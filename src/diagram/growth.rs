@@ -5,7 +5,8 @@ use std::ops::ControlFlow;
 use nalgebra::{Matrix2, Vector2};
 
 use crate::estimate::Estimate;
-use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError, Variation};
+use crate::flight::{Flight, State};
+use crate::simulate::{Event, EventKind, Machine, Met, Motion, Observer, SimulateError, Variation};
 
 /// The mean growth of a small deviation per revolution, as a natural logarithm: the largest Lyapunov exponent in the limit
 /// of many `revolutions`.
@@ -13,9 +14,9 @@ use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError, Variatio
 /// Minus infinity where the follower comes to stick to the cam, be it once in thousands of revolutions: nothing is left of a
 /// deviation then, and what follows repeats what followed the stick before. Until such a stick a chaotic motion has the
 /// number that it would have without. A start on the cam counts from its release on; in no revolution nothing grows.
-pub fn growth(machine: &Machine, motion: Motion, revolutions: u64) -> Result<f64, SimulateError> {
+pub fn growth(machine: &Machine, mut motion: Motion, revolutions: u64) -> Result<f64, SimulateError> {
     let mut sum = 0.0;
-    stretches(machine, motion, revolutions, |stretch| sum += stretch)?;
+    stretches(machine, &mut motion, revolutions, &mut Met::default(), |stretch| sum += stretch)?;
     Ok(sum / revolutions.max(1) as f64)
 }
 
@@ -23,13 +24,13 @@ pub fn growth(machine: &Machine, motion: Motion, revolutions: u64) -> Result<f64
 /// where there are fewer revolutions than blocks.
 pub fn growth_and_error(
     machine: &Machine,
-    motion: Motion,
+    mut motion: Motion,
     revolutions: u64,
     blocks: u32,
 ) -> Result<(f64, Option<f64>), SimulateError> {
     let per_block = revolutions / u64::from(blocks.max(1));
     let (mut sum, mut means) = (0.0, Means::over(per_block));
-    stretches(machine, motion, revolutions, |stretch| {
+    stretches(machine, &mut motion, revolutions, &mut Met::default(), |stretch| {
         sum += stretch;
         means.take(stretch);
     })?;
@@ -56,14 +57,68 @@ pub struct Exponent {
 /// the cam.
 ///
 /// Blocks are taken for independent: a chaotic motion has forgotten, after some dozen revolutions, what it was.
-pub fn exponent(machine: &Machine, motion: Motion, blocks: u32, revolutions: u64) -> Result<Exponent, SimulateError> {
-    let mut means = Means::over(revolutions);
-    stretches(machine, motion, u64::from(blocks) * revolutions, |stretch| means.take(stretch))?;
-    let (growth, rests) = (Estimate::of_parts(&means.of_blocks), means.sum == f64::NEG_INFINITY);
-    Ok(Exponent { growth, blocks: means.of_blocks.len(), rests })
+pub fn exponent(
+    machine: &Machine,
+    mut motion: Motion,
+    blocks: u32,
+    revolutions: u64,
+) -> Result<Exponent, SimulateError> {
+    let mut record = Record::over(revolutions);
+    record.take(machine, &mut motion, u64::from(blocks) * revolutions)?;
+    Ok(Exponent { growth: record.growth(), blocks: record.means.of_blocks.len(), rests: record.rests() })
+}
+
+/// What is seen of a run that does not repeat, for as long as it is looked at.
+#[derive(Clone, Debug)]
+pub struct Record {
+    means: Means,
+    /// The impacts, of whole revolutions.
+    pub met: Met,
+    /// How many revolutions.
+    pub revolutions: u64,
+}
+
+impl Record {
+    /// Nothing yet, of which the growth will be taken in blocks of so many revolutions.
+    pub fn over(per_block: u64) -> Self {
+        Self { means: Means::over(per_block), met: Met::default(), revolutions: 0 }
+    }
+
+    /// Goes on for so many revolutions, or to where the follower comes to stick.
+    pub fn take(&mut self, machine: &Machine, motion: &mut Motion, revolutions: u64) -> Result<(), SimulateError> {
+        let begun = motion.revolution;
+        stretches(machine, motion, revolutions, &mut self.met, |stretch| self.means.take(stretch))?;
+        self.revolutions += motion.revolution - begun;
+        Ok(())
+    }
+
+    /// The mean growth a revolution over the blocks that are over; neither it nor its error is a number for fewer than two.
+    pub fn growth(&self) -> Estimate {
+        Estimate::of_parts(&self.means.of_blocks)
+    }
+
+    /// Whether it ended where the follower came to stick.
+    pub fn rests(&self) -> bool {
+        self.means.sum == f64::NEG_INFINITY
+    }
+}
+
+/// Counts impacts beside the variation.
+struct Counting<'a, 'machine>(&'a mut Variation<'machine>, &'a mut Met);
+
+impl Observer for Counting<'_, '_> {
+    fn event(&mut self, event: &Event) -> ControlFlow<()> {
+        self.1.take(event);
+        self.0.event(event)
+    }
+
+    fn flight(&mut self, flight: &Flight, from: State, time: f64) {
+        self.0.flight(flight, from, time);
+    }
 }
 
 /// The mean growth of each block of revolutions that is over.
+#[derive(Clone, Debug)]
 struct Means {
     per_block: u64,
     of_blocks: Vec<f64>,
@@ -89,14 +144,15 @@ impl Means {
 /// The growth of each revolution in turn; minus infinity, once, where the follower sticks.
 fn stretches(
     machine: &Machine,
-    mut motion: Motion,
+    motion: &mut Motion,
     revolutions: u64,
+    met: &mut Met,
     mut keep: impl FnMut(f64),
 ) -> Result<(), SimulateError> {
     let omega = machine.angular_velocity();
     if motion.contact {
         let goal = motion.after(revolutions);
-        let released = machine.advance(&mut motion, goal, &mut |event: &Event| match event.kind {
+        let released = machine.advance(motion, goal, &mut |event: &Event| match event.kind {
             EventKind::Release => ControlFlow::Break(()),
             _ => ControlFlow::Continue(()),
         })?;
@@ -105,12 +161,12 @@ fn stretches(
             return Ok(());
         }
     }
-    let mut variation = Variation::new(machine, &motion);
+    let mut variation = Variation::new(machine, motion);
     // Any direction has a part along the one that grows most; velocity counts over the angle, in m/rad.
     let mut direction = Vector2::new(0.6, 0.8);
     for _ in 0..revolutions {
         let goal = motion.after(1);
-        let _ = machine.advance(&mut motion, goal, &mut variation)?;
+        let _ = machine.advance(motion, goal, &mut Counting(&mut variation, met))?;
         let matrix = variation.matrix();
         let carried = Vector2::new(
             matrix[(0, 0)] * direction[0] + matrix[(0, 1)] * omega * direction[1],

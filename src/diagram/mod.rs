@@ -14,7 +14,7 @@ use crate::cam::apart;
 use crate::flight::State;
 use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError, Unobserved};
 use crate::tolerance;
-pub use growth::{Exponent, exponent, growth, growth_and_error};
+pub use growth::{Exponent, Record, exponent, growth, growth_and_error};
 pub use pipeline::{Block, Counted, Tally};
 pub use places::Places;
 
@@ -85,10 +85,10 @@ impl Starts {
     }
 }
 
-/// Speeds, evenly spaced.
+/// Speeds, or values of another number, evenly spaced.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Speeds {
-    /// Lowest, rpm, positive.
+    /// Lowest, rpm.
     pub low: f64,
     /// Highest, rpm.
     pub high: f64,
@@ -102,8 +102,8 @@ impl Speeds {
     /// The most speeds of one sweep.
     pub const MOST: usize = 10_000_000;
 
-    /// The speed of an index below `count`, rpm; the last is `high` exactly.
-    pub fn rpm(&self, index: usize) -> f64 {
+    /// The one of an index below `count`; the last is `high` exactly.
+    pub fn value(&self, index: usize) -> f64 {
         if index + 1 >= self.count && self.count > 1 {
             return self.high;
         }

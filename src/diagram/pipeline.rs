@@ -164,7 +164,7 @@ impl Sweep {
         from: Option<crate::simulate::Motion>,
         send: &mut dyn FnMut(B) -> ControlFlow<()>,
     ) -> Result<(Option<crate::simulate::Motion>, Tally), SweepError> {
-        let rpm = self.speeds.rpm(index);
+        let rpm = self.speeds.value(index);
         let failed = |error| SweepError::Simulate { rpm, error };
         let machine = self.machine_at(rpm);
         let motions = match &from {

@@ -106,6 +106,8 @@ pub struct Resting {
     pub revolutions: u64,
     /// Impacts in one period.
     pub impacts: u64,
+    /// The speed of the fastest of them, of follower and cam against each other, m/s.
+    pub impact_speed: f64,
     /// What a deviation grows by from a release to the next rest, at most: a natural logarithm.
     pub growth: f64,
 }

@@ -12,7 +12,7 @@ use super::settle::{free, settled};
 use super::{Course, PeriodicOrbit};
 use crate::diagram::{Exponent, exponent};
 use crate::flight::State;
-use crate::simulate::{Event, EventKind, Goal, Machine, Motion, SimulateError};
+use crate::simulate::{Event, EventKind, Goal, Machine, Met, Motion, SimulateError};
 use crate::tolerance;
 
 /// What a run comes to within so many revolutions.
@@ -55,6 +55,10 @@ pub struct Settling<'a> {
     pub machine: &'a Machine,
     /// The longest period looked for, revolutions.
     longest: u64,
+    /// Revolutions that are waited for the next rest of a follower that has rested.
+    rest: u64,
+    /// Whether an orbit is looked for only where the run has come back to near where it was.
+    looks_back: bool,
     /// With the states as the cam passes angle 0.
     known: Vec<(PeriodicOrbit, Vec<State>)>,
 }
@@ -64,11 +68,18 @@ impl<'a> Settling<'a> {
     pub fn new(machine: &'a Machine, longest: u64) -> Result<Self, SimulateError> {
         /// The most revolutions of an orbit with one impact.
         const ONE_IMPACT: u64 = 3;
-        let mut new = Self { machine, longest, known: Vec::new() };
+        let mut new = Self { machine, longest, rest: LONGEST_REST, looks_back: false, known: Vec::new() };
         for orbit in (1..=ONE_IMPACT).flat_map(|revolutions| with_one_impact(machine, revolutions)) {
             new.know(&orbit)?;
         }
         Ok(new)
+    }
+
+    /// The same for a run or two: without any orbit that is known beforehand, as a search for them takes as long as thousands of
+    /// revolutions, and with a look for one only where the run has come back to near where it was, as each look takes `longest`.
+    /// The next rest is waited for as long as `rest` revolutions.
+    pub fn unaided(machine: &'a Machine, longest: u64, rest: u64) -> Self {
+        Self { machine, longest, rest, looks_back: true, known: Vec::new() }
     }
 
     /// The orbits known.
@@ -89,25 +100,34 @@ impl<'a> Settling<'a> {
     /// An orbit counts where the run repeats nearly, Newton's method leads from there to a stable one, and the run's distance
     /// from that shrinks as its multipliers say: a chaotic run now and then passes by a stable orbit outside of its basin.
     pub fn run(&self, motion: &mut Motion, revolutions: u64) -> Result<Run, SimulateError> {
-        self.counted(motion, revolutions, &mut 0)
+        self.counted(motion, revolutions, &mut Met::default())
     }
 
-    /// The same, with the impacts on the way added to a number.
-    fn counted(&self, motion: &mut Motion, revolutions: u64, impacts: &mut u64) -> Result<Run, SimulateError> {
+    /// The same, with the impacts on the way added to others.
+    fn counted(&self, motion: &mut Motion, revolutions: u64, met: &mut Met) -> Result<Run, SimulateError> {
         /// Revolutions before the first look for an orbit that is not known: what most starts near one need.
         const FIRST: u64 = 50;
         /// Revolutions from one look for a known orbit to the next.
         const OFTEN: u64 = 8;
         // Orbits are compared as the cam passes angle 0.
         if motion.cam_angle > 0.0
-            && let Some(release) = self.to_release(motion, motion.next(0.0), impacts)?
+            && let Some(release) = self.to_release(motion, motion.next(0.0), met)?
         {
             return Ok(Run::Released(release));
         }
         let (mut ran, mut look) = (0, FIRST.min(revolutions));
+        let mut past: Vec<State> = Vec::new();
         while ran < revolutions {
-            let stretch = OFTEN.min(look - ran);
-            if let Some(release) = self.to_release(motion, motion.after(stretch), impacts)? {
+            let back = look.saturating_sub(self.longest);
+            let stretch = if !self.looks_back {
+                OFTEN.min(look - ran)
+            } else if ran < back {
+                OFTEN.min(back - ran)
+            } else {
+                past.push(motion.state);
+                1
+            };
+            if let Some(release) = self.to_release(motion, motion.after(stretch), met)? {
                 return Ok(Run::Released(release));
             }
             ran += stretch;
@@ -130,6 +150,13 @@ impl<'a> Settling<'a> {
                 continue;
             }
             look = revolutions.min(2 * look);
+            let near = tolerance::NEARLY_REPEATS.value * lift_size(self.machine);
+            let omega = self.machine.angular_velocity();
+            let is_back = !self.looks_back || past.iter().any(|state| motion.state.apart(*state, omega) <= near);
+            past.clear();
+            if !is_back {
+                continue;
+            }
             if let Some(orbit) = settled(self.machine, *motion, 0, self.longest)?.filter(draws)
                 && self.has_arrived(*motion, &orbit, &passages(self.machine, &orbit)?)?
             {
@@ -159,9 +186,9 @@ impl<'a> Settling<'a> {
     }
 
     /// Runs `motion` to where the cam lets go of it, rad, if it does so before the goal, and counts the impacts on the way.
-    fn to_release(&self, motion: &mut Motion, goal: Goal, impacts: &mut u64) -> Result<Option<f64>, SimulateError> {
+    fn to_release(&self, motion: &mut Motion, goal: Goal, met: &mut Met) -> Result<Option<f64>, SimulateError> {
         let flow = self.machine.advance(motion, goal, &mut |event: &Event| {
-            *impacts += u64::from(event.kind == EventKind::Impact);
+            met.take(event);
             if event.kind == EventKind::Release { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         })?;
         Ok(flow.is_break().then_some(motion.cam_angle))
@@ -190,7 +217,7 @@ impl<'a> Settling<'a> {
         // As many periods as leave a tenth, or as can be waited for.
         let periods = (0.1_f64.ln() / modulus.ln()).ceil().clamp(1.0, MOST);
         let goal = motion.after(periods as u64 * orbit.revolutions);
-        if self.to_release(&mut motion, goal, &mut 0)?.is_some() {
+        if self.to_release(&mut motion, goal, &mut Met::default())?.is_some() {
             return Ok(false);
         }
         let shrunk = 0.5 * (1.0 + modulus.powf(periods)) * first;
@@ -199,13 +226,13 @@ impl<'a> Settling<'a> {
 
     /// What follows a release at `cam_angle`, rad.
     pub fn fate(&self, cam_angle: f64) -> Result<Fate, SimulateError> {
-        // Each release with the revolutions and impacts from the first to it.
-        let mut releases = vec![(cam_angle, 0, 0)];
+        // Each release with the revolutions and what was met from it to the next.
+        let mut releases: Vec<(f64, u64, Met)> = Vec::new();
+        let mut release = cam_angle;
         loop {
-            let (release, turned, met) = releases[releases.len() - 1];
             let begun = self.released(release)?;
-            let (mut motion, mut impacts) = (begun, met);
-            let next = match self.counted(&mut motion, LONGEST_REST, &mut impacts)? {
+            let (mut motion, mut met) = (begun, Met::default());
+            let next = match self.counted(&mut motion, self.rest, &mut met)? {
                 Run::Arrives(orbit) => return Ok(Fate::Arrives(orbit, motion)),
                 Run::Stays | Run::Wanders => {
                     // Long before the end, where the follower may be about to rest.
@@ -215,16 +242,18 @@ impl<'a> Settling<'a> {
                 }
                 Run::Released(next) => next,
             };
-            let turned = turned + motion.revolution - begun.revolution;
+            releases.push((release, motion.revolution - begun.revolution, met));
             if let Some(first) = releases.iter().position(|(known, ..)| is_same_release(*known, next)) {
-                let (_, turned_before, met_before) = releases[first];
-                let releases: Vec<f64> = releases[first..].iter().map(|(angle, ..)| *angle).collect();
+                let period = &releases[first..];
+                let releases: Vec<f64> = period.iter().map(|(angle, ..)| *angle).collect();
                 let growth =
                     releases.iter().try_fold(0.0_f64, |most, release| self.grown(*release).map(|g| most.max(g)))?;
-                let (revolutions, impacts) = (turned - turned_before, impacts - met_before);
-                return Ok(Fate::Recurs(Resting { releases, revolutions, impacts, growth }));
+                let revolutions = period.iter().map(|(_, turned, _)| turned).sum();
+                let impacts = period.iter().map(|(.., met)| met.impacts).sum();
+                let impact_speed = period.iter().fold(0.0_f64, |most, (.., met)| most.max(met.impact_speed));
+                return Ok(Fate::Recurs(Resting { releases, revolutions, impacts, impact_speed, growth }));
             }
-            releases.push((next, turned, impacts));
+            release = next;
         }
     }
 
@@ -242,7 +271,7 @@ impl<'a> Settling<'a> {
         let mut motion = self.machine.start_on_cam(cam_angle, 0.0)?;
         if motion.contact {
             let goal = motion.after(1);
-            self.to_release(&mut motion, goal, &mut 0)?;
+            self.to_release(&mut motion, goal, &mut Met::default())?;
         }
         Ok(motion)
     }

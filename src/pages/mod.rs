@@ -5,6 +5,7 @@ pub(crate) mod branches;
 pub mod cam;
 mod certify;
 mod chaos;
+mod chart;
 pub mod claims;
 mod local_map;
 mod locate;

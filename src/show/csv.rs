@@ -5,12 +5,14 @@ use std::fmt::{Display, Write};
 
 use crate::border_collision::EventCurve;
 use crate::diagram::{Block, Row, Section, Seen, Starts, Sweep};
+use crate::estimate::Estimate;
 use crate::flight::State;
 use crate::orbit::Eigenvalue;
 use crate::orbit::branch::{Branch, Kind};
 use crate::orbit::ending::Ending;
 use crate::simulate::{Event, Machine, Motion};
 use crate::study::basins::Basins;
+use crate::study::chart::{Chart, Charted, Point, class};
 use crate::study::speeds::{At, Attractor, Speeds};
 
 /// The columns of a run's events.
@@ -104,6 +106,26 @@ pub(crate) fn basins(basins: &Basins) -> String {
         let period = ending.and_then(Ending::period);
         let (turns, impacts) = (cell(period.map(|period| period.0)), cell(period.map(|period| period.1)));
         let _ = writeln!(lines, "{position},{velocity},{name},{part},{turns},{impacts}");
+    }
+    lines
+}
+
+/// A line for each point of a chart, row by row; no cell is empty, so that numerical programs read all but the class.
+pub(crate) fn chart(found: &Charted) -> String {
+    let mut lines = String::from(
+        "x,y,class,revolutions,impacts,growth_rate,growth_error,impact_speed_m_s,impacts_per_revolution\n",
+    );
+    let Chart { x, y, .. } = &found.chart;
+    for (index, point) in found.points.iter().enumerate() {
+        let (x, y) = (x.values.value(index % x.values.count), y.values.value(index / x.values.count));
+        let class = class(point.as_ref().ok().map(|point| point.kind));
+        let _ = match point {
+            Ok(Point { revolutions, impacts, impact_rate, growth, impact_speed, .. }) => {
+                let Estimate { value, error, .. } = growth;
+                writeln!(lines, "{x},{y},{class},{revolutions},{impacts},{value},{error},{impact_speed},{impact_rate}")
+            }
+            Err(_) => writeln!(lines, "{x},{y},{class},0,0,NaN,NaN,NaN,NaN"),
+        };
     }
     lines
 }

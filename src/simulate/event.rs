@@ -93,6 +93,25 @@ impl<F: FnMut(&Event) -> ControlFlow<()>> Observer for F {
     }
 }
 
+/// Impacts on the way of a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Met {
+    /// How many.
+    pub impacts: u64,
+    /// The speed of the fastest, of follower and cam against each other, m/s.
+    pub impact_speed: f64,
+}
+
+impl Met {
+    /// Takes note of an event.
+    pub fn take(&mut self, event: &Event) {
+        if event.kind == EventKind::Impact {
+            self.impacts += 1;
+            self.impact_speed = self.impact_speed.max(event.cam_velocity - event.velocity_before);
+        }
+    }
+}
+
 /// Nobody looks on.
 #[derive(Clone, Copy, Debug)]
 pub struct Unobserved;

@@ -37,7 +37,7 @@ use crate::impact::relative_rebound;
 use crate::model::Follower;
 use crate::tolerance;
 use again::Turn;
-pub use event::{Event, EventKind, Observer, SimulateError, Unobserved, Work};
+pub use event::{Event, EventKind, Met, Observer, SimulateError, Unobserved, Work};
 use motion::Known;
 pub use motion::{Goal, Motion};
 pub use sticking::accumulation;

@@ -5,6 +5,7 @@ pub mod basins;
 pub mod cam;
 pub mod certify;
 pub mod chaos;
+pub mod chart;
 pub mod compared;
 pub mod continuation;
 pub mod curve;

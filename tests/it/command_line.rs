@@ -8,7 +8,7 @@ use crate::common::{PROGRAM, ROOT, corner_impact, program, text};
 use rayon::prelude::*;
 use tempfile::TempDir;
 
-pub const COMMANDS: [&str; 18] = [
+pub const COMMANDS: [&str; 19] = [
     "verify",
     "report",
     "claims",
@@ -24,6 +24,7 @@ pub const COMMANDS: [&str; 18] = [
     "curve",
     "basins",
     "chaos",
+    "chart",
     "new",
     "completions",
     "man",

@@ -13,6 +13,7 @@ mod cam_laws;
 mod cam_table;
 mod certify;
 mod chaos;
+mod chart;
 mod command_line;
 mod commands;
 mod common;

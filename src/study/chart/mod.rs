@@ -1,0 +1,274 @@
+//! What a machine does over two of its numbers: at each point of a grid, what one run comes to.
+//!
+//! Each point is a run of its own from one start, so that it is the same to the last bit in whatever order, parts or threads
+//! the points are run.
+
+mod point;
+
+use std::ops::Range;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::diagram::{Speeds, Start, SweepError};
+use crate::model::Model;
+use crate::orbit::ending::Kind;
+use crate::orbit::{Family, FamilyError, Parameter};
+use crate::progress::Watch;
+use crate::simulate::{Machine, angular_velocity};
+pub use point::{Lengths, Point, RECORDS};
+
+/// Values of a number, evenly spaced.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    /// What varies.
+    pub parameter: Parameter,
+    /// Its least and its greatest value, and how many.
+    pub values: Speeds,
+}
+
+/// A grid over two numbers of a model, and how it is run.
+#[derive(Clone, Debug)]
+pub struct Chart {
+    /// The model.
+    pub model: Model,
+    /// The speed, rpm, where neither number is it.
+    pub rpm: f64,
+    /// Across.
+    pub x: Axis,
+    /// Up.
+    pub y: Axis,
+    /// Where every run starts.
+    pub start: Start,
+    /// For how long each goes on.
+    pub lengths: Lengths,
+}
+
+/// What was found over a grid.
+#[derive(Clone, Debug)]
+pub struct Charted {
+    /// The grid.
+    pub chart: Chart,
+    /// Row by row, the first axis fastest; the reason where a point has no motion.
+    pub points: Vec<Result<Point, String>>,
+    /// Seconds of the threads that ran it, and from its beginning to its end.
+    pub times: [f64; 2],
+}
+
+/// How many points of one kind there are; none is for those that failed.
+type Counts = Vec<(Option<Kind>, usize)>;
+
+// A class of points is a kind of motion, or that there is none.
+document!(Charted as it {
+    schema: "corner-impact/chart/1",
+    model: it.chart.model.name,
+    x: AxisDocument::of(&it.chart.x),
+    y: AxisDocument::of(&it.chart.y),
+    rpm if_any: it.chart.speed(),
+    transient: it.chart.lengths.transient,
+    record: it.chart.lengths.record,
+    points: it.points.len(),
+    revolutions: it.points.len() as u64 * (it.chart.lengths.transient + it.chart.lengths.record),
+    classes: it.counts().into_iter().map(|(kind, points)| Class { class: class(kind), points }).collect::<Vec<_>>(),
+    cpu_s: it.times[0],
+    wall_s: it.times[1],
+});
+
+#[derive(Serialize)]
+struct Class {
+    class: String,
+    points: usize,
+}
+
+#[derive(Serialize)]
+struct AxisDocument<'a> {
+    name: &'a str,
+    low: f64,
+    high: f64,
+    points: usize,
+}
+
+impl<'a> AxisDocument<'a> {
+    fn of(axis: &'a Axis) -> Self {
+        let Speeds { low, high, count } = axis.values;
+        Self { name: axis.parameter.name(), low, high, points: count }
+    }
+}
+
+/// The name of a class of points in files.
+pub fn class(kind: Option<Kind>) -> String {
+    kind.map_or_else(|| "failed".into(), |kind| kind.to_string())
+}
+
+/// Why there is no chart.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ChartError {
+    /// Both axes are one number.
+    #[error("--x and --y are both {0}: a chart is over two numbers")]
+    OneNumber(String),
+    /// No speed is named.
+    #[error("neither axis is rpm: --rpm says at which speed")]
+    NoSpeed,
+    /// Two speeds are named.
+    #[error("--rpm is for a chart of which no axis is rpm")]
+    TwoSpeeds,
+    /// More points than a chart may have.
+    #[error("{points} points: a chart has {} or fewer", Chart::MOST)]
+    TooMany {
+        /// How many were asked for.
+        points: usize,
+    },
+    /// The machine cannot be.
+    #[error(transparent)]
+    Family(#[from] FamilyError),
+    /// The threads could not be started.
+    #[error(transparent)]
+    Threads(#[from] SweepError),
+}
+
+impl Chart {
+    /// The most points of a chart.
+    pub const MOST: usize = 100_000_000;
+
+    /// A chart of `model` over two numbers, or why there is none; at `rpm` where neither of them is the speed.
+    pub fn new(
+        model: &Model,
+        rpm: Option<f64>,
+        [x, y]: [Axis; 2],
+        start: Start,
+        lengths: Lengths,
+    ) -> Result<Self, ChartError> {
+        if x.parameter == y.parameter {
+            return Err(ChartError::OneNumber(x.parameter.name().into()));
+        }
+        let points = x.values.count.saturating_mul(y.values.count);
+        if points > Self::MOST {
+            return Err(ChartError::TooMany { points });
+        }
+        let speed = [&x, &y].into_iter().find(|axis| axis.parameter == Parameter::Speed);
+        let rpm = match (speed, rpm) {
+            (Some(axis), None) => axis.values.low,
+            (None, Some(rpm)) => rpm,
+            (Some(_), Some(_)) => return Err(ChartError::TwoSpeeds),
+            (None, None) => return Err(ChartError::NoSpeed),
+        };
+        let chart = Self { model: model.clone(), rpm, x, y, start, lengths };
+        // What is wrong with the model itself is told at once, and not at every point.
+        chart.family()?;
+        Ok(chart)
+    }
+
+    /// The speed of all points, rpm; none where it varies.
+    pub fn speed(&self) -> Option<f64> {
+        let varies = [&self.x, &self.y].iter().any(|axis| axis.parameter == Parameter::Speed);
+        (!varies).then_some(self.rpm)
+    }
+
+    fn family(&self) -> Result<Family, FamilyError> {
+        Family::new(&self.model, self.rpm, [&self.x, &self.y].map(|axis| axis.parameter.clone()).into())
+    }
+
+    /// Runs every point on `threads` threads (all there are for `None`), told to `watch` row by row.
+    pub fn run(self, threads: Option<usize>, watch: &dyn Watch) -> Result<Charted, ChartError> {
+        let clock = Instant::now();
+        let mut builder = rayon::ThreadPoolBuilder::new();
+        if let Some(threads) = threads {
+            builder = builder.num_threads(threads);
+        }
+        let pool = builder.build().map_err(|error| SweepError::Threads(error.to_string()))?;
+        let (columns, rows) = (self.x.values.count, self.y.values.count);
+        let height = (rows / (8 * pool.current_num_threads())).clamp(1, STRIP);
+        let (family, done) = (self.family()?, AtomicU64::new(0));
+        let strips = (0..rows).step_by(height).collect::<Vec<_>>().into_par_iter().map(|first| {
+            let clock = Processor::now();
+            let strip = first..rows.min(first + height);
+            let points = self.block(&family, 0..columns, strip.clone());
+            let done = done.fetch_add(strip.len() as u64, Ordering::Relaxed) + strip.len() as u64;
+            watch.at("rows", done, rows as u64);
+            (points, clock.elapsed())
+        });
+        let strips: Vec<_> = pool.install(|| strips.collect());
+        let processor: Duration = strips.iter().map(|(_, elapsed)| *elapsed).sum();
+        let points = strips.into_iter().flat_map(|(points, _)| points).collect();
+        let times = [processor.as_secs_f64(), clock.elapsed().as_secs_f64()];
+        Ok(Charted { chart: self, points, times })
+    }
+
+    /// The points of some columns and rows, row by row.
+    fn block(&self, family: &Family, columns: Range<usize>, rows: Range<usize>) -> Vec<Result<Point, String>> {
+        let machine = |x: usize, y: usize| {
+            let values = [self.x.values.value(x), self.y.values.value(y)];
+            family.machine(&values).map(|(machine, _)| machine).map_err(|error| error.to_string())
+        };
+        // A cam and what is known of it take as long to make as hundreds of revolutions; another speed is free.
+        let at = |machine: &Result<Machine, String>, axis: &Axis, index: usize| {
+            machine
+                .as_ref()
+                .map_err(String::clone)
+                .and_then(|it| self.point(&it.at_speed(angular_velocity(axis.values.value(index)))))
+        };
+        if self.y.parameter == Parameter::Speed {
+            let machines: Vec<_> = columns.clone().map(|x| machine(x, rows.start)).collect();
+            return rows.flat_map(|y| machines.iter().map(move |it| at(it, &self.y, y))).collect();
+        }
+        let row = |y: usize| -> Vec<_> {
+            if self.x.parameter == Parameter::Speed {
+                let machine = machine(columns.start, y);
+                return columns.clone().map(|x| at(&machine, &self.x, x)).collect();
+            }
+            columns.clone().map(|x| self.point(&machine(x, y)?)).collect()
+        };
+        rows.flat_map(row).collect()
+    }
+
+    fn point(&self, machine: &Machine) -> Result<Point, String> {
+        let run = self.start.motion(machine).and_then(|motion| Point::of(machine, motion, self.lengths));
+        run.map_err(|error| error.to_string())
+    }
+}
+
+impl Charted {
+    /// How many points there are of each kind that there is, in the order of the kinds; those that failed come last.
+    pub fn counts(&self) -> Counts {
+        let kinds = [Kind::Stays, Kind::Periodic, Kind::Resting, Kind::Chaotic, Kind::Undecided].map(Some);
+        let number = |kind: Option<Kind>| {
+            self.points.iter().filter(|point| point.as_ref().ok().map(|it| it.kind) == kind).count()
+        };
+        kinds.into_iter().chain([None]).map(|kind| (kind, number(kind))).filter(|(_, number)| *number > 0).collect()
+    }
+
+    /// Why the first point that failed did.
+    pub fn failure(&self) -> Option<&str> {
+        self.points.iter().find_map(|point| point.as_ref().err()).map(String::as_str)
+    }
+}
+
+/// Rows that a thread takes at a time, at most.
+const STRIP: usize = 32;
+
+/// The time that a thread has had of a processor, where the system tells, else that of the day.
+enum Processor {
+    Thread(Duration),
+    Day(Instant),
+}
+
+impl Processor {
+    fn now() -> Self {
+        Self::of_thread().map_or_else(|| Self::Day(Instant::now()), Self::Thread)
+    }
+
+    /// Linux keeps it in nanoseconds, as the first number of a file.
+    fn of_thread() -> Option<Duration> {
+        let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+        told.split_whitespace().next()?.parse().ok().map(Duration::from_nanos)
+    }
+
+    fn elapsed(&self) -> Duration {
+        match self {
+            Self::Thread(begun) => Self::of_thread().unwrap_or(*begun).saturating_sub(*begun),
+            Self::Day(begun) => begun.elapsed(),
+        }
+    }
+}
