@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 
 use nalgebra::{Matrix2, Vector2};
 
+use crate::cam::Lift;
 use crate::flight::State;
 use crate::simulate::{Event, EventKind, Goal, Machine, Motion, SimulateError, Variation};
 use crate::tolerance;
@@ -101,6 +102,8 @@ impl Periodic {
 pub struct Sample {
     /// The angle turned since the cam passed 0 in revolution 0, rad.
     pub turned: f64,
+    /// The cam's angle, rad, in `[0, 2 pi)`.
+    pub cam_angle: f64,
     /// The follower.
     pub state: State,
     /// The cam's lift, m.
@@ -111,6 +114,8 @@ pub struct Sample {
     pub gap: f64,
     /// Whether the follower sticks to the cam.
     pub contact: bool,
+    /// What the cam presses with for each kilogram of the follower, m/s^2; 0 where it does not touch.
+    pub pressing: f64,
 }
 
 /// `samples` moments, evenly spaced in angle, of every one of `revolutions` from `motion` on; and the events in between,
@@ -122,15 +127,19 @@ pub fn trace(
     samples: u32,
 ) -> Result<(Vec<Sample>, Vec<Event>), SimulateError> {
     let omega = machine.angular_velocity();
+    // N/m = c'' - (b q' + k (q - rest) + m g)/m, of which the last is the acceleration in flight
+    let pressing = |lift: Lift, state: State| omega * omega * lift.curvature - machine.flight().acceleration(state);
     let sample = |motion: &Motion| {
         let lift = machine.cam().lift(motion.cam_angle);
         Sample {
             turned: motion.revolution as f64 * TAU + motion.cam_angle,
+            cam_angle: motion.cam_angle,
             state: motion.state,
             lift: lift.value,
             cam_velocity: omega * lift.slope,
             gap: machine.gap(motion),
             contact: motion.contact,
+            pressing: if motion.contact { pressing(lift, motion.state) } else { 0.0 },
         }
     };
     let mut found = vec![sample(&motion)];
@@ -146,13 +155,20 @@ pub fn trace(
             ControlFlow::Continue(())
         })?;
         for event in &events[before..] {
-            let at = |velocity: f64, contact: bool| Sample {
-                turned: event.turned_since(0.0),
-                state: State { position: event.position, velocity },
-                lift: event.position,
-                cam_velocity: event.cam_velocity,
-                gap: 0.0,
-                contact,
+            let at = |velocity: f64, contact: bool| {
+                let state = State { position: event.position, velocity };
+                // The cam lets go where it presses no more.
+                let sticks = contact && event.kind == EventKind::Stick;
+                Sample {
+                    turned: event.turned_since(0.0),
+                    cam_angle: event.cam_angle,
+                    state,
+                    lift: event.position,
+                    cam_velocity: event.cam_velocity,
+                    gap: 0.0,
+                    contact,
+                    pressing: if sticks { pressing(machine.cam().lift(event.cam_angle), state) } else { 0.0 },
+                }
             };
             found.push(at(event.velocity_before, event.kind == EventKind::Release));
             found.push(at(event.velocity_after, event.kind == EventKind::Stick));

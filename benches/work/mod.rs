@@ -110,7 +110,7 @@ pub fn sweep() -> Sweep {
         transient: 300,
         record: 100,
         section: Section::Impacts,
-        lyapunov: false,
+        growth: None,
     }
 }
 

@@ -6,13 +6,16 @@ use std::path::PathBuf;
 use clap::ValueEnum;
 
 use super::start::{StartArguments, count, finite, speeds, turn};
-use super::{CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::Progress};
+use super::{
+    CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::Progress, progress::watched,
+};
 use crate::cam::Cam;
 use crate::diagram::{Counted, Following, Places, Section, Speeds, Starts, Sweep};
 use crate::figures::{corner_marks, impact_diagram, strobe_diagram};
 use crate::show::csv;
 use crate::simulate::{Machine, angular_velocity};
-use crate::study::diagram::{Shown, Swept, on_attractors};
+use crate::study::chart::{Lengths, growth};
+use crate::study::diagram::{self as swept, Shown, Swept, on_attractors};
 
 /// Sweeps over speeds: what the motion settles on, as a table or a picture.
 #[derive(clap::Args)]
@@ -53,8 +56,11 @@ pub(super) struct Arguments {
     /// A table (.csv, or - for standard output) or a picture (.svg, .png).
     #[arg(long, value_name = "FILE", value_parser = picture::picture_or_table)]
     out: Option<PathBuf>,
-    /// Add the Lyapunov exponent of each speed, per revolution: a column, or a second panel. -inf where the follower came
-    /// to stick to the cam, be it once.
+    /// Write one row a speed: what the run comes to, its period, impacts, growth and fastest impact, as in `chart`.
+    #[arg(long, requires = "out", conflicts_with_all = ["attractors", "following", "section", "strobe", "lyapunov", "summary"])]
+    one_row: bool,
+    /// Add the Lyapunov exponent of each speed, per revolution, and its error: two columns, or a second panel. Of a motion that
+    /// repeats it is that of its multipliers; -inf where the follower came to stick to the cam, be it once.
     #[arg(long, requires = "out")]
     lyapunov: bool,
     /// Print a summary as one JSON document.
@@ -101,8 +107,11 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
             SectionName::Impact => Section::Impacts,
             SectionName::Strobe => Section::Strobe(turn(arguments.strobe.unwrap_or(0.0))),
         },
-        lyapunov: arguments.lyapunov,
+        growth: arguments.lyapunov.then_some(growth),
     };
+    if arguments.one_row {
+        return one_row(arguments, &sweep, session);
+    }
     let (threads, target) = (arguments.threads.map(usize::from), arguments.out.as_deref());
     let (name, progress) = (model.name.as_str(), Progress::spinner(""));
     let swept = match target.map(|path| Target::create(path, &mut *session.out)).transpose()? {
@@ -135,6 +144,21 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     if !to_standard {
         session.answer(&swept, arguments.summary)?;
     }
+    Ok(Exit::Agrees)
+}
+
+/// A row for each speed, in a table.
+fn one_row(arguments: &Arguments, sweep: &Sweep, session: &mut Session<'_>) -> Result<Exit, CommandError> {
+    let Some(Target::Table(mut file)) =
+        arguments.out.as_deref().map(|path| Target::create(path, &mut *session.out)).transpose()?
+    else {
+        return Err(CommandError::Words("--one-row is a table: --out must end in .csv or be -".into()));
+    };
+    let lengths = Lengths { transient: arguments.transient, record: arguments.record };
+    let (start, threads) = (arguments.start.start(), arguments.threads.map(usize::from));
+    let points = watched("", |watch| swept::one_row(&sweep.machine, &sweep.speeds, start, lengths, threads, watch))?;
+    file.write_all(csv::one_row(&sweep.speeds, &points).as_bytes())?;
+    super::commit(vec![file])?;
     Ok(Exit::Agrees)
 }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Component, Path, PathBuf};
 
-use super::picture::{Canvas, is_standard, picture};
+use super::picture::{self, Canvas, is_standard, picture as drawn_only, picture_or_table};
 use super::start::{StartArguments, count, finite, rpm, turn};
 use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::cli::file::Output;
@@ -50,12 +50,15 @@ pub(super) struct Arguments {
     /// twenty blocks of revolutions: -inf (null in JSON) where the follower came to stick to the cam, be it once.
     #[arg(long, conflicts_with = "impacts")]
     lyapunov: bool,
-    /// Draw follower, cam and gap over the last revolutions (.svg or .png).
-    #[arg(long, value_name = "FILE", value_parser = picture, conflicts_with = "impacts")]
+    /// Draw follower, cam and gap over the last revolutions (.svg or .png), or write them, with the contact force, as CSV (.csv).
+    #[arg(long, value_name = "FILE", value_parser = picture_or_table, conflicts_with = "impacts")]
     trace: Option<PathBuf>,
     /// Draw the gap against its velocity over the last revolutions (.svg or .png).
-    #[arg(long, value_name = "FILE", value_parser = picture, conflicts_with = "impacts")]
+    #[arg(long, value_name = "FILE", value_parser = drawn_only, conflicts_with = "impacts")]
     phase_plane: Option<PathBuf>,
+    /// Moments of each revolution that --trace shows, beside the events [default: 3600 in a picture, 360 in a table].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), requires = "trace")]
+    points_per_revolution: Option<u32>,
     /// How many revolutions are drawn [default: 2].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
     drawn: Option<u64>,
@@ -65,10 +68,11 @@ pub(super) struct Arguments {
 const DRAWN: u64 = 2;
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
-    let streams = [&arguments.events, &arguments.strobe_out].map(|path| is_standard(path.as_ref()));
+    let streams = [&arguments.events, &arguments.strobe_out, &arguments.trace].map(|path| is_standard(path.as_ref()));
     let streams = streams.into_iter().chain([arguments.summary]).filter(|to_standard| *to_standard).count();
     if streams > 1 {
-        let words = "--events -, --strobe-out - and --summary all print to standard output: give the tables files";
+        let words =
+            "--events -, --strobe-out -, --trace - and --summary all print to standard output: give the tables files";
         return Err(CommandError::Words(words.into()));
     }
     let Arguments { events, strobe_out, trace, phase_plane, .. } = arguments;
@@ -96,18 +100,21 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     };
 
     // Every file is begun before the run: a name that cannot be is told at once.
-    let trace = trace.as_deref().map(Canvas::create).transpose()?;
     let plane = phase_plane.as_deref().map(Canvas::create).transpose()?;
     // At most one of the tables is standard output.
     let mut out = Some(&mut *session.out);
-    let mut open = |path: &Option<PathBuf>, columns: &str| -> Result<Option<Output<'_>>, CommandError> {
-        let Some(path) = path else { return Ok(None) };
-        let standard = if is_standard(Some(path)) { out.take() } else { None };
+    let mut open = |path: &Path, columns: &str| -> Result<Output<'_>, CommandError> {
+        let standard = if path.as_os_str() == "-" { out.take() } else { None };
         let mut file = standard.map_or_else(|| Output::file(path), |out| Output::create(path, out))?;
         file.write_all(columns.as_bytes())?;
-        Ok(Some(file))
+        Ok(file)
     };
-    let (mut events, mut states) = (open(events, csv::EVENTS)?, open(strobe_out, csv::STROBE)?);
+    let mut events = events.as_deref().map(|path| open(path, csv::EVENTS)).transpose()?;
+    let mut states = strobe_out.as_deref().map(|path| open(path, csv::STROBE)).transpose()?;
+    let is_drawn = |path: &&Path| picture::kind(path).is_some();
+    let trace = trace.as_deref();
+    let written = trace.filter(|path| !is_drawn(path)).map(|path| open(path, csv::TRACE)).transpose()?;
+    let trace = trace.filter(is_drawn).map(Canvas::create).transpose()?;
     let mut lines = String::new();
     let see = |sight: Sight<'_>| -> Result<(), CommandError> {
         lines.clear();
@@ -125,12 +132,22 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         Ok(file.as_mut().map_or(Ok(()), |file| file.write_all(lines.as_bytes()))?)
     };
     let run = watched("", |watch| simulation.run(wanted, watch, see))?;
-    let mut files: Vec<Output<'_>> = [events, states].into_iter().flatten().collect();
-    if trace.is_some() || plane.is_some() {
-        let seen = figures::Run::new(machine, run.before_drawn, drawn.min(arguments.revolutions))?;
-        let title = format!("{} at {} rpm", model.name, arguments.rpm);
-        files.extend(trace.map(|canvas| canvas.draw(&time_trace(&title, &seen))).transpose()?);
-        files.extend(plane.map(|canvas| canvas.draw(&phase_plane_figure(&title, &seen))).transpose()?);
+    let seen = |points: u32| {
+        let points = arguments.points_per_revolution.unwrap_or(points);
+        figures::Run::new(machine, run.before_drawn, drawn.min(arguments.revolutions), points)
+    };
+    let written = written.map(|mut file| -> Result<_, CommandError> {
+        let (omega, mass) = (machine.angular_velocity(), model.follower.mass);
+        file.write_all(csv::trace(&seen(figures::Run::WRITTEN)?.samples, first.cam_angle, omega, mass).as_bytes())?;
+        Ok(file)
+    });
+    let mut files: Vec<Output<'_>> = [events, states, written.transpose()?].into_iter().flatten().collect();
+    let title = format!("{} at {} rpm", model.name, arguments.rpm);
+    if let Some(canvas) = trace {
+        files.push(canvas.draw(&time_trace(&title, &seen(figures::Run::DRAWN)?))?);
+    }
+    if let Some(canvas) = plane {
+        files.push(canvas.draw(&phase_plane_figure(&title, &seen(figures::Run::DRAWN)?))?);
     }
     super::commit(files)?;
     if arguments.summary || streams == 0 {

@@ -11,11 +11,12 @@ mod places;
 use std::ops::ControlFlow;
 
 use crate::cam::apart;
+use crate::estimate::Estimate;
 use crate::flight::State;
 use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError, Unobserved};
 use crate::tolerance;
 pub use growth::{Exponent, Record, exponent, growth, growth_and_error};
-pub use pipeline::{Block, Counted, Tally};
+pub use pipeline::{Block, Counted, Tally, threads};
 pub use places::Places;
 
 /// What is recorded.
@@ -111,6 +112,9 @@ impl Speeds {
     }
 }
 
+/// How fast a small deviation grows in a revolution, a natural logarithm, of a motion that is looked at for so many.
+pub type Growth = fn(&Machine, Motion, u64) -> Result<Estimate, SimulateError>;
+
 /// A sweep over speeds.
 #[derive(Clone, Debug)]
 pub struct Sweep {
@@ -128,8 +132,8 @@ pub struct Sweep {
     pub record: u64,
     /// What of them.
     pub section: Section,
-    /// Whether the Lyapunov exponent of each record is computed.
-    pub lyapunov: bool,
+    /// How the growth of a small deviation a revolution is found, of the motion where a record of so many begins, if it is.
+    pub growth: Option<Growth>,
 }
 
 /// What a record consists of.
@@ -143,8 +147,8 @@ pub struct Row {
     pub motion: Option<usize>,
     /// What was seen.
     pub seen: Seen,
-    /// The exponent of this speed per revolution, if asked for.
-    pub lyapunov: Option<f64>,
+    /// The growth of a small deviation at this speed per revolution, if asked for.
+    pub growth: Option<Estimate>,
 }
 
 /// Cam angles, rad, of the impacts that a machine settles on: those of `record` revolutions after `transient` from rest on
@@ -204,8 +208,8 @@ impl Sweep {
         mut keep: impl FnMut(Row) -> ControlFlow<()>,
     ) -> Result<(Motion, ControlFlow<()>), SimulateError> {
         machine.revolve(&mut motion, self.transient)?;
-        let lyapunov = if self.lyapunov { Some(growth(machine, motion, self.record)?) } else { None };
-        let row = |revolution, seen| Row { rpm, revolution, motion: which, seen, lyapunov };
+        let growth = self.growth.map(|growth| growth(machine, motion, self.record)).transpose()?;
+        let row = |revolution, seen| Row { rpm, revolution, motion: which, seen, growth };
         let goal = motion.after(self.record);
         let flow = match self.section {
             Section::Impacts => machine

@@ -66,6 +66,13 @@ const OPEN_PER_THREAD: usize = 4;
 const SPEEDS_PER_TASK: usize = 16;
 const REVOLUTIONS_PER_TASK: u64 = 10_000;
 
+/// Threads to run on: so many, or for `None` one for each core.
+pub fn threads(count: Option<usize>) -> Result<rayon::ThreadPool, SweepError> {
+    // Of 0 the builder makes as many as there are cores.
+    let builder = rayon::ThreadPoolBuilder::new().num_threads(count.unwrap_or(0));
+    builder.build().map_err(|error| SweepError::Threads(error.to_string()))
+}
+
 impl Sweep {
     /// Runs on `threads` threads (all there are for `None`); `take` gets every block in order, and after each speed its
     /// index with an empty block.
@@ -99,11 +106,7 @@ impl Sweep {
             }
             return Ok(tally);
         }
-        let mut builder = rayon::ThreadPoolBuilder::new();
-        if let Some(threads) = threads {
-            builder = builder.num_threads(threads);
-        }
-        let pool = builder.build().map_err(|error| SweepError::Threads(error.to_string()))?;
+        let pool = self::threads(threads)?;
         let open = OPEN_PER_THREAD * pool.current_num_threads();
         let each = self.speeds_per_task(open);
         let count = self.speeds.count;

@@ -17,7 +17,7 @@ const FULL: usize = 1024;
 
 impl Block for Places {
     fn push(&mut self, row: &Row) {
-        self.exponent = row.lyapunov.map(|exponent| [row.rpm, exponent]);
+        self.exponent = row.growth.map(|growth| [row.rpm, growth.value]);
         match row.seen {
             Seen::Event(event) if event.kind == EventKind::Impact => self.places.push([row.rpm, event.cam_angle]),
             Seen::Event(_) => {}

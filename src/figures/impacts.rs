@@ -104,7 +104,7 @@ impl Subject {
             transient: effort.transient,
             record: effort.record,
             section,
-            lyapunov: false,
+            growth: None,
         };
         let mut places = Vec::new();
         let kept = sweep.run(None, |_, found: Places| {

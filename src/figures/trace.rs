@@ -80,8 +80,6 @@ pub(crate) const SLOW_TURNS: u64 = 2;
 const FAST_TURNS: u64 = 12;
 /// Revolutions before anything is shown.
 pub(crate) const TRANSIENT: u64 = 300;
-/// Moments of each revolution in a picture: a tenth of a degree, so that short hops are curves too.
-const SAMPLES: u32 = 3600;
 /// Of a speed that is not the paper's.
 const SAME_MULTIPLE: &str =
     "The speed is the same multiple of the one at which the follower first leaves the cam as in the paper's";
@@ -98,9 +96,19 @@ pub struct Run {
 }
 
 impl Run {
-    /// `revolutions` of a machine from a motion on.
-    pub(crate) fn new(machine: &Machine, motion: Motion, revolutions: u64) -> Result<Self, SimulateError> {
-        let (samples, events) = section::trace(machine, motion, revolutions, SAMPLES)?;
+    /// Moments of each revolution in a picture: a tenth of a degree, so that short hops are curves too.
+    pub const DRAWN: u32 = 3600;
+    /// Moments of each revolution in a table.
+    pub const WRITTEN: u32 = 360;
+
+    /// `revolutions` of a machine from a motion on, at so many moments of each.
+    pub(crate) fn new(
+        machine: &Machine,
+        motion: Motion,
+        revolutions: u64,
+        moments: u32,
+    ) -> Result<Self, SimulateError> {
+        let (samples, events) = section::trace(machine, motion, revolutions, moments)?;
         Ok(Self { rpm: machine.angular_velocity() / TAU * 60.0, samples, events })
     }
 
@@ -119,7 +127,7 @@ impl Subject {
             machine.revolve(&mut motion, TRANSIENT)?;
             let mut motion = machine.resume(&motion)?;
             motion.revolution = 0;
-            Run::new(&machine, motion, revolutions)
+            Run::new(&machine, motion, revolutions, Run::DRAWN)
         };
         Ok(Run { rpm, ..run().map_err(|error| format!("at {rpm} rpm: {error}"))? })
     }
@@ -128,7 +136,7 @@ impl Subject {
     pub fn corner_orbit(&self) -> Result<Run, String> {
         let at = &self.found()?.at;
         let machine = self.machine(at.speed_rpm());
-        let run = || Run::new(&machine, machine.start(at.section_angle(), at.state)?, 1);
+        let run = || Run::new(&machine, machine.start(at.section_angle(), at.state)?, 1, Run::DRAWN);
         Ok(Run { rpm: at.speed_rpm(), ..run().map_err(|error| error.to_string())? })
     }
 }

@@ -4,16 +4,17 @@
 use std::fmt::{Display, Write};
 
 use crate::border_collision::EventCurve;
-use crate::diagram::{Block, Row, Section, Seen, Starts, Sweep};
+use crate::diagram::{Block, Row, Section, Seen, Speeds, Starts, Sweep};
 use crate::estimate::Estimate;
 use crate::flight::State;
 use crate::orbit::Eigenvalue;
 use crate::orbit::branch::{Branch, Kind};
 use crate::orbit::ending::Ending;
+use crate::section::Sample;
 use crate::simulate::{Event, Machine, Motion};
 use crate::study::basins::Basins;
 use crate::study::chart::{Chart, Charted, Point, class};
-use crate::study::speeds::{At, Attractor, Speeds};
+use crate::study::speeds::{At, Attractor, Speeds as Surveyed};
 
 /// The columns of a run's events.
 pub(crate) const EVENTS: &str =
@@ -40,15 +41,28 @@ pub(crate) fn strobe(line: &mut String, machine: &Machine, motion: &Motion) {
     let _ = writeln!(line, "{},{position},{velocity},{gap},{contact}", motion.revolution);
 }
 
+/// The columns of a run moment by moment.
+pub(crate) const TRACE: &str = "time_s,cam_angle_rad,position_m,velocity_m_s,gap_m,contact_force_n\n";
+
+/// A run moment by moment: time since `start_angle`, rad; the force that the cam presses with on a follower of `mass`, kg.
+pub(crate) fn trace(samples: &[Sample], start_angle: f64, angular_velocity: f64, mass: f64) -> String {
+    let mut lines = String::new();
+    for Sample { turned, cam_angle, state: State { position, velocity }, gap, pressing, .. } in samples {
+        let time = (turned - start_angle) / angular_velocity;
+        let _ = writeln!(lines, "{time},{cam_angle},{position},{velocity},{gap},{}", mass * pressing);
+    }
+    lines
+}
+
 /// The columns of a diagram.
 pub(crate) fn diagram(sweep: &Sweep) -> String {
     let seen = match sweep.section {
         Section::Impacts => "cam_angle_rad,event,position_m,velocity_before_m_s,velocity_after_m_s",
         Section::Strobe(_) => "position_m,velocity_m_s",
     };
-    let lyapunov = if sweep.lyapunov { ",lyapunov_per_revolution" } else { "" };
+    let growth = sweep.growth.map_or("", |_| ",lyapunov_per_revolution,lyapunov_error");
     let motion = if matches!(sweep.starts, Starts::Found(_)) { ",attractor" } else { "" };
-    format!("rpm,revolution,{seen}{lyapunov}{motion}\n")
+    format!("rpm,revolution,{seen}{growth}{motion}\n")
 }
 
 /// Lines of a diagram, as a worker makes them.
@@ -63,7 +77,7 @@ impl Lines {
 impl Block for Lines {
     fn push(&mut self, row: &Row) {
         let line = &mut self.0;
-        let Row { rpm, revolution, motion, seen, lyapunov } = row;
+        let Row { rpm, revolution, motion, seen, growth } = row;
         let _ = match seen {
             Seen::Event(event) => {
                 let Event { cam_angle, position, velocity_before, velocity_after, .. } = event;
@@ -72,8 +86,8 @@ impl Block for Lines {
             }
             Seen::Section(State { position, velocity }) => write!(line, "{rpm},{revolution},{position},{velocity}"),
         };
-        if let Some(exponent) = lyapunov {
-            let _ = write!(line, ",{exponent}");
+        if let Some(Estimate { value, error, .. }) = growth {
+            let _ = write!(line, ",{value},{error}");
         }
         if let Some(motion) = motion {
             let _ = write!(line, ",{motion}");
@@ -110,28 +124,45 @@ pub(crate) fn basins(basins: &Basins) -> String {
     lines
 }
 
-/// A line for each point of a chart, row by row; no cell is empty, so that numerical programs read all but the class.
+/// The columns of what a run comes to; no cell is empty, so that numerical programs read all but the class.
+const POINT: &str = "class,revolutions,impacts,growth_rate,growth_error,impact_speed_m_s,impacts_per_revolution\n";
+
+/// A line of those.
+fn point(lines: &mut String, point: &Result<Point, String>) {
+    let class = class(point.as_ref().ok().map(|point| point.kind));
+    let _ = match point {
+        Ok(Point { revolutions, impacts, impact_rate, growth, impact_speed, .. }) => {
+            let Estimate { value, error, .. } = growth;
+            writeln!(lines, "{class},{revolutions},{impacts},{value},{error},{impact_speed},{impact_rate}")
+        }
+        Err(_) => writeln!(lines, "{class},0,0,NaN,NaN,NaN,NaN"),
+    };
+}
+
+/// A line for each point of a chart, row by row.
 pub(crate) fn chart(found: &Charted) -> String {
-    let mut lines = String::from(
-        "x,y,class,revolutions,impacts,growth_rate,growth_error,impact_speed_m_s,impacts_per_revolution\n",
-    );
+    let mut lines = format!("x,y,{POINT}");
     let Chart { x, y, .. } = &found.chart;
     for (index, point) in found.points.iter().enumerate() {
         let (x, y) = (x.values.value(index % x.values.count), y.values.value(index / x.values.count));
-        let class = class(point.as_ref().ok().map(|point| point.kind));
-        let _ = match point {
-            Ok(Point { revolutions, impacts, impact_rate, growth, impact_speed, .. }) => {
-                let Estimate { value, error, .. } = growth;
-                writeln!(lines, "{x},{y},{class},{revolutions},{impacts},{value},{error},{impact_speed},{impact_rate}")
-            }
-            Err(_) => writeln!(lines, "{x},{y},{class},0,0,NaN,NaN,NaN,NaN"),
-        };
+        let _ = write!(lines, "{x},{y},");
+        self::point(&mut lines, point);
+    }
+    lines
+}
+
+/// A line for each speed: what a run comes to there.
+pub(crate) fn one_row(speeds: &Speeds, points: &[Result<Point, String>]) -> String {
+    let mut lines = format!("rpm,{POINT}");
+    for (index, point) in points.iter().enumerate() {
+        let _ = write!(lines, "{},", speeds.value(index));
+        self::point(&mut lines, point);
     }
     lines
 }
 
 /// What each attractor is at each speed of the grid.
-pub(crate) fn speeds(found: &Speeds) -> String {
+pub(crate) fn speeds(found: &Surveyed) -> String {
     let mut lines =
         String::from("rpm,attractor,kind,revolutions,impacts,growth_rate,growth_error,share,share_error,coexisting\n");
     let mut all: Vec<(&Attractor, &At)> =

@@ -1,15 +1,18 @@
 //! What the motion settles on, speed by speed.
 
 use std::f64::consts::TAU;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
+use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::diagram::{Block, Following, Places, Section, Sweep, SweepError, Tally};
+use crate::diagram::{Block, Following, Places, Section, Speeds, Start, Sweep, SweepError, Tally};
 use crate::draw::{Cloud, Density};
 use crate::progress::Watch;
-use crate::simulate::{Machine, Motion, SimulateError};
+use crate::simulate::{Machine, Motion, SimulateError, angular_velocity};
 use crate::study::attractors::Here;
+use crate::study::chart::{Lengths, Point};
 
 /// A motion on each of the attractors of `machine` that are found at its speed alone.
 pub fn on_attractors(machine: &Machine) -> Result<Vec<Motion>, SimulateError> {
@@ -20,6 +23,25 @@ pub fn on_attractors(machine: &Machine) -> Result<Vec<Motion>, SimulateError> {
         Here::new(machine, rpm, SAMPLED)?.parts.into_iter().map(|part| part.motion).collect();
     motions.iter_mut().for_each(|motion| motion.revolution = 0);
     Ok(motions)
+}
+
+/// What a run from `start` comes to at each of `speeds`, side by side on `threads` threads, for `None` on one for each core.
+pub fn one_row(
+    machine: &Machine,
+    speeds: &Speeds,
+    start: Start,
+    lengths: Lengths,
+    threads: Option<usize>,
+    watch: &dyn Watch,
+) -> Result<Vec<Result<Point, String>>, SweepError> {
+    let done = AtomicU64::new(0);
+    let one = |index: usize| {
+        watch.at("", done.fetch_add(1, Ordering::Relaxed), speeds.count as u64);
+        let machine = machine.at_speed(angular_velocity(speeds.value(index)));
+        let run = start.motion(&machine).and_then(|motion| Point::of(&machine, motion, lengths));
+        run.map_err(|error| error.to_string())
+    };
+    Ok(crate::diagram::threads(threads)?.install(|| (0..speeds.count).into_par_iter().map(one).collect()))
 }
 
 /// What a sweep came to: the document of `diagram --summary`.

@@ -140,8 +140,8 @@ fn arguments_that_exclude_or_need_each_other() {
         ("--strobe 1 --strobe-out - --events -", ["standard output", "files"]),
         ("--strobe 1 --strobe-out - --summary", ["standard output", "files"]),
         ("--trace x.pdf", ["--trace <FILE>", ".svg or .png"]),
-        ("--trace x", ["x.pdf", ".svg or .png"]),
-        ("--trace -", ["--trace <FILE>", ".svg or .png"]),
+        ("--phase-plane x", ["--phase-plane <FILE>", ".svg or .png"]),
+        ("--phase-plane -", ["--phase-plane <FILE>", ".svg or .png"]),
         ("--phase-plane x.csv", ["--phase-plane <FILE>", ".svg or .png"]),
         ("--drawn 5", ["--drawn", "--trace and --phase-plane"]),
     ] {

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 use std::path::Path;
 
 use crate::common;
+use approx::assert_relative_eq;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -313,10 +314,14 @@ fn an_exponent_of_a_follower_that_sticks_is_minus_infinity() {
     assert!(short > 0.005 && short < 0.1 && long < 0.6 * short && long > 0.1 * short, "{short} {long}");
     let column = |rpm| {
         let sweep = ["diagram", MODEL, "--rpm", rpm, "--lyapunov", "--out", "-"];
-        rows(&prints(&sweep), &format!("{IMPACTS},lyapunov_per_revolution"))
+        rows(&prints(&sweep), &format!("{IMPACTS},lyapunov_per_revolution,lyapunov_error"))
     };
     assert!(column("183:183:1").iter().all(|row| row[7] == "-inf"));
-    assert!(column("700:700:1").iter().all(|row| number(&row[7]) < 0.0));
+    // Where the motion repeats, its multipliers tell: both are 0.8 in modulus.
+    let exact = |row: &Vec<String>| (number(&row[7]) - 0.8_f64.ln()).abs() < 1e-12 && row[8] == "0";
+    assert!(column("700:700:1").iter().all(exact));
+    let chaos = &column("672:672:1")[0];
+    assert!(number(&chaos[7]) > 0.0 && number(&chaos[8]) > 0.0 && number(&chaos[8]) < number(&chaos[7]));
     // In a drawing it is said, not drawn.
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("out.svg");
@@ -325,6 +330,41 @@ fn an_exponent_of_a_follower_that_sticks_is_minus_infinity() {
         prints(&sweep);
         assert_eq!(std::fs::read_to_string(&path).unwrap().contains("λ = −∞, not drawn"), said, "{rpm}");
     }
+}
+
+/// At 183 rpm the follower hops, and rests in between: the force is that which holds it on the cam, 0 in flight and where the cam
+/// lets go.
+#[test]
+fn a_trace_as_a_table_has_gap_and_force() {
+    let trace = ["simulate", MODEL, "--rpm", "183", "--revolutions", "30", "--drawn", "1", "--trace", "-"];
+    let header = "time_s,cam_angle_rad,position_m,velocity_m_s,gap_m,contact_force_n";
+    let table = rows(&prints(&[&trace[..], &["--points-per-revolution", "720"]].concat()), header);
+    let table: Vec<Vec<f64>> = table.iter().map(|row| row.iter().map(|cell| number(cell)).collect()).collect();
+    assert!(table.len() > 720 && table.windows(2).all(|pair| pair[0][0] <= pair[1][0]));
+    assert_relative_eq!(table[0][0], 29.0 * 60.0 / 183.0, max_relative = 1e-12);
+    assert_relative_eq!(table[table.len() - 1][0], 30.0 * 60.0 / 183.0, max_relative = 1e-12);
+    assert!(table.iter().all(|row| row[4] >= 0.0 && row[5] >= -1e-9 && (row[4] == 0.0 || row[5] == 0.0)));
+    // On the base circle nothing accelerates: the spring alone presses, k (q - rest).
+    let held: Vec<_> = table.iter().filter(|row| row[5] > 0.0 && row[1] < 1.5).collect();
+    assert!(held.len() > 10);
+    held.iter().for_each(|row| assert_relative_eq!(row[5], 1430.8 * (0.4 - 0.3), max_relative = 1e-9));
+    // On the flank the cam's acceleration adds to it, and lets go where it takes all of it away.
+    assert!(table.iter().any(|row| row[5] > 1.2 * 143.08));
+    assert!(rows(&prints(&trace), header).len() > 360);
+}
+
+/// One row a speed: what the run comes to, as in a chart of one row.
+#[test]
+fn one_row_a_speed_is_a_row_of_a_chart() {
+    let range = "660:750:10";
+    let found = prints(&["diagram", MODEL, "--rpm", range, "--one-row", "--out", "-"]);
+    let chart = ["chart", MODEL, "--x", "rpm=660:750:10", "--y", "restitution=0.8:0.8:1", "--out", "-"];
+    let chart = prints(&chart);
+    let without = |line: &str| line.split(',').skip(1).collect::<Vec<_>>().join(",");
+    let of_chart: Vec<String> = chart.lines().map(|line| without(line).replacen("0.8,", "", 1)).collect();
+    assert_eq!(found.lines().skip(1).map(without).collect::<Vec<_>>(), of_chart[1..]);
+    assert_eq!(found.lines().nth(1).unwrap().split(',').next(), Some("660"));
+    assert!(found.starts_with("rpm,class,revolutions,impacts,growth_rate,growth_error,impact_speed_m_s"));
 }
 
 /// `corner-impact … | head` is done with what it was asked for: no complaint, though what is left out is told by the code.

@@ -94,7 +94,16 @@ fn motion() -> Run {
         let gap = if contact { 0.0 } else { (f64::from(i % 100) / 100.0 * TAU / 2.0).sin() * 0.02 };
         let lift = 0.4 + 0.1 * turned.sin();
         let velocity = (f64::from(i % 100) / 100.0 * TAU / 2.0).cos();
-        Sample { turned, state: State { position: lift + gap, velocity }, lift, cam_velocity: 0.0, gap, contact }
+        Sample {
+            turned,
+            cam_angle: turned,
+            state: State { position: lift + gap, velocity },
+            lift,
+            cam_velocity: 0.0,
+            gap,
+            contact,
+            pressing: 0.0,
+        }
     };
     let impact = |turned: f64| Event {
         kind: EventKind::Impact,

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::diagram::SweepError;
 use crate::estimate::Estimate;
 use crate::flight::State;
 use crate::orbit::ending::Ending;
@@ -55,11 +56,7 @@ impl Grid {
         threads: Option<usize>,
         watch: &dyn Watch,
     ) -> Result<Basins, GridError> {
-        let mut builder = rayon::ThreadPoolBuilder::new();
-        if let Some(threads) = threads {
-            builder = builder.num_threads(threads);
-        }
-        let pool = builder.build().map_err(|error| GridError::Threads(error.to_string()))?;
+        let pool = crate::diagram::threads(threads)?;
         let start = |cell: usize| match machine.start(self.cam_angle, self.start(cell)) {
             Ok(motion) => Ok(Some(motion)),
             Err(SimulateError::BelowCam { .. }) => Ok(None),
@@ -88,8 +85,8 @@ pub enum GridError {
         error: SimulateError,
     },
     /// The threads could not be started.
-    #[error("threads: {0}")]
-    Threads(String),
+    #[error(transparent)]
+    Threads(#[from] SweepError),
 }
 
 // A period stands beside the kind.

@@ -18,7 +18,7 @@ use crate::orbit::ending::Kind;
 use crate::orbit::{Family, FamilyError, Parameter};
 use crate::progress::Watch;
 use crate::simulate::{Machine, angular_velocity};
-pub use point::{Lengths, Point, RECORDS};
+pub use point::{Lengths, Point, RECORDS, growth};
 
 /// Values of a number, evenly spaced.
 #[derive(Clone, Debug, PartialEq)]
@@ -173,11 +173,7 @@ impl Chart {
     /// Runs every point on `threads` threads (all there are for `None`), told to `watch` row by row.
     pub fn run(self, threads: Option<usize>, watch: &dyn Watch) -> Result<Charted, ChartError> {
         let clock = Instant::now();
-        let mut builder = rayon::ThreadPoolBuilder::new();
-        if let Some(threads) = threads {
-            builder = builder.num_threads(threads);
-        }
-        let pool = builder.build().map_err(|error| SweepError::Threads(error.to_string()))?;
+        let pool = crate::diagram::threads(threads)?;
         let (columns, rows) = (self.x.values.count, self.y.values.count);
         let height = (rows / (8 * pool.current_num_threads())).clamp(1, STRIP);
         let (family, done) = (self.family()?, AtomicU64::new(0));

@@ -1,6 +1,6 @@
 //! What one run comes to: a point of a chart, and a row of a diagram.
 
-use crate::diagram::Record;
+use crate::diagram::{Record, growth_and_error};
 use crate::estimate::{ErrorIs, Estimate};
 use crate::orbit::PeriodicOrbit;
 use crate::orbit::ending::{Ending, Kind, Resting};
@@ -80,9 +80,7 @@ impl Point {
     fn on(orbit: &PeriodicOrbit) -> Self {
         let mut met = Met::default();
         orbit.impacts().for_each(|impact| met.take(impact));
-        let modulus = orbit.multipliers().iter().fold(0.0_f64, |largest, one| largest.max(one.modulus()));
-        let growth = modulus.ln() / orbit.revolutions as f64;
-        Self { growth: exactly(growth), ..Self::at_rest(Kind::Periodic, (orbit.revolutions, met.impacts), met) }
+        Self { growth: of_orbit(orbit), ..Self::at_rest(Kind::Periodic, (orbit.revolutions, met.impacts), met) }
     }
 
     fn resting(of: &Resting) -> Self {
@@ -105,6 +103,25 @@ impl Point {
         let (growth, impact_speed) = (record.growth(), met.impact_speed);
         Self { kind, revolutions: 0, impacts: 0, impact_rate, growth, impact_speed }
     }
+}
+
+/// The growth of a small deviation of `motion` a revolution: of a motion that repeats by the multipliers of its orbit, else the
+/// mean over `revolutions`, with its error; minus infinity where the follower comes to stick to the cam in them.
+pub fn growth(machine: &Machine, motion: Motion, revolutions: u64) -> Result<Estimate, SimulateError> {
+    /// Blocks of revolutions whose exponents tell the error of their mean.
+    const BLOCKS: u32 = 20;
+    let longest = Patience::default().longest;
+    let mut probe = motion;
+    if let Run::Arrives(orbit) = Settling::unaided(machine, longest, 0).run(&mut probe, longest.min(revolutions))? {
+        return Ok(of_orbit(&orbit));
+    }
+    let (value, error) = growth_and_error(machine, motion, revolutions, BLOCKS)?;
+    Ok(Estimate { value, error: error.unwrap_or(f64::NAN), error_is: ErrorIs::Standard })
+}
+
+fn of_orbit(orbit: &PeriodicOrbit) -> Estimate {
+    let modulus = orbit.multipliers().iter().fold(0.0_f64, |largest, one| largest.max(one.modulus()));
+    exactly(modulus.ln() / orbit.revolutions as f64)
 }
 
 fn exactly(value: f64) -> Estimate {
