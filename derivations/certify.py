@@ -18,7 +18,8 @@ except ImportError:
 from balls.branches import ORBIT, UNDECIDED, Branches
 from balls.corner_impact import CornerImpact
 from balls.motion import Machine
-from balls.numbers import Refused, ball, decimal
+from balls.nearby import followed
+from balls.numbers import Refused, ball, decimal, hull
 from balls.orbits import Orbits
 from balls.verdict import SIDES, Verdict
 
@@ -54,7 +55,7 @@ def certificate(machine, candidate):
             }
             for impact, before in zip(orbit.impacts, orbit.velocities_before)
         ],
-        **{side: side_document(found, side) for side in SIDES},
+        **{side: side_document(found, side, followed(orbit, LAW_OF[side])) for side in SIDES},
         "C": [ball(x) for x in found.c],
         "D": ball(found.d),
         "border": [ball(x) for x in found.border],
@@ -65,15 +66,19 @@ def certificate(machine, candidate):
     }
 
 
-def side_document(found, side):
-    """One side of the map."""
+def side_document(found, side, beside):
+    """One side of the map, and how far its fixed point is followed."""
     a = found.a[side]
+    if beside is not None and beside.exists_for != found.exists_for(side):
+        raise Refused("the fixed point that is followed and the verdict exclude each other: one of them is wrong")
     return {
         "A": [[ball(a[row, column]) for column in range(2)] for row in range(2)],
         "B": [ball(x) for x in found.b[side]],
         "eigenvalues": [{"re": ball(re), "im": ball(im)} for re, im in found.eigenvalues[side]],
         "fixed_point_exists_for": found.exists_for(side),
         "stable": found.stable(side),
+        "followed": beside
+        and {"period_within_s": beside.period, "cam_angle_within_rad": beside.reach, "state_within": beside.state},
     }
 
 
@@ -100,12 +105,12 @@ def answer(document, candidates):
 
 
 def orbits(machine, document):
-    """All orbits of one impact and of two in one revolution at "orbits_at_rpm", where that is asked for: each with its kind; and
-    for which numbers of impacts the list is proved to be all."""
+    """All orbits of one impact and of two in one revolution at "orbits_at_rpm", where that is asked for: each with its kind; for
+    which numbers of impacts the list is proved to be all, and where it is not."""
     if "orbits_at_rpm" not in document:
         return {}
     all_of = Orbits(machine, machine.cam.turn * arb(decimal(document["orbits_at_rpm"])) / 60)
-    found, complete = [], []
+    found, complete, places = [], [], []
     for count in (1, 2):
         some, undecided = all_of.of(count)
         found += [
@@ -120,7 +125,20 @@ def orbits(machine, document):
             for orbit in some
         ]
         complete += [] if undecided else [count]
-    return {"orbits": found, "complete": complete}
+        places += [{"impacts": count, "cam_angles_rad": place} for place in joined(undecided)]
+    return {"orbits": found, "complete": complete, "undecided": places}
+
+
+def joined(undecided):
+    """The ranges of the impacts' angles, from the angle of the first and what is turned to the next; those that meet as one."""
+    whole = []
+    for first, *others in sorted(undecided, key=lambda balls: float(balls[0].lower())):
+        angles = [first] + [first + other for other in others]
+        if whole and all(one.overlaps(other) for one, other in zip(whole[-1], angles)):
+            whole[-1] = [hull(pair) for pair in zip(whole[-1], angles)]
+        else:
+            whole.append(angles)
+    return [[[float(angle.lower()), float(angle.upper())] for angle in angles] for angles in whole]
 
 
 def counts(machine, document):

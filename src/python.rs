@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 /// The scripts, with the modules that they import and the file that they read, by their places in the project.
-const FILES: [(&str, &str); 19] = [
+const FILES: [(&str, &str); 20] = [
     ("derivations/arithmetic.py", include_str!("../derivations/arithmetic.py")),
     ("derivations/balls/__init__.py", include_str!("../derivations/balls/__init__.py")),
     ("derivations/balls/branches.py", include_str!("../derivations/balls/branches.py")),
@@ -25,6 +25,7 @@ const FILES: [(&str, &str); 19] = [
     ("derivations/balls/krawczyk.py", include_str!("../derivations/balls/krawczyk.py")),
     ("derivations/balls/laws.py", include_str!("../derivations/balls/laws.py")),
     ("derivations/balls/motion.py", include_str!("../derivations/balls/motion.py")),
+    ("derivations/balls/nearby.py", include_str!("../derivations/balls/nearby.py")),
     ("derivations/balls/numbers.py", include_str!("../derivations/balls/numbers.py")),
     ("derivations/balls/orbits.py", include_str!("../derivations/balls/orbits.py")),
     ("derivations/balls/profiles.py", include_str!("../derivations/balls/profiles.py")),

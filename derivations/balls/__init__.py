@@ -12,6 +12,7 @@ proved, and what cannot be decided raises. Nothing here knows a result of anothe
     duals       numbers with derivatives, for implicit differentiation
     krawczyk    a root near a guess, proved to be there and alone
     corner_impact  an orbit with an impact on a corner, and its map on either side
+    nearby      how far from a corner impact the fixed points of both sides are followed
     verdict     what a border collision does, every sign proved
     roots       all roots of a system in a box
     orbits      all orbits of one impact and of two in one revolution

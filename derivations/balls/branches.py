@@ -240,7 +240,7 @@ class Branches:
         if signs == [0, 0]:
             raise Undecided("an orbit may come or go at either end of an arc")
         is_narrow = high - low <= NARROW
-        event, events = None, []
+        events = []
         if 0 in signs:
             if not is_narrow:
                 raise Undecided("an orbit may come or go at an end of an arc")

@@ -80,30 +80,18 @@ class CornerImpact:
 
     def _solve(self, candidate):
         """T and the impacts, by Krawczyk's operator."""
-        follower, cam = self.machine.follower, self.machine.cam
+        cam = self.machine.cam
         flights = candidate.get("impacts") or [self._only_flight(candidate["period_s"])]
         turns = [impact["turn_rad"] for impact in flights]
         places = [candidate["cam_angle_rad"] + sum(turns[:k]) for k in range(len(turns))]
-        pieces = [cam.piece_of(arb(place)) for place in places[1:]]
-        laws = [self.corner.after] + [piece.law for piece in pieces]
+        self.pieces = [cam.piece_of(arb(place)) for place in places[1:]]
+        laws = [self.corner.after] + [piece.law for piece in self.pieces]
         end = self.corner.angle + self.revolutions * cam.turn
 
         def equations(unknowns):
-            period = unknowns[0]
-            constant, rate = period.constant, cam.turn / period
-            velocities = [unknowns[1]] + unknowns[3::2]
-            angles = [constant(self.corner.angle)] + unknowns[2::2]
-            lifts = [lift(law, angle) for law, angle in zip(laws, angles)]
             # The corner's lift and slope are the same on both sides, and its angle does not vary.
-            angles, lifts, velocities = angles + [constant(end)], lifts + lifts[:1], velocities + velocities[:1]
-            found = []
-            for k in range(len(turns)):
-                p, s, s1 = response(follower, (angles[k + 1] - angles[k]) / rate)
-                force = follower.force(lifts[k][0])
-                before = s1 * velocities[k] + s * force
-                found.append(lifts[k][0] + s * velocities[k] + p * force - lifts[k + 1][0])
-                found.append(velocities[k + 1] - follower.rebound(lifts[k + 1][1] * rate, before))
-            return found
+            angles = [unknowns[0].constant(self.corner.angle)] + unknowns[2::2]
+            return self.closing(laws, unknowns[0], angles, [unknowns[1]] + unknowns[3::2])
 
         guess, names = [candidate["period_s"], flights[0]["velocity_after_m_s"]], ["T", "v+ at the corner"]
         for k, place in enumerate(places[1:], start=1):
@@ -116,10 +104,24 @@ class CornerImpact:
         for angle, law, velocity in zip(angles, laws, velocities):
             cam_velocity = law.derivatives(angle)[1] * self.speed
             self.impacts.append(Impact(angle, law, velocity, cam_velocity, velocity - cam_velocity))
-        for angle, piece in zip(angles[1:], pieces):
+        for angle, piece in zip(angles[1:], self.pieces):
             if not piece.holds(angle):
                 raise Refused(f"the root is off the piece of the cam that its equations are of, at {angle.str(10)} rad")
         self.angles = angles + [end]
+
+    def closing(self, laws, period, angles, velocities):
+        """What is 0 where every flight ends at the next impact with the velocity that this leaves with, in duals."""
+        follower, rate = self.machine.follower, self.machine.cam.turn / period
+        lifts = [lift(law, angle) for law, angle in zip(laws, angles)]
+        angles = angles + [angles[0] + self.revolutions * self.machine.cam.turn]
+        lifts, velocities, found = lifts + lifts[:1], velocities + velocities[:1], []
+        for k in range(len(laws)):
+            p, s, s1 = response(follower, (angles[k + 1] - angles[k]) / rate)
+            force = follower.force(lifts[k][0])
+            before = s1 * velocities[k] + s * force
+            found.append(lifts[k][0] + s * velocities[k] + p * force - lifts[k + 1][0])
+            found.append(velocities[k + 1] - follower.rebound(lifts[k + 1][1] * rate, before))
+        return found
 
     def _prove_flights(self):
         """Each flight leaves the cam, is clear of it and comes down, and the impact that ends it is a blow."""

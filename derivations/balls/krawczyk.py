@@ -20,20 +20,21 @@ def _evaluated(equations, point):
     return arb_mat([[one.value] for one in found]), arb_mat([one.slopes for one in found])
 
 
-def _inverse(jacobian):
+def inverse(jacobian):
+    """About the inverse of a matrix of balls; Undecided where there may be none."""
     try:
         return jacobian.mid().inv()
     except ZeroDivisionError as error:
         raise Undecided("the equations' derivative cannot be inverted: the root may not be alone") from error
 
 
-def _operator(equations, centre, value, inverse, radii):
+def _operator(equations, centre, value, near, radii):
     """The box about a centre, and what Krawczyk's operator makes of it: c - Y F(c) + (1 - Y F'(X)) (X - c)."""
     box = [one + arb(0, radius) for one, radius in zip(centre, radii)]
     jacobian = _evaluated(equations, box)[1]
     offsets = arb_mat([[arb(0, radius)] for radius in radii])
     one = arb_mat([[int(i == j) for j in range(len(radii))] for i in range(len(radii))])
-    image = arb_mat([[c] for c in centre]) - inverse * value + (one - inverse * jacobian) * offsets
+    image = arb_mat([[c] for c in centre]) - near * value + (one - near * jacobian) * offsets
     return box, [image[row, 0] for row in range(len(radii))]
 
 
@@ -49,7 +50,7 @@ def root(equations, guess, names):
     last = None
     for _ in range(NEWTON):
         value, jacobian = _evaluated(equations, centre)
-        step = _inverse(jacobian) * value.mid()
+        step = inverse(jacobian) * value.mid()
         centre = [(one - step[row, 0]).mid() for row, one in enumerate(centre)]
         moved = max(float(abs(step[row, 0]) / sizes[row]) for row in range(len(centre)))
         if not moved < 1 or (last is not None and moved >= last):
@@ -60,20 +61,20 @@ def root(equations, guess, names):
             raise Refused(f"no root of the equations is where it was looked for: {name} would have to be {value.str(8, radius=False)}, "
                           f"not {start!r}")
     value, jacobian = _evaluated(equations, centre)
-    inverse = _inverse(jacobian)
+    near = inverse(jacobian)
     radii = [size * arb(2) ** (ROUNDING - ctx.prec) for size in sizes]
 
     def proved(radii):
         """The operator's image of a box that it sends into its inside: there is one root in the box, and it is in the image."""
-        box, image = _operator(equations, centre, value, inverse, radii)
+        box, image = _operator(equations, centre, value, near, radii)
         return image if all(within(one, whole) for one, whole in zip(image, box)) else None
 
     for _ in range(WIDENINGS):
         image = proved(radii)
         if image is not None:
             # The root lies in the image of every box that holds it.
-            near = [one.rad() + abs(one.mid() - c) for one, c in zip(image, centre)]
+            reach = [one.rad() + abs(one.mid() - c) for one, c in zip(image, centre)]
             alone = next((part for part in ALONE if proved([size * part for size in sizes]) is not None), 0.0)
-            return _operator(equations, centre, value, inverse, near)[1], alone
+            return _operator(equations, centre, value, near, reach)[1], alone
         radii = [8 * radius for radius in radii]
     raise Undecided(f"{ctx.prec} bits are too few to prove that the equations have a root")

@@ -1,9 +1,9 @@
 """All periodic orbits of one and of two impacts in one revolution, at one speed, each with its kind.
 
-An orbit is the angles of its impacts: each flight is aimed from one to the next, v = (c_next - c - p f(c))/s, and what is left is
-Newton's law at every impact,
+An orbit is the angles of its impacts: Newton's law at every impact is linear in the velocities v after them and gives these, whatever
+the times between the impacts, and what is left is that every flight ends on the cam,
 
-    E = v+ - (1 + r) c' + r v- = 0,   v- = s' v + s f(c).
+    v_next = (1 + r) c'_next - r (s' v + s f(c)),   E = c + s v + p f(c) - c_next = 0.
 
 Every pair of angles is excluded, or near a root that is proved to be alone, and of every root it is decided whether its flights are
 clear of the cam. Impacts of a pair that are nearer to one another than SHORT are excluded otherwise: see `_short`.
@@ -81,38 +81,44 @@ class Orbits:
             return [(first, first.constant(self.turn))]
         return [(first, others[0]), (first + others[0], self.turn - others[0])]
 
-    def _aimed(self, flights):
-        """(position, cam velocity, v+ of the flight that begins there, v- of the flight that ends at the next) of each impact, duals."""
-        follower, cam, speed = self.machine.follower, self.machine.cam, self.speed
+    def _thrown(self, flights):
+        """(lift, cam velocity, v+ of the flight that begins there, where that ends less the next lift) of each impact, duals.
+
+        The impacts throw: v+ of the next is a - r s' v+ of this one, a = (1 + r) c' - r s f, so that once around v+ = all + part v+.
+        """
+        follower, cam, speed, count = self.machine.follower, self.machine.cam, self.speed, len(flights)
         lifts = [lift(cam, angle) for angle, _ in flights]
+        responses, forces = [response(follower, turn / speed) for _, turn in flights], [follower.force(c) for c, _ in lifts]
+        thrown = []
+        for k, ((_, s, s1), force) in enumerate(zip(responses, forces)):
+            cam_velocity = lifts[(k + 1) % count][1] * speed
+            thrown.append((follower.rebound(cam_velocity, s * force), -follower.restitution * s1))
+        whole, part = thrown[0]
+        for more, factor in thrown[1:]:
+            whole, part = more + factor * whole, factor * part
+        velocities = [whole / (1 - part)]
+        for more, factor in thrown[:-1]:
+            velocities.append(more + factor * velocities[-1])
         found = []
-        for k, (c, slope) in enumerate(lifts):
-            p, s, s1 = response(follower, flights[k][1] / speed)
-            if s.value.contains(0):
-                raise Undecided("a flight can be aimed at its end by no velocity, or by any: its time is in resonance")
-            force, ahead = follower.force(c), lifts[(k + 1) % len(lifts)][0]
-            leaves = (ahead - c - p * force) / s
-            found.append((c, slope * speed, leaves, s1 * leaves + s * force))
+        for k, ((c, slope), (p, s, _), force, leaves) in enumerate(zip(lifts, responses, forces, velocities)):
+            found.append((c, slope * speed, leaves, c + s * leaves + p * force - lifts[(k + 1) % count][0]))
         return found
 
     def _laws(self, unknowns):
-        """E at every impact."""
-        aimed, follower = self._aimed(self._flights(unknowns)), self.machine.follower
-        return [leaves - follower.rebound(cam_velocity, aimed[k - 1][3]) for k, (_, cam_velocity, leaves, _) in enumerate(aimed)]
+        """How far each flight ends from the cam."""
+        return [ends for *_, ends in self._thrown(self._flights(unknowns))]
 
     def _excluded(self, balls):
         """Whether every flight of a box leaves into the cam, comes from inside of it, or is inside of it on its way."""
         cam, follower, centre = self.machine.cam, self.machine.follower, [ball.mid() for ball in balls]
         flights = self._flights(Dual.varied(balls))
-        aimed, middle = self._aimed(flights), self._aimed(self._flights(Dual.varied(centre)))
-        for k, (c, cam_velocity, leaves, arrives) in enumerate(aimed):
-            # By the mean value form: both are differences of numbers that vary together.
-            relative, closing = leaves - cam_velocity, aimed[(k + 1) % len(aimed)][1] - arrives
-            at_centre = middle[k][2] - middle[k][1], middle[(k + 1) % len(middle)][1] - middle[k][3]
-            for over, value in zip((relative, closing), at_centre):
-                form = value.value + sum((slope * (ball - m) for slope, ball, m in zip(over.slopes, balls, centre)), arb(0))
-                if over.value < 0 or form < 0:
-                    return True
+        thrown, middle = self._thrown(flights), self._thrown(self._flights(Dual.varied(centre)))
+        for k, (c, cam_velocity, leaves, _) in enumerate(thrown):
+            # By the mean value form: a difference of numbers that vary together.
+            relative, at_centre = leaves - cam_velocity, middle[k][2] - middle[k][1]
+            form = at_centre.value + sum((slope * (ball - m) for slope, ball, m in zip(relative.slopes, balls, centre)), arb(0))
+            if relative.value < 0 or form < 0:
+                return True
             angle, time = flights[k][0], flights[k][1] / self.speed
             for part in LOOKS:
                 moment = time * part
@@ -134,7 +140,7 @@ class Orbits:
             if self._no_short(between(low, high)):
                 continue
             if high - low < SMALLEST:
-                undecided.append([between(low, high)])
+                undecided.append([between(low, high), between(0, SHORT)])
                 continue
             parts += [(low, (low + high) / 2), ((low + high) / 2, high)]
         return undecided
@@ -163,7 +169,7 @@ class Orbits:
         """The orbit of a root, its flights clear of the cam; Excluded where they are not."""
         flights = self._flights([Dual(value, []) for value in root])
         impacts, around = [], arb_mat([[1, 0], [0, 1]])
-        for (angle, turn), (_, cam_velocity, leaves, _) in zip(flights, self._aimed(flights)):
+        for (angle, turn), (_, cam_velocity, leaves, _) in zip(flights, self._thrown(flights)):
             relative = leaves.value - cam_velocity.value
             if relative < 0:
                 raise Excluded("an impact sends the follower into the cam")

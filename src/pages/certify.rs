@@ -48,6 +48,14 @@ impl Paged for ProvedOrbits {
                 true => format!("Orbits of {impacts} in 1 revolution: there are no others, which is proved."),
                 false => format!("Orbits of {impacts} in 1 revolution: there may be others, that is not decided."),
             }));
+            let places: Vec<_> = self.undecided.iter().filter(|one| one.impacts == count).collect();
+            page.extend(some_of(&places, "place", |one| {
+                let angles = one.cam_angles_rad.iter().map(|ends| {
+                    let [low, high] = ends.map(|end| (end.to_degrees(), Digits::Fixed(6)));
+                    words![low, " to ", high, " deg"]
+                });
+                words!["not decided about impacts at ", Words::joined(angles, " and ")]
+            }));
         }
         page
     }
@@ -133,6 +141,23 @@ fn certificate(of: &Certificate) -> Vec<Block> {
     let near = |side: &ProvedSide| {
         format!("{}, {}", words::speeds(Some(side.fixed_point_exists_for)), words::stability(side.stable))
     };
+    let within = |side: &ProvedSide| side.followed.as_ref().map(|followed| Digits::Size.text(followed.period_within_s));
+    let how_far = match (within(&of.sides.minus), within(&of.sides.plus)) {
+        (Some(minus), Some(plus)) => format!(
+            "This is proved for all periods within {minus} s of T* for the one, and within {plus} s for the other: there each side's \
+             law, continued past the corner, has one fixed point near x*. At the speeds that are told its flights are clear of the cam; \
+             at the others its impact is beyond the corner, where that law does not hold."
+        ),
+        _ => "This holds for all speeds near enough to omega*, by the implicit function theorem, applied to the map of each side with \
+              the cam's law continued past the corner; how near is not proved."
+            .into(),
+    };
+    let others = match (of.impacts.len(), of.revolutions) {
+        (1, 1) => {
+            " How many orbits of one impact in one revolution there are at every speed of a range, `certify --orbits --rpm LO:HI` proves."
+        }
+        _ => "",
+    };
     vec![
         Block::Heading(
             format!("{} rpm, on the corner at {degrees} deg", Digits::Fixed(6).text(of.speed_rpm.value())).into(),
@@ -150,9 +175,8 @@ fn certificate(of: &Certificate) -> Vec<Block> {
             words![
                 (Mark::Strong, of.verdict.to_string().as_str()),
                 format!(
-                    ": {}. For all speeds near enough to omega* the machine has the fixed point with the impact before the corner {}, \
-                     and the one with the impact after it {}: by the implicit function theorem, applied to the map of each side \
-                     with the cam's law continued past the corner.",
+                    ": {}. Next to omega* the machine has the fixed point with the impact before the corner {}, and the one with the \
+                     impact after it {}. {how_far}{others}",
                     words::meaning(of.verdict, of.sides.minus.stable || of.sides.plus.stable),
                     near(&of.sides.minus),
                     near(&of.sides.plus),
@@ -200,19 +224,25 @@ fn pair([one, other]: &[Ball; 2]) -> Words {
 }
 
 fn refused(all: &[Unproved]) -> Vec<Block> {
-    /// Longest list that is printed line by line.
-    const LONGEST: usize = 12;
     if all.is_empty() {
         return Vec::new();
     }
-    let line = |words: Words| Block::Paragraph(4, words);
     let mut page = vec![Block::Heading(format!("Not proved ({})", all.len()).into())];
-    page.extend(all.iter().take(LONGEST).map(|one| {
+    page.extend(some_of(all, "place", |one| {
         let (speed, angle) = (one.speed_rpm, one.cam_angle.to_degrees());
-        line(words![(speed, Digits::Fixed(6)), " rpm at ", (angle, Digits::Fixed(4)), " deg: ", &one.why])
+        words![(speed, Digits::Fixed(6)), " rpm at ", (angle, Digits::Fixed(4)), " deg: ", &one.why]
     }));
-    if all.len() > LONGEST {
-        page.push(line(format!("and {} more; --json lists them", all.len() - LONGEST).into()));
-    }
     page
+}
+
+/// Each in a line, but for a long list's rest.
+fn some_of<T>(all: &[T], what: &str, line: impl Fn(&T) -> Words) -> Vec<Block> {
+    /// Longest list that is printed line by line.
+    const LONGEST: usize = 12;
+    let mut lines: Vec<_> = all.iter().take(LONGEST).map(|one| Block::Paragraph(4, line(one))).collect();
+    if all.len() > LONGEST {
+        let rest = words::many((all.len() - LONGEST) as u64, &format!("more {what}"));
+        lines.push(Block::Paragraph(4, format!("and {rest}; --json lists them").into()));
+    }
+    lines
 }

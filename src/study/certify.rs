@@ -131,6 +131,18 @@ pub struct ProvedSide {
     pub fixed_point_exists_for: Speeds,
     /// Whether both eigenvalues are inside the unit circle.
     pub stable: bool,
+    /// How far from the corner impact its fixed point is followed; none where a cam's pieces meet only nearly.
+    pub followed: Option<Followed>,
+}
+
+/// For every period so near to T\* a side has one fixed point with its impact so near to the corner. Its state is so near to x\*,
+/// and it is one of the machine for the periods on the side of T\* that the verdict says.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[expect(missing_docs, reason = "the names say what each is")]
+pub struct Followed {
+    pub period_within_s: f64,
+    pub cam_angle_within_rad: f64,
+    pub state_within: [f64; 2],
 }
 
 /// An eigenvalue; proved to be real where the imaginary part is 0.
@@ -247,6 +259,8 @@ pub struct ProvedOrbits {
     pub orbits: Vec<ProvedOrbit>,
     /// The numbers of impacts for which there are proved to be no others.
     pub complete: Vec<usize>,
+    /// Where there may be others.
+    pub undecided: Vec<UndecidedOrbit>,
 }
 
 document!(ProvedOrbits as it {
@@ -256,7 +270,17 @@ document!(ProvedOrbits as it {
     known: Known::Proved,
     orbits: it.orbits,
     complete: it.complete,
+    undecided: it.undecided,
 });
+
+/// Where it is not decided whether there is an orbit, or whether it is one of the machine.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[expect(missing_docs, reason = "the names say what each is")]
+pub struct UndecidedOrbit {
+    pub impacts: usize,
+    /// From where to where each impact may be, rad.
+    pub cam_angles_rad: Vec<[f64; 2]>,
+}
 
 /// A periodic orbit: its flights are clear of the cam, and it is alone near its impacts.
 #[derive(Clone, Debug, Deserialize, Serialize)]

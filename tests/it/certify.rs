@@ -107,12 +107,41 @@ fn the_paper_s_corner_impacts_are_proved_and_its_solution_inside_of_the_cam_is_n
         assert_eq!(one[side]["fixed_point_exists_for"], "faster");
         assert_eq!(one[side]["stable"], side == "plus");
     }
+    beside_it_both_fixed_points_are_followed(one);
+    beside_it_both_fixed_points_are_followed(two);
     has(&two["speed_rpm"], "736.110814038711385786420");
     assert_eq!((two["impacts"].as_array().unwrap().len(), two["verdict"].as_str()), (2, Some("nonsmooth-fold")));
     assert!(radii(two).iter().all(|radius| *radius <= 1e-24), "{:?}", radii(two));
     let [inside] = &found["refused"].as_array().unwrap()[..] else { panic!("{found}") };
     assert!((inside["speed_rpm"].as_f64().unwrap() - 634.331_399).abs() < 1e-6, "{inside}");
     assert!(inside["why"].as_str().unwrap().contains("into the cam"), "{inside}");
+}
+
+/// As far as it is said; `orbit` has the orbits that are told of there, on the side of the corner that is.
+#[track_caller]
+fn beside_it_both_fixed_points_are_followed(impact: &Value) {
+    let (period, corner) = (number(&impact["period_s"]), number(&impact["cam_angle_rad"]));
+    let count = impact["impacts"].as_array().unwrap().len();
+    for (side, towards) in [("minus", -1.0), ("plus", 1.0)] {
+        let followed = &impact[side]["followed"];
+        let [within, reach] = ["period_within_s", "cam_angle_within_rad"].map(|name| followed[name].as_f64().unwrap());
+        assert!(within > 1e-8 && reach >= 5e-4, "{side}: {followed}");
+        for (part, is_there) in [(-0.99, true), (0.99, false)] {
+            let rpm = (60.0 / (period + part * within)).to_string();
+            let found = corner_impact(["orbit", "models/osorio-2008.toml", "--rpm", &rpm, "--json"]);
+            let found: Value = serde_json::from_slice(&found.stdout).unwrap();
+            let is_beside = |orbit: &Value| {
+                let impacts = orbit["impacts"].as_array().unwrap();
+                let beyond = |one: &Value| towards * (one["cam_angle_rad"].as_f64().unwrap() - corner);
+                impacts.len() == count && impacts.iter().any(|one| beyond(one) > 0.0 && beyond(one) <= reach)
+            };
+            assert_eq!(
+                found["orbits"].as_array().unwrap().iter().any(is_beside),
+                is_there,
+                "{side} at {rpm} rpm: {found}"
+            );
+        }
+    }
 }
 
 /// A decimal in units of 1e-24.
@@ -195,22 +224,70 @@ fn places_where_there_is_none_are_refused() {
 /// Where a plastic follower that leaves P with the cam's velocity is back at P after a revolution, s.
 const PLASTIC_PERIOD: f64 = 0.072_917_459_437_368_74;
 
+fn number(ball: &Value) -> f64 {
+    ball["mid"].as_str().unwrap().parse().unwrap()
+}
+
+/// The angles of the impacts of a certificate, and of the first a turn on.
+fn angles_of(proved: &Value) -> Vec<f64> {
+    let mut angles: Vec<f64> =
+        proved["impacts"].as_array().unwrap().iter().map(|impact| number(&impact["cam_angle_rad"])).collect();
+    angles.push(angles[0] + std::f64::consts::TAU);
+    angles
+}
+
+/// Where to look for an orbit whose impacts are at these angles.
+fn place_of(proved: &Value, angles: &[f64]) -> Value {
+    let flight = |(ends, impact): (&[f64], &Value)| json!({ "turn_rad": ends[1] - ends[0], "velocity_after_m_s": number(&impact["velocity_after_m_s"]) });
+    let flights: Vec<Value> = angles.windows(2).zip(proved["impacts"].as_array().unwrap()).map(flight).collect();
+    json!({ "cam_angle_rad": angles[0], "period_s": number(&proved["period_s"]), "revolutions": 1, "impacts": flights })
+}
+
+/// The second parabola has a bump from 200 to 220 degrees, as high as a flight over it.
+#[test]
+fn a_flight_that_touches_is_refused_and_one_that_is_clear_by_a_hair_is_not() {
+    let file = "models/laws/polynomial.toml";
+    let found = certified(&[file, "--rpm", "443:444"]);
+    let place = place_of(&found["corner_impacts"][0], &angles_of(&found["corner_impacts"][0]));
+    let text = std::fs::read_to_string(file).unwrap();
+    let with_bump = |height: f64| {
+        let width = 20.0_f64.to_radians();
+        let bend = -0.02 + height * width * width;
+        let bump = [0.146_911_082_647_153_14, -0.013_962_634_015_954_628, bend, -2.0 * height * width, height];
+        let after = [0.139_600_264_572_272_15, -0.027_925_268_031_909_27, -0.02];
+        let piece = |start: f64, coefficients: &[f64]| {
+            format!("[[cam.segment]]\nstart_deg = {start}\ncoefficients = {coefficients:?}\n")
+        };
+        let (first, second) = text.split_at(text.rfind("[[cam.segment]]").unwrap());
+        Model::parse("bump.toml", &[first, &piece(200.0, &bump), &piece(220.0, &after), second].concat()).unwrap()
+    };
+    const TOUCHING: f64 = 8.455_831_071_557_895;
+    refused(&with_bump(TOUCHING), place.clone(), 128, "it may touch");
+    refused(&with_bump(TOUCHING * (1.0 + 1e-9)), place.clone(), 128, "meets the cam elsewhere");
+    assert!(script(&with_bump(TOUCHING * (1.0 - 1e-9)), place, 128)["certificate"].is_object());
+}
+
+/// At this restitution a multiplier of the law before the corner is -1, but for 1e-8.
+#[test]
+fn a_sign_that_is_not_decided_is_refused() {
+    let arguments = ["certify", "--set", "restitution=0.61501779", "--rpm", "687:689", "--bits"];
+    let output = corner_impact([&arguments[..], &["26"]].concat());
+    let page = text(output.stdout);
+    assert!(page.contains("687.927243 rpm at 90.0000 deg: the sign of det(I + A-) is not decided"), "{page}");
+    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(corner_impact([&arguments[..], &["60"]].concat()).status.code(), Some(0));
+}
+
 #[test]
 fn a_root_off_the_piece_that_its_equations_are_of_is_refused() {
     let file = "models/laws/polynomial.toml";
     let found = certified(&[file, "--rpm", "443:444"]);
     let proved = &found["corner_impacts"][0];
-    let number = |ball: &Value| ball["mid"].as_str().unwrap().parse::<f64>().unwrap();
-    let impacts = proved["impacts"].as_array().unwrap();
-    let angles: Vec<f64> = impacts.iter().map(|impact| number(&impact["cam_angle_rad"])).collect();
-    let other = angles[1];
+    let other = angles_of(proved)[1];
     let place = |second: f64| {
-        let mut angles = angles.clone();
+        let mut angles = angles_of(proved);
         angles[1] = second;
-        angles.push(angles[0] + std::f64::consts::TAU);
-        let flight = |(ends, impact): (&[f64], &Value)| json!({ "turn_rad": ends[1] - ends[0], "velocity_after_m_s": number(&impact["velocity_after_m_s"]) });
-        let flights: Vec<Value> = angles.windows(2).zip(impacts).map(flight).collect();
-        json!({ "cam_angle_rad": angles[0], "period_s": number(&proved["period_s"]), "revolutions": 1, "impacts": flights })
+        place_of(proved, &angles)
     };
     assert!(script(&common::read(Path::new(file)), place(other), 128)["certificate"].is_object());
     // The same cam with its second parabola cut in two, right before the other impact.
@@ -231,6 +308,8 @@ fn a_cam_whose_decimals_meet_nearly_is_certified_with_that_hypothesis() {
     let assumed = &found["corner_impacts"][0]["assumed"];
     let off = |name: &str| assumed[name].as_f64().unwrap();
     assert!(off("lift_m") > 1e-18 && off("lift_m") < 1e-15 && off("slope_m_rad") < 1e-15, "{assumed}");
+    // There the law of the piece before the corner is not known up to the corner.
+    assert!(found["corner_impacts"][0]["minus"]["followed"].is_null());
     assert!(certified(&["models/osorio-2008.toml"])["corner_impacts"][0]["assumed"].is_null());
     let page = corner_impact(["certify", "models/laws/polynomial.toml", "--rpm", "443:444"]);
     assert!(text(page.stdout).contains("The pieces of the cam miss"));
@@ -277,4 +356,17 @@ fn without_python_it_says_so() {
     assert_eq!((output.status.code(), output.stdout.as_slice()), (Some(2), &[][..]));
     let words = text(output.stderr);
     assert!(words.contains("/nonexistent/python") && words.contains("did not start"), "{words}");
+}
+
+#[test]
+fn without_python_flint_it_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("flint.py"), "raise ImportError\n").unwrap();
+    let output = common::program(["certify"]).env("PYTHONPATH", folder.path()).output().unwrap();
+    assert_eq!((output.status.code(), output.stdout.as_slice()), (Some(2), &[][..]));
+    let words = text(output.stderr);
+    assert!(
+        words.contains("the Python package python-flint is missing") && words.contains("`make verify` sets it up"),
+        "{words}"
+    );
 }

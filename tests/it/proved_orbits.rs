@@ -125,3 +125,54 @@ fn folds_and_grazes_are_proved_where_branches_have_them() {
         held(file, rpm, from);
     }
 }
+
+/// At 500 rpm one of the flights between two impacts may last a half swing, after which a follower is at its end however it left.
+#[test]
+fn orbits_of_two_impacts_are_all_there_where_a_flight_may_last_a_half_swing() {
+    let proved = document(&["certify", "--orbits", "--rpm", "500"]);
+    assert_eq!((&proved["complete"], &proved["undecided"]), (&json!([1, 2]), &json!([])), "{proved}");
+    let [orbit] = &proved["orbits"].as_array().unwrap()[..] else { panic!("{proved}") };
+    let angles: Vec<f64> =
+        orbit["impacts"].as_array().unwrap().iter().map(|one| number(&one["cam_angle_rad"])).collect();
+    let found = document(&["orbit", "models/osorio-2008.toml", "--rpm", "500", "--impacts", "2"]);
+    let has = |one: &Value| {
+        let impacts = one["impacts"].as_array().unwrap();
+        let near =
+            |angle: &f64| impacts.iter().any(|one| (one["cam_angle_rad"].as_f64().unwrap() - angle).abs() < 1e-9);
+        impacts.len() == 2 && angles.iter().all(near)
+    };
+    assert_eq!(found["orbits"].as_array().unwrap().iter().filter(|one| has(one)).count(), 1, "{found}\n{proved}");
+}
+
+/// The speed of a graze, but for 1e-14 rpm: an impact of two is a touch there.
+#[test]
+fn where_a_flight_touches_the_list_is_not_said_to_be_complete() {
+    let arguments = ["certify", "--orbits", "--rpm", "786.7196856957516", "--bits", "53"];
+    let proved = document(&arguments);
+    assert!(!proved["complete"].as_array().unwrap().contains(&json!(2)), "{proved}");
+    let degrees = |one: &Value| one["cam_angles_rad"][0][0].as_f64().unwrap().to_degrees();
+    assert!(
+        proved["undecided"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .any(|one| one["impacts"] == 2 && (degrees(one) - 94.61957).abs() < 1e-4),
+        "{proved}"
+    );
+    assert!(text(corner_impact(arguments).stdout).contains("not decided about impacts at 94.6195"));
+}
+
+#[test]
+fn machines_whose_orbits_are_not_counted_over_a_range_are_refused_with_the_reason() {
+    for (arguments, why) in [
+        (&["models/laws/rectified-sine.toml"][..], "the cam's velocity jumps"),
+        (&["models/osorio-2008.toml", "--set", "restitution=0"], "does not leave the cam"),
+        (&["models/osorio-2008.toml", "--set", "restitution=1"], "neither stable nor unstable"),
+        (&["models/osorio-2008.toml", "--bits", "52"], "at least 53"),
+    ] {
+        let output = corner_impact([&["certify"], arguments, &["--orbits", "--rpm", "600:760"]].concat());
+        let words = text(output.stderr);
+        assert_eq!((output.status.code(), output.stdout.as_slice()), (Some(2), &[][..]), "{words}");
+        assert!(words.contains(why), "{words}");
+    }
+}

@@ -14,6 +14,7 @@ use crate::paper::context::{Context, Decision, decide};
 use crate::published::Verdict;
 use crate::section::StroboscopicMap;
 use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError};
+use crate::study::certify::{BITS, OrbitKind, ProvedCounts, proved_counts};
 use crate::tolerance;
 
 /// The speeds between 660 and 750 rpm at which runs are held against the paper's diagrams.
@@ -64,13 +65,40 @@ pub(in crate::paper) fn period_one_above(context: &Context<'_>) -> Decision {
             settled.push(rpm);
         }
     }
+    let flip = flip(context)?;
+    let (is_proved, proof) = match proved_counts(context.model, RANGE, BITS) {
+        Ok(proved) => {
+            let is_proved = one_stable_orbit(&proved, context.findings.at.speed_rpm(), flip);
+            (is_proved, format!("is proved: {is_proved}; that runs come to it is not"))
+        }
+        // The rest of the ledger needs no Python; what is missing is for the first line to say.
+        Err(error) => {
+            (true, format!("was not proved in this run: {}", error.to_string().lines().next().unwrap_or_default()))
+        }
+    };
     let evidence = format!(
         "of 3000 revolutions from x* each, those at {} rpm end on one impact a revolution, in one state; a multiplier of it \
-         passes -1 at {:.6} rpm",
+         passes -1 at {flip:.6} rpm. That there is a stable orbit of one impact in one revolution at every speed from the corner impact \
+         to there, and none of any kind from {} rpm to the corner impact, {proof}",
         listed(&settled),
-        flip(context)?
+        RANGE[0]
     );
-    decide(settled.len() == ABOVE.len(), Verdict::Refuted, evidence)
+    decide(settled.len() == ABOVE.len() && is_proved, Verdict::Refuted, evidence)
+}
+
+/// The speeds at every one of which orbits are counted, rpm.
+const RANGE: [f64; 2] = [600.0, 760.0];
+
+/// Whether there is no orbit of one impact below `corner`, and one that is stable, and no other such, from there to `flip`, rpm.
+fn one_stable_orbit(proved: &ProvedCounts, corner: f64, flip: f64) -> bool {
+    let is_near = |speed: f64, other: f64| (speed - other).abs() <= tolerance::SPEED_FOUND.value;
+    let [below, beside, ..] = &proved.counts[..] else { return false };
+    let stable = beside.kinds.iter().filter(|kind| **kind == Some(OrbitKind::Stable)).count();
+    proved.undecided.is_empty()
+        && (below.from_rpm, below.one_impact_orbits, stable) == (RANGE[0], 0, 1)
+        && [(below.to_rpm, corner), (beside.from_rpm, corner), (beside.to_rpm, flip)]
+            .iter()
+            .all(|(one, other)| is_near(*one, *other))
 }
 
 /// One impact line from 673.23 up, many impacts below; and what the diagram's upper end does.

@@ -1,0 +1,108 @@
+"""The orbits beside a corner impact: how far from it each side's fixed point is proved to follow it.
+
+With the law of one side of the corner, continued past it, and the corner's impact at any angle theta, the equations of the orbit are
+F(w; theta) = 0, w the period and the velocities and the other angles of the impacts. Krawczyk's operator over a ball of angles about
+the corner shows that each theta has one root w in a box, and dw/dtheta = -(dF/dw)^-1 dF/dtheta has a ball over the box. Where dT/dtheta
+has one sign, there is one fixed point for every period about T*. It is one of the machine for the angles on the side of the law, if
+every flight is clear of the cam, and for those on the other side none.
+"""
+
+from dataclasses import dataclass
+
+from flint import arb, arb_mat
+
+from .duals import Dual, lift, response
+from .krawczyk import inverse
+from .motion import Flight, Start
+from .numbers import Refused, Undecided, between, sign, within
+
+# Angles from the corner up to which the fixed points are tried to be followed, rad.
+REACHES = tuple(mantissa * 10.0**-exponent for exponent in range(1, 12) for mantissa in (5, 2, 1))
+# Boxes are so much wider than the derivative at the corner would have them.
+WIDER = 1.5
+
+
+@dataclass(frozen=True)
+class Followed:
+    """For every period within `period` of T*, s, a side has one fixed point with its impact within `reach` of the corner, rad, and
+    that lies within `state` of x*; it is one of the machine for the periods on one side of T*, "slower" or "faster"."""
+
+    period: float
+    reach: float
+    state: list
+    exists_for: str
+
+
+def followed(orbit, side):
+    """How far the fixed point of a side, "before" or "after", is followed; None where that is nowhere, or where the decimals of
+    the cam's pieces leave open what is at the corner."""
+    if orbit.corner.assumed:
+        return None
+    for reach in REACHES:
+        try:
+            return _within(orbit, side, reach)
+        except (Refused, ZeroDivisionError):
+            continue
+    return None
+
+
+def _within(orbit, side, reach):
+    machine, count = orbit.machine, 2 * len(orbit.impacts)
+    laws = [getattr(orbit.corner, side)] + [impact.law for impact in orbit.impacts[1:]]
+    # w in the order of the equations of the corner impact: T and v, then angle and velocity of each other impact.
+    at = [orbit.period, orbit.impacts[0].velocity] + [x for impact in orbit.impacts[1:] for x in (impact.angle, impact.velocity)]
+    angles = orbit.corner.angle + arb(0, reach)
+
+    def over(places, angle):
+        """F, dF/dw and dF/dtheta."""
+        *w, theta = Dual.varied([*places, angle])
+        found = orbit.closing(laws, w[0], [theta, *w[2::2]], [w[1], *w[3::2]])
+        return tuple(arb_mat(rows) for rows in zip(*(([one.value], one.slopes[:count], one.slopes[count:]) for one in found)))
+
+    centre = [one.mid() for one in at]
+    value, jacobian, by_angle = over(centre, orbit.corner.angle)
+    near = inverse(jacobian)
+    steps = near * by_angle
+    box = [one + arb(0, (abs(steps[row, 0]).upper() * reach + one.rad()) * WIDER) for row, one in enumerate(at)]
+    # Y F(c; theta) = Y F(c; corner) + Y dF/dtheta (theta - corner)
+    there = near * value + near * over(centre, angles)[2] * arb(0, reach)
+    _, jacobian, by_angle = over(box, angles)
+    off = arb_mat([[int(i == j) for j in range(count)] for i in range(count)]) - near * jacobian
+    image = arb_mat([[c] for c in centre]) - there + off * arb_mat([[one - c] for one, c in zip(box, centre)])
+    if not all(within(image[row, 0], one) for row, one in enumerate(box)):
+        raise Undecided("the fixed point is not proved to be alone")
+    rates = -(near * jacobian).solve(near * by_angle)
+    later = sign(rates[0, 0], "the period by the impact's angle") * (-1 if side == "before" else 1)
+    # From the corner to where the law holds.
+    shift = between(0, arb(-reach if side == "before" else reach))
+    _prove_flights(orbit, laws, orbit.corner.angle + shift, [one + rates[row, 0] * shift for row, one in enumerate(at)])
+    *w, theta = Dual.varied([*box, angles])
+    leaving = orbit.longest
+    angle, velocity = (theta, w[1]) if leaving == 0 else (w[2 * leaving], w[2 * leaving + 1])
+    flown = response(machine.follower, (orbit.section - angle) * w[0] / machine.cam.turn)
+    state = machine.follower.fly(flown, lift(laws[leaving], angle)[0], velocity)
+    moved = [sum((slope * rates[row, 0] for row, slope in enumerate(one.slopes[:count])), one.slopes[count]) for one in state]
+    # Two digits, rounded towards what is proved: by 5 % at most.
+    period = float(f"{float(abs(rates[0, 0]).lower() * reach) * 0.95:.1e}")
+    states = [float(f"{float(abs(one).upper() * reach) * 1.06:.1e}") for one in moved]
+    return Followed(period, reach, states, "slower" if later > 0 else "faster")
+
+
+def _prove_flights(orbit, laws, angle, w):
+    """Each flight leaves the cam, is clear of it and comes down, from balls of impacts on the sides where their laws hold."""
+    cam, speed = orbit.machine.cam, orbit.machine.cam.turn / w[0]
+    angles, velocities = [angle, *w[2::2], angle + orbit.revolutions * cam.turn], [w[1], *w[3::2]]
+    # The first one's piece goes from the corner to beyond the end of the ball that is farther from it.
+    far = angle.lower() if laws[0] is orbit.corner.before else angle.upper()
+    stays = _is_of(cam.piece_of(arb(far)).law, laws[0])
+    if not (stays and all(piece.holds(other) for piece, other in zip(orbit.pieces, angles[1:]))):
+        raise Undecided("an impact is not proved to stay on its piece of the cam")
+    for k, law in enumerate(laws):
+        relative = velocities[k] - law.derivatives(angles[k])[1] * speed
+        time = (angles[k + 1] - angles[k]) / speed
+        Flight(orbit.machine, Start(angles[k], relative, speed), law).first_contact(float(time) * 2, time)
+
+
+def _is_of(one, other):
+    """Whether two laws are of one piece of the cam, perhaps of different revolutions."""
+    return getattr(one, "law", one) is getattr(other, "law", other)
