@@ -87,10 +87,8 @@ impl Paged for ProvedCounts {
                 vec![
                     ("rpm".into(), words![&event.speed_rpm.mid]),
                     ("impact".into(), words![&event.cam_angle_rad.mid, " rad"]),
-                    (
-                        "orbits".into(),
-                        words![changes(&event.before), " before it, ", changes(&event.after), " after it"],
-                    ),
+                    ("below".into(), changes(&event.before)),
+                    ("above".into(), changes(&event.after)),
                 ],
             ));
         }
