@@ -78,6 +78,7 @@ type Part = (Place, Option<Image>);
 /// Proves that each strip covers the h-set, on a machine of any speed; the first one that is not proved to is the error.
 pub fn prove(machine: &Machine, set: &HSet) -> Result<Vec<Covered>, Refused> {
     apart(set)?;
+    loses(machine, set)?;
     set.strips.par_iter().map(|strip| covered(machine, set, strip)).collect()
 }
 
@@ -107,6 +108,18 @@ fn apart(set: &HSet) -> Result<(), Refused> {
         }
     }
     Ok(())
+}
+
+/// Cones say of motions with losses that those of one sequence are one.
+fn loses(machine: &Machine, set: &HSet) -> Result<(), Refused> {
+    let is_lossless = machine.restitution() >= 1.0 && machine.flight().zeta() == 0.0;
+    match set.strips.first().filter(|_| set.cone_slope.is_some() && is_lossless) {
+        None => Ok(()),
+        Some(Strip { impacts, x, .. }) => {
+            let (relation, impacts, at) = (Relation::Losses, *impacts, [x[0], set.y[0]]);
+            Err(Refused { relation, impacts, at, flight: None, is_refuted: true })
+        }
+    }
 }
 
 /// Whether one strip covers the h-set, and keeps cones where they are asked for.
@@ -139,11 +152,6 @@ pub(super) fn covered(machine: &Machine, set: &HSet, strip: &Strip) -> Result<Co
     let mut images = proof.all(boxes, Relation::Height, inside)?;
     let mut growth = None;
     if let Some(slope) = set.cone_slope {
-        if machine.restitution() >= 1.0 && machine.flight().zeta() == 0.0 {
-            let at = [strip.x[0], set.y[0]];
-            let (relation, impacts) = (Relation::Losses, strip.impacts);
-            return Err(Refused { relation, impacts, at, flight: None, is_refuted: true });
-        }
         let sign = |image: &Image| image.by[0][0].is_positive();
         let is_positive = images.first().and_then(|(_, image)| *image).is_some_and(|image| sign(&image));
         let keeps = |image: &Image| match image.stretched(slope) {

@@ -3,7 +3,8 @@
 use corner_impact::cam::Cam;
 use corner_impact::covering::find::{Wanted, find};
 use corner_impact::covering::prove::{Relation, prove};
-use corner_impact::covering::{HSet, entropy, known};
+use corner_impact::covering::{HSet, Image, entropy, known};
+use corner_impact::interval::Interval;
 use corner_impact::model::Model;
 use corner_impact::simulate::{Machine, angular_velocity};
 
@@ -102,7 +103,31 @@ fn without_losses_cones_say_nothing() {
     let set = HSet { cone_slope: Some(8.0), ..changed(3, |_| {}) };
     let mut model = common::osorio();
     model.follower.restitution = 1.0;
-    assert!(prove(&machine(&model, 670.0), &set).is_err());
+    assert_eq!(prove(&machine(&model, 670.0), &set).unwrap_err().relation, Relation::Losses);
+}
+
+/// Both conditions, and a of one sign, each failing alone.
+#[test]
+fn cones_are_kept_and_stretched_where_their_conditions_hold() {
+    let exactly = |by: [f64; 4]| {
+        let [a, b, c, d] = by.map(Interval::from);
+        let zero = Interval::from(0.0);
+        Image { centre: [zero; 2], value: [zero; 2], by: [[a, b, zero], [c, d, zero]] }
+    };
+    for (by, is_kept) in [
+        ([3.0, 0.25, 0.5, 0.5], true),
+        ([-3.0, 0.25, 0.5, -0.5], true),
+        // |a| - L |b| is 1/2, and the image is within the cone all the same.
+        ([1.0, 0.25, 0.25, 0.125], false),
+        // |c| + L |d| is 7, L (|a| - L |b|) is 5.
+        ([3.0, 0.25, 6.0, 0.5], false),
+    ] {
+        let image = exactly(by);
+        assert_eq!((image.stretched(2.0).is_some(), image.misses(2.0)), (is_kept, !is_kept), "{by:?}");
+    }
+    let mut folded = exactly([3.0, 0.0, 0.0, 0.0]);
+    folded.by[0][0] = Interval::new(-3.0, 3.0);
+    assert!(folded.stretched(2.0).is_none() && !folded.misses(2.0));
 }
 
 #[test]
@@ -122,7 +147,7 @@ fn at_every_speed_of_a_range_three_strips_cover() {
     let tiles: Vec<HSet> = known("osorio-2008").into_iter().filter(is_range).collect();
     assert!(tiles.windows(2).all(|two| two[0].rpm[1] == two[1].rpm[0] && two[0].strips.len() == 3), "a gap");
     let [first, last] = [tiles.first(), tiles.last()].map(|tile| tile.unwrap().rpm);
-    assert!(first[0] <= 667.0 && last[1] >= 673.25, "{first:?} {last:?}");
+    assert!(first[0] == 640.0 && last[1] == 700.0, "{first:?} {last:?}");
     // Each takes a second or two; those around the corner impact stand for the others.
     let tile = tiles.iter().find(|tile| tile.rpm[0] < 673.234445 && 673.234446 < tile.rpm[1]).unwrap();
     let proved = prove(&machine(&common::osorio(), 670.0), tile).unwrap();

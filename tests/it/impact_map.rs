@@ -63,20 +63,21 @@ fn part(index: u32, which: usize) -> f64 {
     (f64::from(index + 1) * f64::sqrt(primes[which])).fract()
 }
 
-/// Of boxes of all sizes everywhere, one to three impacts on, with corners and grazes in them.
-fn check(model: &Model, rpm: f64, boxes: u32) -> [u32; 2] {
+/// Of boxes everywhere, one to three impacts on, with corners and grazes in them, each the widest of its shape that is proved.
+fn check(model: &Model, rpm: f64, boxes: u32) -> u32 {
     let machine = Machine::new(Cam::new(model).unwrap(), &model.follower, angular_velocity(rpm));
-    let (mut proved, mut all) = (0, 0);
+    let mut proved = 0;
     for index in 0..boxes {
         let velocity = 10.0_f64.powf(1.0 - 3.0 * part(index, 1));
-        let width = 10.0_f64.powf(-0.5 - 3.0 * part(index, 2));
         let centre = [360.0 * part(index, 0), velocity, angular_velocity(rpm)];
-        let half = [20.0 * width * part(index, 3), width * velocity, if index % 2 == 0 { 0.0 } else { 0.05 * width }];
-        let (image, starts) = look(&machine, centre, half, 1 + u64::from(index % 3));
-        all += 1;
-        let Ok(image) = image else { continue };
+        let shape = [20.0 * part(index, 3), velocity * part(index, 4), 0.05 * f64::from(index % 2)];
+        let impacts = 1 + u64::from(index % 3);
+        let boxes = (0..14).map(|step| shape.map(|side| 0.6 * side * 0.6_f64.powi(step)));
+        let found =
+            boxes.map(|half| (half, look(&machine, centre, half, impacts))).find(|(_, (image, _))| image.is_ok());
+        let Some((half, (Ok(image), starts))) = found else { continue };
         proved += 1;
-        let case = format!("{} {centre:?} {half:?} {}: {image:?}", model.name, 1 + index % 3);
+        let case = format!("{} {centre:?} {half:?} {impacts}: {image:?}", model.name);
         // What the simulation rounds is stretched from impact to impact.
         let room =
             |side: usize| 1e-9 * image.by[side].iter().fold(1.0, |sum, by| sum + by.low().abs().max(by.high().abs()));
@@ -100,16 +101,19 @@ fn check(model: &Model, rpm: f64, boxes: u32) -> [u32; 2] {
             }
         }
     }
-    [proved, all]
+    proved
 }
 
 #[test]
 fn what_is_proved_of_a_box_is_so_of_the_impacts_in_it() {
-    let [proved, all] = check(&common::osorio(), 670.0, 3000);
-    assert!(proved > all / 3, "{proved} of {all}");
+    let proved = check(&common::osorio(), 670.0, 800);
+    assert!(proved > 600, "{proved}");
+    // On a soft spring it flies for some turns, past the nose of the cam, and may touch that shortly before it lands.
+    let proved = check(&common::osorio_with(&[("stiffness", "20.0")]), 670.0, 300);
+    assert!(proved > 200, "{proved}");
     for name in ["damped-heavy", "laws/polynomial", "laws/rectified-sine"] {
         let model = common::read(&std::path::Path::new(common::ROOT).join(format!("models/{name}.toml")));
-        let [proved, all] = check(&model, 670.0, 500);
-        assert!(proved > all / 10, "{name}: {proved} of {all}");
+        let proved = check(&model, 670.0, 100);
+        assert!(proved > 10, "{name}: {proved}");
     }
 }

@@ -236,7 +236,7 @@ fn every_cam_stays_in_its_ranges() {
             let width = 2.0 * part(3.0).powi(4) + 1e-6;
             // Every other one is about a corner.
             let about = if index % 2 == 0 { 6.2 * part(2.0) } else { corners[index as usize / 2 % corners.len()] };
-            let low = turn + about - width * part(5.0);
+            let low = if index % 50 == 0 { turn } else { turn + about - width * part(5.0) };
             let angles = Interval::new(low, low + width);
             let over = cam.lift_over(angles, &sharp);
             // What each segment has where it and the range meet, in the turn before, in this one and in the next.
