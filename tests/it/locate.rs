@@ -298,7 +298,6 @@ fn parts_of_ranges_have_their_parts_of_the_corner_impacts() {
         ("laws/program", [1700.0, 2500.0], 1, 10),
         ("laws/polynomial", [300.0, 800.0], 1, 20),
         ("laws/rectified-sine", [4.0, 20.0], 1, 4),
-        ("laws/table-cubic", [600.0, 700.0], 1, 40),
         ("laws/table-quintic", [650.0, 700.0], 1, 40),
         ("ballistic", [300.0, 400.0], 2, 1),
     ] {

@@ -221,11 +221,11 @@ fn report(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
 #[ignore = "slow"]
 fn a_model_without_a_corner_impact_has_a_page_that_says_why() {
     let folder = tempfile::tempdir().unwrap();
-    let model = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/laws/rectified-sine.toml");
+    let model = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/laws/harmonic.toml");
     let model = model.to_str().unwrap();
     let (code, out, _) = report(folder.path(), &[model]);
-    assert_eq!((code, out.as_str()), (0, "rectified-sine-report.html\n"));
-    let page = std::fs::read_to_string(folder.path().join("rectified-sine-report.html")).unwrap();
+    assert_eq!((code, out.as_str()), (0, "harmonic-report.html\n"));
+    let page = std::fs::read_to_string(folder.path().join("harmonic-report.html")).unwrap();
     assert!(page.contains("There is no corner impact to verify"));
     assert!(page.contains("[study] says where to look for the corner impact"));
     assert!(!page.contains("id=\"through-data\"") && !page.contains("id=\"ledger-filter\""));
