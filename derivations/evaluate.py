@@ -241,6 +241,8 @@ def locate(document):
     cam = section(document, "cam")
     if cam.get("law") != "arcs":
         raise Refused(f"cam.law: this route knows \"arcs\", not {cam.get('law')!r}")
+    if cam.get("corner_rounding_deg", 0) != 0:
+        raise Refused("cam.corner_rounding_deg: this route knows sharp corners only")
     laws = arcs(cam)
     slowest_rpm, fastest_rpm = numbers(document, "study", ("rpm_min", "rpm_max"))
     if not 0 < slowest_rpm < fastest_rpm:

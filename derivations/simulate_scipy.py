@@ -103,6 +103,8 @@ class Cam:
     def __init__(self, numbers):
         if numbers.get("law") != "arcs":
             raise CannotCheck(f"only the cam law \"arcs\" can be checked, not {numbers.get('law')!r}")
+        if numbers.get("corner_rounding_deg", 0) != 0:
+            raise CannotCheck("cam.corner_rounding_deg: only sharp corners can be checked")
         base, flank, nose = (number(numbers, key, least=0.0) for key in ("base_radius", "flank_radius", "nose_radius"))
         start, end = (math.radians(number(numbers, key)) for key in ("flank_start_deg", "nose_end_deg"))
         if not 0.0 <= start < end <= math.pi:

@@ -36,6 +36,9 @@ table! {
     /// Room that the ranges of a segment's lift and derivatives are given.
     RANGE_ROUNDING = 16.0 * f64::EPSILON, "of the quantity, and of what a full turn moves it by: a dozen roundings of it, and \
         the angle's";
+    /// The smallest angle that a corner may be rounded over, degrees.
+    LEAST_ROUNDING = 1e-4, "degrees, absolute: over less, rounding of the lifts at its ends leaves a jump of the acceleration that \
+        counts as one";
     /// How closely a cam closes on itself: spans on 360 degrees, rises on 0, a last row on the first.
     CAM_CLOSURE = 1e-9, "of the sum of the sizes: what typing the numbers to ten digits leaves";
     /// How wide a gap between the rows of a table may be.
@@ -66,6 +69,9 @@ table! {
     REPEATED_IMPACT = 0.05, "absolute, rad: only a first guess, worth taking where Newton's method converges at once";
     /// The angle that is left to infinitely many impacts when their sum is taken, rad.
     CHATTER_TURN = 1e-7, "absolute, rad: the third term of the sum is its cube, far below the rounding of an angle";
+    /// How much of the way to their end infinitely many impacts leave when an onset of resting is told by one of them, rad.
+    CHATTER_LEFT = 1e-4, "absolute, rad: the cube of it, which their sum leaves out, is below a thousand roundings of an angle, and \
+        nearer ones know their own place less well";
     /// How much the second term of the sum of infinitely many impacts may differ from the first.
     CHATTER_REMAINDER = 1e-8, "squared, of the sum: of a turn of 1e-7 rad it leaves 1e-15, the rounding of an angle";
     /// Width at which a bracket around a root is closed.

@@ -18,6 +18,8 @@ def pieces_of(table):
     law = table.get("law")
     if law not in LAWS:
         raise Refused(f"cam.law: {law!r} is not known; known are {', '.join(LAWS)}")
+    if table.get("corner_rounding_deg", 0) != 0:
+        raise Refused("cam.corner_rounding_deg: nothing is proved of rounded corners")
     return LAWS[law](table)
 
 

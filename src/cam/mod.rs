@@ -17,6 +17,7 @@ mod polynomial;
 mod profile;
 mod program;
 mod round;
+mod rounding;
 mod sinusoid;
 mod table;
 

@@ -12,19 +12,26 @@ use crate::model::{CamProfile, HarmonicProfile, Model, ModelError, PolynomialSeg
 impl Cam {
     /// The cam of a model, or the complaint about the field that makes it impossible.
     pub fn new(model: &Model) -> Result<Self, ModelError> {
-        let cam = match &model.cam {
+        let cam = Self::of(model, &model.cam)?;
+        let is_finite = |segment: &Segment| segment.bounds.third.is_finite() && segment.bounds.lift[1].is_finite();
+        if cam.segments.iter().all(is_finite) {
+            Ok(cam)
+        } else {
+            Err(model.reject("cam.law", "gives lifts or derivatives too large for a double: use other units"))
+        }
+    }
+
+    fn of(model: &Model, profile: &CamProfile) -> Result<Self, ModelError> {
+        match profile {
             CamProfile::Arcs(profile) => arcs::build(model, profile),
             CamProfile::Harmonic(profile) => Ok(harmonic(profile)),
             CamProfile::RectifiedSine(profile) => Ok(rectified_sine(profile)),
             CamProfile::Program(profile) => program::build(model, profile),
             CamProfile::Polynomial(segments) => polynomial(model, segments),
             CamProfile::Table(profile) => table::build(model, profile),
-        }?;
-        let is_finite = |segment: &Segment| segment.bounds.third.is_finite() && segment.bounds.lift[1].is_finite();
-        if cam.segments.iter().all(is_finite) {
-            Ok(cam)
-        } else {
-            Err(model.reject("cam.law", "gives lifts or derivatives too large for a double: use other units"))
+            CamProfile::Rounded { corner_rounding_deg, sharp } => {
+                Self::of(model, sharp)?.rounded(model, *corner_rounding_deg)
+            }
         }
     }
 }

@@ -14,7 +14,7 @@ use crate::pages;
 use crate::show::{csv, words};
 use crate::study::curve::{Curves, curves};
 
-/// Follows corner impacts, folds, flips and grazes through a number of the model: their speed, and where their type changes.
+/// Follows corner impacts, folds, flips, grazes, detachment and the onset of resting through a number of the model: their speed, and where their type changes.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact curve --rpm 600:760 --parameter restitution=0.5:0.95\n\
@@ -66,10 +66,11 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let wanted = Search { revolutions: arguments.revolutions, impacts: arguments.impacts };
     let following = Following { parameter, range: *range, longest_step: arguments.step, most_points: MOST_POINTS };
     let events = if arguments.events.is_empty() { &Bifurcation::ALL } else { arguments.events.as_slice() };
-    let Curves { own, curves } =
+    let Curves { own, sharp, curves } =
         watched("", |watch| curves(&model, arguments.rpm, &wanted, events, &following, watch))?;
     let (name, [low, high]) = (following.parameter.name(), arguments.rpm);
-    let accounts = curves.iter().zip(1..).map(|(found, index)| pages::branches::curve(found, (name, own), index));
+    let accounts =
+        curves.iter().zip(1..).map(|(found, index)| pages::branches::curve(found, (name, own), index, &sharp));
     let mut accounts: String = accounts.collect();
     if curves.is_empty() {
         let turns = wanted.revolutions;

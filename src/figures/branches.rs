@@ -63,7 +63,7 @@ fn mark(kind: &Kind) -> usize {
         Kind::Graze { .. } => 3,
         Kind::Chatter | Kind::Detachment => 4,
         // Of another figure.
-        Kind::Type { .. } | Kind::Cusp | Kind::DegenerateGraze | Kind::Turn => MARKED.len(),
+        Kind::Type { .. } | Kind::Cusp | Kind::DegenerateGraze | Kind::Place | Kind::Turn => MARKED.len(),
     }
 }
 

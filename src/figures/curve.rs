@@ -16,10 +16,12 @@ const KINDS: [(Happening, Colour, Stroke); 5] = [
 ];
 
 /// Other events, likewise.
-const EVENTS: [(Bifurcation, &str, Colour, Stroke); 3] = [
+const EVENTS: [(Bifurcation, &str, Colour, Stroke); 5] = [
     (Bifurcation::Fold, "fold", Colour::Ink, Stroke::Solid),
     (Bifurcation::Flip, "flip", Colour::Ink, Stroke::Dashed),
     (Bifurcation::Graze, "graze", Colour::Green, Stroke::Dotted),
+    (Bifurcation::Detachment, "detachment", Colour::Grey, Stroke::Dashed),
+    (Bifurcation::Resting, "onset of resting", Colour::Blue, Stroke::Dotted),
 ];
 
 /// Points where a curve changes its type, by the name of what changes.
@@ -53,7 +55,8 @@ pub fn curve_figure(
         series.extend(Series::points(name, Colour::Ink, marker, points).if_any());
     }
     let panel = Panel::new(Axis::new("speed", "rpm").over(speeds), 0.52, series);
-    let marks = vec![Mark { at: own, label: format!("the model, {own}") }];
+    let is_shown = (range[0]..=range[1]).contains(&own);
+    let marks = is_shown.then(|| Mark { at: own, label: format!("the model, {own}") }).into_iter().collect();
     Figure { marks, ..Figure::new(title, Axis::new(name, "").over(range), vec![panel]) }
 }
 

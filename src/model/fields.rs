@@ -92,7 +92,7 @@ impl Field {
 /// Every name of a field or a table: none of them is a slip for another.
 const NAMES: &str = "name source follower cam study mass damping stiffness gravity rest_position restitution law base_radius \
     flank_radius nose_radius flank_start_deg nose_end_deg offset amplitude amplitudes phases_deg base \
-    segment motion span_deg rise start_deg coefficients file spline rpm_min rpm_max lift";
+    corner_rounding_deg segment motion span_deg rise start_deg coefficients file spline rpm_min rpm_max lift";
 
 /// The fields of a model file by dotted path, and which of them have been asked for.
 #[derive(Clone, Debug)]
@@ -197,6 +197,17 @@ impl Fields {
             Value::Number(number) if allowed.contains(number) => Ok(number),
             _ => Err(self.reject(path, allowed.to_string())),
         }
+    }
+
+    /// A finite number within `allowed`. Where the field is missing it is `default`, and may be changed all the same.
+    pub(super) fn number_or(&mut self, path: &str, allowed: Allowed, default: f64) -> Result<f64, ModelError> {
+        if !self.has(path) {
+            let table = path.rsplit_once('.').and_then(|(table, _)| self.fields.get(table));
+            let key = table.map_or(0..0, |table| table.key.clone());
+            let (span, written, value) = (key.clone(), default.to_string(), Value::Number(default));
+            self.fields.insert(path.into(), Field { line: None, key, span, written, value });
+        }
+        self.number(path, allowed)
     }
 
     /// How many elements an array has, at least one and at most `most`.

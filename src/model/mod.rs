@@ -18,6 +18,7 @@ use serde::Serialize;
 pub use complaint::ModelError;
 use fields::{Allowed, Fields};
 pub use nearest::nearest;
+pub(crate) use profile::CORNER_ROUNDING;
 pub(crate) use profile::{
     ArcsProfile, MOST_COEFFICIENTS, MotionSegment, PolynomialSegment, ProgramProfile, RectifiedSineProfile,
 };

@@ -5,6 +5,7 @@ use serde::{Serialize, Serializer};
 use super::ModelError;
 use super::fields::{Allowed, Fields};
 use super::table::{self, TableProfile};
+use crate::tolerance;
 
 /// The lift law of a `[cam]` table.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,6 +22,13 @@ pub enum CamProfile {
     Polynomial(Vec<PolynomialSegment>),
     /// A spline through measured lifts.
     Table(TableProfile),
+    /// One of these with the corners of its acceleration rounded.
+    Rounded {
+        /// The angle that each is rounded over, degrees, above 0.
+        corner_rounding_deg: f64,
+        /// The profile without it.
+        sharp: Box<Self>,
+    },
 }
 
 impl CamProfile {
@@ -33,6 +41,7 @@ impl CamProfile {
             Self::Program(_) => "program",
             Self::Polynomial(_) => "polynomial",
             Self::Table(_) => "table",
+            Self::Rounded { sharp, .. } => sharp.law(),
         }
     }
 }
@@ -40,9 +49,20 @@ impl CamProfile {
 /// As the table of a model file has it, a table of lifts with its rows in the place of the file.
 impl Serialize for CamProfile {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Rounded { corner_rounding_deg, sharp } => sharp.with_rounding(Some(*corner_rounding_deg), to),
+            sharp => sharp.with_rounding(None, to),
+        }
+    }
+}
+
+impl CamProfile {
+    fn with_rounding<S: Serializer>(&self, corner_rounding_deg: Option<f64>, to: S) -> Result<S::Ok, S::Error> {
         #[derive(Serialize)]
         struct Named<T> {
             law: &'static str,
+            #[serde(skip_serializing_if = "Option::is_none")]
+            corner_rounding_deg: Option<f64>,
             #[serde(flatten)]
             profile: T,
         }
@@ -52,12 +72,16 @@ impl Serialize for CamProfile {
         }
         let law = self.law();
         match self {
-            Self::Arcs(profile) => Named { law, profile }.serialize(to),
-            Self::Harmonic(profile) => Named { law, profile }.serialize(to),
-            Self::RectifiedSine(profile) => Named { law, profile }.serialize(to),
-            Self::Program(profile) => Named { law, profile }.serialize(to),
-            Self::Polynomial(segment) => Named { law, profile: Segments { segment } }.serialize(to),
-            Self::Table(profile) => Named { law, profile }.serialize(to),
+            Self::Arcs(profile) => Named { law, corner_rounding_deg, profile }.serialize(to),
+            Self::Harmonic(profile) => Named { law, corner_rounding_deg, profile }.serialize(to),
+            Self::RectifiedSine(profile) => Named { law, corner_rounding_deg, profile }.serialize(to),
+            Self::Program(profile) => Named { law, corner_rounding_deg, profile }.serialize(to),
+            Self::Polynomial(segment) => {
+                Named { law, corner_rounding_deg, profile: Segments { segment } }.serialize(to)
+            }
+            Self::Table(profile) => Named { law, corner_rounding_deg, profile }.serialize(to),
+            // A profile is rounded once.
+            Self::Rounded { .. } => Named { law, corner_rounding_deg, profile: () }.serialize(to),
         }
     }
 }
@@ -183,9 +207,21 @@ static CAM_LAWS: [(&str, ReadProfile); 6] = [
     ("table", |fields| table::read(fields).map(CamProfile::Table)),
 ];
 
+/// The field of the angle that corners are rounded over.
+pub const CORNER_ROUNDING: &str = "cam.corner_rounding_deg";
+
 pub(super) fn read(fields: &mut Fields) -> Result<CamProfile, ModelError> {
     let read = fields.choice("cam.law", &CAM_LAWS)?;
-    read(fields)
+    let (path, least) = (CORNER_ROUNDING, tolerance::LEAST_ROUNDING.value);
+    let corner_rounding_deg = fields.number_or(path, Allowed::between(0.0, 360.0), 0.0)?;
+    if 0.0 < corner_rounding_deg && corner_rounding_deg < least {
+        return Err(fields.reject(path, format!("must be 0, or from {least} on")));
+    }
+    let sharp = read(fields)?;
+    if corner_rounding_deg == 0.0 {
+        return Ok(sharp);
+    }
+    Ok(CamProfile::Rounded { corner_rounding_deg, sharp: Box::new(sharp) })
 }
 
 fn arcs(fields: &mut Fields) -> Result<CamProfile, ModelError> {

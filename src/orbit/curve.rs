@@ -3,8 +3,11 @@
 //! From a point u with unit tangent t, the next point u' solves the equations together with `t (u' - u) = h`. There is one
 //! solution nearby even where the curve turns round in the parameter.
 
+use std::convert::Infallible;
+
 use nalgebra::{DMatrix, DVector};
 
+use crate::bracket::{Width, halve};
 use crate::tolerance;
 
 /// Equations whose solutions form a curve; unknowns are in units in which their changes are of one size.
@@ -104,6 +107,20 @@ pub fn closed<E: Equations>(
         last = length;
     }
     Err(NoPoint::NotClosed)
+}
+
+/// The last value that is not refused on the way from one to `beyond`, which is; `None` where it is not.
+pub fn limit(value: f64, beyond: f64, is_refused: impl Fn(f64) -> bool) -> Option<f64> {
+    /// Halvings that leave nothing of an interval of doubles.
+    const BINARY_DIGITS: u32 = 60;
+    if !is_refused(beyond) {
+        return None;
+    }
+    let Ok([last, _]) =
+        halve([value, beyond], Width::Halvings(BINARY_DIGITS), |at| Ok::<_, Infallible>(is_refused(at)));
+    // Halving comes to 0 as near as there are doubles.
+    let is_zero = last.abs() <= tolerance::ULP.value * (value - beyond).abs() && !is_refused(0.0);
+    Some(if is_zero { 0.0 } else { last })
 }
 
 fn bordered(jacobian: DMatrix<f64>, row: &DVector<f64>) -> DMatrix<f64> {

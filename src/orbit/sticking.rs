@@ -41,7 +41,7 @@ pub fn through(machine: &Machine, anchor: f64, revolutions: u64) -> Result<Optio
 }
 
 /// The follower at the next passage of angle 0.
-fn at_zero(machine: &Machine, anchor: f64) -> Result<State, SimulateError> {
+pub fn at_zero(machine: &Machine, anchor: f64) -> Result<State, SimulateError> {
     let mut motion = machine.start_on_cam(anchor, 0.0)?;
     if anchor == 0.0 {
         return Ok(motion.state);

@@ -1,9 +1,10 @@
 //! The accounts of `continue` and `curve`: what a branch of orbits and a curve of events pass, and where they end.
 
-use crate::border_collision::EventCurve;
 use crate::border_collision::event_curve::EventPoint;
+use crate::border_collision::{EventCurve, RoundedCorner};
 use crate::orbit::branch::{Branch, BranchPoint, Kind, Special};
 use crate::show::words;
+use crate::tolerance;
 
 /// What a branch passes and where it ends.
 pub(crate) fn branch(branch: &Branch, parameter: &str, index: usize) -> String {
@@ -38,7 +39,7 @@ fn passed(point: &BranchPoint, kind: Kind) -> String {
             format!("corner impact: impact {} at {angle:.4} deg, jump of order {jump_order}", impact + 1)
         }
         Kind::Graze { before, after, .. } => format!("graze: from {before} to {after} impacts"),
-        Kind::Type { .. } | Kind::Cusp | Kind::DegenerateGraze | Kind::Turn => on_curve(kind),
+        Kind::Type { .. } | Kind::Cusp | Kind::DegenerateGraze | Kind::Place | Kind::Turn => on_curve(kind),
         Kind::Chatter => "chatter: the follower ceases to stick to the cam".into(),
         Kind::Detachment => "detachment: the follower leaves the cam for the first time".into(),
     }
@@ -57,15 +58,21 @@ fn on_curve(kind: Kind) -> String {
         }
         Kind::Cusp => "cusp: two folds meet".into(),
         Kind::DegenerateGraze => "degenerate graze: follower and cam have one acceleration where they touch".into(),
+        Kind::Place => "the follower leaves the cam at two places at once".into(),
         Kind::Turn => "the curve turns round".into(),
         Kind::Corner { impact, .. } => format!("impact {} of the orbit is at a corner", impact + 1),
         Kind::Graze { before, after, .. } => format!("a flight touches: from {before} to {after} impacts"),
-        _ => kind.name().into(),
+        _ => "where the events were looked for".into(),
     }
 }
 
 /// What a curve passes and where it ends, in the number of this name, which is `own` in the model.
-pub(crate) fn curve(curve: &EventCurve, (parameter, own): (&str, f64), index: usize) -> String {
+pub(crate) fn curve(
+    curve: &EventCurve,
+    (parameter, own): (&str, f64),
+    index: usize,
+    sharp: &[(f64, RoundedCorner)],
+) -> String {
     let (Some(first), Some(last)) = (curve.points.first(), curve.points.last()) else { return String::new() };
     let here = curve.points.iter().find(|point| point.value == own).unwrap_or(first);
     let (count, impacts, angle) = (curve.points.len(), here.impacts, here.cam_angle.to_degrees());
@@ -76,6 +83,8 @@ pub(crate) fn curve(curve: &EventCurve, (parameter, own): (&str, f64), index: us
             format!("impact {} of {impacts} at {angle:.4} deg, jump of order {jump_order}", impact + 1)
         }
         Kind::Graze { .. } => format!("from {impacts} to {} impacts, at {angle:.4} deg", impacts + 1),
+        Kind::Detachment => format!("at {angle:.4} deg"),
+        Kind::Chatter => format!("where the cam lets go at {angle:.4} deg"),
         _ => format!("of {impacts} impact(s) in {} revolution(s)", here.revolutions),
     };
     let mut lines = vec![
@@ -98,6 +107,21 @@ pub(crate) fn curve(curve: &EventCurve, (parameter, own): (&str, f64), index: us
             lines.push(format!("  {}: {what}", place(next)));
         }
     }
-    lines.push(format!("  ends at {}: {}\n", place(last), curve.ends[1].words()));
-    lines.join("\n")
+    lines.push(format!("  ends at {}: {}", place(last), curve.ends[1].words()));
+    lines.extend(rounding(curve, sharp));
+    lines.join("\n") + "\n"
+}
+
+/// Where a fold of rounded corners comes from, beside the closed form.
+fn rounding(curve: &EventCurve, sharp: &[(f64, RoundedCorner)]) -> Option<String> {
+    let least = curve.points.iter().min_by(|one, two| one.value.total_cmp(&two.value))?;
+    let off = |rpm: f64| (least.rpm - rpm).abs();
+    let (rpm, RoundedCorner { rpm_per_degree, degrees }) =
+        sharp.iter().filter(|_| curve.kind == Kind::Fold).min_by(|one, two| off(one.0).total_cmp(&off(two.0)))?;
+    let followed = (least.rpm - rpm) / least.value;
+    let within = tolerance::ROUNDED_AWAY.value;
+    Some(format!(
+        "  from the corner impact at {rpm:.9} rpm by {followed:.6} rpm a degree, by the closed form {rpm_per_degree:.6}: \
+         no more than {within} rpm up to {degrees:.4} deg"
+    ))
 }

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::flight::Flight;
-use crate::model::Model;
+use crate::model::{CORNER_ROUNDING, Model};
 
 /// A number of a model.
 #[derive(Clone, Debug, Serialize)]
@@ -21,7 +21,7 @@ pub struct Quantity {
 }
 
 /// Fields that are known by name: path, symbol, meaning, unit.
-const KNOWN: [(&str, &str, &str, &str); 14] = [
+const KNOWN: [(&str, &str, &str, &str); 15] = [
     ("follower.mass", "m", "mass of the follower", "kg"),
     ("follower.damping", "b", "damping", "N s/m"),
     ("follower.stiffness", "k", "stiffness of the spring", "N/m"),
@@ -36,12 +36,14 @@ const KNOWN: [(&str, &str, &str, &str); 14] = [
     ("cam.offset", "", "middle of the lift", "m"),
     ("cam.amplitude", "", "amplitude of the lift", "m"),
     ("cam.base", "", "lift at angle 0", "m"),
+    ("cam.corner_rounding_deg", "", "angle that corners are rounded over", "deg"),
 ];
 
 /// Every number of the model in the order of its file, then what follows from them.
 pub(crate) fn quantities(model: &Model) -> Vec<Quantity> {
     let place = |field: &str| KNOWN.iter().position(|(path, ..)| *path == field);
-    let mut numbers: Vec<(&str, f64)> = model.numbers().collect();
+    let is_said = |(field, value): &(&str, f64)| *field != CORNER_ROUNDING || *value != 0.0;
+    let mut numbers: Vec<(&str, f64)> = model.numbers().filter(is_said).collect();
     // Those of the table in its order, the others after them as they come.
     numbers.sort_by_key(|(field, _)| place(field).unwrap_or(KNOWN.len()));
     let mut quantities: Vec<Quantity> = numbers.into_iter().map(|(field, value)| written(field, value)).collect();

@@ -58,6 +58,8 @@ pub(crate) fn events(kind: branch::Kind) -> &'static str {
         Bifurcation::Fold => "folds",
         Bifurcation::Flip => "flips",
         Bifurcation::Graze => "grazes",
+        Bifurcation::Detachment => "detachments",
+        Bifurcation::Resting => "onsets of resting",
     })
 }
 
@@ -68,6 +70,8 @@ pub(crate) fn any_of(events: &[Bifurcation]) -> String {
         Bifurcation::Fold => "fold",
         Bifurcation::Flip => "flip",
         Bifurcation::Graze => "graze",
+        Bifurcation::Detachment => "detachment",
+        Bifurcation::Resting => "onset of resting",
     };
     events.iter().map(word).collect::<Vec<_>>().join(" or ")
 }

@@ -24,13 +24,13 @@ pub fn accumulation(relative_velocity: f64, restitution: f64, pressing: f64, rat
 
 impl Machine {
     /// Acceleration of the gap of a follower that goes with the cam, m/s^2: above 0 the cam lets go of it.
-    pub(super) fn lifting(&self, lift: &Lift) -> f64 {
+    pub(crate) fn lifting(&self, lift: &Lift) -> f64 {
         let omega = self.angular_velocity;
         self.flight.acceleration(on_cam(lift, omega)) - omega * omega * lift.curvature
     }
 
     /// The time derivative of [`Machine::lifting`] along the cam, m/s^3, and how far rounding may move `lifting`, m/s^2.
-    fn lifting_rate(&self, lift: &Lift) -> (f64, f64) {
+    pub(crate) fn lifting_rate(&self, lift: &Lift) -> (f64, f64) {
         let omega = self.angular_velocity;
         let (w, zeta) = (self.flight.omega0_squared(), self.flight.zeta());
         let rate = -2.0 * zeta * omega * omega * lift.curvature - w * omega * lift.slope - omega.powi(3) * lift.third;

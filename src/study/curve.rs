@@ -1,9 +1,10 @@
 //! Where events such as corner impacts, folds, flips and grazes go when a number of the model changes: their speed, and where
 //! their type changes.
 
-use super::{StudyError, inside};
-use crate::border_collision::EventCurve;
-use crate::model::Model;
+use super::StudyError;
+use super::locate::{Happens, LocatedImpact, locate};
+use crate::border_collision::{EventCurve, RoundedCorner, rounded};
+use crate::model::{CORNER_ROUNDING, Model, Study};
 use crate::orbit::branch::{Bifurcation, Branch, Following, Kind, special_points};
 use crate::orbit::{Parameter, Search};
 use crate::progress::Watch;
@@ -11,8 +12,11 @@ use crate::progress::Watch;
 /// The curves through the events of a model.
 #[derive(Clone, Debug)]
 pub struct Curves {
-    /// The model's own value of what changes.
+    /// The model's own value of what changes; events were looked for there, or where the range is nearest to it.
     pub own: f64,
+    /// Of the nonsmooth folds of the cam with sharp corners, where the angle that corners are rounded over is what changes: the
+    /// speed, rpm, and by how much rounding moves the fold.
+    pub sharp: Vec<(f64, RoundedCorner)>,
     /// One for each event that was found and is on none before it: those of one kind after the other, as they were asked for.
     pub curves: Vec<EventCurve>,
 }
@@ -26,10 +30,12 @@ pub fn curves(
     following: &Following,
     watch: &dyn Watch,
 ) -> Result<Curves, StudyError> {
-    if following.parameter == Parameter::Speed {
-        return Err(StudyError::SpeedFollowed);
-    }
-    let own = inside(model, rpm[0], following)?;
+    let Parameter::Field(path) = &following.parameter else { return Err(StudyError::SpeedFollowed) };
+    let [low, high] = following.range;
+    let own = following.parameter.value(model, rpm[0]).unwrap_or(f64::NAN);
+    // What has no event at its own value, as a sharp corner has no fold, is looked at where the range is nearest to it.
+    let start = own.clamp(low, high);
+    let model = &if start == own { model.clone() } else { model.with_number(path, start)? };
     watch.at("looking for events of the model", 0, 0);
     let is_wanted = |kind: Kind| kind.bifurcation().is_some_and(|event| events.contains(&event));
     let points = special_points(model, rpm, wanted, is_wanted)?.points;
@@ -46,5 +52,20 @@ pub fn curves(
             curves.push(EventCurve::new(&curve, kind));
         }
     }
-    Ok(Curves { own, curves })
+    let sharp = if path == CORNER_ROUNDING { sharp(&model.with_number(path, 0.0)?, rpm, wanted)? } else { Vec::new() };
+    Ok(Curves { own, sharp, curves })
+}
+
+/// The nonsmooth folds between two speeds, rpm, of a cam with sharp corners.
+fn sharp(
+    model: &Model,
+    [rpm_min, rpm_max]: [f64; 2],
+    wanted: &Search,
+) -> Result<Vec<(f64, RoundedCorner)>, StudyError> {
+    let located = locate(model, Study { rpm_min, rpm_max }, wanted.revolutions)?.found;
+    let fold = |found: &LocatedImpact| match &found.local {
+        Happens::BorderCollision(Ok(kind)) => Some((found.at.speed_rpm(), rounded(kind, &found.at)?)),
+        _ => None,
+    };
+    Ok(located.iter().filter_map(fold).collect())
 }

@@ -55,6 +55,9 @@ pub enum StudyError {
     /// A number of the model cannot be changed.
     #[error("{0}")]
     Family(#[from] FamilyError),
+    /// Corner impacts cannot be looked for.
+    #[error(transparent)]
+    Locate(#[from] locate::LocateError),
     /// What changes is not within its range where a search begins.
     #[error("{file}: {name} = {value}, where orbits are looked for, is outside of {}:{}", range[0], range[1])]
     Outside { file: String, name: String, value: f64, range: [f64; 2] },

@@ -270,7 +270,9 @@ fn laws_of_the_cam() {
         (harmonic("amplitudes = [[0.1]]\nphases_deg = [0.0]"), &["cam.amplitudes[0] = [0.1]: must be a finite number"]),
         (
             harmonic("amplitudes = [1e308]\nphases_deg = [0]\nk = [1]"),
-            &[":19: cam.k = [1]: unknown field; allowed in [cam]: amplitudes, law, offset, phases_deg"],
+            &[
+                ":19: cam.k = [1]: unknown field; allowed in [cam]: amplitudes, corner_rounding_deg, law, offset, phases_deg",
+            ],
         ),
         (
             harmonic("amplitudes = [1e308, 1e308]\nphases_deg = [0, 0]"),

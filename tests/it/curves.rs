@@ -71,6 +71,18 @@ fn events_of_a_curve_are_where_branches_have_them() {
     is_on_branches("damped-heavy", [750.0, 754.0], Graze, "damping", [60.0, 90.0]);
 }
 
+/// Of a follower that rests: by bisection of its branch's own runs.
+#[test]
+fn detachment_and_the_onset_of_resting_are_where_branches_have_them() {
+    use Bifurcation::{Detachment, Resting};
+    is_on_branches("osorio-2008", [114.0, 116.0], Detachment, "stiffness", [1200.0, 1700.0]);
+    is_on_branches("osorio-2008", [198.0, 199.0], Resting, "restitution", [0.794, 0.82]);
+    is_on_branches("osorio-2008", [198.0, 199.0], Resting, "stiffness", [1200.0, 1700.0]);
+    is_on_branches("laws/harmonic", [315.0, 316.0], Detachment, "damping", [0.0, 5.0]);
+    // The cam lets go of it where no derivative jumps.
+    is_on_branches("laws/harmonic", [380.0, 382.0], Resting, "damping", [0.0, 0.5]);
+}
+
 /// Where the type of a corner impact changes, and where a graze has a multiplier of 1, a curve of folds or flips ends, by
 /// other equations.
 #[test]
@@ -104,7 +116,8 @@ fn curves_end_on_each_other() {
 /// the last point is on it.
 #[test]
 fn a_bound_of_the_model_ends_a_curve_with_a_sentence() {
-    let all = &Bifurcation::ALL;
+    use Bifurcation::{Corner, Flip, Fold, Graze};
+    let all = &[Corner, Fold, Flip, Graze];
     for (range, bound) in [([0.5, 1.0], 1.0), ([0.5, 1.5], 1.0), ([0.0, 0.9], 0.0), ([-1.0, 0.9], 0.0)] {
         let found = followed(&common::osorio(), [660.0, 760.0], all, "restitution", range);
         let mut at_bound = 0;

@@ -213,3 +213,24 @@ fn an_h_set_that_is_off_is_refused_in_balls_too() {
         assert!(refused.unwrap_or_default().contains(why), "{why}: {theorem}");
     }
 }
+
+/// Rounded corners are none that a route in Python knows: each says so rather than taking them for sharp.
+#[test]
+fn rounded_corners_are_refused() {
+    use std::io::Write;
+    let model = common::osorio().with_number("cam.corner_rounding_deg", 0.1).unwrap();
+    let (follower, cam, study) = (model.follower, &model.cam, model.study);
+    let document =
+        json!({ "follower": follower, "cam": cam, "study": study, "bits": 64, "candidates": [{}] }).to_string();
+    for script in ["evaluate.py", "simulate_scipy.py", "certify.py"] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("derivations").join(script);
+        let mut command = Command::new(interpreter());
+        let piped = std::process::Stdio::piped;
+        let mut child = command.arg(path).stdin(piped()).stdout(piped()).stderr(piped()).spawn().unwrap();
+        child.stdin.take().unwrap().write_all(document.as_bytes()).unwrap();
+        let output = child.wait_with_output().unwrap();
+        let said = unwrapped([output.stdout, output.stderr].concat());
+        assert!(said.contains("cam.corner_rounding_deg"), "{script}: {said}");
+        assert!(!said.contains("Traceback") && !said.contains("speed_rpm"), "{script}: {said}");
+    }
+}

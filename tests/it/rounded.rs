@@ -1,72 +1,108 @@
-//! Does a fold move as is said where its corner is rounded?
+//! Does a fold move as is said where its corner is rounded, and is a cam refused whose corners cannot be?
 
-use std::f64::consts::TAU;
 use std::path::Path;
 
 use crate::common;
-use corner_impact::bracket::{Width, halve};
-use corner_impact::flight::Flight;
+use corner_impact::cam::Cam;
 use corner_impact::model::Model;
-use corner_impact::study::verify::{External, Verification, verify};
+use corner_impact::orbit::branch::{Bifurcation, Following};
+use corner_impact::orbit::{Parameter, Search};
+use corner_impact::progress::Unwatched;
+use corner_impact::study::curve::{Curves, curves};
+use corner_impact::study::verify::{External, verify};
 
-/// Lift and slope at `turn` from the corner, which is rounded over `angle` by the polynomial of fifth degree that meets both
-/// laws to the second derivative.
-fn lift(model: &Model, found: &Verification, turn: f64, angle: f64) -> (f64, f64) {
-    let (cam, corner) = (common::cam(model), found.at.corner);
-    let before = &cam.segments()[cam.before(corner.segment)].law;
-    let end = if corner.angle == 0.0 { TAU } else { corner.angle };
-    let from = before.lift(end - 0.5 * angle);
-    let to = cam.segments()[corner.segment].law.lift(corner.angle + 0.5 * angle);
-    // In parts of the angle.
-    let [p, dp, ddp] = [from.value, from.slope * angle, from.curvature * angle * angle];
-    let [q, dq, ddq] = [to.value, to.slope * angle, to.curvature * angle * angle];
-    let (a, b, c) = (q - p - dp - 0.5 * ddp, dq - dp - ddp, ddq - ddp);
-    let [c3, c4, c5] = [10.0 * a - 4.0 * b + 0.5 * c, -15.0 * a + 7.0 * b - c, 6.0 * a - 3.0 * b + 0.5 * c];
-    let x = turn / angle + 0.5;
-    let value = p + x * (dp + x * (0.5 * ddp + x * (c3 + x * (c4 + x * c5))));
-    let slope = dp + x * (ddp + x * (3.0 * c3 + x * (4.0 * c4 + x * 5.0 * c5)));
-    (value, slope / angle)
+const ROUNDING: &str = "cam.corner_rounding_deg";
+
+fn model(name: &str) -> Model {
+    common::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("models/{name}.toml")))
 }
 
-/// The period of the orbit of one impact in one revolution at `turn` from the corner, near T*: it flies for a period from the
-/// cam back to it, and the law of restitution asks for the speed that it leaves with.
-fn period(model: &Model, found: &Verification, turn: f64, angle: f64) -> f64 {
-    let (follower, flight) = (&model.follower, Flight::new(&model.follower));
-    let (position, slope) = lift(model, found, turn, angle);
-    let off = |period: f64| {
-        let response = flight.response(period);
-        let force = flight.force(position);
-        let leaving = -force * response.step / response.impulse;
-        let arriving = leaving * response.impulse_rate + force * response.impulse;
-        leaving - (1.0 + follower.restitution) * TAU / period * slope + follower.restitution * arriving
-    };
-    let bracket = [0.995, 1.005].map(|part| part * found.at.period);
-    let sign = off(bracket[0]).signum();
-    assert!(sign != off(bracket[1]).signum(), "{bracket:?}");
-    halve(bracket, Width::Relative(1e-15), |period| Ok::<_, ()>(off(period).signum() != sign)).unwrap()[0]
+/// The folds near a speed, from the smallest rounding on.
+fn folds(model: &Model, rpm: f64) -> Curves {
+    let parameter = Parameter::named(model, "corner_rounding_deg").unwrap();
+    let following = Following { parameter, range: [0.001, 0.5], longest_step: 0.05, most_points: 400 };
+    let wanted = Search { revolutions: 1, impacts: Some(1) };
+    curves(model, [rpm - 2.0, rpm + 2.0], &wanted, &[Bifurcation::Fold], &following, &Unwatched).unwrap()
 }
 
-/// At the fold the period is the longest that any place of the rounding has, where orbits are there for faster speeds; and the
-/// shortest where for slower. By how much, is off by the second power of the angle.
+/// The speed of the fold goes to that of the corner impact, with the slope of the closed form; by how much it is off is in
+/// proportion to the angle.
 #[test]
 fn a_rounded_corner_moves_the_fold_in_proportion() {
-    for name in ["osorio-2008", "damped-light", "damped-heavy"] {
-        let model = common::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("models/{name}.toml")));
+    for name in ["osorio-2008", "damped-light", "damped-heavy", "overdamped", "sharp-nose", "preloaded", "ballistic"] {
+        let model = model(name);
         let found = verify(&model, External::LeftOut).unwrap();
-        let Some(rounded) = found.rounded_corner else { panic!("{name}") };
-        let faster = found.classification.as_ref().unwrap().minus.exists_for.to_string() == "faster";
-        let off = |angle: f64| {
-            let all = (0..=200).map(|index| period(&model, &found, angle * (f64::from(index) / 200.0 - 0.5), angle));
-            let fold = if faster { all.fold(0.0, f64::max) } else { all.fold(f64::INFINITY, f64::min) };
-            let moved = 60.0 / fold - 60.0 / found.at.period;
-            moved / (rounded.rpm_per_degree * angle.to_degrees()) - 1.0
-        };
-        let [wide, narrow] = [0.004, 0.002].map(off);
-        assert!(wide.abs() < 0.05 && (narrow / wide - 0.5).abs() < 0.1, "{name}: {rounded:?} {wide} {narrow}");
+        let (Some(rounded), rpm) = (found.rounded_corner, found.at.speed_rpm()) else { panic!("{name}") };
+        let Curves { curves, sharp, .. } = folds(&model, rpm);
+        let off = |rpm: f64, degrees: f64| (rpm - found.at.speed_rpm()) / (rounded.rpm_per_degree * degrees) - 1.0;
+        let nearest = |points: &[[f64; 2]]| points.iter().fold(f64::INFINITY, |least, point| least.min(point[1].abs()));
+        let all = curves.iter().map(|curve| {
+            let points = curve.points.iter().map(|point| [point.value, off(point.rpm, point.value)]);
+            (points.collect::<Vec<_>>(), curve)
+        });
+        let curve = all.min_by(|one, two| nearest(&one.0).total_cmp(&nearest(&two.0)));
+        let (mut points, curve) = curve.unwrap_or_else(|| panic!("{name}: no fold"));
+        points.sort_by(|one, two| one[0].total_cmp(&two[0]));
+        let ([least, last], count) = ([points[0], points[points.len() - 1]], points.len());
+        assert!(
+            (least[0] - 0.001).abs() < 1e-9 && (last[0] - 0.5).abs() < 1e-9 && count > 8,
+            "{name}: {least:?} {last:?} {:?}",
+            curve.ends
+        );
+        assert!(least[1].abs() < 2e-3 && last[1].abs() > 4.0 * least[1].abs(), "{name}: {least:?} {last:?}");
+        let middle = points[count / 2];
+        assert!((middle[1] / middle[0] / (last[1] / last[0]) - 1.0).abs() < 0.5, "{name}: {middle:?} {last:?}");
+        let told = sharp.iter().find(|(at, _)| (at - rpm).abs() < 1e-9 * rpm).unwrap().1;
+        assert!((told.rpm_per_degree / rounded.rpm_per_degree - 1.0).abs() < 1e-6, "{name}: {told:?} {rounded:?}");
         assert!((rounded.degrees * rounded.rpm_per_degree.abs() / 1e-4 - 1.0).abs() < 1e-12);
     }
     for name in ["persistence", "nonsmooth-flip"] {
-        let model = common::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("models/{name}.toml")));
-        assert_eq!(verify(&model, External::LeftOut).unwrap().rounded_corner, None);
+        assert_eq!(verify(&model(name), External::LeftOut).unwrap().rounded_corner, None);
     }
+}
+
+/// Lift, slope and acceleration go on through each end of a rounding, and away from the corners nothing is changed.
+#[test]
+fn a_rounded_cam_meets_the_sharp_one() {
+    for name in ["osorio-2008", "laws/program", "laws/polynomial"] {
+        let sharp = model(name);
+        for degrees in [1e-4, 0.01, 1.0] {
+            let [sharp, round] =
+                [0.0, degrees].map(|degrees| Cam::new(&sharp.with_number(ROUNDING, degrees).unwrap()).unwrap());
+            let corners: Vec<_> = sharp.corners().into_iter().filter(|corner| corner.jump_order == 2).collect();
+            assert!(
+                !corners.is_empty() && round.corners().iter().all(|corner| corner.jump_order > 2),
+                "{name} {degrees}"
+            );
+            for corner in corners {
+                let half = 0.5 * degrees.to_radians();
+                for beside in
+                    [-1.001 * half, 1.001 * half].map(|turn| (corner.angle + turn).rem_euclid(std::f64::consts::TAU))
+                {
+                    assert_eq!(sharp.lift(beside), round.lift(beside), "{name} {degrees} {beside}");
+                }
+                let middle = round.lift(corner.angle);
+                let mean = 0.5 * (corner.minus.curvature + corner.plus.curvature);
+                assert!(
+                    (middle.curvature - mean).abs() < 0.1 * corner.jump.abs(),
+                    "{name} {degrees}: {middle:?} {mean}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_rounding_that_cannot_be_is_refused() {
+    let refused = |name: &str, degrees: f64| {
+        let model = model(name).with_number(ROUNDING, degrees);
+        let error = model.and_then(|model| Cam::new(&model)).unwrap_err();
+        assert_eq!(error.field.as_deref(), Some(ROUNDING));
+        error.allowed
+    };
+    assert_eq!(refused("osorio-2008", -1.0), "must be a finite number from 0 to 360");
+    assert_eq!(refused("osorio-2008", 1e-5), "must be 0, or from 0.0001 on");
+    // From P, at 150.18 degrees, to Q, at 160.
+    assert!(refused("osorio-2008", 9.9).starts_with("must be below 9.82"), "{}", refused("osorio-2008", 9.9));
+    assert!(refused("laws/harmonic", 1.0).starts_with("must be 0: the acceleration of this cam has no jump"));
 }

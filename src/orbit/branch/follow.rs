@@ -1,7 +1,5 @@
 //! One direction of a branch: steps along the curve, cut where something changes.
 
-use std::convert::Infallible;
-
 use nalgebra::DVector;
 
 use super::cut::{Cut, Located, Stride};
@@ -9,7 +7,6 @@ use super::held::Held;
 use super::problem::{Problem, Units};
 use super::switch::{self, Exit};
 use super::{BranchPoint, End, Following, HalfBranch, Special, gap};
-use crate::bracket::{Width, halve};
 use crate::orbit::curve::{self, CurvePoint, NoPoint};
 use crate::orbit::{Cycle, Departure, Family, FamilyError, OrbitError, PeriodicOrbit};
 use crate::tolerance;
@@ -18,8 +15,6 @@ use crate::tolerance;
 const MOST_IMPACTS: usize = 24;
 /// The first step, and the one after each change of the cycle, of the longest.
 const FIRST: f64 = 0.02;
-/// Halvings that leave nothing of an interval of doubles.
-const BINARY_DIGITS: u32 = 60;
 /// How far the curve may turn in one step: the cosine.
 const STRAIGHT: f64 = 0.985;
 
@@ -182,12 +177,7 @@ impl Walk<'_> {
 
     /// That the model allows no further value, in the direction of the walk, and why.
     fn edge(&self, why: &FamilyError) -> End {
-        let largest = self.stride.value(&self.stride.from.tangent) > 0.0;
-        let why = match why {
-            FamilyError::Model(error) => error.rule(),
-            other => other.to_string(),
-        };
-        End::Edge { largest, why }
+        End::edge(self.stride.value(&self.stride.from.tangent) > 0.0, why)
     }
 
     /// The orbit at the last value that the model allows, where the branch runs into it.
@@ -200,16 +190,9 @@ impl Walk<'_> {
             unknowns[count - 1] = value / span;
             unknowns
         };
-        let is_refused = |value: f64| Ok::<_, Infallible>(problem.unpack(&with(value)).is_err());
         let (value, slope) = (self.stride.value(&from.unknowns), from.tangent[count - 1]);
         let beyond = value + 2.0 * slope * span * self.stride.step;
-        if is_refused(beyond) != Ok(true) {
-            return None;
-        }
-        let Ok([bound, _]) = halve([value, beyond], Width::Halvings(BINARY_DIGITS), is_refused);
-        // Halving comes to 0 as near as there are doubles.
-        let is_zero = bound.abs() <= tolerance::ULP.value * span && is_refused(0.0) == Ok(false);
-        let bound = if is_zero { 0.0 } else { bound };
+        let bound = curve::limit(value, beyond, |value| problem.unpack(&with(value)).is_err())?;
         // Along the number alone: nothing is asked of the model beyond its bound.
         let along = DVector::from_fn(count, |row, _| f64::from(row + 1 == count));
         let mut guess = &from.unknowns + &from.tangent * ((bound - value) / (slope * span));

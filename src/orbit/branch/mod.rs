@@ -12,10 +12,12 @@
 //! | `follow` | one direction of a branch, step by step; `chatter` where the follower sticks |
 //! | `problem`, `held` | the equations, with numbers of the model free; what holds besides along a curve in two of them |
 //! | `cut`, `gap`, `halved` | what a step passes, and where: corners, folds, flips; grazes; the end of a doubled period |
+//! | `rest`, `contact` | curves of what becomes of a follower on the cam: where it leaves it, where it rests no more |
 //! | `switch` | the cycle beyond a corner or a graze, and which way leads there |
 //! | `special` | the points where something changes; which impact of an orbit is which of the next |
 
 mod chatter;
+mod contact;
 mod cut;
 mod doubled;
 mod find;
@@ -24,12 +26,13 @@ mod gap;
 mod halved;
 mod held;
 mod problem;
+mod rest;
 mod special;
 mod switch;
 
 use nalgebra::Matrix2;
 
-use super::{Family, OrbitError, Parameter, PeriodicOrbit};
+use super::{Family, FamilyError, OrbitError, Parameter, PeriodicOrbit};
 use crate::model::Model;
 use crate::tolerance;
 pub(crate) use doubled::doubled;
@@ -90,6 +93,12 @@ pub enum End {
     },
     /// Velocities that grow without bound.
     Unbounded,
+    /// Impacts without number before the follower rests.
+    Endless,
+    /// An impact on the way to a rest at a corner, where the curve has a kink.
+    Kink,
+    /// The follower goes another way to its rest, or to none.
+    OtherWay,
     /// A touch at which the gap does not open again.
     Degenerate,
     /// As many points as were asked for.
@@ -111,6 +120,15 @@ pub enum End {
 }
 
 impl End {
+    /// That the model allows no larger value, or no smaller one, and why.
+    fn edge(largest: bool, why: &FamilyError) -> Self {
+        let why = match why {
+            FamilyError::Model(error) => error.rule(),
+            other => other.to_string(),
+        };
+        Self::Edge { largest, why }
+    }
+
     /// In words, for a message.
     pub fn words(&self) -> String {
         match self {
@@ -120,6 +138,9 @@ impl End {
                 format!("the {} there is: {why}", if *largest { "largest" } else { "smallest" })
             }
             Self::Unbounded => "impacts that become faster without bound".into(),
+            Self::Endless => "impacts without number before the follower rests".into(),
+            Self::Kink => "an impact on the way to the rest at a corner, from where it is not followed on".into(),
+            Self::OtherWay => "a place from which the follower goes another way".into(),
             Self::Degenerate => "a degenerate graze: the flight that touches does not leave the cam again".into(),
             Self::MostPoints => "the number of points that was asked for".into(),
             Self::Chatter => "the onset of chattering".into(),
@@ -187,19 +208,26 @@ impl Branch {
         speeds: [f64; 2],
         following: &Following,
     ) -> Result<Option<Self>, OrbitError> {
-        let (Some(special), super::Course::Impacts(cycle)) = (point.special, &point.orbit.course) else {
-            return Ok(None);
-        };
+        let Some(special) = point.special else { return Ok(None) };
         let family = Family::new(model, point.rpm, vec![Parameter::Speed, following.parameter.clone()])?;
-        let value = following.parameter.value(model, point.rpm).unwrap_or(f64::NAN);
-        let (machine, _) = family.machine(&[point.rpm, value])?;
-        let Some((cycle, held)) = switch::held(special.kind, cycle, &machine) else { return Ok(None) };
+        let values = [point.rpm, following.parameter.value(model, point.rpm).unwrap_or(f64::NAN)];
         let spans = [speeds[1] - speeds[0], following.range[1] - following.range[0]];
-        let start = follow::Start { cycle: &cycle, values: &[point.rpm, value], spans: &spans, held: Some(held) };
-        Ok(match follow::curve(&family, &start, following, Some(special))? {
-            Some((middle, halves)) => Some(Self::joined(halves, middle)),
-            None => Some(Self { points: vec![BranchPoint { value, ..point.clone() }], ends: [End::Lost, End::Lost] }),
-        })
+        let whole = match &point.orbit.course {
+            super::Course::Impacts(cycle) => {
+                let (machine, _) = family.machine(&values)?;
+                let Some((cycle, held)) = switch::held(special.kind, cycle, &machine) else { return Ok(None) };
+                let start = follow::Start { cycle: &cycle, values: &values, spans: &spans, held: Some(held) };
+                follow::curve(&family, &start, following, Some(special))?
+            }
+            super::Course::Sticking(_) => rest::curve(&family, (values, spans), &point.orbit, special, following)?,
+            super::Course::Free => None,
+        };
+        Ok(Some(match whole {
+            Some((middle, halves)) => Self::joined(halves, BranchPoint { value: values[1], ..middle }),
+            None => {
+                Self { points: vec![BranchPoint { value: values[1], ..point.clone() }], ends: [End::Lost, End::Lost] }
+            }
+        }))
     }
 
     /// Both directions from a point in the middle.

@@ -45,6 +45,8 @@ pub enum Kind {
     Cusp,
     /// Along a curve of grazes: follower and cam have one acceleration at the touch.
     DegenerateGraze,
+    /// Along a curve of detachment: the follower leaves the cam at two places at once.
+    Place,
     /// A curve turns round in the number that is followed.
     Turn,
     /// The follower begins to chatter, or ceases to.
@@ -65,13 +67,17 @@ pub enum Bifurcation {
     Flip,
     /// A flight touches the cam.
     Graze,
+    /// The follower leaves the cam for the first time.
+    Detachment,
+    /// The follower begins to come to rest on the cam, or ceases to.
+    Resting,
 }
 
 named!(Bifurcation);
 
 impl Bifurcation {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Corner, Self::Fold, Self::Flip, Self::Graze];
+    pub const ALL: [Self; 6] = [Self::Corner, Self::Fold, Self::Flip, Self::Graze, Self::Detachment, Self::Resting];
 }
 
 impl Kind {
@@ -82,6 +88,8 @@ impl Kind {
             Self::Fold => Some(Bifurcation::Fold),
             Self::Flip => Some(Bifurcation::Flip),
             Self::Graze { .. } => Some(Bifurcation::Graze),
+            Self::Detachment => Some(Bifurcation::Detachment),
+            Self::Chatter => Some(Bifurcation::Resting),
             _ => None,
         }
     }
@@ -97,6 +105,7 @@ impl Kind {
             Self::Type { .. } => "type",
             Self::Cusp => "cusp",
             Self::DegenerateGraze => "degenerate-graze",
+            Self::Place => "place",
             Self::Turn => "turn",
             Self::Chatter => "chatter",
             Self::Detachment => "detachment",

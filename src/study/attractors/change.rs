@@ -90,7 +90,7 @@ impl Change {
             (Kind::Detachment, _) => Cause::Detachment,
             (Kind::Corner { .. } | Kind::Chatter, _) => Cause::Runs,
             // Of curves in two numbers.
-            (Kind::Type { .. } | Kind::Cusp | Kind::DegenerateGraze | Kind::Turn, _) => Cause::Runs,
+            (Kind::Type { .. } | Kind::Cusp | Kind::DegenerateGraze | Kind::Place | Kind::Turn, _) => Cause::Runs,
         };
         Self { rpm, bracket: special.bracket, cause }
     }

@@ -1,0 +1,285 @@
+//! What becomes of a follower on the cam: where it first leaves the cam, and where it no longer comes to rest on it. Each is one
+//! equation in two numbers of the model.
+//!
+//! Detachment: the acceleration of the gap of a follower that goes with the cam is 0 where it is greatest.
+//!
+//! Onset of resting: the infinitely many impacts after a release end just where the cam lets go. Where it lets go at a corner,
+//! this is where their sum ends (`accumulation`), by the law before the corner. Where it lets go smoothly, the gap's
+//! acceleration is -J tau at a time tau before, and impacts shrink towards it alike: from tau to (1 - d) tau each, at
+//!
+//! ```text
+//! u = rho J tau^2,   rho = d/2 - d^2/6 = r (d/2 - d^2/3)/(1 - d)^2
+//! ```
+//!
+//! A faster follower passes, a slower one rests. What that leaves out of an impact is of the size tau^2, and the earlier ones
+//! know it better by as much as deviations from rho have grown since.
+
+use std::convert::Infallible;
+use std::f64::consts::TAU;
+use std::ops::ControlFlow;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::Kind;
+use crate::bracket::{Width, halve};
+use crate::cam::Lift;
+use crate::orbit::curve::Equations;
+use crate::orbit::cycle::lift_size;
+use crate::orbit::{Course, Family, FamilyError, PeriodicOrbit};
+use crate::simulate::{Event, EventKind, Goal, Machine, accumulation};
+use crate::tolerance;
+
+/// Where the cam lets go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Place {
+    pub(super) segment: usize,
+    /// Rad; of a corner where the segment starts.
+    pub(super) cam_angle: f64,
+    pub(super) is_corner: bool,
+}
+
+/// Impacts before a rest beyond which they are not counted.
+pub(super) const MANY_IMPACTS: usize = 20_000;
+
+/// What a curve is of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Contact {
+    /// The follower leaves the cam.
+    Detachment(Place),
+    /// It flies from one place and comes to rest at another, or the same, after so many rad; of the impacts on the way the one
+    /// of this number tells where they end.
+    Resting { from: Place, to: Place, turned: f64, impact: usize },
+}
+
+/// What it comes to with two numbers.
+pub(super) struct Reached {
+    /// What should be 0: of the cam's lift a radian squared; rad.
+    pub(super) off: f64,
+    /// The same event, at the places where it is.
+    pub(super) contact: Contact,
+    pub(super) impacts: Vec<Event>,
+}
+
+pub(super) struct Rest<'a> {
+    pub(super) family: &'a Family,
+    pub(super) spans: [f64; 2],
+    pub(super) contact: Contact,
+}
+
+/// The acceleration of the gap over omega^2, m/rad^2, where it is greatest, and where that is.
+pub(super) fn greatest(machine: &Machine) -> (f64, Place) {
+    /// Places of a segment between which there is one extreme at most, of designed cams.
+    pub(super) const SAMPLES: usize = 64;
+    let segments = machine.cam().segments();
+    let mut best = (f64::NEG_INFINITY, Place { segment: 0, cam_angle: 0.0, is_corner: false });
+    for (index, segment) in segments.iter().enumerate() {
+        let at = |part: usize| segment.start + (segment.end - segment.start) * part as f64 / SAMPLES as f64;
+        let lift = |angle: f64| segment.law.lift(angle);
+        let mut keep = |cam_angle: f64, place: Place| {
+            let lifting = machine.lifting(&lift(cam_angle)) / machine.angular_velocity().powi(2);
+            if lifting > best.0 {
+                best = (lifting, place);
+            }
+        };
+        let next = (index + 1) % segments.len();
+        keep(segment.start, Place { segment: index, cam_angle: segment.start, is_corner: true });
+        keep(segment.end, Place { segment: next, cam_angle: segments[next].start, is_corner: true });
+        for part in 0..SAMPLES {
+            let rises = |angle: f64| machine.lifting_rate(&lift(angle)).0 > 0.0;
+            if rises(at(part)) && !rises(at(part + 1)) {
+                let width = Width::Relative(tolerance::ROOT_WIDTH.value);
+                let Ok([cam_angle, _]) = halve([at(part), at(part + 1)], width, |x| Ok::<_, Infallible>(!rises(x)));
+                keep(cam_angle, Place { segment: index, cam_angle, is_corner: false });
+            }
+        }
+    }
+    best
+}
+
+impl Place {
+    /// Where the cam lets go at `event`.
+    pub(super) fn of(event: &Event, machine: &Machine) -> Self {
+        let start = machine.cam().segments()[event.segment].start;
+        let is_corner = (event.cam_angle - start).abs() <= tolerance::CORNER_ANGLE.value;
+        Self { segment: event.segment, cam_angle: event.cam_angle, is_corner }
+    }
+
+    /// Where it is on another machine, and the lift there; `None` where the cam does not let go near there.
+    pub(super) fn on(self, machine: &Machine) -> Option<(Self, Lift)> {
+        /// Newton's method doubles the digits of a place that is known to a step along the curve.
+        const STEPS: usize = 20;
+        let segment = &machine.cam().segments()[self.segment];
+        let mut cam_angle = if self.is_corner { segment.start } else { self.cam_angle };
+        for _ in 0..if self.is_corner { 0 } else { STEPS } {
+            let lift = segment.law.lift(cam_angle);
+            cam_angle -= machine.angular_velocity() * machine.lifting(&lift) / machine.lifting_rate(&lift).0;
+        }
+        let lift = segment.law.lift(cam_angle);
+        let lets_go = if self.is_corner { machine.lifting(&lift) } else { machine.lifting_rate(&lift).0 } > 0.0;
+        let inside = (segment.start..=segment.end).contains(&cam_angle);
+        (lets_go && inside).then_some((Self { cam_angle, ..self }, lift))
+    }
+
+    /// By how far infinitely many impacts from `last` on, with so much `left` to here, rad, end beyond; `None` where they do not
+    /// come here by the law before.
+    pub(super) fn passed(self, machine: &Machine, lift: &Lift, last: &Event, left: f64) -> Option<f64> {
+        let (relative, before) = (last.velocity_after - last.cam_velocity, self.before(machine));
+        let time = if self.is_corner {
+            let at = machine.cam().segments()[before].law.lift(last.cam_angle);
+            let (pressing, rate) = (-machine.lifting(&at), machine.lifting_rate(&at).0);
+            accumulation(relative, machine.restitution(), pressing, rate, machine.flight().zeta()).0
+        } else {
+            (relative / (alike(machine.restitution()) * machine.lifting_rate(lift).0)).sqrt()
+        };
+        let off = machine.angular_velocity() * time - left;
+        (last.segment == before && time >= 0.0 && off.is_finite()).then_some(off)
+    }
+
+    /// Index of the segment before the place, on which a follower rests.
+    pub(super) fn before(self, machine: &Machine) -> usize {
+        if self.is_corner { machine.cam().before(self.segment) } else { self.segment }
+    }
+}
+
+/// rho of the impacts that shrink alike towards a smooth release.
+pub(super) fn alike(restitution: f64) -> f64 {
+    let is_beyond = |d: f64| Ok::<_, Infallible>((0.5 - d / 6.0) * (1.0 - d).powi(2) < restitution * (0.5 - d / 3.0));
+    let Ok([d, _]) = halve([0.0, 1.0], Width::Absolute(tolerance::ROOT_WIDTH.value), is_beyond);
+    d / 2.0 - d * d / 6.0
+}
+
+impl Contact {
+    /// What it comes to on a machine; `None` where the follower goes another way.
+    pub(super) fn reached(self, machine: &Machine) -> Option<Reached> {
+        match self {
+            Self::Detachment(_) => {
+                let (off, place) = greatest(machine);
+                let off = off / lift_size(machine);
+                Some(Reached { off, contact: Self::Detachment(place), impacts: Vec::new() })
+            }
+            Self::Resting { from, to, turned, impact } => {
+                let ((from, _), (to, lift)) = (from.on(machine)?, to.on(machine)?);
+                let turns = ((turned + from.cam_angle - to.cam_angle) / TAU).round();
+                let turned = turns * TAU + to.cam_angle - from.cam_angle;
+                let impacts = flown(machine, from.cam_angle, turned)?;
+                let last = impacts.get(impact.min(impacts.len().checked_sub(1)?))?;
+                let off = to.passed(machine, &lift, last, turned - last.turned_since(from.cam_angle))?;
+                Some(Reached { off, contact: Self::Resting { from, to, turned, impact }, impacts })
+            }
+        }
+    }
+
+    /// The same, told by the impact that tells it best: of those before a corner the one that has as much of the way left as
+    /// their sum needs to be exact, and before a smooth release that which is nearest to the others' ratio.
+    pub(super) fn told(self, machine: &Machine, reached: &Reached) -> Self {
+        let Self::Resting { from, to, turned, .. } = reached.contact else { return reached.contact };
+        let Some((_, lift)) = to.on(machine) else { return reached.contact };
+        let left = |event: &Event| turned - event.turned_since(from.cam_angle);
+        let mut enough =
+            reached.impacts.iter().enumerate().filter(|(_, event)| left(event) > tolerance::CHATTER_LEFT.value);
+        let off = |event: &Event| to.passed(machine, &lift, event, left(event)).map_or(f64::INFINITY, f64::abs);
+        let best = if to.is_corner {
+            enough.next_back().map(|(index, _)| index)
+        } else {
+            enough
+                .map(|(index, event)| (index, off(event)))
+                .min_by(|one, two| one.1.total_cmp(&two.1))
+                .map(|best| best.0)
+        };
+        Self::Resting { from, to, turned, impact: best.unwrap_or(0) }
+    }
+}
+
+/// The impacts of a follower that the cam lets go of at `cam_angle`, for `turned`, rad, or until it rests.
+pub(super) fn flown(machine: &Machine, cam_angle: f64, turned: f64) -> Option<Vec<Event>> {
+    let mut motion = machine.start_on_cam(cam_angle, 0.0).ok()?;
+    let end = cam_angle + turned;
+    let goal = Goal { revolution: (end / TAU) as u64, cam_angle: end % TAU };
+    let mut impacts = Vec::new();
+    let _ = machine.advance(&mut motion, goal, &mut |event: &Event| match event.kind {
+        EventKind::Impact if impacts.len() == MANY_IMPACTS => ControlFlow::Break(()),
+        EventKind::Impact => {
+            impacts.push(*event);
+            ControlFlow::Continue(())
+        }
+        EventKind::Stick => ControlFlow::Break(()),
+        EventKind::Release => ControlFlow::Continue(()),
+    });
+    (impacts.len() < MANY_IMPACTS).then_some(impacts)
+}
+
+/// Why the equation cannot be evaluated.
+#[derive(Clone, Debug)]
+pub(super) enum Nowhere {
+    Refused(FamilyError),
+    OtherWay,
+}
+
+impl Rest<'_> {
+    pub(super) fn machine(&self, unknowns: &DVector<f64>) -> Result<(Machine, f64), Nowhere> {
+        let values = [0, 1].map(|index| unknowns[index] * self.spans[index]);
+        self.family.machine(&values).map_err(Nowhere::Refused)
+    }
+
+    pub(super) fn reached(&self, unknowns: &DVector<f64>) -> Result<Reached, Nowhere> {
+        self.contact.reached(&self.machine(unknowns)?.0).ok_or(Nowhere::OtherWay)
+    }
+}
+
+impl Equations for Rest<'_> {
+    type Error = Nowhere;
+
+    fn linear(&self, unknowns: &DVector<f64>) -> Result<(DVector<f64>, DMatrix<f64>), Nowhere> {
+        /// Of the span of a number: it steers Newton's method and the tangent.
+        const DIFFERENCE: f64 = 1e-7;
+        let off = self.reached(unknowns)?.off;
+        let mut slopes = DMatrix::zeros(1, 2);
+        for column in 0..2 {
+            let moved = |step: f64| {
+                let mut moved = unknowns.clone();
+                moved[column] += step;
+                self.reached(&moved).map(|reached| reached.off)
+            };
+            // At the edge of what the model allows, on one side only.
+            slopes[column] = match (moved(DIFFERENCE), moved(-DIFFERENCE)) {
+                (Ok(ahead), Ok(behind)) => (ahead - behind) / (2.0 * DIFFERENCE),
+                (Ok(ahead), Err(_)) => (ahead - off) / DIFFERENCE,
+                (Err(_), behind) => (off - behind?) / DIFFERENCE,
+            };
+        }
+        Ok((DVector::from_element(1, off), slopes))
+    }
+}
+
+/// What happens at a special point of a branch of orbits that rest.
+pub(super) fn contact(kind: Kind, orbit: &PeriodicOrbit, machine: &Machine) -> Option<Contact> {
+    let Course::Sticking(anchor) = orbit.course else { return None };
+    if kind == Kind::Detachment {
+        return Some(Contact::Detachment(greatest(machine).1));
+    }
+    // The rest around the anchor is the one that goes: from the release before it to that after it.
+    let period = orbit.revolutions as f64 * TAU;
+    let releases: Vec<&Event> = orbit.rests().filter(|event| event.kind == EventKind::Release).collect();
+    let after = |event: &Event| (event.turned_since(anchor)).rem_euclid(period);
+    let to = releases.iter().min_by(|one, two| after(one).total_cmp(&after(two)))?;
+    let from = releases.iter().max_by(|one, two| after(one).total_cmp(&after(two)))?;
+    let turned = (to.turned_since(0.0) - from.turned_since(0.0)).rem_euclid(period);
+    let turned = if turned > 0.0 { turned } else { period };
+    let [from, to] = [from, to].map(|event| Place::of(event, machine));
+    let all = Contact::Resting { from, to, turned, impact: usize::MAX };
+    Some(all.told(machine, &all.reached(machine)?))
+}
+
+impl Contact {
+    /// Whether it is the same place of the cam as another's, a step along the curve apart.
+    pub(super) fn is_at(self, other: Self) -> bool {
+        let near = |one: Place, two: Place| {
+            let same = (one.segment, one.is_corner) == (two.segment, two.is_corner);
+            same && (one.is_corner || (one.cam_angle - two.cam_angle).abs() < tolerance::NEIGHBOURING.value)
+        };
+        match (self, other) {
+            (Self::Detachment(one), Self::Detachment(two)) => near(one, two),
+            _ => true,
+        }
+    }
+}
