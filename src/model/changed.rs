@@ -32,7 +32,7 @@ impl Model {
         Self::from_fields(self.fields.with_number(field, number)?)
     }
 
-    /// The same model with other numbers, of [study] as well, each named as for [`Self::path_of`], checked together as the file is; they become
+    /// The same model with other numbers, of `[study]` as well, each named as for [`Self::path_of`], checked together as the file is; they become
     /// a part of its name.
     pub fn changed(&self, numbers: &[(String, f64)]) -> Result<Self, ModelError> {
         let (mut fields, mut changes) = (self.fields.clone(), self.changes.clone());
