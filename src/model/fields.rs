@@ -254,10 +254,12 @@ impl Fields {
         self.fields.get(path).cloned().ok_or_else(|| {
             // A mistyped field is missing under its own name: show what stands there.
             let table = path.rsplit_once('.').map_or("", |(table, _)| table);
-            let inside =
-                |name: &&String| name.rsplit_once('.').map_or("", |(table, _)| table) == table && !name.ends_with(']');
-            let present: Vec<&str> =
-                self.fields.keys().filter(inside).map(|name| name.rsplit('.').next().unwrap_or(name)).collect();
+            let inside = |(name, field): &(&String, &Field)| {
+                let is_there = field.line.is_some() && !name.ends_with(']');
+                is_there && name.rsplit_once('.').map_or("", |(table, _)| table) == table
+            };
+            let fields = self.fields.iter().filter(inside);
+            let present: Vec<&str> = fields.map(|(name, _)| name.rsplit('.').next().unwrap_or(name)).collect();
             let found =
                 if present.is_empty() { String::new() } else { format!("; found there: {}", present.join(", ")) };
             self.mistyped(path).unwrap_or_else(|| self.reject(path, "is missing")).found(&found)

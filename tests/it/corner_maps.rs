@@ -83,9 +83,10 @@ fn the_product_around_any_orbit_is_the_map_that_simulations_show() {
     }
 }
 
-/// Numbers of the follower and of the cam; damping 0 has no neighbour below.
+/// Numbers of the follower and of the cam; damping 0 and corners that are not rounded have no neighbour below.
 fn numbers(model: &Model) -> Vec<String> {
-    let is_varied = |(name, value): &(&str, f64)| !(*name == "follower.damping" && *value == 0.0);
+    let at_an_end = ["follower.damping", "cam.corner_rounding_deg"];
+    let is_varied = |(name, value): &(&str, f64)| !(at_an_end.contains(name) && *value == 0.0);
     model.numbers().filter(is_varied).map(|(name, _)| name.to_owned()).collect()
 }
 
