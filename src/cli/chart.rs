@@ -1,15 +1,15 @@
 //! `corner-impact chart [MODEL] --x NAME=LO:HI:N --y NAME=LO:HI:N`.
 
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 
 use super::start::{StartArguments, axis, count, rpm};
+use super::store::{Shard, Store, shard, status};
 use super::{CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::watched};
 use crate::diagram::Speeds;
 use crate::figures::{Coloured, chart_figure};
-use crate::model::Model;
 use crate::orbit::Parameter;
 use crate::show::csv;
 use crate::study::chart::{Axis, Chart, Lengths};
@@ -26,11 +26,11 @@ pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
     /// What varies across: rpm, or a number of the model; from where to where, and at how many values.
-    #[arg(long, value_name = "NAME=LO:HI:N", value_parser = axis)]
-    x: (String, Speeds),
+    #[arg(long, value_name = "NAME=LO:HI:N", value_parser = axis, required_unless_present = "status")]
+    x: Option<(String, Speeds)>,
     /// What varies upwards, alike.
-    #[arg(long, value_name = "NAME=LO:HI:N", value_parser = axis)]
-    y: (String, Speeds),
+    #[arg(long, value_name = "NAME=LO:HI:N", value_parser = axis, required_unless_present = "status")]
+    y: Option<(String, Speeds)>,
     /// Speed of the cam, rpm, where neither --x nor --y is it.
     #[arg(long, value_name = "RPM", value_parser = rpm, allow_hyphen_values = true)]
     rpm: Option<f64>,
@@ -49,9 +49,16 @@ pub(super) struct Arguments {
     /// Threads [default: one for each core].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// A table (.csv, or - for standard output) or a picture (.svg, .png).
-    #[arg(long, value_name = "FILE", value_parser = picture::picture_or_table)]
+    /// A table (.csv, or - for standard output), a picture (.svg, .png), or a zarr store (.zarr): a folder of blocks of 100 x 100
+    /// points, of which those that are there already are not run again.
+    #[arg(long, value_name = "FILE", value_parser = out)]
     out: Option<PathBuf>,
+    /// Run the part I of N of a store's blocks; the others are for other processes, at the same time or later.
+    #[arg(long, value_name = "I/N", value_parser = shard, requires = "out")]
+    shard: Option<Shard>,
+    /// Say how much of a store is done, instead.
+    #[arg(long, value_name = "STORE", conflicts_with_all = ["x", "y", "out"])]
+    status: Option<PathBuf>,
     /// Print a summary as one JSON document.
     #[arg(long)]
     summary: bool,
@@ -64,6 +71,19 @@ enum ShowName {
     Regime,
     Impacts,
     ImpactSpeed,
+}
+
+/// A file name of a picture, a table or a store, for clap.
+fn out(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    if is_store(&path) {
+        return Ok(path);
+    }
+    picture::picture_or_table(text).map_err(|_| "must end in .csv, .zarr, .svg or .png, or be -".into())
+}
+
+fn is_store(path: &Path) -> bool {
+    picture::ends_in(path, &["zarr"])
 }
 
 impl ShowName {
@@ -79,15 +99,32 @@ impl ShowName {
 }
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
+    if let Some(folder) = &arguments.status {
+        session.answer(&status(folder)?, arguments.summary)?;
+        return Ok(Exit::Agrees);
+    }
     let to_standard = picture::out_is_standard(arguments.out.as_ref(), arguments.summary)?;
     let model = arguments.model.read(session)?;
-    let named = |(name, values): &(String, Speeds), model: &Model| -> Result<Axis, CommandError> {
-        Ok(Axis { parameter: Parameter::named(model, name)?, values: *values })
+    let named = |(name, values): &(String, Speeds)| -> Result<Axis, CommandError> {
+        Ok(Axis { parameter: Parameter::named(&model, name)?, values: *values })
     };
-    let axes = [named(&arguments.x, &model)?, named(&arguments.y, &model)?];
+    // Neither is missing where it is not the state of a store that is asked for.
+    let (Some(x), Some(y)) = (&arguments.x, &arguments.y) else { return Ok(Exit::BadInput) };
+    let (x, y) = (named(x)?, named(y)?);
     let lengths = Lengths { transient: arguments.transient, record: arguments.record };
-    let chart = Chart::new(&model, arguments.rpm, axes, arguments.start.start(), lengths)?;
-    let run = || watched("", |watch| chart.run(arguments.threads.map(usize::from), watch));
+    let chart = Chart::new(&model, arguments.rpm, [x, y], arguments.start.start(), lengths)?;
+    let threads = arguments.threads.map(usize::from);
+    let folder = arguments.out.as_deref().filter(|path| is_store(path));
+    if let (Some(_), None) = (arguments.shard, folder) {
+        return Err(CommandError::Words("--shard is for a store: --out must end in .zarr".into()));
+    }
+    if let Some(folder) = folder {
+        let store = Store::open(folder, &chart)?;
+        let filled = watched("", |watch| store.fill(arguments.shard.unwrap_or(Shard::ALL), threads, watch))?;
+        session.answer(&filled, arguments.summary)?;
+        return Ok(Exit::Agrees);
+    }
+    let run = || watched("", |watch| chart.run(threads, watch));
     let found = match &arguments.out {
         None => run()?,
         Some(path) => {

@@ -26,6 +26,7 @@ mod session;
 mod simulate;
 mod speeds;
 mod start;
+mod store;
 mod verify;
 
 use std::error::Error;

@@ -3,7 +3,7 @@
 use crate::show::Paged;
 use crate::show::block::Block;
 use crate::show::words;
-use crate::study::chart::Charted;
+use crate::study::chart::{Blocks, Charted, Filled};
 
 impl Paged for Charted {
     fn blocks(&self) -> Vec<Block> {
@@ -20,5 +20,23 @@ impl Paged for Charted {
         let [cpu_s, wall_s] = self.times;
         lines.push(format!("  {wall_s:.3} s, {cpu_s:.3} s of processor time"));
         lines.into_iter().map(|line| Block::Line(line.into())).collect()
+    }
+}
+
+impl Paged for Filled {
+    fn blocks(&self) -> Vec<Block> {
+        let [cpu_s, wall_s] = self.times;
+        let words = format!("  {wall_s:.3} s, {cpu_s:.3} s of processor time for {} points", self.points);
+        let mut blocks = self.blocks.blocks();
+        blocks.push(Block::Line(words.into()));
+        blocks
+    }
+}
+
+impl Paged for Blocks {
+    fn blocks(&self) -> Vec<Block> {
+        let Self { computed, done, total } = self;
+        let now = if *computed > 0 { format!(", {computed} of them now") } else { String::new() };
+        vec![Block::Line(format!("{done} of {total} blocks are done{now}").into())]
     }
 }

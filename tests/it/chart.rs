@@ -1,5 +1,7 @@
 //! `chart`: each point is what a run comes to, by whatever way the points are asked for.
 
+use std::path::Path;
+
 use approx::assert_relative_eq;
 use serde_json::Value;
 
@@ -110,6 +112,69 @@ fn impossible_machines_are_points_of_their_own() {
     assert!(page.contains("the first that failed: models/osorio-2008.toml: cam.nose_end_deg = 200: must be"), "{page}");
 }
 
+/// The numbers of a variable in the four blocks of a store of 120 x 110 points, row by row.
+fn stored<const BYTES: usize>(folder: &Path, name: &str, number: fn([u8; BYTES]) -> f64) -> Vec<f64> {
+    let block = |row: usize, column: usize| std::fs::read(folder.join(format!("{name}/c/{row}/{column}"))).unwrap();
+    let point = |index: usize| {
+        let (x, y) = (index % 120, index / 120);
+        let at = ((y % 100) * 100 + x % 100) * BYTES;
+        number(block(y / 100, x / 100)[at..at + BYTES].try_into().unwrap())
+    };
+    // Every seventh is enough, and reads each block a few thousand times.
+    (0..120 * 110).step_by(7).map(point).collect()
+}
+
+/// A store has the numbers of the table; in parts, and with files that are lost or cut off and run again, the same bytes.
+#[test]
+fn a_store_is_the_table_in_blocks() {
+    let folder = tempfile::TempDir::new().unwrap();
+    let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+    let axes = ["--x", "rpm=90:190:120", "--y", "restitution=0:0.9:110", "--transient", "5", "--record", "2"];
+    let into = |store: &str, more: &[&str]| {
+        let out = ["--out", store, "--summary"];
+        serde_json::from_str::<Value>(&prints(&[&["chart", MODEL], &axes[..], &out, more].concat())).unwrap()
+    };
+    let whole = path("whole.zarr");
+    let blocks = |computed: u64, done: u64| serde_json::json!({ "computed": computed, "done": done, "total": 4 });
+    assert_eq!(into(&whole, &[])["blocks"], blocks(4, 4));
+    let rows = chart(&axes);
+    let column = |index: usize| rows.iter().step_by(7).map(move |row| row[index].clone());
+    let names = ["stays", "periodic", "resting", "chaotic", "undecided", "failed"];
+    let class = |name: &str| names.iter().position(|known| *known == name).unwrap() as f64;
+    let classes: Vec<f64> = column(2).map(|name| class(&name)).collect();
+    assert_eq!(stored(whole.as_ref(), "class", |[byte]: [u8; 1]| f64::from(byte as i8)), classes);
+    assert!(classes.contains(&0.0) && classes.contains(&2.0));
+    let impacts: Vec<f64> = column(4).map(|cell| number(&cell)).collect();
+    assert_eq!(stored(whole.as_ref(), "impacts", |bytes| f64::from(i32::from_le_bytes(bytes))), impacts);
+    let same = |(one, other): (f64, f64)| one == other || (one.is_nan() && other.is_nan());
+    let speeds = stored(whole.as_ref(), "impact_speed", f64::from_le_bytes);
+    assert!(speeds.into_iter().zip(column(7).map(|cell| number(&cell))).all(same));
+    let rpm = std::fs::read(folder.path().join("whole.zarr/rpm/c/0")).unwrap();
+    assert_eq!(f64::from_le_bytes(rpm[119 * 8..].try_into().unwrap()), 190.0);
+    // Two parts, in any order, and then what was lost.
+    let parts = path("parts.zarr");
+    assert_eq!(into(&parts, &["--shard", "2/2"])["blocks"], blocks(2, 2));
+    assert_eq!(prints(&["chart", "--status", &parts]).trim(), "2 of 4 blocks are done");
+    assert_eq!(into(&parts, &["--shard", "1/2", "--threads", "1"])["blocks"], blocks(2, 4));
+    std::fs::remove_file(folder.path().join("parts.zarr/impacts/c/0/1")).unwrap();
+    std::fs::write(folder.path().join("parts.zarr/class/c/1/0"), [0; 7]).unwrap();
+    assert_eq!(into(&parts, &[])["blocks"], blocks(2, 4));
+    let mut compared = 0;
+    for entry in ["zarr.json", "class/zarr.json", "class/c/0/0", "class/c/1/0", "impacts/c/0/1", "growth_rate/c/1/1"] {
+        let [one, other] = [&whole, &parts].map(|store| std::fs::read(Path::new(store).join(entry)).unwrap());
+        assert!(one == other, "{entry}");
+        compared += one.len();
+    }
+    assert!(compared > 100_000);
+    // Another chart does not go there.
+    let other = ["--x", "rpm=90:190:120", "--y", "restitution=0:0.9:110", "--out", &whole];
+    assert!(refused(&other).contains("holds another chart"));
+    let none = common::corner_impact(["chart", "--status", "nowhere.zarr"]);
+    assert!(none.status.code() == Some(2) && common::text(none.stderr).contains("no store of a chart"));
+    assert!(refused(&[&axes[..], &["--shard", "3/2"]].concat()).contains("must be I/N"));
+    assert!(refused(&[&axes[..], &["--shard", "1/2", "--out", "a.csv"]].concat()).contains("must end in .zarr"));
+}
+
 #[test]
 fn what_is_no_chart_is_refused_with_a_reason() {
     let (x, y) = ("rpm=600:760:3", "restitution=0.5:0.95:3");
@@ -121,5 +186,5 @@ fn what_is_no_chart_is_refused_with_a_reason() {
     assert!(refused(&["--x", "rpm=760:600:3", "--y", y]).contains("is below the lowest"));
     assert!(refused(&["--x", "rpm=-5:600:3", "--y", y]).contains("above 0"));
     assert!(refused(&["--x", "rpm=600:760:100000", "--y", "mass=1:2:100000"]).contains("100000000 or fewer"));
-    assert!(refused(&["--x", x, "--y", y, "--out", "a.pdf"]).contains(".csv, .svg or .png"));
+    assert!(refused(&["--x", x, "--y", y, "--out", "a.pdf"]).contains(".csv, .zarr, .svg or .png"));
 }

@@ -46,15 +46,52 @@ pub struct Chart {
     pub lengths: Lengths,
 }
 
+/// Points in order; the reason where one has no motion.
+pub type Points = Vec<Result<Point, String>>;
+
 /// What was found over a grid.
 #[derive(Clone, Debug)]
 pub struct Charted {
     /// The grid.
     pub chart: Chart,
     /// Row by row, the first axis fastest; the reason where a point has no motion.
-    pub points: Vec<Result<Point, String>>,
+    pub points: Points,
     /// Seconds of the threads that ran it, and from its beginning to its end.
     pub times: [f64; 2],
+}
+
+/// What was found for a store of a chart.
+#[derive(Clone, Debug)]
+pub struct Filled {
+    /// The chart.
+    pub chart: Chart,
+    /// Points that were run.
+    pub points: usize,
+    /// Its blocks.
+    pub blocks: Blocks,
+    /// Seconds of the threads that ran them, and of the day.
+    pub times: [f64; 2],
+}
+
+document!(Filled as it {
+    schema: "corner-impact/chart/1",
+    model: it.chart.model.name,
+    points: it.points,
+    revolutions: it.points as u64 * (it.chart.lengths.transient + it.chart.lengths.record),
+    blocks: it.blocks,
+    cpu_s: it.times[0],
+    wall_s: it.times[1],
+});
+
+/// The blocks of a store.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Blocks {
+    /// Computed now.
+    pub computed: usize,
+    /// Done, by whomever.
+    pub done: usize,
+    /// All.
+    pub total: usize,
 }
 
 /// How many points of one kind there are; none is for those that failed.
@@ -172,28 +209,39 @@ impl Chart {
 
     /// Runs every point on `threads` threads (all there are for `None`), told to `watch` row by row.
     pub fn run(self, threads: Option<usize>, watch: &dyn Watch) -> Result<Charted, ChartError> {
+        let (points, times) = self.part(0..self.x.values.count, 0..self.y.values.count, threads, watch)?;
+        Ok(Charted { chart: self, points, times })
+    }
+
+    /// The points of some columns and rows, row by row, and the seconds of the threads that ran them, and from the beginning to
+    /// the end.
+    pub fn part(
+        &self,
+        columns: Range<usize>,
+        rows: Range<usize>,
+        threads: Option<usize>,
+        watch: &dyn Watch,
+    ) -> Result<(Points, [f64; 2]), ChartError> {
         let clock = Instant::now();
         let pool = crate::diagram::threads(threads)?;
-        let (columns, rows) = (self.x.values.count, self.y.values.count);
-        let height = (rows / (8 * pool.current_num_threads())).clamp(1, STRIP);
-        let (family, done) = (self.family()?, AtomicU64::new(0));
-        let strips = (0..rows).step_by(height).collect::<Vec<_>>().into_par_iter().map(|first| {
+        let height = (rows.len() / (8 * pool.current_num_threads())).clamp(1, STRIP);
+        let (family, done, last, total) = (self.family()?, AtomicU64::new(0), rows.end, rows.len() as u64);
+        let strips = rows.step_by(height).collect::<Vec<_>>().into_par_iter().map(|first| {
             let clock = Processor::now();
-            let strip = first..rows.min(first + height);
-            let points = self.block(&family, 0..columns, strip.clone());
+            let strip = first..last.min(first + height);
+            let points = self.block(&family, columns.clone(), strip.clone());
             let done = done.fetch_add(strip.len() as u64, Ordering::Relaxed) + strip.len() as u64;
-            watch.at("rows", done, rows as u64);
+            watch.at("rows", done, total);
             (points, clock.elapsed())
         });
         let strips: Vec<_> = pool.install(|| strips.collect());
         let processor: Duration = strips.iter().map(|(_, elapsed)| *elapsed).sum();
         let points = strips.into_iter().flat_map(|(points, _)| points).collect();
-        let times = [processor.as_secs_f64(), clock.elapsed().as_secs_f64()];
-        Ok(Charted { chart: self, points, times })
+        Ok((points, [processor.as_secs_f64(), clock.elapsed().as_secs_f64()]))
     }
 
     /// The points of some columns and rows, row by row.
-    fn block(&self, family: &Family, columns: Range<usize>, rows: Range<usize>) -> Vec<Result<Point, String>> {
+    fn block(&self, family: &Family, columns: Range<usize>, rows: Range<usize>) -> Points {
         let machine = |x: usize, y: usize| {
             let values = [self.x.values.value(x), self.y.values.value(y)];
             family.machine(&values).map(|(machine, _)| machine).map_err(|error| error.to_string())
