@@ -5,20 +5,24 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 
+use super::curve::{LONGEST_STEP, MOST_POINTS};
 use super::start::{StartArguments, axis, count, rpm};
 use super::store::{Shard, Store, shard, status};
 use super::{CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::watched};
 use crate::diagram::Speeds;
 use crate::figures::{Coloured, chart_figure};
-use crate::orbit::Parameter;
+use crate::orbit::branch::{Bifurcation, Following};
+use crate::orbit::{Parameter, Search};
 use crate::show::csv;
 use crate::study::chart::{Axis, Chart, Lengths};
+use crate::study::curve::curves;
 
 /// Charts over two numbers what a run comes to: its period, its growth, how hard it hits.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact chart --x rpm=600:760:80 --y restitution=0.5:0.95:60 --out periods.svg\n\
     \x20 corner-impact chart --x mass=1:2:30 --y stiffness=1000:2000:30 --rpm 700 --show impact-speed --out speeds.png\n\
+    \x20 corner-impact chart --x rpm=600:760:80 --y restitution=0.5:0.95:60 --with-curves --out curves.svg\n\
     \x20 corner-impact chart models/damped-light.toml --x rpm=600:760:40 --y damping=0:20:20 --out chart.csv\n\
     \n\
     Exit code: 0 done, 2 bad model file, usage or file.")]
@@ -46,6 +50,10 @@ pub(super) struct Arguments {
     /// What the colours of a picture tell.
     #[arg(long, value_enum, default_value = "period")]
     show: ShowName,
+    /// Draw over a picture the curves of corner impacts, folds, flips, grazes, detachment and the onset of resting of motions
+    /// that repeat after one revolution, as `curve` follows them; one axis must be rpm.
+    #[arg(long, requires = "out", conflicts_with = "status")]
+    with_curves: bool,
     /// Threads [default: one for each core].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -113,6 +121,10 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let (x, y) = (named(x)?, named(y)?);
     let lengths = Lengths { transient: arguments.transient, record: arguments.record };
     let chart = Chart::new(&model, arguments.rpm, [x, y], arguments.start.start(), lengths)?;
+    let drawn = arguments.out.as_deref().is_some_and(|path| picture::ends_in(path, &["svg", "png"]));
+    if arguments.with_curves && !drawn {
+        return Err(CommandError::Words("--with-curves is for a picture: --out must end in .svg or .png".into()));
+    }
     let threads = arguments.threads.map(usize::from);
     let folder = arguments.out.as_deref().filter(|path| is_store(path));
     if let (Some(_), None) = (arguments.shard, folder) {
@@ -124,6 +136,8 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         session.answer(&filled, arguments.summary)?;
         return Ok(Exit::Agrees);
     }
+    // What is refused is so before the work, and found after it: the points are what most of the time goes into.
+    let ground = if arguments.with_curves { Some(ground(&chart)?) } else { None };
     let run = || watched("", |watch| chart.run(threads, watch));
     let found = match &arguments.out {
         None => run()?,
@@ -131,8 +145,14 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
             // Begun before the work: a name that cannot be is told at once.
             let target = Target::create(path, &mut *session.out)?;
             let found = run()?;
+            let model = &found.chart.model;
+            let wanted = Search { revolutions: 1, impacts: None };
+            let events = |(rpm, following): ([f64; 2], Following)| {
+                watched("", |watch| curves(model, rpm, &wanted, &Bifurcation::ALL, &following, watch))
+            };
+            let over = ground.map(events).transpose()?.map(|found| found.curves).unwrap_or_default();
             let table = |table: &mut dyn Write| Ok(table.write_all(csv::chart(&found).as_bytes())?);
-            target.fill(table, || Ok(chart_figure(&found, arguments.show.coloured())))?;
+            target.fill(table, || Ok(chart_figure(&found, arguments.show.coloured(), &over)))?;
             found
         }
     };
@@ -140,4 +160,22 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         session.answer(&found, arguments.summary)?;
     }
     Ok(Exit::Agrees)
+}
+
+/// The speeds of a chart, and how curves are followed through its other number.
+fn ground(chart: &Chart) -> Result<([f64; 2], Following), CommandError> {
+    let (speeds, other) = match [&chart.x, &chart.y] {
+        [speeds, other] | [other, speeds] if speeds.parameter == Parameter::Speed => (speeds.values, other),
+        _ => {
+            return Err(CommandError::Words(
+                "--with-curves follows events through speeds: --x or --y must be rpm".into(),
+            ));
+        }
+    };
+    let Axis { parameter, values } = other;
+    let (parameter, range) = (parameter.clone(), [values.low, values.high]);
+    Ok((
+        [speeds.low, speeds.high],
+        Following { parameter, range, longest_step: LONGEST_STEP, most_points: MOST_POINTS },
+    ))
 }

@@ -42,7 +42,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "M")]
     impacts: Option<usize>,
     /// The longest step, of the ranges and of a radian.
-    #[arg(long, value_name = "STEP", default_value_t = 0.02, value_parser = positive)]
+    #[arg(long, value_name = "STEP", default_value_t = LONGEST_STEP, value_parser = positive)]
     step: f64,
     /// A table (.csv, or - for standard output) or a picture (.svg, .png).
     #[arg(long, value_name = "FILE", default_value = "-", value_parser = picture_or_table)]
@@ -55,8 +55,10 @@ fn event(text: &str) -> Result<Bifurcation, String> {
     found.map(|(event, _)| event).ok_or_else(|| format!("must be one of: {}", names.join(", ")))
 }
 
+/// The longest step of a curve, of the ranges and of a radian, where none is given.
+pub(super) const LONGEST_STEP: f64 = 0.02;
 /// Points of a curve after which it is given up, in either direction.
-const MOST_POINTS: usize = 2000;
+pub(super) const MOST_POINTS: usize = 2000;
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let model = arguments.model.read(session)?;

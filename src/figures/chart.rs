@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use super::curve;
+use crate::border_collision::EventCurve;
 use crate::draw::ticks::{Spacing, Tick, Ticks, ticks};
 use crate::draw::{Axis, Colour, Data, Density, Figure, Panel, Series};
 use crate::orbit::Parameter;
@@ -128,8 +130,8 @@ fn bands(edges: &[Tick], exponent: i32, coloured: Coloured) -> Vec<Class> {
     (0..=edges.len()).map(band).collect()
 }
 
-/// The points of a chart, each in the colour of its class; colours of a number go by bands of it.
-pub fn chart_figure(found: &Charted, coloured: Coloured) -> Figure {
+/// The points of a chart, each in the colour of its class, and curves of events over them; colours of a number go by bands of it.
+pub fn chart_figure(found: &Charted, coloured: Coloured, curves: &[EventCurve]) -> Figure {
     let (x, y) = (&found.chart.x, &found.chart.y);
     let (classes, class_of) = classes(found, coloured);
     let range = |axis: &chart::Axis| {
@@ -161,6 +163,9 @@ pub fn chart_figure(found: &Charted, coloured: Coloured) -> Figure {
     let series = there.map(|(cells, (label, colour, strength))| {
         Series::new(label, *colour, Data::Region { cells, strength: *strength })
     });
+    let across_speeds = x.parameter == Parameter::Speed;
+    let place = if across_speeds { |rpm, value| [rpm, value] } else { |rpm, value| [value, rpm] };
+    let series = series.chain(curve::lines(curves, place)).collect();
     let axis = |axis: &chart::Axis, range| match &axis.parameter {
         Parameter::Speed => Axis::new("speed", "rpm").over(range),
         Parameter::Field(path) => Axis::new(path.rsplit('.').next().unwrap_or(path), "").over(range),
@@ -174,5 +179,5 @@ pub fn chart_figure(found: &Charted, coloured: Coloured) -> Figure {
     };
     let at = found.chart.speed().map_or_else(String::new, |rpm| format!(" at {rpm} rpm"));
     let title = format!("{}{at}: {what}", found.chart.model.name);
-    Figure::new(&title, axis(x, across), vec![Panel::new(axis(y, up), 0.66, series.collect())])
+    Figure::new(&title, axis(x, across), vec![Panel::new(axis(y, up), 0.66, series)])
 }

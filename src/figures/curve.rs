@@ -38,32 +38,39 @@ pub fn curve_figure(
     speeds: [f64; 2],
     curves: &[EventCurve],
 ) -> Figure {
-    let mut series = Vec::new();
-    for (kind, colour, stroke) in KINDS {
-        let pieces = curves.iter().flat_map(EventCurve::pieces).filter(|(_, happening)| *happening == Some(kind));
-        series.extend(Series::line(&kind.to_string(), colour, stroke, joined(pieces.map(|(ends, _)| ends))).if_any());
-    }
-    for (event, name, colour, stroke) in EVENTS {
-        let of_event = curves.iter().filter(|curve| curve.kind.bifurcation() == Some(event));
-        let pieces = of_event.flat_map(EventCurve::pieces).map(|(ends, _)| ends);
-        series.extend(Series::line(name, colour, stroke, joined(pieces)).if_any());
-    }
-    for (kind, name, marker) in MARKED {
-        let all = curves.iter().flat_map(|curve| &curve.points);
-        let points = all.filter(|point| point.special.is_some_and(|special| special.kind.name() == kind));
-        let points = points.map(|point| [point.value, point.rpm]);
-        series.extend(Series::points(name, Colour::Ink, marker, points).if_any());
-    }
-    let panel = Panel::new(Axis::new("speed", "rpm").over(speeds), 0.52, series);
+    let panel = Panel::new(Axis::new("speed", "rpm").over(speeds), 0.52, lines(curves, |rpm, value| [value, rpm]));
     let is_shown = (range[0]..=range[1]).contains(&own);
     let marks = is_shown.then(|| Mark { at: own, label: format!("the model, {own}") }).into_iter().collect();
     Figure { marks, ..Figure::new(title, Axis::new(name, "").over(range), vec![panel]) }
 }
 
+/// A line for each kind of event, and the marks on them; `place` tells where a speed, rpm, and a value of the number are drawn.
+pub(super) fn lines(curves: &[EventCurve], place: fn(f64, f64) -> [f64; 2]) -> Vec<Series> {
+    let place = |point: &EventPoint| place(point.rpm, point.value);
+    let mut series = Vec::new();
+    for (kind, colour, stroke) in KINDS {
+        let pieces = curves.iter().flat_map(EventCurve::pieces).filter(|(_, happening)| *happening == Some(kind));
+        series.extend(
+            Series::line(&kind.to_string(), colour, stroke, joined(pieces.map(|(ends, _)| ends.map(place)))).if_any(),
+        );
+    }
+    for (event, name, colour, stroke) in EVENTS {
+        let of_event = curves.iter().filter(|curve| curve.kind.bifurcation() == Some(event));
+        let pieces = of_event.flat_map(EventCurve::pieces).map(|(ends, _)| ends.map(place));
+        series.extend(Series::line(name, colour, stroke, joined(pieces)).if_any());
+    }
+    for (kind, name, marker) in MARKED {
+        let all = curves.iter().flat_map(|curve| &curve.points);
+        let points = all.filter(|point| point.special.is_some_and(|special| special.kind.name() == kind));
+        series.extend(Series::points(name, Colour::Ink, marker, points.map(place)).if_any());
+    }
+    series
+}
+
 /// Pieces that meet, as one line: dashes run on.
-fn joined<'a>(pieces: impl Iterator<Item = [&'a EventPoint; 2]>) -> Vec<[f64; 2]> {
+fn joined(pieces: impl Iterator<Item = [[f64; 2]; 2]>) -> Vec<[f64; 2]> {
     let mut line: Vec<[f64; 2]> = Vec::new();
-    for [from, to] in pieces.map(|ends| ends.map(|point| [point.value, point.rpm])) {
+    for [from, to] in pieces {
         match line.last() {
             Some(last) if *last == from => line.push(to),
             _ => line.extend([BREAK, from, to]),

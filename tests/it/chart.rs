@@ -188,3 +188,40 @@ fn what_is_no_chart_is_refused_with_a_reason() {
     assert!(refused(&["--x", "rpm=600:760:100000", "--y", "mass=1:2:100000"]).contains("100000000 or fewer"));
     assert!(refused(&["--x", x, "--y", y, "--out", "a.pdf"]).contains(".csv, .zarr, .svg or .png"));
 }
+
+/// The nonsmooth fold of the paper goes over the chart at omega* where the restitution is the paper's, whichever axis is which.
+#[test]
+fn curves_go_over_the_chart() {
+    let folder = tempfile::TempDir::new().unwrap();
+    let (speeds, restitutions) = ("rpm=660:740:5", "restitution=0.7:0.8:5");
+    // Half a cell further on each side than the middles of the outermost cells.
+    let share = |at: f64, [low, high]: [f64; 2]| (at - low) / (high - low);
+    let (along, beside) = (share(673.234_445, [650.0, 750.0]), share(0.8, [0.6875, 0.8125]));
+    for (name, x, y, [right, up]) in
+        [("a", speeds, restitutions, [along, beside]), ("b", restitutions, speeds, [beside, along])]
+    {
+        let out = folder.path().join(name).with_extension("svg");
+        prints(&["chart", MODEL, "--x", x, "--y", y, "--with-curves", "--out", out.to_str().unwrap()]);
+        let svg = std::fs::read_to_string(out).unwrap();
+        let quoted = |after: &str, name: &str| -> f64 {
+            let from = svg.find(after).unwrap();
+            let rest = &svg[from + svg[from..].find(&format!(" {name}=\"")).unwrap() + name.len() + 3..];
+            number(&rest[..rest.find('"').unwrap()])
+        };
+        let panel = "<svg x=";
+        let place = [right * quoted(panel, "width"), (1.0 - up) * quoted(panel, "height")];
+        let line = svg.lines().find(|line| line.starts_with("<path") && line.contains("s-vermilion")).unwrap();
+        let line = &line[line.find(" d=\"M").unwrap() + 5..];
+        let points = line[..line.find('"').unwrap()].split(['M', 'L']).map(|point| {
+            let (x, y) = point.split_once(' ').unwrap();
+            (number(x) - place[0]).hypot(number(y) - place[1])
+        });
+        let nearest = points.fold(f64::INFINITY, f64::min);
+        assert!(nearest < 0.02, "{name}: {nearest} from {place:?} in {line}");
+        assert!(svg.contains(">flip</text>"));
+    }
+    let folded = ["--x", "mass=1:1.5:2", "--y", "restitution=0.7:0.8:2", "--rpm", "700", "--with-curves"];
+    assert!(refused(&[&folded[..], &["--out", "none.svg"]].concat()).contains("--x or --y must be rpm"));
+    let table = ["--x", speeds, "--y", restitutions, "--with-curves", "--out", "none.csv"];
+    assert!(refused(&table).contains("is for a picture"));
+}
