@@ -4,7 +4,7 @@ One JSON document on stdin: the model's "follower" and "cam", "bits", and "candi
 are thought to be. One on stdout: "results", for each candidate in turn a "certificate", with a ball for every number, or "refused"
 with why. Everything said in a certificate is proved, for the machine whose constants are the decimals of the model; the
 candidates are only where corner impacts are looked for. With "orbits_at_rpm" there are "orbits" and "complete" besides, with
-"orbits_over_rpm", [low, high], "counts", "undecided" and "events".
+"orbits_over_rpm", [low, high], "counts", "undecided" and "events", with "resting_at_rpm" "releases", "periodic" and "pressed_rad".
 """
 
 import json
@@ -21,10 +21,13 @@ from balls.motion import Machine
 from balls.nearby import followed
 from balls.numbers import Refused, ball, decimal, hull
 from balls.orbits import Orbits
+from balls.resting import MOST_IMPACTS, Resting
 from balls.verdict import SIDES, Verdict
 
 # With fewer bits nothing is proved; with more a number takes longer than anyone waits.
 FEWEST_BITS, MOST_BITS = 16, 16384
+# A motion that takes more until it rests is given up.
+MOST_RESTING_BITS = 4096
 # The cam's law before the corner holds on the minus side, that after it on the plus side.
 LAW_OF = {"minus": "before", "plus": "after"}
 
@@ -101,7 +104,7 @@ def answer(document, candidates):
             results.append({"certificate": certificate(machine, candidate)})
         except (Refused, ZeroDivisionError) as error:
             results.append({"refused": str(error)})
-    return {"results": results, **orbits(machine, document), **counts(machine, document)}
+    return {"results": results, **orbits(machine, document), **counts(machine, document), **resting(document)}
 
 
 def orbits(machine, document):
@@ -167,6 +170,64 @@ def counts(machine, document):
             for before, after in events
         ],
     }
+
+
+def resting(document):
+    """The motions that rest at "resting_at_rpm": what follows on each place where the cam lets go, which of them come round to themselves,
+    and the bits that it took: twice as many as long as the balls get too wide on the way."""
+    if "resting_at_rpm" not in document:
+        return {}
+    machine, speed = Machine(document), decimal(document["resting_at_rpm"])
+    while True:
+        found = Resting(machine, machine.cam.turn * arb(speed) / 60)
+        try:
+            hops = [found.hop(index) for index in range(len(found.releases))]
+            break
+        except Refused:
+            if ctx.prec >= MOST_RESTING_BITS:
+                raise
+        ctx.prec *= 2
+        machine = Machine(document)
+    places = [
+        {
+            "cam_angle_rad": ball(release.angle),
+            "next": hop
+            and {"impacts": hop.impacts, "rests_by_rad": float(one_turn(machine, hop.rests).upper()), "release": hop.to, "revolutions": hop.revolutions},
+        }
+        for release, hop in zip(found.releases, hops)
+    ]
+    rounds = [once_around(hops, index) for index in range(len(hops))]
+    return {
+        "bits": ctx.prec,
+        "releases": places,
+        "looked_at": MOST_IMPACTS,
+        "periodic": [
+            {"releases": around, "impacts": sum(hops[one].impacts for one in around), "revolutions": sum(hops[one].revolutions for one in around)}
+            for around in rounds
+            if around and around[0] == min(around)
+        ],
+        "pressed_rad": pressed(found.stretches),
+    }
+
+
+def pressed(stretches):
+    """From where to where a is below 0, less whole turns; the first may begin in the turn before."""
+    ranges = []
+    for (low, high, _, sign), before in zip(stretches, [None, *stretches]):
+        if sign < 0 and before is not None and before[-1] < 0:
+            ranges[-1][1] = float(high)
+        elif sign < 0:
+            ranges.append([float(low), float(high)])
+    return ranges
+
+
+def once_around(hops, first):
+    """The releases from one until it comes round to that; none where it does not."""
+    around, at = [], first
+    while hops[at] is not None and at not in around:
+        around.append(at)
+        at = hops[at].to
+    return around if at == first and hops[at] is not None else []
 
 
 def one_turn(machine, angle):

@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 /// The scripts, with the modules that they import and the file that they read, by their places in the project.
-const FILES: [(&str, &str); 20] = [
+const FILES: [(&str, &str); 21] = [
     ("derivations/arithmetic.py", include_str!("../derivations/arithmetic.py")),
     ("derivations/balls/__init__.py", include_str!("../derivations/balls/__init__.py")),
     ("derivations/balls/branches.py", include_str!("../derivations/balls/branches.py")),
@@ -29,6 +29,7 @@ const FILES: [(&str, &str); 20] = [
     ("derivations/balls/numbers.py", include_str!("../derivations/balls/numbers.py")),
     ("derivations/balls/orbits.py", include_str!("../derivations/balls/orbits.py")),
     ("derivations/balls/profiles.py", include_str!("../derivations/balls/profiles.py")),
+    ("derivations/balls/resting.py", include_str!("../derivations/balls/resting.py")),
     ("derivations/balls/roots.py", include_str!("../derivations/balls/roots.py")),
     ("derivations/balls/verdict.py", include_str!("../derivations/balls/verdict.py")),
     ("derivations/certify.py", include_str!("../derivations/certify.py")),

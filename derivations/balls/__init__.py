@@ -17,5 +17,6 @@ proved, and what cannot be decided raises. Nothing here knows a result of anothe
     roots       all roots of a system in a box
     orbits      all orbits of one impact and of two in one revolution
     branches    how many orbits of one impact there are at every speed of a range
+    resting     what becomes of a follower that rests on the cam
     covering    boxes of impacts that the impact map stretches across each other, and the cones that it keeps
 """

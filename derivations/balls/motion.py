@@ -164,22 +164,16 @@ class Flight:
             time = step
         return time
 
-    def first_contact(self, horizon, contact=None, skipped=None):
+    def first_contact(self, horizon, contact=None, skipped=None, clear=None):
         """The time of the first contact of each flight, proved to be the first: 0 < g before it, g' < 0 at it.
 
         Looked for up to `horizon`, s; or it is `contact`, a ball of which it is known that g is 0 in it. Refused where the
-        flight touches, or where a proof would take steps too short. Nothing is said of the time from one end of `skipped` to the other.
+        flight touches, or where a proof would take steps too short. Nothing is said of the time from one end of `skipped` to the other;
+        up to `clear` it is known to be above the cam.
         """
         revolution = 2 * arb.pi() / self.start.speed.mid()
         shortest = float(revolution.mid()) * FIRST_STEP / 2**HALVINGS
-        if not self.start.velocity > 0:
-            raise Undecided("the follower is not proved to leave the cam")
-        # Next to the launch g' > 0, so that g > 0 but for t = 0.
-        step = float(revolution.mid()) * FIRST_STEP
-        while not self.gap_rate(between(0, step)) > 0:
-            step /= 2
-            if step < shortest:
-                raise Undecided("the follower is not proved to get clear of the cam")
+        step = self._launched(revolution, shortest) if clear is None else float(clear)
         reached, landing = step, contact and float(contact)
         while reached < horizon:
             if skipped is not None and reached <= skipped[0] < reached + step:
@@ -205,6 +199,17 @@ class Flight:
             if step < shortest:
                 raise Refused(f"the flight is not proved to be clear of the cam {reached:.6g} s after it began: it may touch")
         raise Refused(f"no contact within {horizon:.6g} s")
+
+    def _launched(self, revolution, shortest):
+        """A time up to which g' > 0, so that g > 0 but for t = 0."""
+        if not self.start.velocity > 0:
+            raise Undecided("the follower is not proved to leave the cam")
+        step = float(revolution.mid()) * FIRST_STEP
+        while not self.gap_rate(between(0, step)) > 0:
+            step /= 2
+            if step < shortest:
+                raise Undecided("the follower is not proved to get clear of the cam")
+        return step
 
     def _closed(self, low, high):
         """About when the flight from the centre comes down, by halving: a guess."""

@@ -4,7 +4,7 @@ use super::start::rpm_or_range;
 use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::model::Study;
 use crate::orbit::Search;
-use crate::study::certify::{BITS, CertifyError, certify, proved_counts, proved_orbits};
+use crate::study::certify::{BITS, CertifyError, certify, proved_counts, proved_orbits, proved_resting};
 
 /// Proves that corner impacts exist, with their maps and verdicts, in ball arithmetic.
 #[derive(clap::Args)]
@@ -13,13 +13,14 @@ use crate::study::certify::{BITS, CertifyError, certify, proved_counts, proved_o
     \x20 corner-impact certify models/osorio-2008.toml --rpm 600:760 --bits 400 --json\n\
     \x20 corner-impact certify --orbits --rpm 700\n\
     \x20 corner-impact certify --orbits --rpm 600:760\n\
+    \x20 corner-impact certify --resting --rpm 663\n\
     \n\
     Needs Python with the packages that `make verify` sets up.\n\
     Exit code: 0 every border collision that `locate` finds is proved, 1 one is not, 2 bad model file or usage, or no Python.")]
 pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
-    /// Range of speeds, rpm, or with --orbits one speed [default: the model's [study]].
+    /// Range of speeds, rpm, or with --orbits and --resting one speed [default: the model's [study]].
     #[arg(long, value_name = "LO:HI", value_parser = rpm_or_range)]
     rpm: Option<[f64; 2]>,
     /// Turns of the cam after which the orbits repeat, and no fewer.
@@ -31,6 +32,9 @@ pub(super) struct Arguments {
     /// Prove all periodic orbits of one impact and of two in one revolution at the speed of --rpm, instead of corner impacts; at every speed of a range, how many there are of one impact.
     #[arg(long, requires = "rpm", conflicts_with = "revolutions")]
     orbits: bool,
+    /// Prove what becomes of a follower that rests on the cam at the speed of --rpm, with twice as many bits as often as it takes.
+    #[arg(long, requires = "rpm", conflicts_with_all = ["revolutions", "orbits"])]
+    resting: bool,
     /// Print one JSON document instead of the page.
     #[arg(long)]
     json: bool,
@@ -46,6 +50,14 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
             let found = watched("proving orbits", |_| proved_orbits(&model, low, arguments.bits))?;
             session.answer(&found, arguments.json)?;
         }
+        return Ok(Exit::Agrees);
+    }
+    if let (true, Some([low, high])) = (arguments.resting, arguments.rpm) {
+        if low < high {
+            return Err(CommandError::Words("--resting is for one speed: --rpm R".into()));
+        }
+        let found = watched("proving motions that rest", |_| proved_resting(&model, low, arguments.bits))?;
+        session.answer(&found, arguments.json)?;
         return Ok(Exit::Agrees);
     }
     let range = match arguments.rpm {

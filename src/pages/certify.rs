@@ -5,7 +5,8 @@ use crate::show::block::{Block, Column, Mark, Table, Words, words};
 use crate::show::digits::Digits;
 use crate::show::{Paged, words};
 use crate::study::certify::{
-    Certificate, Certified, OrbitKind, ProvedCounts, ProvedEigenvalue, ProvedOrbits, ProvedSide, ProvedStart, Unproved,
+    Certificate, Certified, OrbitKind, ProvedCounts, ProvedEigenvalue, ProvedOrbits, ProvedRelease, ProvedResting,
+    ProvedSide, ProvedStart, Round, Unproved,
 };
 
 impl Paged for Certified {
@@ -97,6 +98,69 @@ impl Paged for ProvedCounts {
             [] => "There are no others at any speed of the range, which is proved. Each digit of an event is, but for one unit of the last.".into(),
             _ => words!["The number is not decided from ", Words::joined(undecided, ", from "), "."],
         }));
+        page
+    }
+}
+
+impl Paged for ProvedResting {
+    fn blocks(&self) -> Vec<Block> {
+        let degrees = |rad: f64| words![(rad.to_degrees(), Digits::Fixed(4))];
+        let mut page =
+            vec![Block::Title(format!("Motions that rest on the cam at {} rpm, proved", self.speed_rpm).into())];
+        if self.releases.is_empty() {
+            page.push(Block::paragraph(match self.pressed_rad.is_empty() {
+                true => "The cam presses against the follower nowhere: no motion rests on it.",
+                false => "The cam presses against the follower everywhere: one that rests on it stays on it.",
+            }));
+            return page;
+        }
+        let pressed = self.pressed_rad.iter().map(|[low, high]| words![degrees(*low), " to ", degrees(*high)]);
+        page.push(Block::paragraph(words![
+            "The cam presses against a follower that rests on it from ",
+            Words::joined(pressed, " deg, from "),
+            " deg. Where it lets go, one motion alone goes on, whatever came before:"
+        ]));
+        let mut table = Table::new(
+            "From where the cam lets go to where it does again",
+            [("let go (deg)", 12), ("impacts", 8), ("rests by (deg)", 14), ("let go (deg)", 12), ("revolutions", 11)]
+                .map(|(head, least)| Column { gap: 2, ..Column::right(head, least) }),
+        );
+        let angle = |release: &ProvedRelease| degrees(release.cam_angle_rad.value());
+        for release in &self.releases {
+            let dash = || Words::from("–");
+            let next = release.next.as_ref();
+            table.row([
+                angle(release),
+                next.map_or_else(dash, |next| next.impacts.to_string().into()),
+                next.map_or_else(dash, |next| degrees(next.rests_by_rad)),
+                next.and_then(|next| self.releases.get(next.release)).map_or_else(dash, angle),
+                next.map_or_else(dash, |next| next.revolutions.to_string().into()),
+            ]);
+        }
+        page.push(Block::Table(table));
+        let all = match self.all_repeat() {
+            true => "So every motion that rests once is periodic some time later".to_owned(),
+            false => {
+                format!("A motion that is not at rest again within {} impacts was followed no further", self.looked_at)
+            }
+        };
+        let round = |round: &Round| {
+            let (impacts, turns) = (words::many(round.impacts, "impact"), words::many(round.revolutions, "revolution"));
+            format!("{turns}, with {impacts} and those without end by which it comes to rest").as_str().into()
+        };
+        page.push(Block::paragraph(match self.periodic[..] {
+            [] => words![all, "."],
+            _ => words![
+                all,
+                ". What is let go at the same place again repeats after ",
+                Words::joined(self.periodic.iter().map(round), ", or after "),
+                "."
+            ],
+        }));
+        page.push(Block::paragraph(
+            "Hypotheses: the machine's numbers are the decimals of its model file; impacts are instantaneous, by Newton's law, and those that \
+             follow each other without end put the follower to rest.",
+        ));
         page
     }
 }

@@ -49,6 +49,7 @@ mod published;
 mod python;
 mod random;
 mod random_orbits;
+mod resting;
 mod rounded;
 mod routes;
 mod second_order;

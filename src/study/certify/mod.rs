@@ -1,7 +1,10 @@
-//! Which corner impacts are proved to exist, with what, and which are not.
+//! Which corner impacts are proved to exist, with what, and which are not; and what else the same script proves.
 //!
 //! Where to look is found here, in doubles; the proof is made by `derivations/certify.py`, in balls, from the numbers of the
 //! model file. It believes nothing of where to look, and a place that is off is refused.
+
+mod orbits;
+mod resting;
 
 use nalgebra::{Matrix2, Vector2};
 use serde::{Deserialize, Serialize};
@@ -19,6 +22,11 @@ use crate::known::Known;
 use crate::model::{Model, ModelError, Study};
 use crate::python::{self, PythonError};
 use crate::simulate::Machine;
+pub use orbits::{
+    OrbitEvent, OrbitKind, ProvedCount, ProvedCounts, ProvedEvent, ProvedOrbit, ProvedOrbits, ProvedStart,
+    UndecidedOrbit, proved_counts, proved_orbits,
+};
+pub use resting::{NextRelease, ProvedRelease, ProvedResting, Round, proved_resting};
 
 /// Bits that are enough for more digits than anyone prints.
 pub const BITS: u32 = 128;
@@ -244,156 +252,6 @@ pub fn certify(model: &Model, range: Study, revolutions: u64, bits: u32) -> Resu
         }
     }
     Ok(Certified { model: ModelLabel::of(model), range, bits, corner_impacts, refused })
-}
-
-/// The periodic orbits of one impact and of two in one revolution at a speed, found and proved by the script alone.
-#[derive(Clone, Debug, Deserialize)]
-pub struct ProvedOrbits {
-    /// Speed, rpm; the decimal that it is written as.
-    #[serde(skip)]
-    pub speed_rpm: f64,
-    /// Bits that the balls were computed with.
-    #[serde(skip)]
-    pub bits: u32,
-    /// Each once.
-    pub orbits: Vec<ProvedOrbit>,
-    /// The numbers of impacts for which there are proved to be no others.
-    pub complete: Vec<usize>,
-    /// Where there may be others.
-    pub undecided: Vec<UndecidedOrbit>,
-}
-
-document!(ProvedOrbits as it {
-    schema: "corner-impact/certify/1",
-    speed_rpm: it.speed_rpm,
-    bits: it.bits,
-    known: Known::Proved,
-    orbits: it.orbits,
-    complete: it.complete,
-    undecided: it.undecided,
-});
-
-/// Where it is not decided whether there is an orbit, or whether it is one of the machine.
-#[derive(Clone, Debug, Deserialize, Serialize)]
-#[expect(missing_docs, reason = "the names say what each is")]
-pub struct UndecidedOrbit {
-    pub impacts: usize,
-    /// From where to where each impact may be, rad.
-    pub cam_angles_rad: Vec<[f64; 2]>,
-}
-
-/// A periodic orbit: its flights are clear of the cam, and it is alone near its impacts.
-#[derive(Clone, Debug, Deserialize, Serialize)]
-#[expect(missing_docs, reason = "the names say what each is")]
-pub struct ProvedOrbit {
-    pub revolutions: u64,
-    pub impacts: Vec<ProvedStart>,
-    pub kind: OrbitKind,
-}
-
-/// Where a flight of an orbit starts: the velocity after the impact, relative to the cam.
-#[derive(Clone, Debug, Deserialize, Serialize)]
-#[expect(missing_docs, reason = "the names say what each is")]
-pub struct ProvedStart {
-    pub cam_angle_rad: Ball,
-    pub relative_velocity_m_s: Ball,
-}
-
-/// What the multipliers of an orbit are proved to be.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum OrbitKind {
-    /// Both inside of the unit circle.
-    Stable,
-    /// One is above 1.
-    Saddle,
-    /// One is below -1.
-    Flip,
-    /// A pair outside of the unit circle.
-    Unstable,
-}
-
-named!(OrbitKind, OrbitEvent);
-
-/// All orbits of one impact and of two in one revolution at a speed, rpm.
-pub fn proved_orbits(model: &Model, speed_rpm: f64, bits: u32) -> Result<ProvedOrbits, CertifyError> {
-    let document = json!({ "follower": model.follower, "cam": model.cam, "bits": bits, "orbits_at_rpm": speed_rpm });
-    let found: ProvedOrbits = python::run("certify.py", &document)?;
-    Ok(ProvedOrbits { speed_rpm, bits, ..found })
-}
-
-/// How many orbits of one impact in one revolution there are at every speed of a range, found and proved by the script alone.
-#[derive(Clone, Debug, Deserialize)]
-pub struct ProvedCounts {
-    /// The range of speeds, rpm.
-    #[serde(skip)]
-    pub range_rpm: [f64; 2],
-    /// Bits that the balls were computed with.
-    #[serde(skip)]
-    pub bits: u32,
-    /// By rising speed, from one event to the next.
-    pub counts: Vec<ProvedCount>,
-    /// Speeds, rpm, at which the number is not decided.
-    pub undecided: Vec<[f64; 2]>,
-    /// By rising speed.
-    pub events: Vec<ProvedEvent>,
-}
-
-document!(ProvedCounts as it {
-    schema: "corner-impact/certify/1",
-    rpm: it.range_rpm,
-    bits: it.bits,
-    known: Known::Proved,
-    counts: it.counts,
-    undecided: it.undecided,
-    events: it.events,
-});
-
-/// The number of orbits at every speed between two; at an event, whose ball says where it is, the nearest doubles.
-#[derive(Clone, Debug, Deserialize, Serialize)]
-#[expect(missing_docs, reason = "the names say what each is")]
-pub struct ProvedCount {
-    pub from_rpm: f64,
-    pub to_rpm: f64,
-    pub one_impact_orbits: usize,
-    /// Of each of them; none where that is not decided.
-    pub kinds: Vec<Option<OrbitKind>>,
-}
-
-/// The one speed, near its ball, at which an orbit appears, vanishes or changes.
-#[derive(Clone, Debug, Deserialize, Serialize)]
-pub struct ProvedEvent {
-    /// What happens.
-    pub kind: OrbitEvent,
-    /// Speed, rpm.
-    pub speed_rpm: Ball,
-    /// Of the impact, rad.
-    pub cam_angle_rad: Ball,
-    /// The kinds of all orbits at the speeds before it; none where their number is not decided.
-    pub before: Option<Vec<Option<OrbitKind>>>,
-    /// And after it.
-    pub after: Option<Vec<Option<OrbitKind>>>,
-}
-
-/// What happens to an orbit of one impact as the speed rises.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum OrbitEvent {
-    /// Its impact is on a corner of the cam.
-    CornerImpact,
-    /// Two orbits are one.
-    Fold,
-    /// A multiplier is -1.
-    Flip,
-    /// Its flight touches the cam.
-    Graze,
-}
-
-/// The number of orbits of one impact in one revolution at every speed of a range, rpm.
-pub fn proved_counts(model: &Model, range_rpm: [f64; 2], bits: u32) -> Result<ProvedCounts, CertifyError> {
-    let document = json!({ "follower": model.follower, "cam": model.cam, "bits": bits, "orbits_over_rpm": range_rpm });
-    let found: ProvedCounts = python::run("certify.py", &document)?;
-    Ok(ProvedCounts { range_rpm, bits, ..found })
 }
 
 /// What the script says of one place.
