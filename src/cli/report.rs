@@ -17,7 +17,7 @@ use crate::study::verify::External;
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact report\n\
-    \x20 corner-impact report models/damped-light.toml --out page.html\n\
+    \x20 corner-impact report models/ballistic.toml --out page.html\n\
     \n\
     The page needs no network and no other file; its name is printed. A model without a corner impact has\n\
     a page, too, which says why there is none.\n\
