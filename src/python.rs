@@ -3,15 +3,18 @@
 //! The scripts get a model's numbers and nothing that this program computed. They are part of the program: for each run they
 //! are written to a private temporary folder, run there, and removed. The current folder holds what somebody else wrote, and
 //! nothing of it is run or imported: the private folder is the script's own current folder, so that a relative entry of PATH
-//! or PYTHONPATH leads there, too. The interpreter is `$CORNER_IMPACT_PYTHON`; else that of the `.venv` of the folder in which
-//! this program was built, if it is still there; else `python3` of the PATH.
+//! or PYTHONPATH leads there, too. The interpreter is `$CORNER_IMPACT_PYTHON`; else the one that has loaded this library, if one
+//! has; else that of the `.venv` of the folder in which this program was built, if it is still there; else `python3` of the PATH.
 
 use std::io::{Read, Write};
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
+use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
+
+use crate::stop;
 
 /// The scripts, with the modules that they import and the file that they read, by their places in the project.
 const FILES: [(&str, &str); 21] = [
@@ -89,18 +92,20 @@ pub(crate) fn run<T: serde::de::DeserializeOwned>(script: &str, input: &serde_js
 /// and its standard error.
 fn talk(mut child: Child, input: Vec<u8>) -> std::io::Result<(String, Option<String>, String)> {
     let pipes = (child.stdin.take(), child.stdout.take(), child.stderr.take());
-    std::thread::scope(|scope| {
+    let mut child = Waited(child);
+    std::thread::scope(move |scope| {
         // A script that ends without reading closes the pipe: its own message says why.
         let feed = pipes.0.map(|mut stdin| scope.spawn(move || stdin.write_all(&input).is_ok()));
         let stdout = pipes.1.map(|pipe| scope.spawn(|| collect(pipe)));
         let stderr = pipes.2.map(|pipe| scope.spawn(|| collect(pipe)));
         let start = Instant::now();
         let (status, succeeded) = loop {
-            match child.try_wait()? {
+            stop::ask();
+            match child.0.try_wait()? {
                 Some(status) => break (status.to_string(), status.success()),
                 None if start.elapsed() > TIME_LIMIT => {
-                    child.kill()?;
-                    child.wait()?;
+                    child.0.kill()?;
+                    child.0.wait()?;
                     break (format!("stopped after {} s", TIME_LIMIT.as_secs()), false);
                 }
                 None => std::thread::sleep(Duration::from_millis(5)),
@@ -113,6 +118,16 @@ fn talk(mut child: Child, input: Vec<u8>) -> std::io::Result<(String, Option<Str
         let stdout = text(stdout);
         Ok((status, succeeded.then_some(stdout), text(stderr)))
     })
+}
+
+/// A child that ends with whoever waits for it; its pipes are closed then, and those who read them end, too.
+struct Waited(Child);
+
+impl Drop for Waited {
+    fn drop(&mut self) {
+        // One that has ended already is neither killed nor waited for.
+        let _ = self.0.kill().and_then(|()| self.0.wait());
+    }
 }
 
 fn collect(mut pipe: impl Read) -> String {
@@ -133,6 +148,14 @@ fn written() -> std::io::Result<TempDir> {
     Ok(folder)
 }
 
+/// The interpreter that this library is loaded by.
+static HOST: OnceLock<PathBuf> = OnceLock::new();
+
+/// Says which interpreter has loaded this library; the first word counts.
+pub fn loaded_by(interpreter: PathBuf) {
+    let _ = HOST.set(interpreter);
+}
+
 fn interpreter() -> PathBuf {
     let chosen = std::env::var_os("CORNER_IMPACT_PYTHON").map(PathBuf::from);
     // A bare name is looked for in the PATH; a path is meant from the current folder, which is not the script's.
@@ -141,5 +164,5 @@ fn interpreter() -> PathBuf {
         _ => std::path::absolute(&path).unwrap_or(path),
     });
     let of_the_build = || Some(PathBuf::from(OF_THE_BUILD)).filter(|path| path.is_file());
-    chosen.or_else(of_the_build).unwrap_or_else(|| "python3".into())
+    chosen.or_else(|| HOST.get().cloned()).or_else(of_the_build).unwrap_or_else(|| "python3".into())
 }

@@ -81,6 +81,31 @@ impl StroboscopicMap {
     }
 }
 
+/// The first impact after the follower leaves the cam at `cam_angle`, rad, in `[0, 2 pi)`, with a relative velocity, m/s, zero or
+/// more: the impact map. `None` where there is none to come, or for very long.
+pub fn next_impact(machine: &Machine, cam_angle: f64, relative_velocity: f64) -> Result<Option<Event>, SimulateError> {
+    /// Revolutions without an impact after which none is waited for.
+    const PATIENCE: u64 = 100_000;
+    if !(relative_velocity >= 0.0) {
+        return Ok(None);
+    }
+    let mut motion = machine.start_on_cam(cam_angle, relative_velocity)?;
+    loop {
+        // A cam that does not let go within a turn never does.
+        let goal = motion.after(if motion.contact { 1 } else { PATIENCE });
+        let mut last = None;
+        let flow = machine.advance(&mut motion, goal, &mut |event: &Event| {
+            last = Some(*event);
+            ControlFlow::Break(())
+        })?;
+        match last {
+            Some(event) if event.kind == EventKind::Impact => return Ok(Some(event)),
+            None if flow.is_continue() => return Ok(None),
+            _ => {}
+        }
+    }
+}
+
 /// A motion that repeats.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Periodic {

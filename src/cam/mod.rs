@@ -77,6 +77,13 @@ enum Joint {
     Spline { degree: usize },
 }
 
+/// An angle, rad, in `[0, 2 pi)`.
+pub fn within_a_turn(angle: f64) -> f64 {
+    let angle = angle.rem_euclid(TAU);
+    // A tiny negative angle rounds up to a whole turn.
+    if angle >= TAU { 0.0 } else { angle }
+}
+
 /// The angle between two angles, rad, the shorter way round.
 pub fn apart(one: f64, two: f64) -> f64 {
     let turned = (one - two).rem_euclid(TAU);

@@ -43,7 +43,8 @@ pub(super) fn build(model: &Model, profile: &TableProfile) -> Result<Cam, ModelE
         Spline::Cubic => (cubic(&gaps), 3),
         Spline::Quintic => (quintic(&gaps), 5),
     };
-    let overflow = || model.reject("cam.file", "has lifts too large, or angles too close, for a spline through them");
+    let place = if profile.file.is_some() { "cam.file" } else { "cam.rows" };
+    let overflow = || model.reject(place, "has lifts too large, or angles too close, for a spline through them");
     let law = |(gap, mut piece): (&Gap, [f64; 6])| {
         let mut scale = 1.0;
         for coefficient in &mut piece {

@@ -4,8 +4,9 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use super::start::{finite, range, rpm, turn};
+use super::start::{finite, range, rpm};
 use super::{CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::watched};
+use crate::cam::within_a_turn;
 use crate::figures::basins_figure;
 use crate::orbit::Search;
 use crate::show::csv;
@@ -70,7 +71,7 @@ fn cells(text: &str) -> Result<[usize; 2], String> {
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let to_standard = picture::out_is_standard(arguments.out.as_ref(), arguments.summary)?;
     let model = arguments.model.read(session)?;
-    let section = Section::new(&model, arguments.rpm, turn(arguments.strobe))?;
+    let section = Section::new(&model, arguments.rpm, within_a_turn(arguments.strobe))?;
     let grid = section.grid(arguments.grid, arguments.position, arguments.velocity)?;
     let patience = Patience { revolutions: arguments.revolutions, longest: arguments.longest };
     let (clock, threads) = (Instant::now(), arguments.threads.map(usize::from));

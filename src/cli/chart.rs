@@ -7,13 +7,13 @@ use clap::ValueEnum;
 
 use super::curve::{LONGEST_STEP, MOST_POINTS};
 use super::start::{StartArguments, axis, count, rpm};
-use super::store::{Shard, Store, shard, status};
 use super::{CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::watched};
 use crate::diagram::Speeds;
 use crate::figures::{Coloured, chart_figure};
 use crate::orbit::branch::{Bifurcation, Following};
 use crate::orbit::{Parameter, Search};
 use crate::show::csv;
+use crate::study::chart::store::{SIDES, Shard, Store, status};
 use crate::study::chart::{Axis, Chart, Lengths};
 use crate::study::curve::curves;
 
@@ -81,6 +81,16 @@ enum ShowName {
     ImpactSpeed,
 }
 
+/// `I/N`.
+fn shard(text: &str) -> Result<Shard, String> {
+    let number = |text: &str| text.trim().parse::<usize>().ok();
+    let parts = text.split_once('/').and_then(|(index, of)| Some((number(index)?, number(of)?)));
+    match parts {
+        Some((index, of)) if (1..=of).contains(&index) => Ok(Shard { index, of }),
+        _ => Err("must be I/N: the part I, from 1 to N, of N".into()),
+    }
+}
+
 /// A file name of a picture, a table or a store, for clap.
 fn out(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
@@ -114,7 +124,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let to_standard = picture::out_is_standard(arguments.out.as_ref(), arguments.summary)?;
     let model = arguments.model.read(session)?;
     let named = |(name, values): &(String, Speeds)| -> Result<Axis, CommandError> {
-        Ok(Axis { parameter: Parameter::named(&model, name)?, values: *values })
+        Ok(Axis::even(Parameter::named(&model, name)?, values))
     };
     // Neither is missing where it is not the state of a store that is asked for.
     let (Some(x), Some(y)) = (&arguments.x, &arguments.y) else { return Ok(Exit::BadInput) };
@@ -131,7 +141,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         return Err(CommandError::Words("--shard is for a store: --out must end in .zarr".into()));
     }
     if let Some(folder) = folder {
-        let store = Store::open(folder, &chart)?;
+        let store = Store::open(folder, &chart, SIDES)?;
         let filled = watched("", |watch| store.fill(arguments.shard.unwrap_or(Shard::ALL), threads, watch))?;
         session.answer(&filled, arguments.summary)?;
         return Ok(Exit::Agrees);
@@ -165,17 +175,13 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
 /// The speeds of a chart, and how curves are followed through its other number.
 fn ground(chart: &Chart) -> Result<([f64; 2], Following), CommandError> {
     let (speeds, other) = match [&chart.x, &chart.y] {
-        [speeds, other] | [other, speeds] if speeds.parameter == Parameter::Speed => (speeds.values, other),
+        [speeds, other] | [other, speeds] if speeds.parameter == Parameter::Speed => (speeds.ends(), other),
         _ => {
             return Err(CommandError::Words(
                 "--with-curves follows events through speeds: --x or --y must be rpm".into(),
             ));
         }
     };
-    let Axis { parameter, values } = other;
-    let (parameter, range) = (parameter.clone(), [values.low, values.high]);
-    Ok((
-        [speeds.low, speeds.high],
-        Following { parameter, range, longest_step: LONGEST_STEP, most_points: MOST_POINTS },
-    ))
+    let (parameter, range) = (other.parameter.clone(), other.ends());
+    Ok((speeds, Following { parameter, range, longest_step: LONGEST_STEP, most_points: MOST_POINTS }))
 }

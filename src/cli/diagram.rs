@@ -5,11 +5,11 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 
-use super::start::{StartArguments, count, finite, speeds, turn};
+use super::start::{StartArguments, count, finite, speeds};
 use super::{
     CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::Progress, progress::watched,
 };
-use crate::cam::Cam;
+use crate::cam::{Cam, within_a_turn};
 use crate::diagram::{Counted, Following, Places, Section, Speeds, Starts, Sweep};
 use crate::figures::{corner_marks, impact_diagram, strobe_diagram};
 use crate::show::csv;
@@ -105,7 +105,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         record: arguments.record,
         section: match arguments.section {
             SectionName::Impact => Section::Impacts,
-            SectionName::Strobe => Section::Strobe(turn(arguments.strobe.unwrap_or(0.0))),
+            SectionName::Strobe => Section::Strobe(within_a_turn(arguments.strobe.unwrap_or(0.0))),
         },
         growth: arguments.lyapunov.then_some(growth),
     };

@@ -7,7 +7,7 @@ use clap_mangen::Man;
 use clap_mangen::roff::{Roff, roman};
 
 use super::{CommandError, Exit, Session, help};
-use crate::cli::file::Output;
+use crate::file::Output;
 
 /// Prints the manual page, or writes one for the program and one for each command.
 #[derive(clap::Args)]

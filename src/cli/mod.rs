@@ -12,7 +12,6 @@ mod continuation;
 mod curve;
 mod diagram;
 mod figure;
-pub mod file;
 mod help;
 mod locate;
 mod man;
@@ -26,7 +25,6 @@ mod session;
 mod simulate;
 mod speeds;
 mod start;
-mod store;
 mod verify;
 
 use std::error::Error;
@@ -39,7 +37,7 @@ use model::ModelArgument;
 use session::Session;
 pub use session::Terminal;
 
-use crate::cli::file::{FileError, Output};
+use crate::file::{self, FileError, Output};
 use crate::model::ModelError;
 
 /// How a command ended; the process's exit code.
@@ -172,6 +170,10 @@ pub fn run_at(
         Err(error) => return session.refuse(&error),
     };
     session.color = arguments.color;
+    if let Err(error) = file::clear_on_signals() {
+        session.complain(&format!("signals: {error}"));
+        return Exit::BadInput;
+    }
     arguments.command.run(&mut session).unwrap_or_else(|error| {
         // Whoever closes a pipe early, as `head` does, wants no more, nor a complaint.
         match &error {

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::ValueEnum;
 
 use super::{CommandError, Exit, Session};
-use crate::cli::file::Output;
+use crate::file::Output;
 
 /// Writes a commented model file to start from: every field with its unit and what it may be.
 #[derive(clap::Args)]

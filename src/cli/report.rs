@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::picture::ends_in;
 use super::progress::watched;
 use super::{CommandError, Exit, ModelArgument, Session};
-use crate::cli::file::Output;
+use crate::file::Output;
 use crate::model::{Model, ModelError};
 use crate::pages::report::html;
 use crate::report::Report;

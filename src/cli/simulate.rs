@@ -5,10 +5,11 @@ use std::io::Write;
 use std::path::{Component, Path, PathBuf};
 
 use super::picture::{self, Canvas, is_standard, picture as drawn_only, picture_or_table};
-use super::start::{StartArguments, count, finite, rpm, turn};
+use super::start::{StartArguments, count, finite, rpm};
 use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
-use crate::cli::file::Output;
+use crate::cam::within_a_turn;
 use crate::figures::{self, phase_plane as phase_plane_figure, time_trace};
+use crate::file::Output;
 use crate::show::csv;
 use crate::study::simulate::{Sight, Simulation, Until, Wanted};
 
@@ -90,11 +91,12 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let model = arguments.model.read(session)?;
     let simulation = Simulation::new(&model, arguments.rpm, arguments.start.start())?;
     let (machine, first) = (&simulation.machine, &simulation.first);
-    let drawn = arguments.drawn.unwrap_or(DRAWN);
+    let shown = trace.is_some() || phase_plane.is_some();
+    let drawn = if shown { arguments.drawn.unwrap_or(DRAWN) } else { 0 };
     let wanted = Wanted {
         until: arguments.impacts.map_or(Until::Revolutions(arguments.revolutions), Until::Impacts),
         events: events.is_some(),
-        strobe: arguments.strobe.map(turn),
+        strobe: arguments.strobe.map(within_a_turn),
         drawn,
         lyapunov: arguments.lyapunov,
     };

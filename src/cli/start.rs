@@ -1,7 +1,6 @@
 //! Arguments that more than one subcommand takes: speeds, and where a run starts.
 
-use std::f64::consts::TAU;
-
+use crate::cam::within_a_turn;
 use crate::diagram::{Placed, Speeds, Start};
 use crate::flight::State;
 
@@ -22,15 +21,8 @@ pub(super) struct StartArguments {
 impl StartArguments {
     pub(super) fn start(&self) -> Start {
         let follower = self.state.map_or(Placed::OnCam(self.relative_velocity.unwrap_or(0.0)), Placed::At);
-        Start { cam_angle: turn(self.start_angle), follower }
+        Start { cam_angle: within_a_turn(self.start_angle), follower }
     }
-}
-
-/// An angle in `[0, 2 pi)`.
-pub(super) fn turn(angle: f64) -> f64 {
-    let angle = angle.rem_euclid(TAU);
-    // A tiny negative angle rounds up to a whole turn.
-    if angle < TAU { angle } else { 0.0 }
 }
 
 pub(super) fn finite(text: &str) -> Result<f64, String> {

@@ -12,6 +12,7 @@ use serde::Serialize;
 
 use super::{Following, Row, Seen, Starts, Sweep, SweepError};
 use crate::simulate::EventKind;
+use crate::stop;
 
 /// A part of a record, made by a worker.
 pub trait Block: Default + Send {
@@ -20,6 +21,11 @@ pub trait Block: Default + Send {
 
     /// Whether it is time to send it on.
     fn is_full(&self) -> bool;
+
+    /// Takes note that the run at a speed could not go on, and says that the sweep goes on all the same; else it ends there.
+    fn fail(&mut self, _rpm: f64) -> bool {
+        false
+    }
 }
 
 /// A block that keeps nothing: for a sweep that is only counted.
@@ -70,6 +76,8 @@ const REVOLUTIONS_PER_TASK: u64 = 10_000;
 pub fn threads(count: Option<usize>) -> Result<rayon::ThreadPool, SweepError> {
     // Of 0 the builder makes as many as there are cores.
     let builder = rayon::ThreadPoolBuilder::new().num_threads(count.unwrap_or(0));
+    let builder = builder
+        .spawn_handler(|thread| std::thread::Builder::new().spawn(stop::carried(move || thread.run())).map(drop));
     builder.build().map_err(|error| SweepError::Threads(error.to_string()))
 }
 
@@ -168,7 +176,6 @@ impl Sweep {
         send: &mut dyn FnMut(B) -> ControlFlow<()>,
     ) -> Result<(Option<crate::simulate::Motion>, Tally), SweepError> {
         let rpm = self.speeds.value(index);
-        let failed = |error| SweepError::Simulate { rpm, error };
         let machine = self.machine_at(rpm);
         let motions = match &from {
             Some(motion) => machine.resume(motion).map(|motion| vec![motion]),
@@ -183,13 +190,21 @@ impl Sweep {
             if block.is_full() { send(std::mem::take(&mut block)) } else { ControlFlow::Continue(()) }
         };
         let (mut end, mut runs) = (None, 0);
-        for motion in motions.map_err(failed)? {
-            let which = matches!(self.starts, Starts::Found(_)).then_some(runs);
-            let (last, flow) = self.speed(&machine, rpm, motion, which, &mut keep).map_err(failed)?;
-            (end, runs) = (Some(last), runs + 1);
-            if flow.is_break() {
-                break;
+        let run = motions.and_then(|motions| {
+            for motion in motions {
+                let which = matches!(self.starts, Starts::Found(_)).then_some(runs);
+                let (last, flow) = self.speed(&machine, rpm, motion, which, &mut keep)?;
+                (end, runs) = (Some(last), runs + 1);
+                if flow.is_break() {
+                    break;
+                }
             }
+            Ok(())
+        });
+        if let Err(error) = run
+            && !block.fail(rpm)
+        {
+            return Err(SweepError::Simulate { rpm, error });
         }
         tally.revolutions = runs as u64 * (self.transient + self.record);
         // The caller that wants no more sees to it itself.

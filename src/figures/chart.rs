@@ -136,7 +136,7 @@ pub fn chart_figure(found: &Charted, coloured: Coloured, curves: &[EventCurve]) 
     let (classes, class_of) = classes(found, coloured);
     let range = |axis: &chart::Axis| {
         // The middles of the outermost cells are the ends of the axis; one value alone has a cell of some width.
-        let (low, high, count) = (axis.values.low, axis.values.high, axis.values.count as f64);
+        let ([low, high], count) = (axis.ends(), axis.values.len() as f64);
         let half = if high > low {
             0.5 * (high - low) / (count - 1.0)
         } else {
@@ -151,8 +151,8 @@ pub fn chart_figure(found: &Charted, coloured: Coloured, curves: &[EventCurve]) 
     for row in 0..rows {
         for column in 0..columns {
             let (right, above) = (place(column, columns), place(row, rows));
-            let (i, j) = ((right * x.values.count as f64) as usize, (above * y.values.count as f64) as usize);
-            let point = found.points[j * x.values.count + i].as_ref();
+            let (i, j) = ((right * x.values.len() as f64) as usize, (above * y.values.len() as f64) as usize);
+            let point = found.points[j * x.values.len() + i].as_ref();
             let class = point.map_or(classes.len() - 1, &class_of);
             let cells = areas[class].get_or_insert_with(|| Density::new(across, up));
             let [[x0, x1], [y0, y1]] = [across, up];

@@ -35,15 +35,18 @@ impl Model {
     /// The same model with other numbers, of `[study]` as well, each named as for [`Self::path_of`], checked together as the file is; they become
     /// a part of its name.
     pub fn changed(&self, numbers: &[(String, f64)]) -> Result<Self, ModelError> {
-        let (mut fields, mut changes) = (self.fields.clone(), self.changes.clone());
+        let (mut fields, mut new) = (self.fields.clone(), Vec::new());
         for (name, number) in numbers {
             let path = self.path_in(&["follower", "cam", "study"], name, &[])?.to_owned();
-            if changes.iter().any(|(changed, _)| *changed == path) {
+            if new.iter().any(|(changed, _)| *changed == path) {
                 return Err(ModelError::file(self.file(), format!("{path} is set twice")));
             }
             fields = fields.with_number(&path, *number)?;
-            changes.push((path, *number));
+            new.push((path, *number));
         }
+        let mut changes = self.changes.clone();
+        changes.retain(|(path, _)| new.iter().all(|(changed, _)| changed != path));
+        changes.extend(new);
         let mut model = Self::from_fields(fields)?;
         if !numbers.is_empty() {
             let words: Vec<String> = changes.iter().map(|(path, number)| format!("{path} = {number}")).collect();

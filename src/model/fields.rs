@@ -1,12 +1,9 @@
-//! TOML as a flat list of fields with their lines, so that every complaint can point into the file.
+//! A model file as a flat list of fields with their lines, so that every complaint can point into the file.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
-
-use toml::Spanned;
-use toml::de::{DeTable, DeValue};
 
 use super::{ModelError, nearest};
 
@@ -51,29 +48,40 @@ impl fmt::Display for Allowed {
     }
 }
 
+/// Two numbers, and their line.
+pub(super) type Pair = ([f64; 2], Option<usize>);
+
 #[derive(Clone, Debug)]
-enum Value {
+pub(super) enum Value {
     Table,
     /// Its elements are fields of their own: `path[0]`, `path[1]`, ...
     Array(usize),
+    /// An array of pairs of numbers: there may be a million.
+    Rows(Vec<Pair>),
     Text(String),
     Number(f64),
     Other,
 }
 
 #[derive(Clone, Debug)]
-struct Field {
-    /// None of a number that the file does not say: a default, or one that was put there in its place.
-    line: Option<usize>,
+pub(super) struct Field {
+    /// None of what the file does not say: a default, what was put there in its place, or what came without a file.
+    pub(super) line: Option<usize>,
+    /// Not of a default.
+    pub(super) is_there: bool,
     /// Of its name in the text; of an element of an array, of its value.
-    key: Range<usize>,
+    pub(super) key: Range<usize>,
     /// Of its value in the text.
-    span: Range<usize>,
-    written: String,
-    value: Value,
+    pub(super) span: Range<usize>,
+    pub(super) written: String,
+    pub(super) value: Value,
 }
 
 impl Field {
+    pub(super) fn without_line(written: String, value: Value) -> Self {
+        Self { line: None, is_there: true, key: 0..0, span: 0..0, written, value }
+    }
+
     /// Longest value that a message repeats, in characters.
     const MOST_SHOWN: usize = 60;
 
@@ -82,7 +90,7 @@ impl Field {
         let is_long = self.written.chars().count() > Self::MOST_SHOWN;
         match self.value {
             Value::Table => None,
-            Value::Array(_) if self.written.starts_with("[[") || self.written.is_empty() => None,
+            Value::Array(_) | Value::Rows(_) if self.written.starts_with("[[") || self.written.is_empty() => None,
             _ if is_long => Some(self.written.chars().take(Self::MOST_SHOWN).chain("...".chars()).collect()),
             _ => Some(self.written.clone()),
         }
@@ -92,7 +100,7 @@ impl Field {
 /// Every name of a field or a table: none of them is a slip for another.
 const NAMES: &str = "name source follower cam study mass damping stiffness gravity rest_position restitution law base_radius \
     flank_radius nose_radius flank_start_deg nose_end_deg offset amplitude amplitudes phases_deg base \
-    corner_rounding_deg segment motion span_deg rise start_deg coefficients file spline rpm_min rpm_max lift";
+    corner_rounding_deg segment motion span_deg rise start_deg coefficients file rows spline rpm_min rpm_max lift";
 
 /// The fields of a model file by dotted path, and which of them have been asked for.
 #[derive(Clone, Debug)]
@@ -100,63 +108,24 @@ pub(super) struct Fields {
     file: String,
     /// As long as the fields are what it says.
     text: Option<Arc<str>>,
-    fields: BTreeMap<String, Field>,
+    pub(super) fields: BTreeMap<String, Field>,
     known: BTreeSet<String>,
 }
 
 impl Fields {
-    pub(super) fn parse(file: &str, text: &str) -> Result<Self, ModelError> {
-        let line_ends: Vec<usize> = text.match_indices('\n').map(|(at, _)| at).collect();
-        let line_of = |offset: usize| 1 + line_ends.partition_point(|end| *end < offset);
-        let root = DeTable::parse(text).map_err(|error| ModelError {
-            line: error.span().map(|span| line_of(span.start)),
-            // Some of them are two lines long.
-            ..ModelError::file(file, format!("not valid TOML: {}", error.message().replace('\n', ", ")))
-                .at(Some(text.into()), error.span())
-        })?;
-        let (fields, known) = (BTreeMap::new(), BTreeSet::new());
-        let mut fields = Self { file: file.into(), text: Some(text.into()), fields, known };
-        let place = |span: Range<usize>| (line_of(span.start), text.get(span).unwrap_or_default().to_owned());
-        fields.add_table("", root.get_ref(), &place);
-        Ok(fields)
+    /// No fields yet, of a file with a text, or of what is not a file.
+    pub(super) fn none(file: &str, text: Option<&str>) -> Self {
+        Self { file: file.into(), text: text.map(Arc::from), fields: BTreeMap::new(), known: BTreeSet::new() }
     }
 
-    fn add_table(&mut self, prefix: &str, table: &DeTable<'_>, place: &dyn Fn(Range<usize>) -> (usize, String)) {
-        for (key, value) in table {
-            let path = format!("{prefix}{}", key.get_ref());
-            // A table's own span is not its header's; the key's is.
-            let (line, _) = place(key.span());
-            self.add(&path, (line, key.span()), value, place);
-        }
+    /// Puts a field there, in the place of one that may be there.
+    pub(super) fn put(&mut self, path: &str, value: Value) {
+        self.fields.insert(path.into(), Field::without_line(String::new(), value));
     }
 
-    fn add(
-        &mut self,
-        path: &str,
-        (line, key): (usize, Range<usize>),
-        spanned: &Spanned<DeValue<'_>>,
-        place: &dyn Fn(Range<usize>) -> (usize, String),
-    ) {
-        let (_, written) = place(spanned.span());
-        let value = match spanned.get_ref() {
-            DeValue::Table(table) => {
-                self.add_table(&format!("{path}."), table, place);
-                Value::Table
-            }
-            DeValue::Array(items) => {
-                for (index, item) in items.iter().enumerate() {
-                    let (line, _) = place(item.span());
-                    self.add(&format!("{path}[{index}]"), (line, item.span()), item, place);
-                }
-                Value::Array(items.len())
-            }
-            DeValue::String(text) => Value::Text(text.to_string()),
-            DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix())
-                .map_or(Value::Other, |integer| Value::Number(integer as f64)),
-            DeValue::Float(float) => float.as_str().parse().map_or(Value::Other, Value::Number),
-            _ => Value::Other,
-        };
-        self.fields.insert(path.into(), Field { line: Some(line), key, span: spanned.span(), written, value });
+    /// The text of the file, as long as the fields are what it says.
+    pub(super) fn source(&self) -> &str {
+        self.text.as_deref().unwrap_or_default()
     }
 
     pub(super) fn file(&self) -> &str {
@@ -205,7 +174,7 @@ impl Fields {
             let table = path.rsplit_once('.').and_then(|(table, _)| self.fields.get(table));
             let key = table.map_or(0..0, |table| table.key.clone());
             let (span, written, value) = (key.clone(), default.to_string(), Value::Number(default));
-            self.fields.insert(path.into(), Field { line: None, key, span, written, value });
+            self.fields.insert(path.into(), Field { line: None, is_there: false, key, span, written, value });
         }
         self.number(path, allowed)
     }
@@ -223,6 +192,18 @@ impl Fields {
     pub(super) fn numbers(&mut self, path: &str, most: usize) -> Result<Vec<f64>, ModelError> {
         let length = self.length(path, "numbers", most)?;
         (0..length).map(|index| self.number(&format!("{path}[{index}]"), Allowed::FINITE)).collect()
+    }
+
+    /// Pairs of numbers, each with its line, `fewest` to `most` of them.
+    pub(super) fn rows(&mut self, path: &str, [fewest, most]: [usize; 2]) -> Result<Vec<Pair>, ModelError> {
+        match self.take(path)?.value {
+            Value::Rows(rows) if (fewest..=most).contains(&rows.len()) => Ok(rows),
+            Value::Rows(rows) => {
+                Err(self.reject(path, format!("has {} rows; {fewest} to {most} are allowed", rows.len())))
+            }
+            Value::Array(0) => Err(self.reject(path, format!("has 0 rows; {fewest} to {most} are allowed"))),
+            _ => Err(self.reject(path, "must be a list of rows, each of two numbers")),
+        }
     }
 
     /// How many tables `[[path]]` there are, at least one.
@@ -255,7 +236,7 @@ impl Fields {
             // A mistyped field is missing under its own name: show what stands there.
             let table = path.rsplit_once('.').map_or("", |(table, _)| table);
             let inside = |(name, field): &(&String, &Field)| {
-                let is_there = field.line.is_some() && !name.ends_with(']');
+                let is_there = field.is_there && !name.ends_with(']');
                 is_there && name.rsplit_once('.').map_or("", |(table, _)| table) == table
             };
             let fields = self.fields.iter().filter(inside);
@@ -285,12 +266,12 @@ impl Fields {
         let field = self.fields.get(&in_table(at, written))?;
         let is_table = shown.starts_with('[');
         let written = if is_table { format!("[{written}]") } else { written.to_owned() };
-        let line = field.line?;
+        let place = field.line.map_or_else(|| "it".into(), |line| format!("line {line}"));
         Some(ModelError {
-            line: Some(line),
+            line: field.line,
             ..self
                 .reject(path, "is missing")
-                .meaning(Some(format!("did you mean {shown} where line {line} says {written}?")))
+                .meaning(Some(format!("did you mean {shown} where {place} says {written}?")))
                 .at(self.text.clone(), Some(field.key.clone()))
         })
     }

@@ -6,10 +6,13 @@
 
 mod changed;
 mod complaint;
+mod document;
 mod fields;
 mod nearest;
 mod profile;
 mod table;
+mod text;
+mod toml;
 
 use std::path::Path;
 
@@ -91,6 +94,11 @@ impl Model {
     /// Checks the text of a model file; `file` is the name that complaints carry.
     pub fn parse(file: &str, text: &str) -> Result<Self, ModelError> {
         Self::from_fields(Fields::parse(file, text)?)
+    }
+
+    /// Checks a document with the fields of a model file; `name` is the name that complaints carry.
+    pub fn of_document(name: &str, document: &serde_json::Value) -> Result<Self, ModelError> {
+        Self::from_fields(Fields::of_document(name, document)?)
     }
 
     fn from_fields(mut fields: Fields) -> Result<Self, ModelError> {

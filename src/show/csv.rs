@@ -144,7 +144,7 @@ pub(crate) fn chart(found: &Charted) -> String {
     let mut lines = format!("x,y,{POINT}");
     let Chart { x, y, .. } = &found.chart;
     for (index, point) in found.points.iter().enumerate() {
-        let (x, y) = (x.values.value(index % x.values.count), y.values.value(index / x.values.count));
+        let (x, y) = (x.values[index % x.values.len()], y.values[index / x.values.len()]);
         let _ = write!(lines, "{x},{y},");
         self::point(&mut lines, point);
     }

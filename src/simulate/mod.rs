@@ -35,6 +35,7 @@ use crate::cam::{Cam, Lift};
 use crate::flight::{Flight, State};
 use crate::impact::relative_rebound;
 use crate::model::Follower;
+use crate::stop;
 use crate::tolerance;
 use again::Turn;
 pub use event::{Event, EventKind, Met, Observer, SimulateError, Unobserved, Work};
@@ -204,8 +205,13 @@ impl Machine {
         goal: Goal,
         observer: &mut impl Observer,
     ) -> Result<ControlFlow<()>, SimulateError> {
-        let (mut revolution, mut events) = (motion.revolution, 0);
+        let (mut revolution, mut events, mut steps) = (motion.revolution, 0, 0_u32);
         loop {
+            // On the way in, and then from time to time.
+            if steps.is_multiple_of(64) {
+                stop::heed();
+            }
+            steps = steps.wrapping_add(1);
             let left = motion.left(&goal);
             // At the end of the last segment a corner is still to be passed.
             if !(left > 0.0) && motion.cam_angle < TAU {

@@ -112,11 +112,16 @@ const BLOCKS: u32 = 20;
 const PATIENCE: u64 = 100_000;
 
 impl Simulation {
+    /// The motion of a machine at a speed, rpm, from where it is.
+    pub fn of(model: &str, rpm: f64, machine: Machine, first: Motion) -> Self {
+        Self { model: model.into(), rpm, machine, first }
+    }
+
     /// The motion of a model at a speed from a start.
     pub fn new(model: &Model, rpm: f64, start: Start) -> Result<Self, StudyError> {
         let machine = machine(model, rpm)?;
         let first = start.motion(&machine)?;
-        Ok(Self { model: model.name.clone(), rpm, machine, first })
+        Ok(Self::of(&model.name, rpm, machine, first))
     }
 
     /// Runs it; `see` is shown what is asked for as it comes.

@@ -24,6 +24,7 @@ use crate::model::Model;
 use crate::progress::{Unwatched, Watch};
 use crate::published::{PrintedNumber, PublishedError, compare_published};
 use crate::python::PythonError;
+use crate::stop;
 use crate::study::ModelLabel;
 use crate::study::certify::{self, Certificate, Outcome};
 use crate::study::compared::{self, Log, Skipped, compare_borders};
@@ -211,7 +212,7 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
     let outside = start_outside(model, external)?;
     let proving = (external == External::Run).then(|| {
         let (model, place) = (model.clone(), certify::candidate(model, &cam, &at));
-        std::thread::spawn(move || certify::prove(&model, vec![place], certify::BITS))
+        std::thread::spawn(stop::carried(move || certify::prove(&model, vec![place], certify::BITS)))
     });
 
     watch.at("the map by the routes of this program", 0, 0);
@@ -335,7 +336,7 @@ fn start_outside(model: &Model, external: External) -> Result<Vec<Started>, Loca
     let study = model.study()?;
     let start = |program: Program| {
         let model = model.clone();
-        std::thread::spawn(move || external::run(program, &model, study))
+        std::thread::spawn(stop::carried(move || external::run(program, &model, study)))
     };
     let runs = external == External::Run && external::know(model);
     Ok(PROGRAMS.map(|program| (program, runs.then(|| start(program)))).into())

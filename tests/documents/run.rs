@@ -23,6 +23,7 @@ pub const ELSEWHERE: &[(&str, &str, Held)] = &[
     ("make check", "compiles everything once more", Held::Landing),
     ("make quick", "runs a part of what `make test` does", Held::Target),
     ("make test", "is what runs this test", Held::Landing),
+    ("make python", "builds, installs and tests the package", Held::Landing),
     ("make derive-check", "takes a minute of computer algebra", Held::Landing),
     ("make verify", "needs Python's packages; tests/it/routes.rs runs the same", Held::Landing),
     ("make report", "needs Python's packages; tests/browser opens the page", Held::Landing),

@@ -11,6 +11,7 @@ mod branches;
 mod cam_corners;
 mod cam_laws;
 mod cam_table;
+mod canonical;
 mod certify;
 mod chaos;
 mod chart;

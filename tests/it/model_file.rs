@@ -180,7 +180,7 @@ fn every_field_allows_what_the_page_says() {
             let wrong = match allowed.as_str() {
                 "text" => complaint(Some("1")),
                 words if words.starts_with("one of") => complaint(Some("\"none\"")),
-                words if words.ends_with("numbers") => complaint(Some("[]")),
+                words if words.ends_with("numbers") || words.ends_with("rows") => complaint(Some("[]")),
                 _ => complaint(Some("nan")),
             };
             let wrong = wrong.unwrap_or_else(|| panic!("{place} takes anything"));
@@ -190,6 +190,9 @@ fn every_field_allows_what_the_page_says() {
                 words if words.starts_with("one of: ") => {
                     let quoted: Vec<String> = words[8..].split(", ").map(|word| format!("\"{word}\"")).collect();
                     format!("must be one of: {}", quoted.join(", "))
+                }
+                words if words.ends_with(" rows") => {
+                    format!("has 0 rows; {} are allowed", words.trim_end_matches(" rows"))
                 }
                 words if words.ends_with(" numbers") => {
                     format!("has 0 numbers; {} are allowed", words.trim_end_matches(" numbers"))

@@ -4,7 +4,7 @@ use std::fs;
 use std::io::Write;
 use std::path::Path;
 
-use corner_impact::cli::file::Output;
+use corner_impact::file::Output;
 use tempfile::TempDir;
 
 fn names(folder: &TempDir) -> Vec<String> {
@@ -134,6 +134,7 @@ mod unix {
     #[test]
     fn child_that_waits() {
         let Ok(path) = std::env::var("CORNER_IMPACT_TEST_FILE") else { return };
+        corner_impact::file::clear_on_signals().unwrap();
         let mut output = create(Path::new(&path));
         output.write_all(&[b'x'; 100_000]).unwrap();
         println!("\nready");

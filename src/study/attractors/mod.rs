@@ -27,6 +27,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use crate::model::{Model, ModelError};
 use crate::progress::Watch;
 use crate::simulate::{Machine, SimulateError};
+use crate::stop;
 use crate::study::machine;
 pub use change::{Cause, Change};
 pub use detachment::detachment;
@@ -171,6 +172,8 @@ pub fn attractors(
     }
     let (done, total) = (AtomicU64::new(0), speeds.len() as u64);
     let at = |rpm: &f64| {
+        // Work that is to end does not begin at each of the speeds that are left.
+        stop::ask();
         watch.at("what runs end on", done.fetch_add(1, Ordering::Relaxed), total);
         Here::new(&machine, *rpm, resolution.starts).map_err(|error| (*rpm, error))
     };

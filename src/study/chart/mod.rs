@@ -4,8 +4,10 @@
 //! the points are run.
 
 mod point;
+pub mod store;
 
 use std::ops::Range;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
@@ -20,13 +22,25 @@ use crate::progress::Watch;
 use crate::simulate::{Machine, angular_velocity};
 pub use point::{Lengths, Point, RECORDS, growth};
 
-/// Values of a number, evenly spaced.
+/// Values of a number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
     /// What varies.
     pub parameter: Parameter,
-    /// Its least and its greatest value, and how many.
-    pub values: Speeds,
+    /// Its values, one or more.
+    pub values: Arc<[f64]>,
+}
+
+impl Axis {
+    /// Evenly spaced.
+    pub fn even(parameter: Parameter, spacing: &Speeds) -> Self {
+        Self { parameter, values: (0..spacing.count).map(|index| spacing.value(index)).collect() }
+    }
+
+    /// The first and the last value.
+    pub fn ends(&self) -> [f64; 2] {
+        [self.values.first(), self.values.last()].map(|end| end.copied().unwrap_or(f64::NAN))
+    }
 }
 
 /// A grid over two numbers of a model, and how it is run.
@@ -129,8 +143,8 @@ struct AxisDocument<'a> {
 
 impl<'a> AxisDocument<'a> {
     fn of(axis: &'a Axis) -> Self {
-        let Speeds { low, high, count } = axis.values;
-        Self { name: axis.parameter.name(), low, high, points: count }
+        let [low, high] = axis.ends();
+        Self { name: axis.parameter.name(), low, high, points: axis.values.len() }
     }
 }
 
@@ -151,9 +165,9 @@ pub enum ChartError {
     /// Two speeds are named.
     #[error("--rpm is for a chart of which no axis is rpm")]
     TwoSpeeds,
-    /// More points than a chart may have.
-    #[error("{points} points: a chart has {} or fewer", Chart::MOST)]
-    TooMany {
+    /// No points, or more than a chart may have.
+    #[error("{points} points: a chart has 1 to {}", Chart::MOST)]
+    Points {
         /// How many were asked for.
         points: usize,
     },
@@ -180,13 +194,14 @@ impl Chart {
         if x.parameter == y.parameter {
             return Err(ChartError::OneNumber(x.parameter.name().into()));
         }
-        let points = x.values.count.saturating_mul(y.values.count);
-        if points > Self::MOST {
-            return Err(ChartError::TooMany { points });
+        let points = x.values.len().saturating_mul(y.values.len());
+        if !(1..=Self::MOST).contains(&points) {
+            return Err(ChartError::Points { points });
         }
         let speed = [&x, &y].into_iter().find(|axis| axis.parameter == Parameter::Speed);
         let rpm = match (speed, rpm) {
-            (Some(axis), None) => axis.values.low,
+            // Where one of them cannot be turned at, that is told of its point.
+            (Some(axis), None) => axis.values.iter().copied().find(|rpm| *rpm > 0.0 && rpm.is_finite()).unwrap_or(1.0),
             (None, Some(rpm)) => rpm,
             (Some(_), Some(_)) => return Err(ChartError::TwoSpeeds),
             (None, None) => return Err(ChartError::NoSpeed),
@@ -209,7 +224,7 @@ impl Chart {
 
     /// Runs every point on `threads` threads (all there are for `None`), told to `watch` row by row.
     pub fn run(self, threads: Option<usize>, watch: &dyn Watch) -> Result<Charted, ChartError> {
-        let (points, times) = self.part(0..self.x.values.count, 0..self.y.values.count, threads, watch)?;
+        let (points, times) = self.part(0..self.x.values.len(), 0..self.y.values.len(), threads, watch)?;
         Ok(Charted { chart: self, points, times })
     }
 
@@ -242,8 +257,13 @@ impl Chart {
 
     /// The points of some columns and rows, row by row.
     fn block(&self, family: &Family, columns: Range<usize>, rows: Range<usize>) -> Points {
+        // The speed is set below.
+        let value = |axis: &Axis, index: usize| match axis.parameter {
+            Parameter::Speed => self.rpm,
+            Parameter::Field(_) => axis.values[index],
+        };
         let machine = |x: usize, y: usize| {
-            let values = [self.x.values.value(x), self.y.values.value(y)];
+            let values = [value(&self.x, x), value(&self.y, y)];
             family.machine(&values).map(|(machine, _)| machine).map_err(|error| error.to_string())
         };
         // A cam and what is known of it take as long to make as hundreds of revolutions; another speed is free.
@@ -251,7 +271,7 @@ impl Chart {
             machine
                 .as_ref()
                 .map_err(String::clone)
-                .and_then(|it| self.point(&it.at_speed(angular_velocity(axis.values.value(index)))))
+                .and_then(|it| self.point(&it.at_speed(angular_velocity(axis.values[index]))))
         };
         if self.y.parameter == Parameter::Speed {
             let machines: Vec<_> = columns.clone().map(|x| machine(x, rows.start)).collect();

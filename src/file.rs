@@ -2,7 +2,8 @@
 //!
 //! An [`Output`] is written to like any other stream, in bounded memory. A file of that name appears, or changes, only with
 //! [`Output::commit`]: until then everything goes to a temporary file beside it, which is removed when the output is
-//! dropped and when the program is stopped by Ctrl-C or SIGTERM. `-` is standard output, which has no such luxury.
+//! dropped and, where [`clear_on_signals`] is asked for, when the program is stopped by Ctrl-C or SIGTERM. `-` is standard output,
+//! which has no such luxury.
 
 use std::collections::BTreeSet;
 use std::ffi::OsString;
@@ -142,6 +143,11 @@ impl Write for Output<'_> {
     }
 }
 
+/// Has temporary files removed when Ctrl-C or SIGTERM ends the program: for programs that are this library's from then on.
+pub fn clear_on_signals() -> io::Result<()> {
+    signals::watch()
+}
+
 fn begin<'a>(path: &Path) -> Result<Sink<'a>, FileError> {
     let refuse = FileError::new(path, "cannot be written");
     let (target, permissions) = match fs::metadata(path) {
@@ -175,7 +181,6 @@ fn begin<'a>(path: &Path) -> Result<Sink<'a>, FileError> {
     if let Some(permissions) = permissions.or_else(ordinary) {
         builder.permissions(permissions);
     }
-    signals::watch().map_err(&refuse)?;
     let mut held = temporaries();
     let temporary = builder.tempfile_in(folder).map_err(&refuse)?;
     let listed = temporary.path().to_owned();
@@ -207,7 +212,7 @@ mod signals {
     use signal_hook::iterator::Signals;
     use signal_hook::low_level::emulate_default_handler;
 
-    pub(crate) fn watch() -> io::Result<()> {
+    pub(super) fn watch() -> io::Result<()> {
         static WATCHED: Once = Once::new();
         let mut result = Ok(());
         WATCHED.call_once(|| {
@@ -231,7 +236,7 @@ mod signals {
 
 #[cfg(not(unix))]
 mod signals {
-    pub(crate) fn watch() -> std::io::Result<()> {
+    pub(super) fn watch() -> std::io::Result<()> {
         Ok(())
     }
 }

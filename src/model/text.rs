@@ -1,0 +1,88 @@
+//! A model as the text of a model file, with all that it needs inside.
+
+use std::fmt::Write;
+
+use super::fields::{Fields, Value};
+use super::{CamProfile, Model};
+
+impl Model {
+    /// The model as a file that needs no other: its own name, every number in the digits that read back as the same double, and the
+    /// rows of a table in the place of their file. It is read as the same model, whose text is the same.
+    pub fn text(&self) -> String {
+        let mut fields = self.fields.clone();
+        fields.put("name", Value::Text(self.name.clone()));
+        fields.put("source", Value::Text(self.source.clone()));
+        let mut sharp = &self.cam;
+        while let CamProfile::Rounded { sharp: inside, .. } = sharp {
+            sharp = inside;
+        }
+        if let CamProfile::Table(table) = sharp {
+            fields.fields.remove("cam.file");
+            let rows = table.rows.iter().map(|row| ([row.angle_deg, row.lift], None));
+            fields.put("cam.rows", Value::Rows(rows.collect()));
+        }
+        let mut text = String::new();
+        fields.write(&mut text, "");
+        text
+    }
+}
+
+impl Fields {
+    /// Writes what is inside of the table at `path`: what follows the header of a table within belongs to that, so values come first.
+    fn write(&self, text: &mut String, path: &str) {
+        let prefix = if path.is_empty() { String::new() } else { format!("{path}.") };
+        let below = self.fields.range(prefix.clone()..).take_while(|(path, _)| path.starts_with(&prefix));
+        let inside: Vec<(&str, &str, &Value)> = below
+            .map(|(path, field)| (&path[prefix.len()..], path.as_str(), &field.value))
+            .filter(|(name, ..)| !name.contains(['.', '[']))
+            .collect();
+        for (name, path, value) in &inside {
+            if let Some(value) = self.written(path, value) {
+                // Writing to a string does not fail.
+                let _ = writeln!(text, "{name} = {value}");
+            }
+        }
+        for (_, path, value) in &inside {
+            match value {
+                Value::Table => {
+                    let _ = writeln!(text, "\n[{path}]");
+                    self.write(text, path);
+                }
+                Value::Array(count) if self.holds_tables(path) => {
+                    for index in 0..*count {
+                        let _ = writeln!(text, "\n[[{path}]]");
+                        self.write(text, &format!("{path}[{index}]"));
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// Whether the array at `path` is one of tables.
+    fn holds_tables(&self, path: &str) -> bool {
+        self.fields.get(&format!("{path}[0]")).is_some_and(|first| matches!(first.value, Value::Table))
+    }
+
+    /// A value in one line; none for what has headers of its own.
+    fn written(&self, path: &str, value: &Value) -> Option<String> {
+        match value {
+            Value::Number(number) => Some(format!("{number:?}")),
+            // What JSON escapes TOML does, too, but for one character.
+            Value::Text(text) => Some(serde_json::Value::String(text.clone()).to_string().replace('\u{7f}', "\\u007f")),
+            Value::Rows(rows) => {
+                let rows: String = rows.iter().map(|([one, two], _)| format!("    [{one:?}, {two:?}],\n")).collect();
+                Some(format!("[\n{rows}]"))
+            }
+            Value::Array(_) if self.holds_tables(path) => None,
+            Value::Array(count) => {
+                let item = |index: usize| {
+                    let path = format!("{path}[{index}]");
+                    self.written(&path, &self.fields.get(&path)?.value)
+                };
+                Some(format!("[{}]", (0..*count).map(item).collect::<Option<Vec<_>>>()?.join(", ")))
+            }
+            Value::Table | Value::Other => None,
+        }
+    }
+}

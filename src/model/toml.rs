@@ -1,0 +1,90 @@
+//! TOML as fields with their places in the text.
+
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::ModelError;
+use super::fields::{Field, Fields, Value};
+
+/// The number that a value of TOML is.
+fn number(value: &DeValue<'_>) -> Option<f64> {
+    match value {
+        DeValue::Integer(integer) => {
+            i64::from_str_radix(integer.as_str(), integer.radix()).ok().map(|integer| integer as f64)
+        }
+        DeValue::Float(float) => float.as_str().parse().ok(),
+        _ => None,
+    }
+}
+
+/// The two numbers that a value of TOML lists.
+fn pair(value: &DeValue<'_>) -> Option<[f64; 2]> {
+    let DeValue::Array(items) = value else { return None };
+    let mut items = items.iter().map(|item| number(item.get_ref()));
+    match (items.next(), items.next(), items.next()) {
+        (Some(one), Some(two), None) => Some([one?, two?]),
+        _ => None,
+    }
+}
+
+impl Fields {
+    /// The fields of a text; `file` is the name that complaints carry.
+    pub(super) fn parse(file: &str, text: &str) -> Result<Self, ModelError> {
+        let line_ends: Vec<usize> = text.match_indices('\n').map(|(at, _)| at).collect();
+        let line_of = |offset: usize| 1 + line_ends.partition_point(|end| *end < offset);
+        let root = DeTable::parse(text).map_err(|error| ModelError {
+            line: error.span().map(|span| line_of(span.start)),
+            // Some of them are two lines long.
+            ..ModelError::file(file, format!("not valid TOML: {}", error.message().replace('\n', ", ")))
+                .at(Some(text.into()), error.span())
+        })?;
+        let mut fields = Self::none(file, Some(text));
+        let place = |span: Range<usize>| (line_of(span.start), text.get(span).unwrap_or_default().to_owned());
+        fields.add_table("", root.get_ref(), &place);
+        Ok(fields)
+    }
+
+    fn add_table(&mut self, prefix: &str, table: &DeTable<'_>, place: &dyn Fn(Range<usize>) -> (usize, String)) {
+        for (key, value) in table {
+            let path = format!("{prefix}{}", key.get_ref());
+            // A table's own span is not its header's; the key's is.
+            let (line, _) = place(key.span());
+            self.add(&path, (line, key.span()), value, place);
+        }
+    }
+
+    fn add(
+        &mut self,
+        path: &str,
+        (line, key): (usize, Range<usize>),
+        spanned: &Spanned<DeValue<'_>>,
+        place: &dyn Fn(Range<usize>) -> (usize, String),
+    ) {
+        let (_, written) = place(spanned.span());
+        let value = match spanned.get_ref() {
+            DeValue::Table(table) => {
+                self.add_table(&format!("{path}."), table, place);
+                Value::Table
+            }
+            DeValue::Array(items) => {
+                let row = |item: &Spanned<DeValue<'_>>| Some((pair(item.get_ref())?, Some(place(item.span()).0)));
+                match items.iter().map(row).collect::<Option<Vec<_>>>() {
+                    Some(rows) if !rows.is_empty() => Value::Rows(rows),
+                    _ => {
+                        for (index, item) in items.iter().enumerate() {
+                            let (line, _) = place(item.span());
+                            self.add(&format!("{path}[{index}]"), (line, item.span()), item, place);
+                        }
+                        Value::Array(items.len())
+                    }
+                }
+            }
+            DeValue::String(text) => Value::Text(text.to_string()),
+            other => number(other).map_or(Value::Other, Value::Number),
+        };
+        let field = Field { line: Some(line), is_there: true, key, span: spanned.span(), written, value };
+        self.fields.insert(path.into(), field);
+    }
+}
