@@ -7,7 +7,7 @@ CARGO ?= cargo
 RELEASE := --release --locked
 
 .DEFAULT_GOAL := help
-.PHONY: help verify report quick test check derive derive-check theorems claims pictures review mutants bench bench-each bench-peers clean
+.PHONY: help verify report quick test python check derive derive-check theorems claims pictures review mutants bench bench-each bench-peers clean
 
 # Python and its packages, once; again when the list of packages changes.
 PYTHON ?= python3
@@ -37,8 +37,22 @@ quick: $(VENV) ## the tests that answer at once, after each change: within a min
 test: $(VENV) ## run every test
 	$(CARGO) test $(RELEASE) -- --include-ignored
 
+# In the same .venv, where what the routes need is. The package is built by the maturin in it: in a place of its own, which pip makes
+# anew each time, cargo would compile everything that asks for the interpreter again.
+PACKAGE := .venv/.package
+$(PACKAGE): $(VENV) python/tests/requirements.txt
+	.venv/bin/python -m pip install --quiet --disable-pip-version-check -r python/tests/requirements.txt
+	@touch $@
+
+python: $(PACKAGE) ## build the Python package, install it in .venv, check its types and run its tests (Python 3.11 or later)
+	PATH="$(CURDIR)/.venv/bin:$$PATH" python -m pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps ./python
+	cd python && ../.venv/bin/python -m mypy.stubtest corner_impact
+	cd python && ../.venv/bin/python -m mypy package tests
+	cd python && ../.venv/bin/python -m pyright --pythonpath $(CURDIR)/.venv/bin/python
+	cd python && ../.venv/bin/python -m pytest
+
 check: ## formatting, lints and documentation, warnings denied
-	$(CARGO) fmt --check
+	$(CARGO) fmt --all --check
 	$(CARGO) clippy --all-targets $(RELEASE) -- -D warnings
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --no-deps $(RELEASE)
 

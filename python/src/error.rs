@@ -1,0 +1,37 @@
+//! What goes wrong in Rust, as Python's exceptions.
+
+use std::error::Error;
+
+use corner_impact::model::ModelError;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::PyType;
+
+/// A `ModelError` where a complaint about a model is the cause, with its place; else a `ValueError`.
+pub(crate) fn raised(error: &(dyn Error + 'static)) -> PyErr {
+    let causes = std::iter::successors(Some(error), |error| (*error).source());
+    match causes.filter_map(|error| error.downcast_ref::<ModelError>()).next() {
+        Some(at) => Python::attach(|py| about_model(py, &error.to_string(), at)).unwrap_or_else(|error| error),
+        None => PyValueError::new_err(error.to_string()),
+    }
+}
+
+fn about_model(py: Python<'_>, words: &str, at: &ModelError) -> PyResult<PyErr> {
+    // Python's own class: one that extends another of Python's cannot be made here for all versions of it at once.
+    static CLASS: PyOnceLock<Py<PyType>> = PyOnceLock::new();
+    let class = CLASS.import(py, "corner_impact._errors", "ModelError")?;
+    let error = class.call1((words, &*at.file, at.line, &at.field))?;
+    Ok(PyErr::from_value(error))
+}
+
+/// The result, or the exception.
+pub(crate) trait OrRaise<T> {
+    fn or_raise(self) -> PyResult<T>;
+}
+
+impl<T, E: Error + 'static> OrRaise<T> for Result<T, E> {
+    fn or_raise(self) -> PyResult<T> {
+        self.map_err(|error| raised(&error))
+    }
+}

@@ -1,0 +1,44 @@
+//! The Python package's native half: conversions, and nothing that computes.
+
+mod arrays;
+mod error;
+mod grid;
+mod model;
+mod values;
+mod work;
+
+/// The module `corner_impact._native`.
+#[pyo3::pymodule]
+mod _native {
+    use std::ffi::OsString;
+
+    use corner_impact::cli::{Terminal, run_at};
+    use pyo3::prelude::*;
+
+    #[pymodule_export]
+    use crate::grid::{Grid, blocks_done, chart_variables};
+    #[pymodule_export]
+    use crate::model::Model;
+
+    #[pymodule_export]
+    use crate::arrays::events;
+
+    /// Runs the command `corner-impact` with these words, its name first: its exit code.
+    #[pyfunction]
+    fn main(py: Python<'_>, words: Vec<OsString>) -> u8 {
+        py.detach(|| {
+            let (mut out, mut err) = (std::io::stdout().lock(), std::io::stderr());
+            run_at(Terminal::of_process(), words, &mut out, &mut err) as u8
+        })
+    }
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        // Scripts run in the interpreter whose packages the user has installed.
+        let interpreter: Option<std::path::PathBuf> = module.py().import("sys")?.getattr("executable")?.extract()?;
+        if let Some(interpreter) = interpreter.filter(|path| !path.as_os_str().is_empty()) {
+            corner_impact::python::loaded_by(interpreter);
+        }
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

@@ -1,0 +1,137 @@
+//! Python's values, checked as those of the command line are.
+
+use corner_impact::cam::within_a_turn;
+use corner_impact::diagram::{Placed, Speeds, Start};
+use corner_impact::flight::State;
+use numpy::{AllowTypeChange, PyArrayLike1};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyDict, PyString};
+use serde::Serialize;
+use serde_json::Value;
+
+use crate::error::raised;
+
+pub(crate) fn refused<T>(words: String) -> PyResult<T> {
+    Err(PyValueError::new_err(words))
+}
+
+/// How many of something.
+pub(crate) fn count(value: &Bound<'_, PyAny>) -> PyResult<u64> {
+    let found = if value.is_instance_of::<PyBool>() { None } else { value.extract().ok() };
+    found.map_or_else(|| refused(format!("{value} must be a whole number from 0 to {}", u64::MAX)), Ok)
+}
+
+/// How many threads; none for as many as there are cores.
+pub(crate) fn thread_count(value: &Bound<'_, PyAny>) -> PyResult<Option<usize>> {
+    if value.is_none() {
+        return Ok(None);
+    }
+    let found = value.extract().ok().filter(|count| (1..=1024).contains(count));
+    found.map_or_else(|| refused(format!("threads = {value} must be None or from 1 to 1024")), |count| Ok(Some(count)))
+}
+
+/// A number of something within limits.
+pub(crate) fn within(name: &str, value: u64, [low, high]: [u64; 2]) -> PyResult<u64> {
+    if (low..=high).contains(&value) {
+        Ok(value)
+    } else {
+        refused(format!("{name} = {value} must be from {low} to {high}"))
+    }
+}
+
+/// A speed that a simulation can turn at.
+pub(crate) fn speed(rpm: f64) -> PyResult<f64> {
+    if !(rpm > 0.0 && rpm.is_finite()) {
+        return refused(format!("rpm = {rpm} must be a finite number above 0"));
+    }
+    if rpm <= Speeds::FASTEST { Ok(rpm) } else { refused(format!("rpm = {rpm} must be {:e} or less", Speeds::FASTEST)) }
+}
+
+/// A range of speeds.
+pub(crate) fn speed_range((low, high): (f64, f64)) -> PyResult<[f64; 2]> {
+    let range = [speed(low)?, speed(high)?];
+    if low < high { Ok(range) } else { refused(format!("rpm: {low} is not below {high}")) }
+}
+
+/// Evenly spaced speeds.
+pub(crate) fn speeds((low, high, count): (f64, f64, usize)) -> PyResult<Speeds> {
+    let (low, high) = (speed(low)?, speed(high)?);
+    match count {
+        _ if high < low => refused(format!("rpm: the highest speed, {high}, is below the lowest, {low}")),
+        1 if high > low => refused("rpm: 1 speed needs the lowest and the highest to be the same".into()),
+        1..=Speeds::MOST => Ok(Speeds { low, high, count }),
+        _ => refused(format!("rpm: {count} speeds must be 1 to {}", Speeds::MOST)),
+    }
+}
+
+/// Where a run starts: on the cam, leaving it at a relative velocity, or somewhere with a position and a velocity.
+pub(crate) fn start(
+    cam_angle: f64,
+    relative_velocity: Option<f64>,
+    position: Option<f64>,
+    velocity: Option<f64>,
+) -> PyResult<Start> {
+    let given = [Some(cam_angle), relative_velocity, position, velocity];
+    if given.into_iter().flatten().any(|number| !number.is_finite()) {
+        return refused("a start is of finite numbers".into());
+    }
+    let follower = match (position, velocity, relative_velocity) {
+        (Some(position), Some(velocity), None) => Placed::At(State { position, velocity }),
+        (None, None, None) => Placed::OnCam(0.0),
+        (None, None, Some(velocity)) if velocity >= 0.0 => Placed::OnCam(velocity),
+        (None, None, Some(velocity)) => return refused(format!("relative_velocity = {velocity} must be 0 or more")),
+        _ => return refused("a start is position and velocity, or relative_velocity, or none of them".into()),
+    };
+    Ok(Start { cam_angle: within_a_turn(cam_angle), follower })
+}
+
+/// Numbers in a list, a tuple or an array of any type, contiguous or not.
+pub(crate) fn numbers(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
+    match value.extract::<PyArrayLike1<'_, f64, AllowTypeChange>>() {
+        Ok(array) => Ok(array.as_array().iter().copied().collect()),
+        Err(error) => refused(format!("{name} must be numbers in one dimension: {}", error.value(value.py()))),
+    }
+}
+
+/// Arrays of one length.
+pub(crate) fn pairs(
+    [one, two]: [&str; 2],
+    first: &Bound<'_, PyAny>,
+    second: &Bound<'_, PyAny>,
+) -> PyResult<Vec<[f64; 2]>> {
+    let (first, second) = (numbers(one, first)?, numbers(two, second)?);
+    if first.len() != second.len() {
+        return refused(format!("{one} has {} numbers, and {two} {}", first.len(), second.len()));
+    }
+    Ok(first.into_iter().zip(second).map(|(first, second)| [first, second]).collect())
+}
+
+/// A document as the command prints it, as a dict.
+pub(crate) fn document<'py>(py: Python<'py>, found: &impl Serialize) -> PyResult<Bound<'py, PyDict>> {
+    let text = serde_json::to_string(found).map_err(|error| raised(&error))?;
+    Ok(py.import("json")?.call_method1("loads", (text,))?.cast_into()?)
+}
+
+/// What a dict of dicts, lists, arrays, text and numbers holds; nothing where it holds something else.
+pub(crate) fn item(value: &Bound<'_, PyAny>) -> PyResult<Value> {
+    if let Ok(table) = value.cast::<PyDict>() {
+        let entry = |(key, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| Ok((key.extract()?, item(&value)?));
+        return table.iter().map(entry).collect::<PyResult<_>>().map(Value::Object);
+    }
+    if let Ok(text) = value.cast::<PyString>() {
+        return Ok(Value::String(text.extract()?));
+    }
+    if value.is_instance_of::<PyBool>() {
+        return Ok(Value::Bool(value.extract()?));
+    }
+    if let Ok(number) = value.extract::<f64>() {
+        return Ok(number.into());
+    }
+    // Arrays have their numbers as lists.
+    let listed = if value.hasattr("tolist")? { value.call_method0("tolist")? } else { value.clone() };
+    match listed.try_iter() {
+        Ok(items) => items.map(|value| item(&value?)).collect::<PyResult<_>>().map(Value::Array),
+        Err(_) => Ok(Value::Null),
+    }
+}

@@ -1,0 +1,31 @@
+"""What all tests use: the paper's model, and the command, whose output the package is held against."""
+
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from corner_impact import Model
+
+ROOT = Path(__file__).parents[2]
+MODELS = sorted((ROOT / "models").rglob("*.toml"))
+
+Command = Callable[..., str]
+
+
+@pytest.fixture(scope="session")
+def paper() -> Model:
+    return Model.paper()
+
+
+@pytest.fixture(scope="session")
+def command() -> Command:
+    """Runs the installed command with some words, and returns what it prints."""
+
+    def run(*words: str) -> str:
+        line = [sys.executable, "-m", "corner_impact", *words]
+        return subprocess.run(line, capture_output=True, text=True, check=True, cwd=ROOT).stdout
+
+    return run

@@ -1,0 +1,144 @@
+"""Is a model the same by whatever way it comes, and is what is wrong with one told with its place?"""
+
+import pickle
+import tomllib
+import xml.etree.ElementTree as ET
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import MODELS
+
+from corner_impact import Model, ModelError
+
+
+@pytest.mark.parametrize("path", MODELS, ids=lambda path: path.stem)
+def test_a_text_is_the_whole_model(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    model = Model.load(path)
+    # A table's file is not looked for.
+    monkeypatch.chdir(tmp_path)
+    again = Model.parse(model.text)
+    assert again == model and hash(again) == hash(model) and again.text == model.text
+    assert (again.name, again.source, again.numbers()) == (model.name, model.source, model.numbers())
+    assert pickle.loads(pickle.dumps(model)) == model
+    one, other = (it.simulate(650, 5) for it in (model, again))
+    assert all(np.array_equal(one[name], other[name]) for name in one)
+    assert len(one["time_s"]) > 0
+
+
+@pytest.mark.parametrize("path", [path for path in MODELS if "table" not in path.stem], ids=lambda path: path.stem)
+def test_a_dict_is_a_file(path: Path) -> None:
+    fields = tomllib.loads(path.read_text())
+    model = Model.from_dict(fields)
+    assert model == Model.load(path)
+    # In numpy's numbers and arrays, too.
+    fields["follower"] = {name: np.float64(value) for name, value in fields["follower"].items()}
+    assert Model.from_dict(fields) == model
+
+
+def table(rows: Any, **more: Any) -> dict[str, Any]:
+    fields = tomllib.loads(next(path for path in MODELS if path.stem == "table-cubic").read_text())
+    del fields["cam"]["file"]
+    fields["cam"] |= {"rows": rows} | more
+    return fields
+
+
+def test_rows_of_a_table_stand_in_a_dict() -> None:
+    path = next(path for path in MODELS if path.stem == "table-cubic")
+    file = path.with_name(tomllib.loads(path.read_text())["cam"]["file"])
+    rows = np.loadtxt(file, delimiter=",", skiprows=1)
+    assert Model.from_dict(table(rows)) == Model.from_dict(table(rows.tolist())) == Model.load(path)
+    # A last row that says the first one again is none of its own.
+    closed = np.vstack([rows, [360.0, rows[0, 1]]])
+    assert Model.from_dict(table(closed)) == Model.load(path)
+    for wrong, words in [
+        (rows[::-1], "cam.rows: "),
+        (rows[:2], "cam.rows has 2 rows; 3 to 1000000 are allowed"),
+        ([], "has 0 rows"),
+        (rows[:, 0], "must be a list of rows, each of two numbers"),
+        (np.delete(rows, slice(40, 80), axis=0), "rows are missing"),
+        (np.vstack([rows[:9], rows[8:]]), "repeats the angle of the row before: must be above 8, row 9"),
+        (rows - [[1.0, 0.0]], "must be an angle from 0 to 360"),
+    ]:
+        with pytest.raises(ModelError, match="dict: ") as raised:
+            Model.from_dict(table(wrong))
+        assert words.removeprefix("cam.rows: ") in str(raised.value) and raised.value.line is None
+    with pytest.raises(ModelError, match="the rows are here or in a file"):
+        Model.from_dict(table(rows, file="lift.csv"))
+
+
+def test_rows_in_a_text_are_told_by_their_lines(paper: Model) -> None:
+    text = Model.load(next(path for path in MODELS if path.stem == "table-cubic")).text
+    lines = text.splitlines()
+    first = lines.index("rows = [") + 1
+    lines[first + 3] = lines[first + 2]
+    with pytest.raises(ModelError) as raised:
+        Model.parse("\n".join(lines))
+    assert raised.value.line == first + 4
+
+
+def test_complaints_have_a_place(paper: Model, tmp_path: Path) -> None:
+    text = paper.text.replace("mass = 1.221", "mass = -1.0")
+    file = tmp_path / "wrong.toml"
+    file.write_text(text)
+    line = 1 + text.splitlines().index("mass = -1.0")
+    with pytest.raises(ModelError, match="must be a finite number above 0") as raised:
+        Model.load(file)
+    assert (raised.value.file, raised.value.line, raised.value.field) == (str(file), line, "follower.mass")
+    assert isinstance(raised.value, ValueError)
+    again = pickle.loads(pickle.dumps(raised.value))
+    assert (str(again), again.file, again.line, again.field) == (str(raised.value), str(file), line, "follower.mass")
+    with pytest.raises(ModelError, match="not valid TOML") as raised:
+        Model.parse("[follower\n", "that text")
+    assert (raised.value.file, raised.value.line, raised.value.field) == ("that text", 1, None)
+    # What geometry forbids is told at once, and not when it is run.
+    with pytest.raises(ModelError, match="cam"):
+        paper.with_number("nose_radius", 7.0)
+    with pytest.raises(ModelError, match="cannot be read"):
+        Model.load(tmp_path / "nowhere.toml")
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"mass": float("nan")}, "follower.mass = null: must be a finite number above 0"),
+        ({"mass": True}, "follower.mass = true: must be a finite number above 0"),
+        ({"mass": None}, "follower.mass = null"),
+        ({"mass": [1.0]}, "follower.mass: must be|follower.mass must be"),
+        ({"mas": 1.0}, "follower.mas: unknown field|follower.mas = 1.0: unknown field"),
+        ({"a.b": 1.0}, "has no dot or bracket"),
+    ],
+)
+def test_wrong_dicts_are_refused(paper: Model, change: dict[str, Any], words: str) -> None:
+    fields = tomllib.loads(paper.text)
+    fields["follower"] |= change
+    with pytest.raises(ModelError, match=words) as raised:
+        Model.from_dict(fields)
+    assert (raised.value.file, raised.value.line) == ("dict", None)
+
+
+def test_a_slip_in_a_dict_is_asked_about(paper: Model) -> None:
+    fields = tomllib.loads(paper.text)
+    fields["follower"]["mss"] = fields["follower"].pop("mass")
+    with pytest.raises(ModelError, match=r"did you mean mass where it says mss\?"):
+        Model.from_dict(fields)
+
+
+def test_a_number_is_changed_as_by_the_command(paper: Model) -> None:
+    other = paper.with_number("restitution", 0.7)
+    assert other.numbers() == paper.numbers() | {"follower.restitution": 0.7}
+    assert other.name == "osorio-2008 with follower.restitution = 0.7" and other != paper
+    assert other.with_number("restitution", 0.6).with_number("mass", 1.0).name == (
+        "osorio-2008 with follower.restitution = 0.6, follower.mass = 1"
+    )
+    assert Model.parse(other.text).name == other.name
+    with pytest.raises(ModelError, match=r"did you mean restitution\?"):
+        paper.with_number("restitutoin", 0.7)
+    with pytest.raises(ModelError, match="from 0 to 1"):
+        paper.with_number("restitution", 1.7)
+
+
+def test_a_model_shows_its_cam(paper: Model) -> None:
+    assert ET.fromstring(paper._repr_svg_()).tag.endswith("svg")
+    assert repr(paper) == "Model('osorio-2008')"

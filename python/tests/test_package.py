@@ -1,0 +1,33 @@
+"""Do the examples of the documentation hold, and is the command there?"""
+
+import doctest
+import inspect
+import subprocess
+import sys
+
+import corner_impact
+
+
+def test_the_examples_hold() -> None:
+    failed, attempted = doctest.testmod(corner_impact, extraglobs={"Model": corner_impact.Model})
+    assert failed == 0 and attempted >= 25, attempted
+
+
+def test_everything_is_documented() -> None:
+    assert inspect.getdoc(corner_impact)
+    for name in corner_impact.__all__:
+        if name in ("EVENTS", "__version__"):
+            continue
+        value = getattr(corner_impact, name)
+        assert inspect.getdoc(value), name
+        for inside, method in vars(value).items() if inspect.isclass(value) else ():
+            if not inside.startswith("_"):
+                assert inspect.getdoc(method), f"{name}.{inside}"
+
+
+def test_the_command_is_installed() -> None:
+    line = [sys.executable, "-m", "corner_impact"]
+    version = subprocess.run([*line, "--version"], capture_output=True, text=True, check=True).stdout
+    assert version == f"corner-impact {corner_impact.__version__}\n"
+    wrong = subprocess.run([*line, "simulate", "--rpm", "0"], capture_output=True, text=True)
+    assert wrong.returncode == 2 and "above 0" in wrong.stderr

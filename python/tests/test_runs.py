@@ -1,0 +1,188 @@
+"""Are the columns those of the command, to the last bit, and is a run that fails among many one that is told?"""
+
+import csv
+import io
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import Command
+from numpy.typing import ArrayLike, NDArray
+
+from corner_impact import EVENTS, Model
+
+Columns = dict[str, NDArray[Any]]
+
+
+def table(text: str) -> dict[str, list[str]]:
+    rows = list(csv.DictReader(io.StringIO(text)))
+    return {name: [row[name] for row in rows] for name in rows[0]}
+
+
+def assert_same(found: Columns, text: str) -> None:
+    """The columns of a table, by name and in its order; words stand for codes."""
+    expected = table(text)
+    assert list(found) == list(expected)
+    for name, cells in expected.items():
+        if name == "event":
+            assert [EVENTS[code] for code in found[name]] == cells
+        else:
+            assert np.array_equal(found[name], np.array(cells, dtype=found[name].dtype), equal_nan=True), name
+    assert len(next(iter(found.values()))) > 10
+
+
+@pytest.mark.parametrize("rpm", [183.0, 670.0, 700.0])
+def test_events_are_those_of_the_command(paper: Model, command: Command, rpm: float) -> None:
+    words = ("simulate", "--rpm", str(rpm), "--revolutions", "40", "--events", "-")
+    found = paper.simulate(rpm, 40)
+    assert_same(found, command(*words))
+    assert_same(
+        paper.simulate(rpm, 40, cam_angle=-2.0, relative_velocity=3.0),
+        command(*words, "--start-angle", "-2", "--relative-velocity", "3"),
+    )
+    assert_same(paper.simulate(rpm, 40, position=9, velocity=np.float64(-4)), command(*words, "--state", "9,-4"))
+    # A transient is what comes before, not another run.
+    later, tail = paper.simulate(rpm, 10, transient=30), found["revolution"] >= 30
+    assert all(np.allclose(later[name], found[name][tail], rtol=1e-6) for name in found)
+
+
+@pytest.mark.parametrize(
+    ("asked", "words"),
+    [
+        ({}, []),
+        ({"threads": 1}, []),
+        ({"threads": 2, "lyapunov": True}, ["--lyapunov"]),
+        ({"strobe": 1.5}, ["--section", "strobe", "--strobe", "1.5"]),
+        ({"strobe": 1.5, "lyapunov": True}, ["--section", "strobe", "--strobe", "1.5", "--lyapunov"]),
+        ({"follow": "up"}, ["--start", "up"]),
+        ({"follow": "down", "cam_angle": 1.0}, ["--start", "down", "--start-angle", "1"]),
+    ],
+)
+def test_diagrams_are_those_of_the_command(
+    paper: Model, command: Command, asked: dict[str, Any], words: list[str]
+) -> None:
+    found = paper.diagram((660, 750, 7), transient=50, record=20, **asked)
+    line = ("diagram", "--rpm", "660:750:7", "--transient", "50", "--record", "20", "--out", "-")
+    assert_same(found, command(*line, *words))
+
+
+@pytest.mark.parametrize("asked", [{}, {"follow": "down"}, {"threads": 1}, {"lyapunov": True}, {"strobe": 1.0}])
+def test_a_speed_that_fails_has_a_row(paper: Model, asked: dict[str, Any]) -> None:
+    # Below the cam everywhere.
+    found = paper.diagram((600, 700, 3), record=5, position=-1.0, velocity=0.0, **asked)
+    assert sorted(found["rpm"]) == [600.0, 650.0, 700.0] and np.all(found["revolution"] == -1)
+    if "strobe" not in asked:
+        assert [EVENTS[code] for code in found["event"]] == ["failed"] * 3
+    for name in set(found) - {"rpm", "revolution", "event"}:
+        assert found[name].shape == (3,) and np.all(np.isnan(found[name])), name
+
+
+def test_the_strobe_map_is_the_run(paper: Model) -> None:
+    position, velocity = np.linspace(1.0, 6.0, 40), np.linspace(-60.0, 60.0, 40)
+    found = paper.strobe_map(680, position, velocity, 3, cam_angle=5.76)
+    states = paper.diagram((680, 680, 1), transient=0, record=4, strobe=5.76, cam_angle=5.76,
+                           position=position[7], velocity=velocity[7])
+    # The state at the start is not recorded.
+    np.testing.assert_allclose(found["position_m"][7], states["position_m"][2], rtol=1e-10)
+    np.testing.assert_allclose(found["velocity_m_s"][7], states["velocity_m_s"][2], rtol=1e-10)
+    for threads in (2, None):
+        other = paper.strobe_map(680, position, velocity, 3, cam_angle=5.76, threads=threads)
+        assert all(np.array_equal(found[name], other[name]) for name in found)
+    # Column by column, the derivative is what a small step makes.
+    derived = paper.strobe_map(680, position, velocity, 3, cam_angle=5.76, jacobian=True)
+    assert all(np.array_equal(found[name], derived[name]) for name in found)
+    assert derived["jacobian"].shape == (40, 2, 2)
+    step = 1e-7
+    right = paper.strobe_map(680, position + step, velocity, 3, cam_angle=5.76)
+    left = paper.strobe_map(680, position - step, velocity, 3, cam_angle=5.76)
+    for row, name in enumerate(found):
+        slope = (right[name] - left[name]) / (2 * step)
+        close = np.isclose(slope, derived["jacobian"][:, row, 0], rtol=1e-3, atol=1e-3)
+        # A corner or a graze may lie between two starts.
+        assert np.mean(close) > 0.9
+
+
+def test_starts_of_every_kind(paper: Model) -> None:
+    plain = paper.strobe_map(700, [4.0, 5.0, 6.0], [1.0, 0.0, -1.0])
+    apart = np.array([[4, 9], [5, 9], [6, 9]])
+    alike: list[tuple[ArrayLike, ArrayLike]] = [
+        ((4, 5, 6), (1, 0, -1)),
+        (apart[:, 0], np.array([1, 0, -1], dtype=np.int8)),
+        (np.array([6.0, 5.0, 4.0])[::-1], np.array([1, 0, -1], dtype=np.float32)),
+    ]
+    for position, velocity in alike:
+        found = paper.strobe_map(700, position, velocity)
+        assert all(np.array_equal(found[name], plain[name]) for name in plain)
+    starts = [4.0, np.nan, -1.0, np.inf, 4.0, 4.0]
+    speeds = [1.0, 0.0, 0.0, 0.0, np.nan, -np.inf]
+    for jacobian in (False, True):
+        found = paper.strobe_map(700, starts, speeds, jacobian=jacobian)
+        assert [bool(np.isnan(value)) for value in found["position_m"]] == [False] + 5 * [True]
+        assert found["position_m"][0] == plain["position_m"][0]
+    empty = paper.strobe_map(700, [], [], jacobian=True)
+    assert empty["position_m"].shape == (0,) and empty["jacobian"].shape == (0, 2, 2)
+    with pytest.raises(ValueError, match="position has 2 numbers, and velocity 3"):
+        paper.strobe_map(700, [4.0, 5.0], [1.0, 0.0, -1.0])
+    with pytest.raises(ValueError, match="position must be numbers in one dimension"):
+        paper.strobe_map(700, [[4.0]], [1.0])
+    with pytest.raises(ValueError, match="velocity must be numbers in one dimension"):
+        paper.strobe_map(700, [4.0], ["fast"])
+
+
+def test_the_impact_map_goes_from_impact_to_impact(paper: Model) -> None:
+    events = paper.simulate(670, 200, transient=100)
+    assert np.all(events["event"] == EVENTS.index("impact"))
+    angle, after = events["cam_angle_rad"], events["velocity_after_m_s"] - events["cam_velocity_m_s"]
+    found = paper.impact_map(670, angle[:-1], after[:-1], threads=2)
+    np.testing.assert_allclose(found["cam_angle_rad"], angle[1:], rtol=1e-9)
+    np.testing.assert_allclose(found["relative_velocity_m_s"], after[1:], rtol=1e-8)
+    np.testing.assert_allclose(found["flight_s"], np.diff(events["time_s"]), rtol=1e-9)
+    # No impact follows where the follower stays on the cam, nor after what is no start.
+    wrong = paper.impact_map(50, [0.0, 1.0, np.nan, 1.0], [0.0, -1.0, 1.0, np.nan])
+    assert all(np.all(np.isnan(column)) for column in wrong.values())
+    # An angle is one modulo a turn.
+    turned = paper.impact_map(670, angle[:5] - 4 * np.pi, after[:5])
+    np.testing.assert_allclose(turned["cam_angle_rad"], found["cam_angle_rad"][:5], rtol=1e-9)
+
+
+def test_the_cam_is_where_the_impacts_are(paper: Model) -> None:
+    events = paper.simulate(670, 50)
+    lifts = paper.cam(events["cam_angle_rad"])
+    np.testing.assert_allclose(lifts["lift_m"], events["position_m"], rtol=1e-14)
+    np.testing.assert_allclose(lifts["slope_m_rad"] * 670 * np.pi / 30, events["cam_velocity_m_s"], rtol=1e-12)
+    assert np.isnan(paper.cam([np.nan, np.inf])["lift_m"]).all()
+    assert paper.cam([-1.0])["lift_m"] == paper.cam([2 * np.pi - 1.0])["lift_m"]
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        (lambda it: it.simulate(0), "rpm = 0 must be a finite number above 0"),
+        (lambda it: it.simulate(np.nan), "rpm = NaN must be"),
+        (lambda it: it.simulate(1e10), "1e9 or less"),
+        (lambda it: it.simulate(700, -1), "-1 must be a whole number"),
+        (lambda it: it.simulate(700, 1.5), "1.5 must be a whole number"),
+        (lambda it: it.simulate(700, position=0.0), "a start is position and velocity"),
+        (lambda it: it.simulate(700, position=0.0, velocity=0.0), "below the cam"),
+        (lambda it: it.simulate(700, relative_velocity=-1), "must be 0 or more"),
+        (lambda it: it.simulate(700, cam_angle=np.inf), "finite"),
+        (lambda it: it.diagram((700, 600, 3)), "is below the lowest"),
+        (lambda it: it.diagram((600, 700, 0)), "0 speeds must be 1 to"),
+        (lambda it: it.diagram((600, 700, 1)), "1 speed needs"),
+        (lambda it: it.diagram((600, 700, 3), follow="left"), "must be None"),
+        (lambda it: it.diagram((600, 700, 3), strobe=np.nan), "strobe"),
+        (lambda it: it.diagram((600, 700, 3), threads=0), "threads"),
+        (lambda it: it.strobe_map(700, [5.0], [0.0], threads=-1), "threads"),
+        (lambda it: it.locate((700, 600)), "is not below"),
+        (lambda it: it.orbits(700, 0), "revolutions = 0 must be from 1"),
+        (lambda it: it.orbits(700, impacts=1, guess=(1.0, 1.0)), "guess and impacts"),
+        (lambda it: it.speeds((600, 700), step=-1), "step"),
+        (lambda it: it.speeds((600, 700), starts=0), "starts = 0"),
+        (lambda it: it.certify(700), "must be .lowest, highest."),
+        (lambda it: it.certify(orbits=True), "at which rpm"),
+        (lambda it: it.certify(bits=1), "bits = 1"),
+    ],
+)
+def test_wrong_arguments_are_refused_with_a_sentence(paper: Model, wrong: Any, words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        wrong(paper)

@@ -1,0 +1,62 @@
+"""Are the documents those of the command?"""
+
+import json
+from typing import Any
+
+import pytest
+from conftest import Command
+
+from corner_impact import Model
+
+
+@pytest.mark.parametrize(
+    ("ask", "words"),
+    [
+        (lambda it: it.orbits(680), ["orbit", "--rpm", "680"]),
+        (lambda it: it.orbits(745, 2, 2), ["orbit", "--rpm", "745", "--revolutions", "2", "--impacts", "2"]),
+        (lambda it: it.orbits(680, guess=(4.15, -31.3)), ["orbit", "--rpm", "680", "--guess", "4.15,-31.3"]),
+        (lambda it: it.locate((670, 680)), ["locate", "--rpm", "670:680"]),
+        (lambda it: it.verify(external=False), ["verify", "--no-external"]),
+        (
+            lambda it: it.speeds((700, 710), speeds=4, starts=6),
+            ["speeds", "--rpm", "700:710", "--speeds", "4", "--starts", "6"],
+        ),
+        (lambda it: it.certify((670, 680)), ["certify", "--rpm", "670:680"]),
+        (lambda it: it.certify(700, orbits=True), ["certify", "--rpm", "700", "--orbits"]),
+    ],
+)
+def test_documents_are_those_of_the_command(paper: Model, command: Command, ask: Any, words: list[str]) -> None:
+    found = ask(paper)
+    assert found == json.loads(command(*words, "--json"))
+    assert found["schema"] == f"corner-impact/{words[0]}/1"
+
+
+def test_a_model_with_another_number_is_that_of_the_command(paper: Model, command: Command) -> None:
+    found = paper.with_number("restitution", 0.7).orbits(680)
+    assert found == json.loads(command("orbit", "--rpm", "680", "--set", "restitution=0.7", "--json"))
+
+
+def test_what_python_lacks_is_told(paper: Model, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CORNER_IMPACT_PYTHON", "/nowhere/python")
+    with pytest.raises(ValueError, match="/nowhere/python.* did not start"):
+        paper.certify((670, 680))
+    found = paper.verify()
+    assert not found["agrees"]
+    assert {skipped["route"] for skipped in found["skipped"] if skipped["failed"]} == {
+        "symbolic",
+        "scipy",
+        "certificate",
+    }
+
+
+def test_the_routes_run_in_this_interpreter(paper: Model, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("CORNER_IMPACT_PYTHON", raising=False)
+    # Not the one of a build of the command, nor that of the PATH.
+    monkeypatch.setenv("PATH", "")
+    found = paper.verify()
+    assert found["agrees"] and {"symbolic", "scipy", "certificate"} <= set(found["routes"])
+
+
+def test_no_corner_impact_is_an_error(paper: Model) -> None:
+    with pytest.raises(ValueError, match="corner impact"):
+        Model.parse(paper.text.replace("rpm_max = 760.0", "rpm_max = 610.0")).verify(external=False)
