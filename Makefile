@@ -53,7 +53,7 @@ python: $(PACKAGE) ## build the Python package, install it in .venv, check its t
 
 check: ## formatting, lints and documentation, warnings denied
 	$(CARGO) fmt --all --check
-	$(CARGO) clippy --all-targets $(RELEASE) -- -D warnings
+	$(CARGO) clippy --workspace --all-targets $(RELEASE) -- -D warnings
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --no-deps $(RELEASE)
 
 derive: $(VENV) ## redo the derivations by computer algebra and write golden/derived

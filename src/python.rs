@@ -52,15 +52,25 @@ const TIME_LIMIT: Duration = Duration::from_secs(120);
 pub(crate) enum PythonError {
     #[error("the scripts could not be written to a temporary folder: {0}")]
     NotWritten(std::io::Error),
-    #[error("`{command}` did not start: {error}; `make verify` sets up Python, `verify --no-external` does without it")]
+    #[error("`{command}` did not start: {error}; {}", remedy("`make verify` sets up Python"))]
     NotStarted { command: String, error: std::io::Error },
     #[error(
-        "`{command}` failed ({status}); if a package is missing, `make verify` sets it up, and `verify --no-external` does without; it \
-         said:\n{stderr}"
+        "`{command}` failed ({status}); if a package is missing, {}; it said:\n{stderr}",
+        remedy("`make verify` sets it up")
     )]
     Failed { command: String, status: String, stderr: String },
     #[error("`{command}` printed something else than its result: {error}")]
     Output { command: String, error: String },
+}
+
+/// What helps where Python, or a package of it, is not there.
+fn remedy(of_the_command: &str) -> String {
+    match HOST.get() {
+        None => format!("{of_the_command}, and `verify --no-external` does without"),
+        Some(_) => {
+            "`pip install 'corner-impact[routes]'` installs them all, and `verify(external=False)` does without".into()
+        }
+    }
 }
 
 /// Runs `derivations/<script>` with `input` on standard input and reads its standard output as a `T`.

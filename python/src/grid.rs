@@ -24,7 +24,7 @@ use crate::work::shared;
 /// settle within `transient` revolutions, and else is told by `record` more, as `corner-impact chart` does.
 ///
 /// >>> from corner_impact import Grid
-/// >>> grid = Grid(Model.paper(), {"restitution": [0.7, 0.8], "rpm": [660.0, 700.0, 740.0]})
+/// >>> grid = Grid(Model.paper(), {"restitution": [0.7, 0.8], "rpm": [660.0, 700.0, 720.0]})
 /// >>> grid.shape
 /// (2, 3)
 /// >>> grid.compute()["class"]

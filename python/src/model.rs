@@ -179,7 +179,7 @@ impl Model {
     /// array([300, 301, 302])
     /// >>> import numpy as np
     /// >>> np.degrees(events["cam_angle_rad"]).round(6)
-    /// array([161.478553, 161.478553, 161.478553])
+    /// array([155.303686, 155.303686, 155.303686])
     #[pyo3(signature = (rpm, revolutions=100, *, transient=0, cam_angle=0.0, relative_velocity=None, position=None,
         velocity=None))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
@@ -284,7 +284,7 @@ impl Model {
     /// >>> model = Model.paper()
     /// >>> found = model.strobe_map(700, [4.4, -9.0], [-30.0, 0.0])
     /// >>> found["position_m"]
-    /// array([3.40183776,        nan])
+    /// array([3.67961464,        nan])
     #[pyo3(signature = (rpm, position, velocity, revolutions=1, *, cam_angle=0.0, jacobian=false, threads=Some(1)),
         text_signature = "($self, rpm, position, velocity, revolutions=1, *, cam_angle=0.0, jacobian=False, threads=1)")]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
@@ -332,9 +332,9 @@ impl Model {
     /// `cam_angle_rad`, `relative_velocity_m_s` after it, and `flight_s`, the time from the one to the other, N each. NaN where no
     /// impact follows, and for a start that is none.
     ///
-    /// >>> found = Model.paper().impact_map(700, [2.818332], [89.7])
-    /// >>> found["cam_angle_rad"].shape
-    /// (1,)
+    /// >>> found = Model.paper().impact_map(700, [2.71], [79.0])
+    /// >>> found["cam_angle_rad"], found["relative_velocity_m_s"]
+    /// (array([2.73919377]), array([75.2131057]))
     #[pyo3(signature = (rpm, cam_angle, relative_velocity, *, threads=Some(1)),
         text_signature = "($self, rpm, cam_angle, relative_velocity, *, threads=1)")]
     fn impact_map<'py>(

@@ -1,6 +1,8 @@
 """Are the documents those of the command?"""
 
 import json
+import venv
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -22,7 +24,7 @@ from corner_impact import Model
             ["speeds", "--rpm", "700:710", "--speeds", "4", "--starts", "6"],
         ),
         (lambda it: it.certify((670, 680)), ["certify", "--rpm", "670:680"]),
-        (lambda it: it.certify(700, orbits=True), ["certify", "--rpm", "700", "--orbits"]),
+        (lambda it: it.certify((690, 700), orbits=True), ["certify", "--rpm", "690:700", "--orbits"]),
     ],
 )
 def test_documents_are_those_of_the_command(paper: Model, command: Command, ask: Any, words: list[str]) -> None:
@@ -47,6 +49,15 @@ def test_what_python_lacks_is_told(paper: Model, monkeypatch: pytest.MonkeyPatch
         "scipy",
         "certificate",
     }
+
+
+def test_a_missing_package_is_told(paper: Model, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    bare = tmp_path / "bare"
+    venv.create(bare, with_pip=False)
+    monkeypatch.setenv("CORNER_IMPACT_PYTHON", str(bare / "bin" / "python"))
+    with pytest.raises(ValueError, match="python-flint is missing") as raised:
+        paper.certify((670, 680))
+    assert "pip install 'corner-impact[routes]'" in str(raised.value)
 
 
 def test_the_routes_run_in_this_interpreter(paper: Model, monkeypatch: pytest.MonkeyPatch) -> None:
