@@ -7,7 +7,7 @@ CARGO ?= cargo
 RELEASE := --release --locked
 
 .DEFAULT_GOAL := help
-.PHONY: help verify report quick test python check derive derive-check theorems claims pictures review mutants bench bench-each bench-peers clean
+.PHONY: help verify report quick test python slurm-test check derive derive-check theorems claims pictures review mutants bench bench-each bench-peers clean
 
 # Python and its packages, once; again when the list of packages changes.
 PYTHON ?= python3
@@ -50,6 +50,11 @@ python: $(PACKAGE) ## build the Python package, install it in .venv, check its t
 	cd python && ../.venv/bin/python -m mypy package tests
 	cd python && ../.venv/bin/python -m pyright --pythonpath $(CURDIR)/.venv/bin/python
 	cd python && ../.venv/bin/python -m pytest
+
+slurm-test: $(PACKAGE) ## try the recipes for Slurm on one node, set up on this machine (Debian, as root), after `make python`
+	$(CARGO) build $(RELEASE) --quiet
+	.venv/bin/python -m pip install --quiet --disable-pip-version-check dask-jobqueue==0.9.0
+	python/recipes/slurm-test.sh
 
 check: ## formatting, lints and documentation, warnings denied
 	$(CARGO) fmt --all --check

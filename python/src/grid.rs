@@ -6,7 +6,7 @@ use std::sync::Arc;
 use corner_impact::diagram::Start;
 use corner_impact::orbit::Parameter;
 use corner_impact::progress::Unwatched;
-use corner_impact::study::chart::store::{SIDES, Store, VARIABLES, Variable, blocks_of};
+use corner_impact::study::chart::store::{SIDES, Store, VARIABLES, Variable, attributes, blocks_of};
 use corner_impact::study::chart::{Axis, Chart, Lengths};
 use numpy::{IntoPyArray, PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
@@ -23,14 +23,14 @@ use crate::work::shared;
 /// arrays (down), the second along their columns. `rpm` says the speed where neither is it. Each run starts as for `Model.simulate`, is to
 /// settle within `transient` revolutions, and else is told by `record` more, as `corner-impact chart` does.
 ///
-/// >>> from corner_impact import Grid
-/// >>> grid = Grid(Model.paper(), {"restitution": [0.7, 0.8], "rpm": [660.0, 700.0, 720.0]})
-/// >>> grid.shape
+/// >>> from corner_impact import Chart, Model
+/// >>> chart = Chart(Model.paper(), {"restitution": [0.7, 0.8], "rpm": [660.0, 700.0, 720.0]})
+/// >>> chart.shape
 /// (2, 3)
-/// >>> grid.compute()["class"]
+/// >>> chart.compute()["class"]
 /// array([[3, 1, 1],
 ///        [3, 1, 1]], dtype=int8)
-#[pyclass(frozen, module = "corner_impact")]
+#[pyclass(frozen, name = "Chart", module = "corner_impact")]
 pub(crate) struct Grid {
     chart: Chart,
     model: Py<Model>,
@@ -114,6 +114,12 @@ impl Grid {
         self.chart.speed()
     }
 
+    /// What a dataset says of where it comes from, with CF's conventions: the model's whole text, the start, the lengths, the version.
+    #[getter]
+    fn attributes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        document(py, &attributes(&self.chart))
+    }
+
     /// What the runs of some rows and columns, (first, end) each, come to, without them of all: two-dimensional arrays by name,
     /// as `chart_variables` describes them. The points are the same in whatever parts and on however many `threads`.
     #[pyo3(signature = (rows=None, columns=None, *, threads=None))]
@@ -151,7 +157,7 @@ impl Grid {
     }
 
     /// Begins the zarr store at `path`, of blocks with so many rows and columns, or finds it begun: how many blocks there are down and
-    /// across. Another grid's store is refused.
+    /// across. Another chart's store is refused.
     #[pyo3(signature = (path, chunks=(SIDES[1], SIDES[0])), text_signature = "($self, path, chunks=(100, 100))")]
     fn begin(&self, py: Python<'_>, path: PathBuf, chunks: (usize, usize)) -> PyResult<(usize, usize)> {
         let store = py.detach(|| Store::open(&path, &self.chart, [chunks.1, chunks.0]).map(|store| store.blocks()));
@@ -176,7 +182,7 @@ impl Grid {
     fn __repr__(&self) -> String {
         let [y, x] =
             [&self.chart.y, &self.chart.x].map(|axis| format!("{}: {}", axis.parameter.name(), axis.values.len()));
-        format!("Grid('{}', {y}, {x})", self.chart.model.name.escape_default())
+        format!("Chart('{}', {y}, {x})", self.chart.model.name.escape_default())
     }
 
     fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Named<'py>, Bound<'py, PyDict>)> {

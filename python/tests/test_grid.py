@@ -13,7 +13,7 @@ from conftest import Command
 from numpy.typing import NDArray
 from test_runs import table
 
-from corner_impact import Grid, Model, blocks_done, chart_variables
+from corner_impact import Chart, Model, blocks_done, chart_variables
 
 LENGTHS = {"transient": 5, "record": 2}
 WORDS = ("--transient", "5", "--record", "2")
@@ -25,9 +25,9 @@ def spaced(low: float, high: float, count: int) -> NDArray[np.float64]:
 
 
 @pytest.fixture(scope="module")
-def grid(paper: Model) -> Grid:
+def grid(paper: Model) -> Chart:
     axes = {"restitution": spaced(0, 0.9, 11), "rpm": spaced(90, 190, 12)}
-    return Grid(paper, axes, **LENGTHS)
+    return Chart(paper, axes, **LENGTHS)
 
 
 AXES = ("--x", "rpm=90:190:12", "--y", "restitution=0:0.9:11", *WORDS)
@@ -39,7 +39,7 @@ def same(one: dict[str, NDArray[Any]], other: dict[str, NDArray[Any]]) -> bool:
     )
 
 
-def test_points_are_those_of_the_command(grid: Grid, command: Command) -> None:
+def test_points_are_those_of_the_command(grid: Chart, command: Command) -> None:
     found, expected = grid.compute(), table(command("chart", *AXES, "--out", "-"))
     names = {
         "revolutions": "revolutions",
@@ -60,23 +60,23 @@ def test_points_are_those_of_the_command(grid: Grid, command: Command) -> None:
     assert np.array_equal(np.array(expected["x"], dtype=float), np.tile(grid.axes["rpm"], 11))
 
 
-def test_parts_are_parts_of_the_whole(paper: Model, grid: Grid) -> None:
+def test_parts_are_parts_of_the_whole(paper: Model, grid: Chart) -> None:
     whole = grid.compute(threads=1)
     assert same(whole, grid.compute(threads=2)) and whole["class"].shape == grid.shape == (11, 12)
     part = grid.compute((3, 8), (0, 5))
     assert same(part, {name: values[3:8, :5] for name, values in whole.items()})
     assert grid.compute((2, 2))["class"].shape == (0, 12)
     names = list(reversed(grid.axes))
-    turned = Grid(paper, {name: grid.axes[name] for name in names}, **LENGTHS).compute()
+    turned = Chart(paper, {name: grid.axes[name] for name in names}, **LENGTHS).compute()
     assert same(turned, {name: values.T for name, values in whole.items()})
     # Values in no order, and more than once.
     some = np.array([7, 1, 1, 10])
-    mixed = Grid(paper, {"follower.restitution": grid.axes["follower.restitution"], "rpm": grid.axes["rpm"][some]}, **LENGTHS)
+    mixed = Chart(paper, {"follower.restitution": grid.axes["follower.restitution"], "rpm": grid.axes["rpm"][some]}, **LENGTHS)
     assert same(mixed.compute(), {name: values[:, some] for name, values in whole.items()})
 
 
 def test_a_grid_is_pickled_whole(paper: Model) -> None:
-    grid = Grid(paper, {"mass": [1.2, 1.3], "stiffness": [1400, 1500]}, rpm=700, position=9, velocity=0, **LENGTHS)
+    grid = Chart(paper, {"mass": [1.2, 1.3], "stiffness": [1400, 1500]}, rpm=700, position=9, velocity=0, **LENGTHS)
     again = pickle.loads(pickle.dumps(grid))
     assert same(again.compute(), grid.compute()) and repr(again) == repr(grid)
     assert (again.rpm, again.transient, again.record, again.model) == (700, 5, 2, paper)
@@ -85,12 +85,12 @@ def test_a_grid_is_pickled_whole(paper: Model) -> None:
 
 def test_what_cannot_be_is_a_class(paper: Model) -> None:
     axes = {"restitution": [0.8, np.nan, 1.7], "rpm": [-5.0, np.nan, np.inf, 700.0]}
-    found = Grid(paper, axes, **LENGTHS).compute()
+    found = Chart(paper, axes, **LENGTHS).compute()
     meanings = next(it for it in chart_variables() if it["name"] == "class")["attributes"]["flag_meanings"].split()
     failed = found["class"] == meanings.index("failed")
     assert failed.sum() == 11 and not failed[0, 3]
     assert np.isnan(found["growth_rate"][failed]).all() and (found["impacts"][failed] == -1).all()
-    below = Grid(paper, {"restitution": [0.8], "rpm": [700.0]}, position=-1.0, velocity=0.0, **LENGTHS).compute()
+    below = Chart(paper, {"restitution": [0.8], "rpm": [700.0]}, position=-1.0, velocity=0.0, **LENGTHS).compute()
     assert below["class"][0, 0] == meanings.index("failed")
 
 
@@ -107,14 +107,14 @@ def test_what_cannot_be_is_a_class(paper: Model) -> None:
 )
 def test_what_is_no_grid_is_refused(paper: Model, axes: dict[str, Any], asked: dict[str, Any], words: str) -> None:
     with pytest.raises(ValueError, match=words):
-        Grid(paper, axes, **asked)
+        Chart(paper, axes, **asked)
 
 
 def files(store: Path) -> dict[str, bytes]:
     return {str(path.relative_to(store)): path.read_bytes() for path in store.rglob("*") if path.is_file()}
 
 
-def test_a_store_is_that_of_the_command(grid: Grid, command: Command, tmp_path: Path) -> None:
+def test_a_store_is_that_of_the_command(grid: Chart, command: Command, tmp_path: Path) -> None:
     theirs, ours = tmp_path / "theirs.zarr", tmp_path / "ours.zarr"
     command("chart", *AXES, "--out", str(theirs))
     assert grid.begin(ours) == (1, 1) and not blocks_done(ours).any()
@@ -123,7 +123,7 @@ def test_a_store_is_that_of_the_command(grid: Grid, command: Command, tmp_path: 
     assert "2 of 2" not in command("chart", "--status", str(ours))
 
 
-def test_processes_fill_a_store_together(paper: Model, grid: Grid, tmp_path: Path) -> None:
+def test_processes_fill_a_store_together(paper: Model, grid: Chart, tmp_path: Path) -> None:
     store, alone, chunks = tmp_path / "chart.zarr", tmp_path / "alone.zarr", (4, 5)
     assert grid.begin(store, chunks) == grid.begin(alone, chunks) == (3, 3)
     with ProcessPoolExecutor(2, get_context("spawn")) as executor:
@@ -141,9 +141,9 @@ def test_processes_fill_a_store_together(paper: Model, grid: Grid, tmp_path: Pat
     block = np.frombuffer(whole["class/c/1/2"], dtype=np.int8).reshape(4, 5)
     assert np.array_equal(block[:4, :2], grid.compute((4, 8), (10, 12))["class"]) and (block[:, 2:] == -1).all()
     for other, wrong in [
-        (Grid(paper, grid.axes, transient=6, record=2), chunks),
-        (Grid(paper.with_number("mass", 1.0), grid.axes, **LENGTHS), chunks),
-        (Grid(paper, grid.axes | {"rpm": grid.axes["rpm"] + 1.0}, **LENGTHS), chunks),
+        (Chart(paper, grid.axes, transient=6, record=2), chunks),
+        (Chart(paper.with_number("mass", 1.0), grid.axes, **LENGTHS), chunks),
+        (Chart(paper, grid.axes | {"rpm": grid.axes["rpm"] + 1.0}, **LENGTHS), chunks),
         (grid, (5, 4)),
     ]:
         with pytest.raises(ValueError, match="holds another chart"):
@@ -154,7 +154,7 @@ def test_processes_fill_a_store_together(paper: Model, grid: Grid, tmp_path: Pat
         grid.begin(tmp_path / "none.zarr", (0, 5))
 
 
-def test_a_store_that_cannot_be_written_is_told(grid: Grid, tmp_path: Path) -> None:
+def test_a_store_that_cannot_be_written_is_told(grid: Chart, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("no folder")
     with pytest.raises(ValueError, match="cannot be made"):
         grid.begin(tmp_path / "file" / "chart.zarr")

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from corner_impact import Grid, Model
+from corner_impact import Chart, Model
 
 MANY = np.full(1000, 5.0)
 
@@ -24,7 +24,7 @@ MANY = np.full(1000, 5.0)
         lambda it: it.diagram((600, 700, 9), record=10**11, threads=1, strobe=1.0, lyapunov=True),
         lambda it: it.strobe_map(670, MANY, 0 * MANY, 10**10),
         lambda it: it.strobe_map(670, MANY, 0 * MANY, 10**10, jacobian=True, threads=2),
-        lambda it: Grid(it, {"mass": 1.0 + 0.001 * MANY * np.arange(1000), "rpm": 600 + np.arange(1000.0)}).compute(),
+        lambda it: Chart(it, {"mass": 1.0 + 0.001 * MANY * np.arange(1000), "rpm": 600 + np.arange(1000.0)}).compute(),
         lambda it: it.locate((50, 3000), 4),
         lambda it: it.speeds((50, 3000), speeds=10_000),
         lambda it: it.certify((300, 1500), orbits=True, bits=16000),

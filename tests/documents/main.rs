@@ -200,7 +200,8 @@ fn commands_and_options_that_are_named_exist() {
 }
 
 /// Folders of the project whose files are named by their path.
-const FOLDERS: [&str; 8] = ["src/", "tests/", "docs/", "models/", "derivations/", "examples/", "golden/", "benches/"];
+const FOLDERS: [&str; 9] =
+    ["src/", "tests/", "docs/", "models/", "derivations/", "examples/", "golden/", "benches/", "python/"];
 
 #[test]
 fn files_that_are_named_exist() {

@@ -6,7 +6,7 @@ from typing import Any, Literal, TypeAlias, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["Grid", "Model", "__version__", "blocks_done", "chart_variables", "events", "main"]
+__all__ = ["Chart", "Model", "__version__", "blocks_done", "chart_variables", "events", "main"]
 
 __version__: str
 
@@ -111,7 +111,7 @@ class Model:
     def __reduce__(self) -> tuple[Any, tuple[str, str]]: ...
 
 @final
-class Grid:
+class Chart:
     def __new__(
         cls,
         model: Model,
@@ -124,7 +124,7 @@ class Grid:
         relative_velocity: float | None = None,
         position: float | None = None,
         velocity: float | None = None,
-    ) -> Grid: ...
+    ) -> Chart: ...
     @property
     def model(self) -> Model: ...
     @property
@@ -137,6 +137,8 @@ class Grid:
     def record(self) -> int: ...
     @property
     def rpm(self) -> float | None: ...
+    @property
+    def attributes(self) -> _Document: ...
     def compute(
         self,
         rows: tuple[int, int] | None = None,

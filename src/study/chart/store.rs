@@ -320,17 +320,7 @@ impl<'a> Store<'a> {
         json!({
             "zarr_format": 3,
             "node_type": "group",
-            "attributes": {
-                "Conventions": "CF-1.10",
-                "title": format!("{}: what a run comes to", chart.model.name),
-                "model": chart.model.name,
-                "model_toml": chart.model.text(),
-                "rpm": chart.speed(),
-                "start": start(&chart.start),
-                "transient": chart.lengths.transient,
-                "record": chart.lengths.record,
-                "corner_impact_version": env!("CARGO_PKG_VERSION"),
-            },
+            "attributes": attributes(chart),
             "consolidated_metadata": { "kind": "inline", "must_understand": false, "metadata": arrays },
         })
     }
@@ -349,6 +339,21 @@ impl<'a> Store<'a> {
         output.write_all(bytes)?;
         Ok(output.commit()?)
     }
+}
+
+/// What a chart says of where it comes from, by CF's conventions and by names of its own.
+pub fn attributes(chart: &Chart) -> Value {
+    json!({
+        "Conventions": "CF-1.10",
+        "title": format!("{}: what a run comes to", chart.model.name),
+        "model": chart.model.name,
+        "model_toml": chart.model.text(),
+        "rpm": chart.speed(),
+        "start": start(&chart.start),
+        "transient": chart.lengths.transient,
+        "record": chart.lengths.record,
+        "corner_impact_version": env!("CARGO_PKG_VERSION"),
+    })
 }
 
 fn start(start: &Start) -> Value {
