@@ -22,6 +22,7 @@ from dataclasses import dataclass
 
 from flint import arb, ctx
 
+from .cam import Slackened
 from .duals import Dual, lift, response
 from .motion import Flight, Start
 from .numbers import Excluded, Refused, Undecided, between, hull, overlap, within
@@ -100,19 +101,6 @@ class Stretch:
     high: arb
     kinds: list
     event: Event
-
-
-@dataclass(frozen=True)
-class Slackened:
-    """A law with what the pieces of a cam of decimals are off by."""
-
-    law: object
-    slack: tuple
-
-    def derivatives(self, angle):
-        """(c, c', c'', c''') over the ball."""
-        lift, slope, curvature, third = self.law.derivatives(angle)
-        return lift + self.slack[0], slope + self.slack[1], curvature, third
 
 
 class Branches:

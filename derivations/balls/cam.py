@@ -157,3 +157,16 @@ class Turned:
     def derivatives(self, angle):
         """(c, c', c'', c''') over the ball."""
         return self.law.derivatives(angle - self.shift)
+
+
+@dataclass(frozen=True)
+class Slackened:
+    """A law with what the pieces of a cam of decimals are off by."""
+
+    law: object
+    slack: tuple
+
+    def derivatives(self, angle):
+        """(c, c', c'', c''') over the ball."""
+        lift, slope, curvature, third = self.law.derivatives(angle)
+        return lift + self.slack[0], slope + self.slack[1], curvature, third

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from flint import arb, arb_mat
 
+from .cam import Slackened
 from .duals import Dual, lift, response
 from .krawczyk import inverse
 from .motion import Flight, Start
@@ -34,10 +35,7 @@ class Followed:
 
 
 def followed(orbit, side):
-    """How far the fixed point of a side, "before" or "after", is followed; None where that is nowhere, or where the decimals of
-    the cam's pieces leave open what is at the corner."""
-    if orbit.corner.assumed:
-        return None
+    """How far the fixed point of a side, "before" or "after", is followed; None where that is nowhere."""
     for reach in REACHES:
         try:
             return _within(orbit, side, reach)
@@ -48,7 +46,10 @@ def followed(orbit, side):
 
 def _within(orbit, side, reach):
     machine, count = orbit.machine, 2 * len(orbit.impacts)
-    laws = [getattr(orbit.corner, side)] + [impact.law for impact in orbit.impacts[1:]]
+    law = getattr(orbit.corner, side)
+    # Where decimals meet nearly the law before the corner is taken up by a line, so that it meets the one after it.
+    first = Slackened(law, machine.cam.slack) if orbit.corner.assumed and side == "before" else law
+    laws = [first] + [impact.law for impact in orbit.impacts[1:]]
     # w in the order of the equations of the corner impact: T and v, then angle and velocity of each other impact.
     at = [orbit.period, orbit.impacts[0].velocity] + [x for impact in orbit.impacts[1:] for x in (impact.angle, impact.velocity)]
     angles = orbit.corner.angle + arb(0, reach)
@@ -93,8 +94,8 @@ def _prove_flights(orbit, laws, angle, w):
     cam, speed = orbit.machine.cam, orbit.machine.cam.turn / w[0]
     angles, velocities = [angle, *w[2::2], angle + orbit.revolutions * cam.turn], [w[1], *w[3::2]]
     # The first one's piece goes from the corner to beyond the end of the ball that is farther from it.
-    far = angle.lower() if laws[0] is orbit.corner.before else angle.upper()
-    stays = _is_of(cam.piece_of(arb(far)).law, laws[0])
+    far = angle.lower() if _piece(laws[0]) is _piece(orbit.corner.before) else angle.upper()
+    stays = _piece(cam.piece_of(arb(far)).law) is _piece(laws[0])
     if not (stays and all(piece.holds(other) for piece, other in zip(orbit.pieces, angles[1:]))):
         raise Undecided("an impact is not proved to stay on its piece of the cam")
     for k, law in enumerate(laws):
@@ -103,6 +104,8 @@ def _prove_flights(orbit, laws, angle, w):
         Flight(orbit.machine, Start(angles[k], relative, speed), law).first_contact(float(time) * 2, time)
 
 
-def _is_of(one, other):
-    """Whether two laws are of one piece of the cam, perhaps of different revolutions."""
-    return getattr(one, "law", one) is getattr(other, "law", other)
+def _piece(law):
+    """The law of a piece of the cam, whatever revolution it is turned to or line it is taken up by."""
+    while hasattr(law, "law"):
+        law = law.law
+    return law

@@ -9,11 +9,12 @@ use std::cmp::Ordering;
 use rayon::prelude::*;
 
 use super::base::{bases, rounded};
-use super::frame::Frame;
+use super::frame::{Frame, Image};
 use super::map::ImpactMap;
-use super::prove::{Covered, Refused, Relation, prove};
-use super::sample::{Crossing, Line};
-use super::{HSet, Strip};
+use super::prove::{Covered, Refused, Relation, covered, loses, stands};
+use super::sample::{Crossing, Line, MOST_IMPACTS};
+use super::{HSet, Strip, entropy};
+use crate::progress::Watch;
 use crate::simulate::{Machine, SimulateError, angular_velocity};
 
 /// An h-set with what is proved of it.
@@ -23,6 +24,8 @@ pub struct Proved {
     pub set: HSet,
     /// What is proved of each strip.
     pub strips: Vec<Covered>,
+    /// The same h-set without cones, with what is proved of its strips, where there are more of them.
+    pub without_cones: Option<(HSet, Vec<Covered>)>,
     /// Strips that were given up.
     pub refused: Vec<Refused>,
 }
@@ -46,6 +49,9 @@ const POINTS: usize = 12_000;
 const SHORTER: f64 = 0.8;
 const SHORTEST: f64 = 0.06;
 
+/// Boxes that a strip is given up after, which takes some seconds: those that cover with room to spare take some hundreds.
+const MOST_BOXES: usize = 1536;
+
 /// How much is to be proved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wanted {
@@ -56,45 +62,79 @@ pub struct Wanted {
 }
 
 /// Finds an h-set with two strips or more at every speed of a range, rpm, and proves it.
-pub fn find(machine: &Machine, rpm: [f64; 2], wanted: Wanted) -> Result<Result<Proved, Short>, SimulateError> {
-    /// h-sets that are sampled at all heights, and of those the ones that are tried to be proved; the most promising first.
-    const SAMPLED: usize = 150;
+pub fn find(
+    machine: &Machine,
+    rpm: [f64; 2],
+    wanted: Wanted,
+    watch: &dyn Watch,
+) -> Result<Result<Proved, Short>, SimulateError> {
+    /// For each impact of a saddle the h-sets that are sampled at all heights, and of all saddles those that are tried to be proved; the
+    /// most promising first.
+    const SAMPLED: usize = 12;
     const TRIES: usize = 3;
     let middle = 0.5 * (rpm[0] + rpm[1]);
     let machine = machine.at_speed(angular_velocity(middle));
+    watch.at("saddles of few impacts", 0, 0);
     let bases = bases(&machine, middle)?;
-    let made_ready = |mut sized: Vec<HSet>| {
+    let made_ready = |base: &HSet, lengths: &[Vec<f64>; 2]| {
+        let mut sized = sizes(&machine, base, lengths, wanted.strips);
         sized.sort_by(promising);
+        sized.dedup_by(|one, two| (one.x, &one.strips) == (two.x, &two.strips));
         sized.truncate(SAMPLED);
-        sized.into_par_iter().filter_map(|set| ready(&machine, HSet { rpm, ..set })).collect::<Vec<_>>()
+        let ready = sized.into_par_iter().filter_map(|set| ready(&machine, HSet { rpm, ..set }));
+        ready.min_by(promising)
     };
+    watch.at("strips that come back across h-sets about saddles", 0, 0);
     let everywhere = [lengths(SHORTER), lengths(SHORTER)];
-    let sized = bases.par_iter().flat_map_iter(|base| sizes(&machine, base, &everywhere, wanted.strips)).collect();
-    let mut sets = made_ready(sized);
+    let mut sets: Vec<HSet> = bases.par_iter().filter_map(|base| made_ready(base, &everywhere)).collect();
     // One strip more may lie between an end of the best and the next.
-    if let Some(best) = sets.iter().min_by(|one, two| promising(one, two)) {
-        let lengths = [near(-best.x[0]), near(best.x[1])];
-        sets.extend(made_ready(sizes(&machine, best, &lengths, wanted.strips)));
+    if let Some(best) = sets.iter_mut().min_by(|one, two| promising(one, two))
+        && let Some(near) = made_ready(best, &[near(-best.x[0]), near(best.x[1])])
+        && promising(&near, best).is_lt()
+    {
+        *best = near;
     }
     sets.sort_by(promising);
     let strips = sets.first().map_or(0, |set| set.strips.len());
     let mut short = Short { saddles: bases.len(), strips, refused: Vec::new() };
+    let coned = |set| if wanted.cones { with_cones(&machine, set) } else { (0.0, set) };
+    let mut candidates: Vec<(f64, HSet)> = sets.into_par_iter().map(coned).collect();
+    // Those whose strips keep cones come first, as far as points tell.
+    candidates.sort_by(|one, two| two.0.total_cmp(&one.0).then_with(|| promising(&one.1, &two.1)));
     let mut best: Option<Proved> = None;
-    for set in sets.into_iter().take(TRIES) {
-        match proved(&machine, set, wanted) {
-            Ok(proved) => {
-                let is_all = proved.refused.is_empty();
-                if best.as_ref().is_none_or(|best| promising(&proved.set, &best.set).is_lt()) {
-                    best = Some(proved);
-                }
-                if is_all {
-                    break;
-                }
+    for (tried, (_, set)) in candidates.into_iter().take(TRIES).enumerate() {
+        watch.at("strips, which are proved", tried as u64, TRIES as u64);
+        let is_coned = set.cone_slope.is_some();
+        let found = proved(&machine, set.clone());
+        // Without the strips whose flights may touch the cam N need not be as high, and the others keep farther from that.
+        let refused = match &found {
+            Ok(proved) => &proved.refused,
+            Err(refused) => refused,
+        };
+        let is_left = |strip: &Strip| !refused.iter().any(|why| strip.x[0] <= why.at[0] && why.at[0] <= strip.x[1]);
+        let left = HSet { strips: set.strips.iter().filter(|strip| is_left(strip)).cloned().collect(), ..set.clone() };
+        let again = (!refused.is_empty() && left.strips.len() > 1).then(|| ready(&machine, left)).flatten();
+        let again = again.and_then(|left| proved(&machine, coned(left).1).ok());
+        if again.is_none()
+            && let Err(refused) = &found
+        {
+            short.refused.extend(refused.iter().cloned());
+        }
+        for proved in found.ok().into_iter().chain(again) {
+            if best.as_ref().is_none_or(|best| better(&proved.set, &best.set).is_lt()) {
+                best = Some(proved);
             }
-            Err(refused) => short.refused.extend(refused),
+        }
+        if best.as_ref().is_some_and(|best| best.set.cone_slope.is_some() == is_coned) {
+            break;
         }
     }
     Ok(best.ok_or(short))
+}
+
+/// What keeps cones first, then what has more motions.
+fn better(one: &HSet, two: &HSet) -> Ordering {
+    two.cone_slope.is_some().cmp(&one.cone_slope.is_some()).then_with(|| promising(one, two))
 }
 
 /// The one with more motions first; of two with as many the smaller one, which strips get across sooner.
@@ -119,7 +159,7 @@ fn near(length: f64) -> Vec<f64> {
 /// are along the middle.
 fn sizes(machine: &Machine, base: &HSet, [lefts, rights]: &[Vec<f64>; 2], strips: usize) -> Vec<HSet> {
     let points = (0..=POINTS).map(|index| FARTHEST * (2.0 * index as f64 / POINTS as f64 - 1.0));
-    let line = Line::new(machine, base, 0.0, points.collect());
+    let line = Line::new(machine, base, 0.0, points.collect(), MOST_IMPACTS);
     let heights = lengths(0.5);
     let mut all = Vec::new();
     for left in lefts {
@@ -132,7 +172,7 @@ fn sizes(machine: &Machine, base: &HSet, [lefts, rights]: &[Vec<f64>; 2], strips
                 let mut apart = apart(crossings.iter().filter(is_low).copied().collect());
                 apart.truncate(strips);
                 let is_more = |set: &HSet| best.as_ref().is_none_or(|best| promising(set, best).is_lt());
-                *best = base.sized(x, &apart).filter(is_more).or_else(|| best.take());
+                *best = base.sized(x, &apart, ROOM).filter(is_more).or_else(|| best.take());
             }
         }
         all.extend(best.into_iter().flatten());
@@ -142,13 +182,13 @@ fn sizes(machine: &Machine, base: &HSet, [lefts, rights]: &[Vec<f64>; 2], strips
 
 impl HSet {
     /// With a range of x, and crossings of it as its strips; none of less than two, or where a follower would not leave the cam.
-    fn sized(&self, x: [f64; 2], crossings: &[Crossing]) -> Option<Self> {
+    fn sized(&self, x: [f64; 2], crossings: &[Crossing], room: f64) -> Option<Self> {
         let strip = |crossing: &Crossing| Strip {
             impacts: crossing.impacts as u64,
             revolutions: crossing.revolutions,
             x: crossing.x,
         };
-        let y = height(crossings)?.map(rounded);
+        let y = height(crossings, room)?.map(rounded);
         let set = Self { x, y, strips: crossings.iter().map(strip).collect(), ..self.clone() };
         (set.strips.len() > 1 && lowest_velocity(&set) > 0.0).then_some(set)
     }
@@ -173,23 +213,24 @@ fn apart(mut crossings: Vec<Crossing>) -> Vec<Crossing> {
 }
 
 /// The range of y of crossings, and some more.
-fn height(crossings: &[Crossing]) -> Option<[f64; 2]> {
+fn height(crossings: &[Crossing], room: f64) -> Option<[f64; 2]> {
     let low = crossings.iter().map(|crossing| crossing.y[0]).reduce(f64::min)?;
     let high = crossings.iter().map(|crossing| crossing.y[1]).reduce(f64::max)?;
-    Some([low - ROOM * (high - low), high + ROOM * (high - low)])
+    Some([low - room * (high - low), high + room * (high - low)])
 }
 
-/// Room above and below, of the height; the images of the lowest and the highest points leave most of it.
+/// Room above and below, of the height: where it is that of images of the middle alone, and where the lowest and the highest points' count.
 const ROOM: f64 = 0.12;
+const LESS_ROOM: f64 = 0.1;
 /// Room at each edge of a strip, of its width.
 const EDGE: f64 = 0.03;
 
 /// N with its height and strips such that they cover at all heights and speeds that are sampled.
 fn ready(machine: &Machine, mut set: HSet) -> Option<HSet> {
     /// The height settles at once: images hardly depend on it.
-    const ROUNDS: usize = 3;
+    const ROUNDS: usize = 2;
     /// Points about a strip, and how far they go beyond it, of its width.
-    const STRIP_POINTS: usize = 200;
+    const STRIP_POINTS: usize = 80;
     const BEYOND: f64 = 1.5;
     set.x = set.x.map(rounded);
     let parts = if set.rpm[0] < set.rpm[1] { vec![0.0, 0.5, 1.0] } else { vec![0.0] };
@@ -207,8 +248,12 @@ fn ready(machine: &Machine, mut set: HSet) -> Option<HSet> {
             let same = |crossing: &Crossing| {
                 (crossing.impacts as u64, crossing.revolutions) == (strip.impacts, strip.revolutions)
             };
+            // Of two that come back alike the one that is nearer to where the strip is.
+            let off = |crossing: &Crossing| (crossing.x[0] + crossing.x[1] - strip.x[0] - strip.x[1]).abs();
             let mut crossings = lines.map(|(machine, height)| {
-                Line::new(machine, &set, height, points.clone()).crossings(set.x).into_iter().find(same)
+                let line = Line::new(machine, &set, height, points.clone(), strip.impacts as usize);
+                let alike = line.crossings(set.x).into_iter().filter(same);
+                alike.min_by(|one, two| off(one).total_cmp(&off(two)))
             });
             let first = crossings.next()??;
             let whole = crossings.try_fold(first, |whole, crossing| Some(whole.hull(&crossing?)))?;
@@ -217,50 +262,80 @@ fn ready(machine: &Machine, mut set: HSet) -> Option<HSet> {
         };
         let is_inside = |crossing: &Crossing| set.x[0] < crossing.x[0] && crossing.x[1] < set.x[1];
         let crossings = apart(set.strips.iter().filter_map(everywhere).filter(is_inside).collect());
-        set = set.sized(set.x, &crossings)?;
+        set = set.sized(set.x, &crossings, LESS_ROOM)?;
     }
     Some(set)
 }
 
-/// Proves an h-set, with cones where they are wanted and kept, and without the strips that are refused.
-fn proved(machine: &Machine, mut set: HSet, wanted: Wanted) -> Result<Proved, Vec<Refused>> {
-    let mut refused: Vec<Refused> = Vec::new();
-    if wanted.cones {
-        set.cone_slope = slope(machine, &set);
-    }
-    while set.strips.len() > 1 {
-        match prove(machine, &set) {
-            Ok(strips) => return Ok(Proved { set, strips, refused }),
-            Err(why) if matches!(why.relation, Relation::Cones | Relation::Losses) => set.cone_slope = None,
-            Err(why) => {
-                set.strips.retain(|strip| strip.impacts != why.impacts);
-                refused.push(why);
-            }
+/// Proves an h-set with those of its strips that cover it: those that keep cones as well, where there are two or more, and all of them.
+fn proved(machine: &Machine, set: HSet) -> Result<Proved, Vec<Refused>> {
+    let without = HSet { cone_slope: None, ..set.clone() };
+    stands(&set).map_err(|why| vec![why])?;
+    let has_cones = set.cone_slope.is_some() && loses(machine, &set).is_ok();
+    let one = |strip: &Strip| {
+        let kept = if has_cones {
+            covered(machine, &set, strip, MOST_BOXES)
+        } else {
+            covered(machine, &without, strip, MOST_BOXES)
+        };
+        match kept {
+            Err(Refused { relation: Relation::Cones, .. }) => covered(machine, &without, strip, MOST_BOXES),
+            kept => kept,
         }
+    };
+    let outcomes: Vec<_> = set.strips.par_iter().map(one).collect();
+    let all = set.strips.iter().zip(outcomes);
+    let (covering, refused): (Vec<_>, Vec<_>) = all.partition(|(_, outcome)| outcome.is_ok());
+    let refused: Vec<Refused> = refused.into_iter().filter_map(|(_, outcome)| outcome.err()).collect();
+    let covering: Vec<_> =
+        covering.into_iter().filter_map(|(strip, outcome)| Some((strip.clone(), outcome.ok()?))).collect();
+    let coned: Vec<_> = covering.iter().filter(|(_, covered)| covered.growth.is_some()).cloned().collect();
+    let with = |set: &HSet, some: &[(Strip, Covered)]| {
+        let (strips, covered) = some.iter().cloned().unzip();
+        (HSet { strips, ..set.clone() }, covered)
+    };
+    let (all, covered) = with(&without, &covering);
+    if coned.len() < 2 {
+        let has_chaos = covering.len() > 1;
+        return if has_chaos {
+            Ok(Proved { set: all, strips: covered, without_cones: None, refused })
+        } else {
+            Err(refused)
+        };
     }
-    Err(refused)
+    let without_cones = (coned.len() < covering.len()).then_some((all, covered));
+    let (set, strips) = with(&set, &coned);
+    Ok(Proved { set, strips, without_cones, refused })
 }
 
-/// The slope of cones that are kept, and stretched most, at some points of the strips.
-fn slope(machine: &Machine, set: &HSet) -> Option<f64> {
+/// An h-set with the slope of cones that, at some points of the strips, are kept by strips with the most motions, and stretched most; and the
+/// entropy of these.
+fn with_cones(machine: &Machine, set: HSet) -> (f64, HSet) {
     let map = ImpactMap::new(machine);
-    let frame = Frame::new(set);
-    let points = set.strips.iter().flat_map(|strip| {
+    let frame = Frame::new(&set);
+    let images = set.strips.iter().map(|strip| {
         let at = |part: f64, [low, high]: [f64; 2]| low + part * (high - low);
         let parts = [0.0, 0.1, 0.5, 0.9, 1.0];
-        parts.into_iter().flat_map(move |x| parts.map(move |y| (strip, [at(x, strip.x), at(y, set.y)])))
+        let points = parts.into_iter().flat_map(|x| parts.map(|y| [at(x, strip.x), at(y, set.y)]));
+        points.map(|point| frame.at_point(&map, strip, point, set.rpm).ok()).collect::<Option<Vec<_>>>()
     });
-    let points: Vec<_> = points.collect();
-    let images: Option<Vec<_>> =
-        points.into_par_iter().map(|(strip, point)| frame.at_point(&map, strip, point, set.rpm).ok()).collect();
-    let images = images?;
-    let least = |slope: f64| {
-        images
-            .iter()
-            .map(|image| image.stretched(slope))
-            .try_fold(f64::INFINITY, |least, growth| Some(least.min(growth?)))
+    let images: Vec<_> = images.collect();
+    let kept = |slope: f64| {
+        let least = |images: &Option<Vec<Image>>| {
+            let growths = images.as_ref()?.iter().map(|image| image.stretched(slope));
+            growths.reduce(|least, growth| Some(least?.min(growth?)))?
+        };
+        let growths: Vec<Option<f64>> = images.iter().map(least).collect();
+        let keeps = set.strips.iter().zip(&growths).filter(|(_, growth)| growth.is_some());
+        let least = growths.iter().flatten().fold(f64::INFINITY, |least, growth| least.min(*growth));
+        (entropy(&keeps.map(|(strip, _)| strip.revolutions).collect::<Vec<_>>()), least)
     };
-    let slopes = (-6..=8).map(|power| 2.0_f64.powi(power));
-    let best = slopes.filter_map(|slope| Some((slope, least(slope)?))).max_by(|one, two| one.1.total_cmp(&two.1));
-    best.map(|(slope, _)| slope)
+    let slopes = (-6..=8).map(|power| 2.0_f64.powi(power)).map(|slope| (kept(slope), slope));
+    let most = |((one, more), _): &((f64, f64), f64), ((two, less), _): &((f64, f64), f64)| {
+        one.total_cmp(two).then(more.total_cmp(less))
+    };
+    match slopes.max_by(most) {
+        Some(((entropy, _), slope)) if entropy > 0.0 => (entropy, HSet { cone_slope: Some(slope), ..set }),
+        _ => (0.0, set),
+    }
 }

@@ -103,10 +103,11 @@ impl Image {
     /// What differences within `|dy| <= L |dx|` are stretched by at least, where such cones are kept, with L the slope.
     pub fn stretched(&self, slope: f64) -> Option<f64> {
         let [[a, b, _], [c, d, _]] = self.by;
-        if a.holds_zero() || !(slope > 0.0) {
+        if !(slope > 0.0) {
             return None;
         }
         let size = |number: Interval| Interval::from(number.magnitude());
+        // Not above 0 where a may be 0.
         let least = if a.is_positive() { a.low() } else { -a.high() };
         // |a| - L |b| > 1 and |c| + L |d| <= L (|a| - L |b|)
         let growth = Interval::from(least) - size(b) * slope;

@@ -20,8 +20,8 @@ use serde::Serialize;
 use crate::cam::Lift;
 use crate::interval::Interval;
 use crate::interval::centred::Centred;
+use crate::interval::roots::falls_to_zero;
 use crate::simulate::{Event, EventKind, Machine};
-use crate::tolerance;
 
 /// A number over a box of two coordinates and the speed.
 pub(super) type Over<'a> = Centred<'a, 3>;
@@ -178,38 +178,20 @@ impl<'a> Launch<'a, '_> {
 
     /// The time of the impact that is near a guess, s, all over the box, and how it changes.
     fn landing(&self, guess: f64) -> Result<Over<'a>, Unproved> {
-        let centre = self.newton(guess, |gap| [gap.value.centre, gap.rate.centre]);
-        let centre = centre.ok_or(Unproved::NotTransversal)?;
-        let whole = self.newton(guess, |gap| [gap.value.value(), gap.rate.value()]);
-        let whole = whole.ok_or(Unproved::NotTransversal)?;
+        let at_centre = |times| {
+            let gap = self.over(times);
+            [gap.value.centre, gap.rate.centre]
+        };
+        let all_over = |times| {
+            let gap = self.over(times);
+            [gap.value.value(), gap.rate.value()]
+        };
+        let centre = falls_to_zero(guess, at_centre).ok_or(Unproved::NotTransversal)?;
+        let whole = falls_to_zero(guess, all_over).ok_or(Unproved::NotTransversal)?;
         let gap = self.over(whole);
         // dt = -dg/g'
         let by = gap.value.whole.by.map(|by| -(by / gap.rate.value()));
         Ok(gap.value.solved(centre, whole, by))
-    }
-
-    /// The one root of the gap near a guess, by `t - g(t)/g'(T)` over what it maps into itself: Newton's method on intervals.
-    fn newton(&self, guess: f64, of: impl Fn(&Gap<'a>) -> [Interval; 2]) -> Option<Interval> {
-        /// Each time the box is widened, or narrowed.
-        const TRIES: usize = 8;
-        let guessed = Interval::from(guess);
-        let [value, rate] = of(&self.over(guessed));
-        let mut image = guessed - value / rate;
-        for _ in 0..TRIES {
-            let room = 0.1 * image.width() + tolerance::ULP.value * guess;
-            // The theorem needs the guess among them: the mean value of g' is taken from there.
-            let times = (image + Interval::new(-room, room)).hull(guessed);
-            let [_, rate] = of(&self.over(times));
-            if !rate.is_negative() {
-                return None;
-            }
-            image = guessed - value / rate;
-            if image.is_inside(times) {
-                let [_, rate] = of(&self.over(image.hull(guessed)));
-                return Some((guessed - value / rate).and(image));
-            }
-        }
-        None
     }
 
     /// Whether the gap is above 0 from after the launch, with a velocity, to the landing at a time.
@@ -221,11 +203,10 @@ impl<'a> Launch<'a, '_> {
         let (mut time, mut step) = (0.0, STEP * end);
         while time < end {
             let times = Interval::new(time, end.min(time + step));
-            // The last stretch is up to the landing everywhere in the box.
+            // Up to where the first start of the box lands: from there on the gap of each falls to 0, as Newton's method has shown.
             let is_last = times.high() == end;
-            let stretch = if is_last { times.hull(landing) } else { times };
-            let whole = self.over(stretch);
-            let away = stretch - times.middle();
+            let whole = self.over(times);
+            let away = times - times.middle();
             let middle = || self.over(times.middle().into());
             let is_clear = if times.low() == 0.0 {
                 // g = t (u + t/2 g''(...))

@@ -75,11 +75,14 @@ pub struct Refused {
 /// A part of a strip, with its image where that is known.
 type Part = (Place, Option<Image>);
 
+/// Boxes that a relation is given up after: a strip that covers with room to spare takes some hundreds.
+const MOST_BOXES: usize = 1 << 12;
+
 /// Proves that each strip covers the h-set, on a machine of any speed; the first one that is not proved to is the error.
 pub fn prove(machine: &Machine, set: &HSet) -> Result<Vec<Covered>, Refused> {
-    apart(set)?;
+    stands(set)?;
     loses(machine, set)?;
-    set.strips.par_iter().map(|strip| covered(machine, set, strip)).collect()
+    set.strips.par_iter().map(|strip| covered(machine, set, strip, MOST_BOXES)).collect()
 }
 
 /// Whether an interval of numbers is one.
@@ -87,7 +90,8 @@ fn is_range([low, high]: [f64; 2]) -> bool {
     low < high && (high - low).is_finite()
 }
 
-fn apart(set: &HSet) -> Result<(), Refused> {
+/// Whether an h-set is a parallelogram of impacts with strips in it that are apart.
+pub(super) fn stands(set: &HSet) -> Result<(), Refused> {
     let refused = |strip: &Strip| {
         let at = [strip.x[0], set.y[0]];
         Err(Refused { relation: Relation::Apart, impacts: strip.impacts, at, flight: None, is_refuted: true })
@@ -111,7 +115,7 @@ fn apart(set: &HSet) -> Result<(), Refused> {
 }
 
 /// Cones say of motions with losses that those of one sequence are one.
-fn loses(machine: &Machine, set: &HSet) -> Result<(), Refused> {
+pub(super) fn loses(machine: &Machine, set: &HSet) -> Result<(), Refused> {
     let is_lossless = machine.restitution() >= 1.0 && machine.flight().zeta() == 0.0;
     match set.strips.first().filter(|_| set.cone_slope.is_some() && is_lossless) {
         None => Ok(()),
@@ -123,8 +127,8 @@ fn loses(machine: &Machine, set: &HSet) -> Result<(), Refused> {
 }
 
 /// Whether one strip covers the h-set, and keeps cones where they are asked for.
-pub(super) fn covered(machine: &Machine, set: &HSet, strip: &Strip) -> Result<Covered, Refused> {
-    let proof = Proof { map: ImpactMap::new(machine), frame: Frame::new(set), set, strip };
+pub(super) fn covered(machine: &Machine, set: &HSet, strip: &Strip, most_boxes: usize) -> Result<Covered, Refused> {
+    let proof = Proof { map: ImpactMap::new(machine), frame: Frame::new(set), set, strip, most_boxes };
     let (y, omega) = (Interval::new(set.y[0], set.y[1]), angular_velocities(set.rpm));
     let whole = Interval::new(set.x[0], set.x[1]);
     let beyond = |left: bool, image: &Image| {
@@ -152,11 +156,10 @@ pub(super) fn covered(machine: &Machine, set: &HSet, strip: &Strip) -> Result<Co
     let mut images = proof.all(boxes, Relation::Height, inside)?;
     let mut growth = None;
     if let Some(slope) = set.cone_slope {
-        let sign = |image: &Image| image.by[0][0].is_positive();
-        let is_positive = images.first().and_then(|(_, image)| *image).is_some_and(|image| sign(&image));
+        // a is not 0 in any box, and boxes that meet have what they share in both enclosures: so it has one sign all over.
         let keeps = |image: &Image| match image.stretched(slope) {
-            Some(_) if sign(image) == is_positive => Some(true),
-            _ => image.misses(slope).then_some(false),
+            Some(_) => Some(true),
+            None => image.misses(slope).then_some(false),
         };
         images = proof.all(images, Relation::Cones, keeps)?;
         growth = images.iter().filter_map(|(_, image)| image.as_ref()?.stretched(slope)).reduce(f64::min);
@@ -173,6 +176,7 @@ struct Proof<'a> {
     frame: Frame,
     set: &'a HSet,
     strip: &'a Strip,
+    most_boxes: usize,
 }
 
 impl Proof<'_> {
@@ -183,8 +187,6 @@ impl Proof<'_> {
         relation: Relation,
         holds: impl Fn(&Image) -> Option<bool> + Sync,
     ) -> Result<Vec<Part>, Refused> {
-        /// A strip that covers with room to spare takes some hundreds.
-        const MOST_BOXES: usize = 1 << 12;
         let look = |(place, image): Part| {
             let image = image.map_or_else(|| self.frame.image(&self.map, self.strip, &place), Ok);
             let holds = image.as_ref().ok().and_then(&holds);
@@ -199,7 +201,7 @@ impl Proof<'_> {
                 let is_refuted = holds == Some(false);
                 if holds == Some(true) {
                     proved.push((place, image.ok()));
-                } else if is_refuted || boxes > MOST_BOXES {
+                } else if is_refuted || boxes > self.most_boxes {
                     let at = [place[0].middle(), place[1].middle()];
                     let relation = if image.is_ok() { relation } else { Relation::Flight };
                     return Err(Refused { relation, impacts: self.strip.impacts, at, flight: image.err(), is_refuted });

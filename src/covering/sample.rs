@@ -26,15 +26,15 @@ pub(crate) struct Line {
 }
 
 impl Line {
-    /// What comes of points of an h-set at one y on a machine.
-    pub fn new(machine: &Machine, set: &HSet, y: f64, x: Vec<f64>) -> Self {
-        let arrivals = x.iter().map(|x| arrivals(machine, set, [*x, y]).unwrap_or_default()).collect();
+    /// What comes of points of an h-set at one y on a machine, up to so many impacts on.
+    pub fn new(machine: &Machine, set: &HSet, y: f64, x: Vec<f64>, impacts: usize) -> Self {
+        let arrivals = x.iter().map(|x| arrivals(machine, set, [*x, y], impacts).unwrap_or_default()).collect();
         Self { x, arrivals }
     }
 }
 
 /// The impacts after a start; none where it cannot start.
-fn arrivals(machine: &Machine, set: &HSet, point: [f64; 2]) -> Option<Vec<Arrival>> {
+fn arrivals(machine: &Machine, set: &HSet, point: [f64; 2], impacts: usize) -> Option<Vec<Arrival>> {
     /// Turns of the cam that an impact is waited for.
     const MOST_REVOLUTIONS: u64 = 30;
     let [angle, velocity] = set.at(point);
@@ -59,7 +59,7 @@ fn arrivals(machine: &Machine, set: &HSet, point: [f64; 2]) -> Option<Vec<Arriva
             x: (angle * s1 - velocity * s0) / determinant,
             y: (velocity * u0 - angle * u1) / determinant,
         });
-        if found.len() < MOST_IMPACTS { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        if found.len() < impacts { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     };
     let goal = motion.after(MOST_REVOLUTIONS);
     let _ = machine.advance(&mut motion, goal, &mut see).ok()?;

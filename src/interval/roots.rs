@@ -16,6 +16,32 @@ use nalgebra::SMatrix;
 use super::{Interval, Number};
 use crate::tolerance;
 
+/// Where a number that falls is 0, near a guess: of `of` over any range, the value and the rate. None where that is not shown.
+///
+/// By `t - g(t)/g'(T)`, t the guess, over what it maps into itself: Newton's method on intervals. It holds the one root in T.
+pub fn falls_to_zero(guess: f64, of: impl Fn(Interval) -> [Interval; 2]) -> Option<Interval> {
+    /// Each time the range is widened, or narrowed.
+    const TRIES: usize = 8;
+    let guessed = Interval::from(guess);
+    let [value, rate] = of(guessed);
+    let mut image = guessed - value / rate;
+    for _ in 0..TRIES {
+        let room = 0.1 * image.width() + tolerance::ULP.value * guess;
+        // The theorem needs the guess among them: the mean value of g' is taken from there.
+        let range = (image + Interval::new(-room, room)).hull(guessed);
+        let [_, rate] = of(range);
+        if !rate.is_negative() {
+            return None;
+        }
+        image = guessed - value / rate;
+        if image.is_inside(range) {
+            let [_, rate] = of(image.hull(guessed));
+            return Some((guessed - value / rate).and(image));
+        }
+    }
+    None
+}
+
 /// A box: an interval for each unknown.
 pub type Place<const N: usize> = [Interval; N];
 

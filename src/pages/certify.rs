@@ -258,7 +258,8 @@ fn hypotheses(of: &Certificate) -> String {
     if let Some(assumed) = of.assumed {
         sentence += &format!(
             " The pieces of the cam miss each other by up to {} m and {} m/rad where they meet: the theorem is about a cam that goes \
-             over from one to the other there, and whose lift and slope at the corner are those of the piece after it.",
+             over from one to the other there, and whose lift and slope at the corner are those of the piece after it; how far fixed \
+             points are followed, about one that is the piece before the corner taken up by a line, so that the two meet.",
             Digits::Size.text(assumed.lift_m),
             Digits::Size.text(assumed.slope_m_rad),
         );

@@ -13,11 +13,11 @@ impl Paged for Chaos {
         let mut page =
             vec![Block::Line((Mark::Heading, format!("{} at {speeds}", self.model).as_str()).into()), Block::Gap];
         page.push(Block::paragraph(statement(self)));
-        page.push(match self.theorems.as_slice() {
-            [theorem] if low == high => Block::Table(strips(theorem)),
-            [] => Block::Gap,
-            _ => Block::Table(ranges(self)),
-        });
+        match self.theorems.as_slice() {
+            [] => page.push(Block::Gap),
+            all if low == high => page.extend(all.iter().map(|theorem| Block::Table(strips(theorem)))),
+            _ => page.push(Block::Table(ranges(self))),
+        }
         page.extend(self.theorems.first().map(hypotheses));
         page.extend(
             self.theorems.iter().flat_map(|theorem| &theorem.refused).map(|why| Block::paragraph(refused(why))),
@@ -29,7 +29,13 @@ impl Paged for Chaos {
 
 /// What is proved, in a sentence or two.
 pub(crate) fn statement(found: &Chaos) -> String {
-    let Some(least) = found.theorems.iter().min_by(|one, two| one.set.entropy().total_cmp(&two.set.entropy())) else {
+    let is_one = found.rpm[0] == found.rpm[1];
+    // At one speed the first theorem is that with cones, where there is one, and another one of more strips without.
+    let (told, more) = match found.theorems.as_slice() {
+        [first, more @ ..] if is_one => (std::slice::from_ref(first), more),
+        all => (all, &[][..]),
+    };
+    let Some(least) = told.iter().min_by(|one, two| one.set.entropy().total_cmp(&two.set.entropy())) else {
         return "No set of chaotic motions is proved to exist.".into();
     };
     let where_at = match (found.rpm[0] < found.rpm[1], found.open.is_empty()) {
@@ -37,27 +43,36 @@ pub(crate) fn statement(found: &Chaos) -> String {
         (true, true) => " at every speed of this range",
         (true, false) => " at every speed of this range but for those below",
     };
-    let symbols: Vec<u64> = least.set.strips.iter().map(|strip| strip.impacts).collect();
-    let cones = match found.theorems.iter().all(|theorem| theorem.set.cone_slope.is_some()) {
+    let symbols = |theorem: &Theorem| -> Vec<u64> { theorem.set.strips.iter().map(|strip| strip.impacts).collect() };
+    // Rounded down, as a bound from below must be.
+    let entropy = |theorem: &Theorem| format!("{:.5}", (1e5 * theorem.set.entropy()).floor() / 1e5);
+    let cones = match told.iter().all(|theorem| theorem.set.cone_slope.is_some()) {
         true => "exactly one motion",
         false => "a motion",
     };
-    let shift = match found.theorems.as_slice() {
+    let shift = match told {
         [_] => format!(
             "For every sequence of the numbers {}, endless in both directions, there is {cones} that comes back to the h-set after so many \
              impacts again and again.",
-            words::listed(&symbols)
+            words::listed(&symbols(least))
         ),
         _ => format!(
             "For every sequence of {} or more symbols, endless in both directions, there is {cones} that follows it.",
-            found.theorems.iter().map(|theorem| theorem.set.strips.len()).min().unwrap_or(0)
+            told.iter().map(|theorem| theorem.set.strips.len()).min().unwrap_or(0)
         ),
     };
+    let more = more.iter().map(|theorem| {
+        format!(
+            " A motion, which need not be one alone, there is for every sequence of {}, with an entropy of at least {}.",
+            words::listed(&symbols(theorem)),
+            entropy(theorem)
+        )
+    });
     format!(
-        "Proved: a set of chaotic motions exists{where_at}. {shift} The topological entropy of a revolution is at least {:.5}. It is not \
+        "Proved: a set of chaotic motions exists{where_at}. {shift} The topological entropy of a revolution is at least {}.{} It is not \
          said that other motions come to this set.",
-        // Rounded down, as a bound from below must be.
-        (1e5 * least.set.entropy()).floor() / 1e5
+        entropy(least),
+        more.collect::<String>()
     )
 }
 

@@ -118,10 +118,11 @@ fn theorem(chaos: &RobustChaos) -> Words {
         return words!["no robust chaos: phi must be positive", rests];
     }
     words![
-        "theorem: robust chaos, an attractor and no stable orbit of any period, each exponent at least ",
+        "theorem: the local map has robust chaos, an attractor and no stable orbit of any period, each exponent at least ",
         (chaos.least_exponent, four),
-        " a turn; the follower's too, near enough to omega*",
-        rests
+        " a turn",
+        rests,
+        "; the follower too near enough to omega*, which is cited: over how many rpm is not known"
     ]
 }
 

@@ -106,13 +106,19 @@ pub fn chaos(model: &Model, rpm: [f64; 2], watch: &dyn Watch) -> Result<Chaos, S
         let holds = |set: &&HSet| set.rpm[0] <= from && (from < set.rpm[1] || rpm[1] <= set.rpm[1]);
         let by_known = kept.iter().find(holds).and_then(|set| {
             let set = HSet { rpm: [from, rpm[1].min(set.rpm[1])], ..set.clone() };
-            Some(Proved { strips: prove(&machine, &set).ok()?, set, refused: Vec::new() })
+            Some(Proved { strips: prove(&machine, &set).ok()?, set, without_cones: None, refused: Vec::new() })
         });
         let next = kept.iter().map(|set| set.rpm[0]).filter(|next| *next > from).fold(rpm[1], f64::min);
         let to = by_known.as_ref().map_or(next.min(from + width), |proved| proved.set.rpm[1]);
-        match by_known.map_or_else(|| find(&machine, [from, to], wanted), |proved| Ok(Ok(proved)))? {
-            Ok(Proved { set, strips, refused }) => {
+        match by_known.map_or_else(|| find(&machine, [from, to], wanted, watch), |proved| Ok(Ok(proved)))? {
+            Ok(Proved { set, strips, without_cones, refused }) => {
                 found.theorems.push(Theorem { set, strips, refused, hypotheses: hypotheses.clone() });
+                found.theorems.extend(without_cones.map(|(set, strips)| Theorem {
+                    set,
+                    strips,
+                    refused: Vec::new(),
+                    hypotheses: hypotheses.clone(),
+                }));
                 width = WIDEST.min(2.0 * width);
             }
             Err(_) if to - from > NARROWEST => {
@@ -159,7 +165,8 @@ pub fn portrait(model: &Model, set: &HSet) -> Result<Portrait, StudyError> {
     let images = set.strips.iter().map(|strip| {
         let points = |part: usize| strip.x[0] + (strip.x[1] - strip.x[0]) * part as f64 / POINTS as f64;
         let side = |y: f64| {
-            let line = Line::new(&machine, set, y, (0..=POINTS).map(points).collect());
+            let points = (0..=POINTS).map(points).collect();
+            let line = Line::new(&machine, set, y, points, strip.impacts as usize);
             let arrived = line.arrivals.iter().filter_map(|arrivals| arrivals.get(strip.impacts as usize - 1));
             arrived.map(|arrival| set.at([arrival.x, arrival.y])).collect::<Vec<_>>()
         };

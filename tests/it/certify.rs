@@ -308,8 +308,10 @@ fn a_cam_whose_decimals_meet_nearly_is_certified_with_that_hypothesis() {
     let assumed = &found["corner_impacts"][0]["assumed"];
     let off = |name: &str| assumed[name].as_f64().unwrap();
     assert!(off("lift_m") > 1e-18 && off("lift_m") < 1e-15 && off("slope_m_rad") < 1e-15, "{assumed}");
-    // There the law of the piece before the corner is not known up to the corner.
-    assert!(found["corner_impacts"][0]["minus"]["followed"].is_null());
+    for side in ["minus", "plus"] {
+        let followed = &found["corner_impacts"][0][side]["followed"];
+        assert!(followed["period_within_s"].as_f64() > Some(1e-7), "{side}: {followed}");
+    }
     assert!(certified(&["models/osorio-2008.toml"])["corner_impacts"][0]["assumed"].is_null());
     let page = corner_impact(["certify", "models/laws/polynomial.toml", "--rpm", "443:444"]);
     assert!(text(page.stdout).contains("The pieces of the cam miss"));

@@ -6,6 +6,7 @@ use corner_impact::covering::prove::{Relation, prove};
 use corner_impact::covering::{HSet, Image, entropy, known};
 use corner_impact::interval::Interval;
 use corner_impact::model::Model;
+use corner_impact::progress::Unwatched;
 use corner_impact::simulate::{Machine, angular_velocity};
 
 use crate::common;
@@ -125,6 +126,10 @@ fn cones_are_kept_and_stretched_where_their_conditions_hold() {
         let image = exactly(by);
         assert_eq!((image.stretched(2.0).is_some(), image.misses(2.0)), (is_kept, !is_kept), "{by:?}");
     }
+    // Where b may be 0 nothing is missed.
+    let mut unknown = exactly([1.5, 0.0, 0.0, 0.0]);
+    unknown.by[0][1] = Interval::new(-1.0, 1.0);
+    assert!(unknown.stretched(1.0).is_none() && !unknown.misses(1.0));
     let mut folded = exactly([3.0, 0.0, 0.0, 0.0]);
     folded.by[0][0] = Interval::new(-3.0, 3.0);
     assert!(folded.stretched(2.0).is_none() && !folded.misses(2.0));
@@ -162,15 +167,29 @@ fn at_every_speed_of_a_range_three_strips_cover() {
 fn chaos_of_other_machines_is_found_and_proved() {
     let model = common::read(std::path::Path::new(&format!("{}/models/damped-light.toml", common::ROOT)));
     let machine = machine(&model, 675.0);
-    let found = find(&machine, [675.0; 2], Wanted { strips: 2, cones: true }).unwrap();
+    let found = find(&machine, [675.0; 2], Wanted { strips: 2, cones: true }, &Unwatched).unwrap();
     let found = found.unwrap_or_else(|short| panic!("{short:?}"));
     assert!(prove(&machine, &found.set).is_ok());
+}
+
+/// Some of its strips keep cones, and more cover: both are told.
+#[test]
+#[ignore = "slow"]
+fn a_theorem_with_cones_comes_before_one_of_more_strips_without() {
+    let output = common::corner_impact(["chaos", "models/damped-light.toml", "--rpm", "670", "--json"]);
+    let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let theorems = document["theorems"].as_array().unwrap();
+    let kinds: Vec<_> =
+        theorems.iter().map(|one| (one["cones"] == true, one["symbols"].as_array().unwrap().len())).collect();
+    assert!(matches!(kinds[..], [(true, 2..)] | [(true, 2..), (false, 3..)]), "{kinds:?}");
+    assert!(kinds.windows(2).all(|two| two[0].1 < two[1].1), "{kinds:?}");
 }
 
 /// Where a motion settles from everywhere no h-set is found.
 #[test]
 fn where_there_is_no_saddle_no_chaos_is_found() {
-    let found = find(&machine(&common::osorio(), 160.0), [160.0; 2], Wanted { strips: 8, cones: true }).unwrap();
+    let wanted = Wanted { strips: 8, cones: true };
+    let found = find(&machine(&common::osorio(), 160.0), [160.0; 2], wanted, &Unwatched).unwrap();
     assert!(found.is_err(), "{found:?}");
 }
 

@@ -5,6 +5,7 @@
 
 use corner_impact::cam::Cam;
 use corner_impact::flight::{Flight, Response};
+use corner_impact::interval::roots::falls_to_zero;
 use corner_impact::interval::{Interval, Number};
 use proptest::prelude::*;
 
@@ -119,6 +120,35 @@ fn what_is_no_number_says_nothing() {
         assert_eq!(anything, all);
     }
     assert!(!all.is_positive() && !all.is_negative() && all.holds_zero());
+}
+
+/// Value and rate over a range of what falls at one rate up to a time, and at another from there on.
+fn falls([before, after]: [f64; 2], bend: f64) -> impl Fn(Interval) -> [Interval; 2] {
+    move |times: Interval| {
+        let value = |time: f64| 1.0 - before * time.min(bend) - after * (time - bend).max(0.0);
+        let rates =
+            if times.high() < bend { [before; 2] } else { [if times.low() > bend { after } else { before }, after] };
+        let rate = Interval::from(-rates[0]).hull((-rates[1]).into());
+        [Interval::new(value(times.high()), value(times.low())), rate]
+    }
+}
+
+#[test]
+fn a_root_is_only_where_newton_s_method_holds_it() {
+    // From the guess it seems to be at 0.1, and from there at 10: what lies between counts as well.
+    let root = falls_to_zero(0.0, falls([10.0, 0.1], 0.05)).unwrap();
+    assert!(root.low() < 5.05 && 5.05 < root.high(), "{root:?}");
+    // e^-t is never 0, whatever is taken away from it.
+    let decays = |times: Interval| [times.low(), times.high()].map(|time| (-time).exp());
+    let falls_for_ever = |times: Interval| {
+        let [most, least] = decays(times);
+        [Interval::new(least, most), Interval::new(-most, -least)]
+    };
+    assert_eq!(falls_to_zero(0.0, falls_for_ever), None);
+    assert_eq!(
+        falls_to_zero(0.0, falls([1.0, -1.0], 2.0)).map(|root| root.low() < 1.0 && 1.0 < root.high()),
+        Some(true)
+    );
 }
 
 fn double() -> impl Strategy<Value = f64> {

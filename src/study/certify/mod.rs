@@ -139,7 +139,7 @@ pub struct ProvedSide {
     pub fixed_point_exists_for: Speeds,
     /// Whether both eigenvalues are inside the unit circle.
     pub stable: bool,
-    /// How far from the corner impact its fixed point is followed; none where a cam's pieces meet only nearly.
+    /// How far from the corner impact its fixed point is followed; none where that is nowhere.
     pub followed: Option<Followed>,
 }
 
