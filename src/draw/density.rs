@@ -106,12 +106,13 @@ impl Density {
     /// `spread`, a point also shades the eight cells around it, so that single points are still seen in print.
     pub(crate) fn shades(&self, spread: bool) -> Vec<u8> {
         // How many cells have each count: sorted, they would take as much memory as the grid.
-        let mut cells = vec![0_usize; usize::from(u16::MAX) + 1];
+        let most = self.counts.iter().max().copied().unwrap_or(0);
+        let mut cells = vec![0_u32; usize::from(most) + 1];
         self.counts.iter().for_each(|count| cells[usize::from(*count)] += 1);
         // Periodic motions fall into few cells many times: the densest tenth may not push the rest into the faintest shade.
         let mut denser = self.occupied() / 10;
         let full = (1..cells.len()).rev().find(|count| {
-            let here = cells[*count];
+            let here = cells[*count] as usize;
             let found = here > denser;
             denser = denser.saturating_sub(here);
             found

@@ -19,15 +19,14 @@ pub(super) struct Chord {
     square: f64,
 }
 
-/// The chords of a cam of so many segments that going over them one by one is slow: of each, and of groups of them.
+/// The chords of a cam of so many segments that going over them one by one is slow: of each, and of ever larger groups of them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Chords {
-    ones: Vec<Chord>,
-    groups: Vec<Chord>,
+    levels: Vec<Vec<Chord>>,
 }
 
-/// Segments of a group.
-const GROUP: usize = 8;
+/// Groups of one level that make one of the next.
+const GROUP: usize = 4;
 
 impl Chords {
     /// None where there are few segments; `kinks` is whether the lift's slope falls, or the lift steps, where each begins: a
@@ -41,7 +40,9 @@ impl Chords {
         let chord =
             |(segments, kinks): (&[Segment], &[bool])| Chord::of(segments, kinks.iter().skip(1).any(|kink| *kink));
         let of = |size: usize| segments.chunks_exact(size).zip(kinks.chunks_exact(size)).filter_map(chord).collect();
-        Self { ones: of(1), groups: of(GROUP) }
+        /// Of one segment, of 4, of 16 and of 64.
+        const LEVELS: u32 = 4;
+        Self { levels: (0..LEVELS).map(|level| of(GROUP.pow(level))).collect() }
     }
 }
 
@@ -69,9 +70,9 @@ impl Machine {
     /// Two or more segments that a flight from the start of one certainly clears, up to `left` rad from there.
     #[inline]
     pub(super) fn leap(&self, motion: &Motion, left: f64) -> Option<Leap> {
-        let Chords { ones, groups } = &self.terrain.chords;
+        let levels = &self.terrain.chords.levels;
         let begins = self.cam().segments()[motion.segment].start == motion.cam_angle;
-        if ones.is_empty() || !begins || motion.gap == Some(0.0) {
+        if levels.is_empty() || !begins || motion.gap == Some(0.0) {
             return None;
         }
         let (state, omega) = (motion.state, self.angular_velocity);
@@ -94,15 +95,19 @@ impl Machine {
             }
             clears
         };
-        loop {
-            let group = if segment % GROUP == 0 { groups.get(segment / GROUP) } else { None };
-            if group.is_some_and(&mut clear) {
-                segment += GROUP;
-            } else if ones.get(segment).is_some_and(&mut clear) {
-                segment += 1;
-            } else {
-                break;
+        // The largest group that begins here; where that is not cleared, a smaller one, and after it no larger one before its end.
+        let (mut level, mut size) = (0, 1);
+        'over: loop {
+            while level + 1 < levels.len() && segment % (GROUP * size) == 0 {
+                (level, size) = (level + 1, GROUP * size);
             }
+            while !levels[level].get(segment / size).is_some_and(&mut clear) {
+                if level == 0 {
+                    break 'over;
+                }
+                (level, size) = (level - 1, size / GROUP);
+            }
+            segment += size;
         }
         (segment > motion.segment + 1).then(|| Leap { segment: segment - 1, time: turned / omega })
     }
