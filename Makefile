@@ -7,7 +7,7 @@ CARGO ?= cargo
 RELEASE := --release --locked
 
 .DEFAULT_GOAL := help
-.PHONY: help verify report quick test python slurm-test check derive derive-check theorems claims pictures review mutants bench bench-each bench-peers clean
+.PHONY: help verify report quick test properties python slurm-test check derive derive-check theorems claims pictures review mutants bench bench-each bench-peers clean
 
 # Python and its packages, once; again when the list of packages changes.
 PYTHON ?= python3
@@ -36,6 +36,9 @@ quick: $(VENV) ## the tests that answer at once, after each change: within a min
 # Not by nextest: it runs each test in a process of its own, and tests of the report share one that takes a while to make.
 test: $(VENV) ## run every test
 	$(CARGO) test $(RELEASE) -- --include-ignored
+
+properties: ## the attractors of twelve models over ranges in 2 to 16 parts and at two resolutions, held against each other
+	PROPERTIES=all $(CARGO) test $(RELEASE) --test it -- --include-ignored --nocapture a_part_of_a_range
 
 # In the same .venv, where what the routes need is. The package is built by the maturin in it: in a place of its own, which pip makes
 # anew each time, cargo would compile everything that asks for the interpreter again.

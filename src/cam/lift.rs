@@ -1,5 +1,7 @@
 //! Lift and derivatives at one angle: what every law gives.
 
+use crate::interval::Interval;
+
 /// Lift and its derivatives with respect to the cam angle: m, m/rad, m/rad^2, m/rad^3.
 ///
 /// In doubles, or in intervals that hold them over a range of angles.
@@ -19,6 +21,18 @@ impl<N: From<f64>> Lift<N> {
     /// The same lift everywhere, m.
     pub fn constant(value: f64) -> Self {
         Self { value: value.into(), slope: 0.0.into(), curvature: 0.0.into(), third: 0.0.into() }
+    }
+}
+
+impl Lift<Interval> {
+    /// What holds both.
+    pub(crate) fn hull(self, other: Self) -> Self {
+        Self {
+            value: self.value.hull(other.value),
+            slope: self.slope.hull(other.slope),
+            curvature: self.curvature.hull(other.curvature),
+            third: self.third.hull(other.third),
+        }
     }
 }
 

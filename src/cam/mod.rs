@@ -23,6 +23,7 @@ mod table;
 
 use std::f64::consts::TAU;
 
+use crate::interval::Interval;
 use crate::model::{Model, ModelError};
 use crate::tolerance;
 pub use arc::Arc;
@@ -46,6 +47,8 @@ pub struct Segment {
     pub law: Law,
     /// Ranges of its lift and derivatives.
     pub bounds: Bounds,
+    /// What certainly holds them.
+    pub(crate) over: Lift<Interval>,
 }
 
 impl Segment {
@@ -57,7 +60,13 @@ impl Segment {
     fn new(start: f64, end: f64, law: Law, count: usize) -> Self {
         let most = Self::MOST_PIECES.min(Self::MOST_PIECES_OF_ALL / count.max(1)).max(1);
         let bounds = Bounds::new(&law, start, end, most);
-        Self { start, end, law, bounds }
+        let over = law.lift_over(Interval::new(start, end));
+        Self { start, end, law, bounds, over }
+    }
+
+    /// From where it starts to where it ends, rad.
+    pub(crate) fn angles(&self) -> Interval {
+        Interval::new(self.start, self.end)
     }
 }
 
@@ -156,6 +165,11 @@ impl Cam {
 
     /// The index of the segment that holds `angle`, rad, in `[0, 2 pi)`.
     pub fn segment_at(&self, angle: f64) -> usize {
+        // Where all are as long, as those of a table.
+        let guess = (angle / TAU * self.segments.len() as f64) as usize;
+        if self.segments.get(guess).is_some_and(|segment| segment.start <= angle && angle < segment.end) {
+            return guess;
+        }
         self.segments.partition_point(|segment| segment.end <= angle).min(self.segments.len() - 1)
     }
 

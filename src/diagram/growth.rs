@@ -97,6 +97,16 @@ impl Record {
         Estimate::of_parts(&self.means.of_blocks)
     }
 
+    /// What a deviation grows by at most from the beginning of any block to the end of any later one: what shrinks in the end may
+    /// have been as large as the motion on the way.
+    pub fn most(&self) -> f64 {
+        let grown = |(most, here): (f64, f64), block: &f64| {
+            let here = (here + block * self.means.per_block as f64).max(0.0);
+            (here.max(most), here)
+        };
+        self.means.of_blocks.iter().fold((0.0, 0.0), grown).0
+    }
+
     /// Whether it ended where the follower came to stick.
     pub fn rests(&self) -> bool {
         self.means.sum == f64::NEG_INFINITY

@@ -49,7 +49,8 @@ impl Ending {
 
     /// Whether two runs of one machine end alike.
     ///
-    /// Chaos, and a motion that bounces as chaos does until it rests, are one motion: how soon a run of it rests is chance.
+    /// Chaos, and a motion that bounces as chaos does until it rests, are taken for one motion: how soon a run of it rests is
+    /// chance. Only many runs can tell chaos that does not rest beside one that does.
     pub fn is_same(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Orbit(one), Self::Orbit(two)) => one.is_same(two),

@@ -5,12 +5,12 @@
 
 use std::ops::ControlFlow;
 
+use super::complete::near_one_impact;
 use super::cycle::lift_size;
 use super::ending::{Ending, Kind, Resting, is_same_release};
-use super::search::with_one_impact;
-use super::settle::{free, settled};
+use super::settle::{close, free, near_run};
 use super::{Course, PeriodicOrbit};
-use crate::diagram::{Exponent, exponent};
+use crate::diagram::{Exponent, Record, exponent};
 use crate::flight::State;
 use crate::simulate::{Event, EventKind, Goal, Machine, Met, Motion, SimulateError};
 use crate::tolerance;
@@ -57,8 +57,9 @@ pub struct Settling<'a> {
     longest: u64,
     /// Revolutions that are waited for the next rest of a follower that has rested.
     rest: u64,
-    /// Whether an orbit is looked for only where the run has come back to near where it was.
-    looks_back: bool,
+    /// The size of the cam's lift and its top, m.
+    size: f64,
+    top: f64,
     /// With the states as the cam passes angle 0.
     known: Vec<(PeriodicOrbit, Vec<State>)>,
 }
@@ -68,18 +69,18 @@ impl<'a> Settling<'a> {
     pub fn new(machine: &'a Machine, longest: u64) -> Result<Self, SimulateError> {
         /// The most revolutions of an orbit with one impact.
         const ONE_IMPACT: u64 = 3;
-        let mut new = Self { machine, longest, rest: LONGEST_REST, looks_back: false, known: Vec::new() };
-        for orbit in (1..=ONE_IMPACT).flat_map(|revolutions| with_one_impact(machine, revolutions)) {
+        let mut new = Self::unaided(machine, longest, LONGEST_REST);
+        let guesses = (1..=ONE_IMPACT).flat_map(|revolutions| near_one_impact(machine, revolutions));
+        for orbit in guesses.filter_map(|guess| close(machine, &guess)) {
             new.know(&orbit)?;
         }
         Ok(new)
     }
 
     /// The same for a run or two: without any orbit that is known beforehand, as a search for them takes as long as thousands of
-    /// revolutions, and with a look for one only where the run has come back to near where it was, as each look takes `longest`.
-    /// The next rest is waited for as long as `rest` revolutions.
+    /// revolutions. The next rest is waited for as long as `rest` revolutions.
     pub fn unaided(machine: &'a Machine, longest: u64, rest: u64) -> Self {
-        Self { machine, longest, rest, looks_back: true, known: Vec::new() }
+        Self { machine, longest, rest, size: lift_size(machine), top: machine.cam().top(), known: Vec::new() }
     }
 
     /// The orbits known.
@@ -116,17 +117,14 @@ impl<'a> Settling<'a> {
             return Ok(Run::Released(release));
         }
         let (mut ran, mut look) = (0, FIRST.min(revolutions));
+        let omega = self.machine.angular_velocity();
         let mut past: Vec<State> = Vec::new();
         while ran < revolutions {
             let back = look.saturating_sub(self.longest);
-            let stretch = if !self.looks_back {
-                OFTEN.min(look - ran)
-            } else if ran < back {
-                OFTEN.min(back - ran)
-            } else {
+            let stretch = if ran < back { OFTEN.min(back - ran) } else { 1 };
+            if ran >= back {
                 past.push(motion.state);
-                1
-            };
+            }
             if let Some(release) = self.to_release(motion, motion.after(stretch), met)? {
                 return Ok(Run::Released(release));
             }
@@ -134,9 +132,8 @@ impl<'a> Settling<'a> {
             if motion.contact && self.stays(*motion)? {
                 return Ok(Run::Stays);
             }
-            let (flight, top) = (self.machine.flight(), self.machine.cam().top());
-            if motion.state.position > top
-                && flight.fall_to(top, motion.state).is_none()
+            if motion.state.position > self.top
+                && self.machine.flight().fall_to(self.top, motion.state).is_none()
                 && let Some(orbit) = free(self.machine, motion.state)
             {
                 return Ok(Run::Arrives(orbit));
@@ -150,14 +147,13 @@ impl<'a> Settling<'a> {
                 continue;
             }
             look = revolutions.min(2 * look);
-            let near = tolerance::NEARLY_REPEATS.value * lift_size(self.machine);
-            let omega = self.machine.angular_velocity();
-            let is_back = !self.looks_back || past.iter().any(|state| motion.state.apart(*state, omega) <= near);
+            // A look takes revolutions: only where the run has come back to near where it was, and as many.
+            let near = tolerance::NEARLY_REPEATS.value * self.size;
+            let before = past.iter().position(|state| motion.state.apart(*state, omega) <= near);
+            let repeats_after = before.map(|before| (past.len() - before) as u64);
             past.clear();
-            if !is_back {
-                continue;
-            }
-            if let Some(orbit) = settled(self.machine, *motion, 0, self.longest)?.filter(draws)
+            if let Some(longest) = repeats_after
+                && let Some(orbit) = near_run(self.machine, *motion, 0, longest)?.filter(draws)
                 && self.has_arrived(*motion, &orbit, &passages(self.machine, &orbit)?)?
             {
                 return Ok(Run::Arrives(orbit));
@@ -205,7 +201,7 @@ impl<'a> Settling<'a> {
     fn has_arrived(&self, mut motion: Motion, orbit: &PeriodicOrbit, states: &[State]) -> Result<bool, SimulateError> {
         /// Periods in which the distance is to shrink, at most.
         const MOST: f64 = 100.0;
-        let (size, omega) = (lift_size(self.machine), self.machine.angular_velocity());
+        let (size, omega) = (self.size, self.machine.angular_velocity());
         let distance = |motion: &Motion| {
             states.iter().map(|state| motion.state.apart(*state, omega)).fold(f64::INFINITY, f64::min)
         };
@@ -251,19 +247,37 @@ impl<'a> Settling<'a> {
                 let revolutions = period.iter().map(|(_, turned, _)| turned).sum();
                 let impacts = period.iter().map(|(.., met)| met.impacts).sum();
                 let impact_speed = period.iter().fold(0.0_f64, |most, (.., met)| most.max(met.impact_speed));
-                return Ok(Fate::Recurs(Resting { releases, revolutions, impacts, impact_speed, growth }));
+                let resting = Resting { releases, revolutions, impacts, impact_speed, growth };
+                let other = if resting.is_long() { self.by_chance(release)? } else { None };
+                return Ok(other.unwrap_or(Fate::Recurs(resting)));
             }
             release = next;
         }
     }
 
-    /// What a deviation grows by from a release, rad, to the next rest, a natural logarithm: of a long way, that of its beginning.
+    /// The orbit that chance takes some runs to from a release, rad, of which rounding decides what follows: what bounces there is
+    /// on its way to that.
+    fn by_chance(&self, cam_angle: f64) -> Result<Option<Fate>, SimulateError> {
+        /// How many runs, each a little faster at the release than the one before.
+        const RUNS: u32 = 4;
+        let faster = tolerance::SAME_ORBIT.value * self.size * self.machine.angular_velocity();
+        for run in 1..=RUNS {
+            let mut motion = self.machine.start_on_cam(cam_angle, f64::from(run) * faster)?;
+            if let Run::Arrives(orbit) = self.run(&mut motion, self.rest)? {
+                return Ok(Some(Fate::Arrives(orbit, motion)));
+            }
+        }
+        Ok(None)
+    }
+
+    /// What a deviation grows by at most on the way from a release, rad, to the next rest, a natural logarithm: of a long way, on
+    /// its beginning.
     fn grown(&self, cam_angle: f64) -> Result<f64, SimulateError> {
         /// Revolutions after which a deviation is as large as the motion, if it is to be at all.
-        const LOOKED_AT: u32 = 200;
-        let found = exponent(self.machine, self.released(cam_angle)?, LOOKED_AT, 1)?;
-        // Of fewer than two revolutions there is no mean, and nothing that could grow far.
-        Ok(if found.blocks < 2 { 0.0 } else { found.growth.value * found.blocks as f64 })
+        const LOOKED_AT: u64 = 200;
+        let mut record = Record::over(1);
+        record.take(self.machine, &mut self.released(cam_angle)?, LOOKED_AT)?;
+        Ok(record.most())
     }
 
     /// A follower of which the cam lets go at an angle, rad.

@@ -7,7 +7,7 @@
 use std::f64::consts::TAU;
 
 use super::complete::{Solved, Standing, Undecided, of_one_impact, of_two_impacts};
-use super::settle::{MOST_IMPACTS, close, period, settled};
+use super::settle::{MOST_IMPACTS, close, near_run, period};
 use super::{Course, Cycle, PeriodicOrbit};
 use crate::known::{Complete, Known};
 use crate::progress::Watch;
@@ -63,11 +63,6 @@ pub fn search_all(machine: &Machine, wanted: &Search, watch: &dyn Watch) -> Resu
         found.all(2, of_two_impacts(machine, watch));
     }
     found.search()
-}
-
-/// The orbits of one impact in `revolutions`, without a run.
-pub(super) fn with_one_impact(machine: &Machine, revolutions: u64) -> Vec<PeriodicOrbit> {
-    Found::new(machine, &Search { revolutions, impacts: Some(1) }).searched.orbits
 }
 
 /// A velocity that few impacts of the machine are faster than, m/s: a fall from rest over the size of its motion.
@@ -177,9 +172,9 @@ impl<'a> Found<'a> {
     fn settle(&mut self, cam_angle: f64, relative_velocity: f64) -> Result<(), SimulateError> {
         let motion = self.machine.start_on_cam(cam_angle, relative_velocity)?;
         // A follower that comes to rest on the cam has settled: what comes after repeats at once.
-        let early = settled(self.machine, motion, SETTLING_STICKING, self.wanted.revolutions)?;
+        let early = near_run(self.machine, motion, SETTLING_STICKING, self.wanted.revolutions)?;
         let sticks = early.as_ref().is_some_and(|orbit| matches!(orbit.course, Course::Sticking(_)));
-        let settled = if sticks { early } else { settled(self.machine, motion, SETTLING, self.wanted.revolutions)? };
+        let settled = if sticks { early } else { near_run(self.machine, motion, SETTLING, self.wanted.revolutions)? };
         if let Some(orbit) = settled {
             self.keep(orbit);
         }

@@ -1,12 +1,14 @@
 //! The orbit near a guess, or near a run.
 //!
-//! [`settled`] looks for an orbit that a run is on already, or nearly. Whatever names an orbit goes through [`close`]: Newton's
-//! method from a guess, and a simulated period that confirms it.
+//! `near_run` looks for an orbit that a run is on already, or nearly; whether the run stays there is for [`super::fate`] to say,
+//! which is the one answer to what a run ends on. Whatever names an orbit goes through [`close`]: Newton's method from a guess, and
+//! a simulated period that confirms it.
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
 use super::cycle::lift_size;
+use super::multipliers::{Eigenvalue, eigenvalues};
 use super::{Course, Cycle, PeriodicOrbit, sticking};
 use crate::flight::State;
 use crate::known::Known;
@@ -28,7 +30,7 @@ pub fn near(
     let mut motion = machine.start(cam_angle, state)?;
     let events = period(machine, &mut motion, revolutions, MOST_EVENTS)?;
     if events.iter().any(|event| event.kind != EventKind::Impact) {
-        return settled(machine, motion, 0, revolutions);
+        return near_run(machine, motion, 0, revolutions);
     }
     if events.is_empty() {
         return Ok(None);
@@ -51,13 +53,15 @@ pub fn close(machine: &Machine, guess: &Cycle) -> Option<PeriodicOrbit> {
     is_orbit.then(|| PeriodicOrbit::of_cycle(machine, cycle, residual))
 }
 
-/// What a run from `motion` settles on within `revolutions`, if that repeats after at most `longest` revolutions.
-pub fn settled(
+/// The orbit of at most `longest` revolutions that a run from `motion` is near after `revolutions`, if it draws in what is near it.
+pub(super) fn near_run(
     machine: &Machine,
     mut motion: Motion,
     revolutions: u64,
     longest: u64,
 ) -> Result<Option<PeriodicOrbit>, SimulateError> {
+    /// The growth of a deviation over a period beyond which a run is not near an orbit that draws it in.
+    const NEARLY_DRAWS: f64 = 3.0;
     machine.revolve(&mut motion, revolutions)?;
     machine.turn_to(&mut motion, 0.0)?;
     let first = motion;
@@ -83,7 +87,10 @@ pub fn settled(
         } else if motion.contact && !impacts {
             sticking::through(machine, 0.0, turns)?
         } else if impacts {
-            close(machine, &Cycle::of_events(turns, &events))
+            let guess = Cycle::of_events(turns, &events);
+            // Next to what draws it in, a run draws in what is next to it, or nearly: most of what passes near where it was does not.
+            let modulus = eigenvalues(&guess.at_section(machine, 0.0).1).into_iter().map(Eigenvalue::modulus);
+            if modulus.fold(0.0, f64::max) <= NEARLY_DRAWS { close(machine, &guess) } else { None }
         } else {
             free(machine, motion.state)
         };

@@ -8,7 +8,9 @@ use crate::common;
 use corner_impact::cam::Cam;
 use corner_impact::model::Model;
 use corner_impact::orbit::branch::{Branch, BranchPoint, End, Following, Kind};
-use corner_impact::orbit::{Course, Eigenvalue, Parameter, PeriodicOrbit, Search, eigenvalues, search, settle};
+use corner_impact::orbit::ending::Ending;
+use corner_impact::orbit::fate::Settling;
+use corner_impact::orbit::{Course, Eigenvalue, Parameter, PeriodicOrbit, Search, eigenvalues, search};
 use corner_impact::progress::Unwatched;
 use corner_impact::section::StroboscopicMap;
 use corner_impact::simulate::{Event, EventKind, Machine, angular_velocity};
@@ -338,7 +340,8 @@ fn every_point_of_a_branch_is_an_orbit_of_the_simulator() {
 fn settled_orbit(model: &Model, rpm: f64, revolutions: u64) -> PeriodicOrbit {
     let machine = machine(model, rpm);
     let start = machine.start_on_cam(0.0, 0.0).unwrap();
-    let orbit = settle::settled(&machine, start, 3000, revolutions).unwrap().unwrap();
+    let settling = Settling::new(&machine, revolutions).unwrap();
+    let Ending::Orbit(orbit) = settling.ending(start, 3000).unwrap() else { panic!("{rpm}") };
     assert_eq!(orbit.revolutions, revolutions);
     orbit
 }

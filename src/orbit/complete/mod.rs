@@ -17,7 +17,7 @@ use super::cycle::Cycle;
 use crate::interval::Interval;
 pub(crate) use clearance::Struck;
 pub(crate) use one_impact::OneImpact;
-pub(super) use one_impact::of_one_impact;
+pub(super) use one_impact::{near_one_impact, of_one_impact};
 pub(super) use two_impacts::of_two_impacts;
 
 /// What a solution of the equations is.

@@ -98,39 +98,79 @@ impl OneImpact<'_> {
 /// Boxes after which a segment is left undecided: where flights of every angle come back, no number would do.
 const MOST_BOXES: usize = 1 << 14;
 
+/// What solves the equation at the speed of a machine, or may: where, and whether it is certain to be there, and alone.
+struct Solution {
+    guess: Cycle,
+    segment: usize,
+    angle: Interval,
+    is_root: bool,
+}
+
+impl<'a> OneImpact<'a> {
+    /// Of a machine, with the time of the flight.
+    fn of(machine: &'a Machine, revolutions: u64) -> (Self, Interval) {
+        let (cam, flight, restitution) = (machine.cam(), machine.flight(), machine.restitution());
+        let equation = Self { cam, flight, restitution, revolutions };
+        (equation, equation.turn() / machine.angular_velocity())
+    }
+
+    fn solutions(&self, time: Interval) -> Vec<Solution> {
+        let (segments, response) = (self.cam.segments(), self.flight.response_over(time));
+        let mut all = Vec::new();
+        // Where the hull of many segments' lifts leaves no root, none of them is looked at.
+        let mut left = vec![(0, segments.len())];
+        while let Some((first, end)) = left.pop() {
+            let over = segments[first..end].iter().map(|segment| segment.over).reduce(Lift::hull);
+            if !over.is_some_and(|over| self.equation(&over, time, &response).value.holds_zero()) {
+                continue;
+            }
+            if end - first > 1 {
+                let middle = first.midpoint(end);
+                left.extend([(middle, end), (first, middle)]);
+                continue;
+            }
+            let segment = &segments[first];
+            let over = |[angle]: &[Interval; 1]| {
+                let Equation { value, by_angle, .. } = self.equation(&segment.law.lift_over(*angle), time, &response);
+                Over { values: [value], derivatives: [[by_angle]], is_wanted: true }
+            };
+            let Isolated { roots, undecided, .. } = isolate([segment.angles()], MOST_BOXES, over);
+            let roots = roots.into_iter().map(|root| (root, true));
+            for ([angle], is_root) in roots.chain(joined(undecided).into_iter().map(|place| (place, false))) {
+                let lift = segment.law.lift_over(angle.middle().into());
+                let velocity_before = self.velocities(lift.value, time).map_or(0.0, |[before, _]| before.middle());
+                let impact = Impact { revolution: 0, segment: first, cam_angle: angle.middle(), velocity_before };
+                let guess = Cycle { revolutions: self.revolutions, impacts: vec![impact] };
+                all.push(Solution { guess, segment: first, angle, is_root });
+            }
+        }
+        all
+    }
+}
+
+/// Guesses that no orbit of one impact is without.
+pub(crate) fn near_one_impact(machine: &Machine, revolutions: u64) -> impl Iterator<Item = Cycle> {
+    let (equation, time) = OneImpact::of(machine, revolutions);
+    equation.solutions(time).into_iter().map(|solution| solution.guess)
+}
+
 /// Every solution at the speed of a machine, with what may be one.
 pub(crate) fn of_one_impact(machine: &Machine, revolutions: u64) -> Vec<Solved> {
-    let (cam, flight, restitution) = (machine.cam(), machine.flight(), machine.restitution());
-    let equation = OneImpact { cam, flight, restitution, revolutions };
-    let time = equation.turn() / machine.angular_velocity();
-    let response = flight.response_over(time);
-    let mut all = Vec::new();
-    for (index, segment) in cam.segments().iter().enumerate() {
-        let over = |[angle]: &[Interval; 1]| {
-            let Equation { value, by_angle, .. } = equation.equation(&segment.law.lift_over(*angle), time, &response);
-            Over { values: [value], derivatives: [[by_angle]], is_wanted: true }
-        };
-        let range = Interval::new(segment.start, segment.end);
-        let Isolated { roots, undecided, .. } = isolate([range], MOST_BOXES, over);
-        let mut add = |angle: Interval, standing: Standing| {
-            let lift = segment.law.lift_over(angle.middle().into());
-            let velocity_before = equation.velocities(lift.value, time).map_or(0.0, |[before, _]| before.middle());
-            let impact = Impact { revolution: 0, segment: index, cam_angle: angle.middle(), velocity_before };
-            let guess = Cycle { revolutions, impacts: vec![impact] };
-            all.push(Solved { guess, angles: vec![angle], standing });
-        };
-        for [angle] in roots {
-            let struck = |turns: u64| Struck { segment: index, angle, turns };
-            // On the border it is the law's of one side or the other's.
-            let standing = match angle.is_inside(range) {
-                true => equation.standing([struck(0), struck(revolutions)], &segment.law.lift_over(angle), time),
-                false => Standing::Undecided,
-            };
-            add(angle, standing);
+    let (equation, time) = OneImpact::of(machine, revolutions);
+    let standing = |&Solution { segment: index, angle, is_root, .. }: &Solution| {
+        let segment = &equation.cam.segments()[index];
+        let struck = |turns: u64| Struck { segment: index, angle, turns };
+        // On the border it is the law's of one side or the other's.
+        match is_root && angle.is_inside(segment.angles()) {
+            true => equation.standing([struck(0), struck(revolutions)], &segment.law.lift_over(angle), time),
+            false => Standing::Undecided,
         }
-        joined(undecided).into_iter().for_each(|[angle]| add(angle, Standing::Undecided));
-    }
-    all
+    };
+    let solved = equation.solutions(time).into_iter().map(|solution| {
+        let standing = standing(&solution);
+        Solved { guess: solution.guess, angles: vec![solution.angle], standing }
+    });
+    solved.collect()
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 //! how the motion goes over to it when its orbit is gone.
 
 use super::transition::{from_x_star, is_period_one, map};
-use super::{listed, machine, settles};
+use super::{listed, machine, one_impact};
 use crate::border_collision::{LocalMap, passage};
 use crate::bracket::secants;
 use crate::diagram::growth;
@@ -29,9 +29,9 @@ pub(in crate::paper) fn transition(context: &Context<'_>) -> Decision {
     let machine = machine(context, speed + BESIDE);
     let mut motion = from_x_star(context, &machine)?;
     machine.revolve(&mut motion, 3000)?;
-    let above = settles(&machine, motion, 0)?;
+    let above = one_impact(&machine, motion, 100)?.is_some();
     let slower = machine.at_speed(angular_velocity(speed - BESIDE));
-    let below = settles(&slower, slower.resume(&motion)?, 10_000)?;
+    let below = one_impact(&slower, slower.resume(&motion)?, 10_000)?.is_some();
     let local = LocalMap::new(&context.findings.map, context.findings.border);
     let (mut counts, mut agree) = (Vec::new(), true);
     for below in BELOW {
@@ -70,11 +70,11 @@ pub(in crate::paper) fn coexisting(context: &Context<'_>) -> Decision {
         let mut motion = machine.start_on_cam(0.0, 0.0)?;
         machine.revolve(&mut motion, 300)?;
         both &= growth(&machine, motion, 1000)? > tolerance::CHAOTIC_GROWTH.value;
-        both &= !settles(&machine, motion, 10_000)? && is_period_one(context, rpm, 3000)?;
+        both &= one_impact(&machine, motion, 10_000)?.is_none() && is_period_one(context, rpm, 3000)?;
     }
     // Above it the chaotic motion is left within some hundred revolutions.
     let machine = machine(context, 683.0);
-    let alone = settles(&machine, machine.start_on_cam(0.0, 0.0)?, 20_000)?;
+    let alone = one_impact(&machine, machine.start_on_cam(0.0, 0.0)?, 20_000)?.is_some();
     let (lines, farthest) = borders(context, 678.0)?;
     let parted = lines > 0 && farthest <= tolerance::BORDER_ON_MANIFOLD.value;
     let lost = lost(context)?;

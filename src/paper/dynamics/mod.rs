@@ -11,7 +11,9 @@ mod transition;
 use std::ops::ControlFlow;
 
 use super::context::Context;
-use crate::orbit::settle::settled;
+use crate::orbit::PeriodicOrbit;
+use crate::orbit::ending::Ending;
+use crate::orbit::fate::Settling;
 use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError, angular_velocity};
 use crate::tolerance;
 pub(super) use {chattering::*, global::*, transition::*};
@@ -31,9 +33,13 @@ fn corners(context: &Context<'_>) -> [f64; 6] {
     std::array::from_fn(|index| corners.get(index).map_or(f64::NAN, |corner| corner.angle))
 }
 
-/// Whether `motion` settles, within `transient` revolutions, on one impact a revolution, in one state.
-fn settles(machine: &Machine, motion: Motion, transient: u64) -> Result<bool, SimulateError> {
-    Ok(settled(machine, motion, transient, 1)?.is_some_and(|orbit| orbit.impacts().count() == 1))
+/// The motion of one impact a revolution, in one state, that `motion` comes to within `transient` revolutions, or so many after a
+/// rest.
+fn one_impact(machine: &Machine, motion: Motion, transient: u64) -> Result<Option<PeriodicOrbit>, SimulateError> {
+    Ok(match Settling::unaided(machine, 1, transient).ending(motion, transient)? {
+        Ending::Orbit(orbit) if orbit.impacts().count() == 1 => Some(orbit),
+        _ => None,
+    })
 }
 
 /// What follows the release at P of a follower that came up the flank on the cam: the speed alone decides it.

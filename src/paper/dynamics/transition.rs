@@ -3,12 +3,11 @@
 use std::error::Error;
 use std::ops::ControlFlow;
 
-use super::{corners, listed, machine, settles};
+use super::{corners, listed, machine, one_impact};
 use crate::covering::prove::prove;
 use crate::covering::{HSet, known};
 use crate::diagram::{exponent, growth};
 use crate::orbit::branch::{Branch, BranchPoint, Following, Kind};
-use crate::orbit::settle::settled;
 use crate::orbit::{Parameter, Search, search};
 use crate::paper::context::{Context, Decision, decide};
 use crate::published::Verdict;
@@ -28,7 +27,7 @@ pub(super) fn from_x_star(context: &Context<'_>, machine: &Machine) -> Result<Mo
 /// Whether `revolutions` from x* at `rpm` end on one impact a revolution.
 pub(super) fn is_period_one(context: &Context<'_>, rpm: f64, revolutions: u64) -> Result<bool, SimulateError> {
     let machine = machine(context, rpm);
-    settles(&machine, from_x_star(context, &machine)?, revolutions)
+    Ok(one_impact(&machine, from_x_star(context, &machine)?, revolutions)?.is_some())
 }
 
 pub(super) fn map(context: &Context<'_>, rpm: f64) -> StroboscopicMap {
@@ -201,7 +200,7 @@ pub(in crate::paper) fn chaos_for_good(context: &Context<'_>) -> Decision {
 
 pub(in crate::paper) fn orbit_at_700(context: &Context<'_>) -> Decision {
     let machine = machine(context, 700.0);
-    let orbit = settled(&machine, from_x_star(context, &machine)?, 1000, 1)?.ok_or("no motion is settled on")?;
+    let orbit = one_impact(&machine, from_x_star(context, &machine)?, 1000)?.ok_or("no motion is settled on")?;
     let impact = orbit.impacts().last().map_or(f64::NAN, |impact| impact.cam_angle);
     let corner = context.findings.at.corner.angle;
     let evidence = format!(

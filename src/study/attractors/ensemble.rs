@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::estimate::Estimate;
 use crate::orbit::ending::{Ending, is_same_release};
-use crate::orbit::fate::{Fate, Run, Settling};
+use crate::orbit::fate::{Fate, LONGEST_REST, Run, Settling};
 use crate::progress::Watch;
 use crate::simulate::{Motion, SimulateError};
 
@@ -31,7 +31,7 @@ impl Default for Patience {
 pub struct Wandering {
     /// Revolutions.
     pub revolutions: u64,
-    /// How many have come to an orbit, or to the cam for good.
+    /// How many have come to what is not left again: an orbit, the cam for good, or rests that recur.
     pub left: u64,
     /// How many have rested on the cam.
     pub rested: u64,
@@ -109,42 +109,47 @@ impl Ensemble {
         };
         let runs = (0..count).into_par_iter().map(|index| first(index).map_err(|error| (index, error)));
         let mut ends: Vec<Option<End>> = runs.collect::<Result<_, _>>()?;
-        let wandering = wait(settling, &mut ends)?;
-        let fates = fates(settling, &ends)?;
-        let wanders = told_wandering(settling, &ends, &fates)?;
+        let mut fates = Fates::new();
+        follow(settling, &ends, &mut fates)?;
+        let (outlast, wandering) = wait(settling, &mut ends, &fates)?;
+        follow(settling, &ends, &mut fates)?;
+        let exits = exits(&ends, &fates);
+        let wandering = Wandering { left: exits.len() as u64, ..wandering };
+        let wanders = if exits.is_empty() { told_wandering(settling, &ends, &fates, outlast)? } else { exits };
+        // What is left sooner or later is left from each of its rests as well.
+        let wanders_on = |ending: &Ending| wandering.left > 0 && is_wandering(ending);
         let mut ensemble = Self { parts: Vec::new(), wandering };
-        let mut wanderers = 0;
+        let mut wanderers = wanders.iter().cycle();
         for (index, end) in ends.into_iter().enumerate() {
             let Some(End { run, mut motion, .. }) = end else { continue };
             let ending = match run {
-                Run::Arrives(orbit) => Ending::Orbit(orbit),
-                Run::Stays => Ending::Stays,
-                Run::Wanders => {
-                    wanderers += 1;
-                    match wanders.get((wanderers - 1) % wanders.len().max(1)) {
-                        Some(ending) => ending.clone(),
-                        None => continue,
+                Run::Arrives(orbit) => Some(Ending::Orbit(orbit)),
+                Run::Stays => Some(Ending::Stays),
+                Run::Wanders => wanderers.next().cloned(),
+                Run::Released(release) => match fates.iter().find(|(known, ..)| is_same_release(*known, release)) {
+                    Some((.., ending)) if wanders_on(ending) => wanderers.next().cloned(),
+                    Some((_, fate, ending)) => {
+                        if let Fate::Arrives(_, end) | Fate::Wanders(end) = fate {
+                            motion = *end;
+                        }
+                        Some(ending.clone())
                     }
-                }
-                Run::Released(release) => {
-                    let Some((_, fate, ending)) = fates.iter().find(|(known, ..)| is_same_release(*known, release))
-                    else {
-                        continue;
-                    };
-                    if let Fate::Arrives(_, end) | Fate::Wanders(end) = fate {
-                        motion = *end;
-                    }
-                    ending.clone()
-                }
+                    None => None,
+                },
             };
-            ensemble.add(ending, index, motion);
+            if let Some(ending) = ending {
+                ensemble.add(ending, index, motion, outlast);
+            }
         }
         Ok(ensemble)
     }
 
     /// Counts a start that ends on `ending`.
-    fn add(&mut self, ending: Ending, index: usize, motion: Motion) {
-        match self.parts.iter_mut().find(|part| part.ending.is_same(&ending)) {
+    fn add(&mut self, ending: Ending, index: usize, motion: Motion, outlast: bool) {
+        // Chaos is not what rests where it outlasts that.
+        let is_same =
+            |part: &&mut Part| part.ending.is_same(&ending) && (part.ending.kind() == ending.kind() || !outlast);
+        match self.parts.iter_mut().find(is_same) {
             Some(part) => {
                 // That it rests is the later news.
                 if matches!((&part.ending, &ending), (Ending::Chaotic(_), Ending::Resting(_))) {
@@ -158,16 +163,20 @@ impl Ensemble {
 }
 
 /// Runs those that wander on, until all of them together have run for as long as is told; what leaves at first was only slow
-/// to settle, and does not count.
-fn wait(settling: &Settling<'_>, ends: &mut [Option<End>]) -> Result<Wandering, Failed> {
+/// to settle, and does not count. With whether these are runs of another motion than those that had rested by then.
+fn wait(settling: &Settling<'_>, ends: &mut [Option<End>], fates: &Fates) -> Result<(bool, Wandering), Failed> {
     /// Revolutions that do not count, and the least that is worth a look for an orbit after them.
     const SLOW: u64 = 200;
-    const LEAST: u64 = 25;
-    let (mut all, mut round) = (None::<Wandering>, SLOW);
+    const LEAST: u64 = 32;
+    let (mut all, mut round, mut soon) = (None::<Wandering>, SLOW, Wandering::default());
+    // Those that a release was followed by count as well.
+    let followed = fates.iter().filter(|(_, fate, _)| matches!(fate, Fate::Wanders(_))).count() as u64;
+    let released = Wandering { revolutions: (followed * LONGEST_REST).min(POOL / 2), ..Wandering::default() };
     loop {
         let wanderers = ends.iter().flatten().filter(|end| end.run == Run::Wanders).count() as u64;
         if wanderers == 0 || all.is_some_and(|all| all.revolutions >= POOL) {
-            return Ok(all.unwrap_or_default());
+            let all = all.unwrap_or_default();
+            return Ok((outlasts(all, soon), all));
         }
         let runs = ends.par_iter_mut().enumerate().map(|(index, end)| -> Result<Wandering, Failed> {
             let Some(End { run: run @ Run::Wanders, motion, wandered }) = end else { return Ok(Wandering::default()) };
@@ -175,48 +184,81 @@ fn wait(settling: &Settling<'_>, ends: &mut [Option<End>]) -> Result<Wandering, 
             *wandered = all.is_some();
             *run = settling.run(motion, round).map_err(|error| (index, error))?;
             let revolutions = motion.revolution - begun;
-            let left = u64::from(matches!(run, Run::Arrives(_) | Run::Stays));
-            Ok(Wandering { revolutions, left, rested: u64::from(matches!(run, Run::Released(_))) })
+            Ok(Wandering { revolutions, left: 0, rested: u64::from(matches!(run, Run::Released(_))) })
         });
         let found = runs.try_reduce(Wandering::default, |one, other| Ok(one.with(other)))?;
-        all = Some(all.map_or_else(Wandering::default, |all| all.with(found)));
-        round = (POOL / 4 / wanderers).max(LEAST);
+        if all.is_none() {
+            soon = ends.iter().flatten().map(soon_rested).fold(soon, Wandering::with);
+        }
+        all = Some(all.map_or(released, |all| all.with(found)));
+        let left = POOL.saturating_sub(all.map_or(0, |all| all.revolutions));
+        round = (left.min(POOL / 4) / wanderers).max(LEAST);
     }
 }
 
-/// What follows each release that a run has come to, in the order of the runs.
-fn fates(settling: &Settling<'_>, ends: &[Option<End>]) -> Result<Fates, Failed> {
-    let mut fates = Fates::new();
+/// For how long a run has wandered that may have come to rest, but for the time that it takes to forget its start.
+fn soon_rested(end: &End) -> Wandering {
+    /// Revolutions.
+    const FORGOTTEN: u64 = 50;
+    let rested = u64::from(matches!(end.run, Run::Released(_)));
+    match end.motion.revolution.checked_sub(FORGOTTEN) {
+        Some(revolutions) if rested > 0 || end.run == Run::Wanders => Wandering { revolutions, left: 0, rested },
+        _ => Wandering::default(),
+    }
+}
+
+/// Whether runs that wandered for long have rested so much less often than they did `soon` that they are another motion than those
+/// that rested then.
+fn outlasts(long: Wandering, soon: Wandering) -> bool {
+    /// Of 10 rests that are to be expected there is none once in 20,000 times.
+    const FEWER: f64 = 10.0;
+    let rested = soon.rested as f64;
+    // With 95 % it is more often than that.
+    let rate = (rested - 2.0 * rested.sqrt()).max(0.0) / soon.revolutions.max(1) as f64;
+    rate * long.revolutions as f64 > FEWER * (long.rested + 1) as f64
+}
+
+/// Finds what follows each release that a run has come to and that is not known yet, in the order of the runs.
+fn follow(settling: &Settling<'_>, ends: &[Option<End>], fates: &mut Fates) -> Result<(), Failed> {
     for (index, end) in ends.iter().enumerate() {
         if let Some(End { run: Run::Released(release), .. }) = end
-            && !fates.iter().any(|(known, ..)| is_same_release(*known, *release))
+            && ending_of(fates, *release).is_none()
         {
             let fate = settling.fate(*release).map_err(|error| (index, error))?;
             let ending = settling.after(&fate).map_err(|error| (index, error))?;
             fates.push((*release, fate, ending));
         }
     }
-    Ok(fates)
+    Ok(())
 }
 
-/// What the runs that wander still are told to be, in turn.
+/// Whether a motion is left by chance alone, if it is left at all: chaos, and what bounces as chaos does until it rests.
+fn is_wandering(ending: &Ending) -> bool {
+    ending.growth().is_some() || ending.is_long()
+}
+
+/// What the runs have come to that left after they had wandered, each once. Chance alone decides when a run leaves, and to where:
+/// those that wander still are on their way there, in these parts.
+fn exits(ends: &[Option<End>], fates: &Fates) -> Vec<Ending> {
+    let wandered = ends.iter().flatten().filter(|end| end.wandered);
+    let left = wandered.filter_map(|end| match &end.run {
+        Run::Arrives(orbit) => Some(Ending::Orbit(orbit.clone())),
+        Run::Stays => Some(Ending::Stays),
+        Run::Released(release) => ending_of(fates, *release).cloned(),
+        Run::Wanders => None,
+    });
+    left.filter(|ending| !is_wandering(ending)).collect()
+}
+
+/// What the runs that wander, and that none has left, are told to be, in turn.
 ///
-/// Where others have left after they wandered as these do, chance alone decides when a run leaves: these are on their way to
-/// where the others went, if all of those went to one motion.
-fn told_wandering(settling: &Settling<'_>, ends: &[Option<End>], fates: &Fates) -> Result<Vec<Ending>, Failed> {
-    let mut left: Vec<Ending> = Vec::new();
-    for end in ends.iter().flatten().filter(|end| end.wandered) {
-        let ending = match &end.run {
-            Run::Arrives(orbit) => Some(Ending::Orbit(orbit.clone())),
-            Run::Stays => Some(Ending::Stays),
-            Run::Released(release) => ending_of(fates, *release).cloned(),
-            Run::Wanders => None,
-        };
-        left.extend(ending.filter(|ending| !left.iter().any(|known| known.is_same(ending))));
-    }
-    if let [only] = left.as_slice() {
-        return Ok(vec![only.clone()]);
-    }
+/// They are on the motion that rests now and then, if there is one, unless they outlast those that rest.
+fn told_wandering(
+    settling: &Settling<'_>,
+    ends: &[Option<End>],
+    fates: &Fates,
+    outlast: bool,
+) -> Result<Vec<Ending>, Failed> {
     let wanderers: Vec<(usize, Motion)> = ends
         .iter()
         .enumerate()
@@ -227,13 +269,9 @@ fn told_wandering(settling: &Settling<'_>, ends: &[Option<End>], fates: &Fates) 
     if let Some(rested) = told.iter().find(|ending| ending.growth().is_none()) {
         return Ok(vec![rested.clone()]);
     }
-    if !left.is_empty() {
-        return Ok(told.iter().filter_map(Ending::growth).map(Ending::Undecided).collect());
-    }
     let growths: Vec<Estimate> = told.iter().filter_map(Ending::growth).collect();
     let together = Ending::by_growth(Estimate::mean(&growths));
-    // They are on the motion that rests now and then, if there is one.
-    let long = fates.iter().map(|(.., ending)| ending).find(|ending| ending.is_long());
+    let long = fates.iter().map(|(.., ending)| ending).find(|ending| ending.is_long() && !outlast);
     Ok(match (&together, long) {
         (Ending::Chaotic(_), Some(resting)) => vec![resting.clone()],
         (Ending::Chaotic(_), None) => vec![together],

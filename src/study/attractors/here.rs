@@ -63,6 +63,12 @@ impl Here {
 
     /// What the motion of another speed comes to at this one, if that is an attractor which was not found here.
     pub fn follow(&self, machine: &Machine, motion: &Motion) -> Result<Option<Part>, SimulateError> {
+        let is_new = |part: &Part| !self.parts.iter().any(|known| known.ending.is_same(&part.ending));
+        Ok(self.come_to(machine, motion)?.filter(is_new))
+    }
+
+    /// What the motion of another speed comes to at this one, if that is an attractor.
+    pub fn come_to(&self, machine: &Machine, motion: &Motion) -> Result<Option<Part>, SimulateError> {
         /// Revolutions after which a motion that still wanders is one that does.
         const WAITED: u64 = 20_000;
         let machine = machine.at_speed(angular_velocity(self.rpm));
@@ -80,10 +86,9 @@ impl Here {
             Run::Released(release) => settling.after(&settling.fate(release)?)?,
             Run::Wanders => settling.by_growth(motion)?,
         };
-        let is_new = !self.parts.iter().any(|part| part.ending.is_same(&ending));
         // What wanders where others have left is on its way, too.
         let is_on_its_way =
             matches!(ending, Ending::Undecided(_)) || (self.wandering.left > 0 && ending.period().is_none());
-        Ok((is_new && !is_on_its_way).then_some(Part { ending, starts: Vec::new(), motion }))
+        Ok((!is_on_its_way).then_some(Part { ending, starts: Vec::new(), motion }))
     }
 }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 
 use super::change::{Cause, Change};
+use super::ensemble::Part;
 use super::here::Here;
 use super::stretch::Stretch;
 use crate::bracket::{Width, halve};
@@ -256,14 +257,14 @@ impl Row {
         let sorted = |[one, two]: [f64; 2]| [one.min(two), one.max(two)];
         let part = grid[index].as_ref().ok().and_then(|here| here.parts.get(*self.at.get(&index)?));
         let Some(part) = part else { return Change::by_runs(sorted([rpm, gone])) };
-        let mut motion = part.motion;
+        let (mut motion, kind) = (part.motion, part.ending.kind());
         let found = halve([rpm, gone], Width::Halvings(HALVINGS), |rpm| -> Result<bool, SimulateError> {
             let here = Here::new(machine, rpm, STARTS)?;
-            let of_class = |part: &super::Part| Class::of(&part.ending) == self.class;
-            let there = here.parts.iter().find(|part| of_class(part)).cloned();
-            let there = match there {
-                Some(part) => Some(part),
-                None => here.follow(machine, &motion)?.filter(of_class),
+            let of_class = |part: &Part| Class::of(&part.ending) == self.class;
+            let alike = |part: &&Part| of_class(part) && part.ending.kind() == kind;
+            let there = match here.parts.iter().find(alike) {
+                Some(part) => Some(part.clone()),
+                None => here.come_to(machine, &motion)?.filter(of_class),
             };
             if let Some(part) = &there {
                 motion = part.motion;
