@@ -199,8 +199,12 @@ impl Flight {
     /// at.
     #[inline]
     pub fn fall_to(&self, level: f64, start: State) -> Option<(f64, State)> {
-        let Regime::Undamped { omega } = self.regime else {
-            return self.fall_by_search(level, start);
+        let omega = match self.regime {
+            Regime::Undamped { omega } => omega,
+            Regime::Monotone { fast: 0.0, .. } if self.gravity > 0.0 => {
+                return self.fall_freely(level, start);
+            }
+            _ => return self.fall_by_search(level, start),
         };
         // On the circle (x, v/w0) about the equilibrium, from (x0, y0) to (l, -h), h^2 = x0^2 + y0^2 - l^2.
         let offset = self.rest_position - self.gravity / self.omega0_squared;
@@ -224,6 +228,17 @@ impl Flight {
         let angle = sine.atan2(x * l - y * height);
         let time = if angle < 0.0 { angle + TAU } else { angle } / omega;
         Some((time, State { position: level, velocity: -omega * height }))
+    }
+
+    /// Under gravity alone: from `q0 - l + v0 t - g t^2/2 = 0`, in the form in which nothing cancels.
+    fn fall_freely(&self, level: f64, State { position, velocity }: State) -> Option<(f64, State)> {
+        let drop = position - level;
+        let speed = (velocity * velocity + 2.0 * self.gravity * drop).sqrt();
+        let time = match velocity > 0.0 {
+            true => (velocity + speed) / self.gravity,
+            false => 2.0 * drop / (speed - velocity),
+        };
+        time.is_finite().then_some((time, State { position: level, velocity: -speed }))
     }
 
     /// The same for every follower: between two turning points position changes one way, so a bracket holds one root.

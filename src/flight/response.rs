@@ -27,6 +27,8 @@ impl Flight {
                 let step = if cos > 0.0 { impulse * impulse / (1.0 + cos) } else { (1.0 - cos) / self.omega0_squared };
                 Response { step, impulse, impulse_rate: cos }
             }
+            // Neither spring nor damper.
+            Regime::Monotone { fast: 0.0, .. } => Response { step: 0.5 * t * t, impulse: t, impulse_rate: 1.0 },
             _ => self.damped_response(t),
         }
     }
