@@ -102,9 +102,9 @@ impl Density {
         Some([at(low), at(high + 1)])
     }
 
-    /// A shade for each cell, rows from below: 0 for none, else 1 to [`SHADES`] with the logarithm of the count. With
-    /// `spread`, a point also shades the eight cells around it, so that single points are still seen in print.
-    pub(crate) fn shades(&self, spread: bool) -> Vec<u8> {
+    /// A shade for each cell, by the logarithm of the count. With `spread`, a point also shades the eight cells around it, so that
+    /// single points are still seen in print.
+    pub(crate) fn shades(&self, spread: bool) -> Shades {
         // How many cells have each count: sorted, they would take as much memory as the grid.
         let most = self.counts.iter().max().copied().unwrap_or(0);
         let mut cells = vec![0_u32; usize::from(most) + 1];
@@ -118,31 +118,28 @@ impl Density {
             found
         });
         let full = full.unwrap_or(1) as f64;
-        let shade = |count: u16| {
-            let share = f64::from(count).ln_1p() / full.max(2.0).ln_1p();
+        let shade = |count: usize| {
+            let share = (count as f64).ln_1p() / full.max(2.0).ln_1p();
             if count == 0 { 0 } else { ((share * f64::from(SHADES)) as u8).clamp(1, SHADES) }
         };
-        let mut shades: Vec<u8> = self.counts.iter().map(|count| shade(*count)).collect();
-        if spread {
-            for row in shades.chunks_mut(self.columns) {
-                let mut before = 0;
-                for at in 0..row.len() {
-                    let after = row.get(at + 1).copied().unwrap_or(0);
-                    let here = row[at];
-                    row[at] = here.max(before).max(after);
-                    before = here;
-                }
+        let by_count: Vec<u8> = (0..=usize::from(most)).map(shade).collect();
+        let reach = usize::from(spread);
+        let mut packed = Vec::with_capacity(self.columns.div_ceil(2) * self.rows);
+        for row in 0..self.rows {
+            // The shade of the most is the strongest of the shades.
+            let near = row.saturating_sub(reach)..(row + reach + 1).min(self.rows);
+            let mut upright = vec![0; self.columns];
+            for counts in self.counts.chunks(self.columns).skip(near.start).take(near.len()) {
+                upright.iter_mut().zip(counts).for_each(|(most, count)| *most = (*count).max(*most));
             }
-            // Row by row from below, so that no second grid is needed.
-            let mut below = vec![0; self.columns];
-            for at in 0..shades.len() {
-                let above = shades.get(at + self.columns).copied().unwrap_or(0);
-                let here = shades[at];
-                shades[at] = here.max(below[at % self.columns]).max(above);
-                below[at % self.columns] = here;
-            }
+            let shade = |at: usize| {
+                let near = &upright[at.saturating_sub(reach)..(at + reach + 1).min(self.columns)];
+                by_count[usize::from(near.iter().max().copied().unwrap_or(0))]
+            };
+            let pair = |at: usize| (shade(at) << 4) | if at + 1 < self.columns { shade(at + 1) } else { 0 };
+            packed.extend((0..self.columns).step_by(2).map(pair));
         }
-        shades
+        Shades { columns: self.columns, packed }
     }
 
     /// Twice the range upwards or downwards at half the resolution, so that `y` comes nearer.
@@ -157,6 +154,36 @@ impl Density {
         }
         self.counts = counts;
         if upwards { self.y[1] += span } else { self.y[0] -= span }
+    }
+}
+
+/// A shade for each cell of a grid, 0 for none, else 1 to [`SHADES`]: two in a byte, as a picture is drawn beside the counts of its
+/// grid, and as a PNG of few colours holds them.
+pub(crate) struct Shades {
+    columns: usize,
+    packed: Vec<u8>,
+}
+
+impl Shades {
+    pub(crate) fn columns(&self) -> usize {
+        self.columns
+    }
+
+    /// The rows from below, two cells in a byte.
+    pub(crate) fn rows(&self) -> std::slice::Chunks<'_, u8> {
+        self.packed.chunks(self.columns.div_ceil(2))
+    }
+
+    /// The cells of a row.
+    pub(crate) fn cells(&self, row: &[u8]) -> impl Iterator<Item = u8> {
+        row.iter().flat_map(|pair| [pair >> 4, pair & 15]).take(self.columns)
+    }
+
+    /// The full shade wherever there is any.
+    pub(crate) fn solid(mut self) -> Self {
+        let full = |shade: u8| if shade == 0 { 0 } else { SHADES };
+        self.packed.iter_mut().for_each(|pair| *pair = (full(*pair >> 4) << 4) | full(*pair & 15));
+        self
     }
 }
 

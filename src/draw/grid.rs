@@ -7,16 +7,14 @@ use base64::engine::general_purpose::STANDARD;
 use resvg::tiny_skia::{FillRule, Mask, Paint, Path, PathBuilder, Pixmap, Rect, Transform};
 
 use super::Colour;
-use super::density::SHADES;
+use super::density::{SHADES, Shades};
 use super::element::{number, stroke};
 
 /// What is drawn of a grid; lengths in the page's units, from the upper left corner of its frame.
 pub(super) enum Grid {
     /// The cells, stretched over a place.
     Cells {
-        /// Row by row from below, 0 for nothing.
-        shades: Vec<u8>,
-        columns: usize,
+        shades: Shades,
         /// Left, top, width and height of all of it.
         place: [f64; 4],
         /// Of the colour in a cell of full shade: 1 for all of it.
@@ -44,8 +42,8 @@ impl Grid {
     /// As elements of an SVG.
     pub(super) fn write(&self, out: &mut impl Write, colour: Colour) -> fmt::Result {
         match self {
-            Self::Cells { shades, columns, place, strength } => {
-                let image = image(shades, *columns, colour).map_err(|_| fmt::Error)?;
+            Self::Cells { shades, place, strength } => {
+                let image = image(shades, colour).map_err(|_| fmt::Error)?;
                 let [left, top, width, height, strength] =
                     [place[0], place[1], place[2], place[3], *strength].map(number);
                 writeln!(
@@ -98,15 +96,15 @@ impl Grid {
     fn path(&self, shade: u8, [upper, lower]: [f64; 2]) -> Option<Path> {
         let mut path = PathBuilder::new();
         match self {
-            Self::Cells { shades, columns, place: [left, top, width, height], .. } => {
-                let rows = shades.len() / columns;
-                let [across, down] = [width / *columns as f64, height / rows as f64];
+            Self::Cells { shades, place: [left, top, width, height], .. } => {
+                let rows = shades.rows().len();
+                let [across, down] = [width / shades.columns() as f64, height / rows as f64];
                 let [first, last] = [upper, lower].map(|y| ((y - top) / down).max(0.0));
-                for line in first as usize..rows.min(last.ceil() as usize) {
-                    let row = rows - 1 - line;
+                let lines = first as usize..rows.min(last.ceil() as usize);
+                for (line, row) in shades.rows().rev().enumerate().skip(lines.start).take(lines.len()) {
                     let [y, below] = [line, line + 1].map(|line| (top + down * line as f64) as f32);
                     let mut column = 0;
-                    let cells = &shades[row * columns..(row + 1) * columns];
+                    let cells: Vec<u8> = shades.cells(row).collect();
                     for run in cells.chunk_by(|one, other| (*one == shade) == (*other == shade)) {
                         let [x, right] =
                             [column, column + run.len()].map(|column| (left + across * column as f64) as f32);
@@ -129,9 +127,9 @@ impl Grid {
 }
 
 /// Shades as a PNG in base 64: one colour, its opacity by shade.
-fn image(shades: &[u8], columns: usize, colour: Colour) -> Result<String, png::EncodingError> {
+fn image(shades: &Shades, colour: Colour) -> Result<String, png::EncodingError> {
     let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, columns as u32, (shades.len() / columns) as u32);
+    let mut encoder = png::Encoder::new(&mut bytes, shades.columns() as u32, shades.rows().len() as u32);
     encoder.set_color(png::ColorType::Indexed);
     encoder.set_depth(png::BitDepth::Four);
     let alpha: Vec<u8> = (0..=SHADES).map(alpha).collect();
@@ -139,8 +137,8 @@ fn image(shades: &[u8], columns: usize, colour: Colour) -> Result<String, png::E
     encoder.set_trns(alpha);
     encoder.set_compression(png::Compression::High);
     let mut writer = encoder.write_header()?;
-    let pair = |pair: &[u8]| (pair[0] << 4) | pair.get(1).copied().unwrap_or(0);
-    let packed: Vec<u8> = shades.chunks(columns).rev().flat_map(|row| row.chunks(2).map(pair)).collect();
+    // Rows from above.
+    let packed: Vec<u8> = shades.rows().rev().flatten().copied().collect();
     writer.write_image_data(&packed)?;
     writer.finish()?;
     Ok(STANDARD.encode(bytes))

@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Write};
 
-use super::density::{Density, SHADES};
+use super::density::{Density, SHADES, Shades};
 use super::element::{FAR, fill, markers, number, stroked};
 use super::grid::Grid;
 use super::layout::share;
@@ -44,9 +44,7 @@ impl Page {
             Data::Density(density) => self.density(out, density, colour),
             Data::Region { cells, .. } if cells.occupied() == 0 => Ok(()),
             Data::Region { cells, strength } => {
-                let mut shades = cells.shades(true);
-                shades.iter_mut().filter(|shade| **shade > 0).for_each(|shade| *shade = SHADES);
-                out.grid(self.cells(cells, shades, *strength), colour)
+                out.grid(self.cells(cells, cells.shades(true).solid(), *strength), colour)
             }
         }
     }
@@ -138,7 +136,9 @@ impl Page {
         let [x, y] = density.ranges();
         let [columns, rows] = density.cells();
         let mut at = [const { Vec::new() }; SHADES as usize];
-        for (cell, shade) in density.shades(false).into_iter().enumerate().filter(|(_, shade)| *shade > 0) {
+        let shades = density.shades(false);
+        let all = shades.rows().flat_map(|row| shades.cells(row)).enumerate();
+        for (cell, shade) in all.filter(|(_, shade)| *shade > 0) {
             let middle = |index: usize, count: usize, [low, high]: [f64; 2]| {
                 low + (high - low) * (index as f64 + 0.5) / count as f64
             };
@@ -154,10 +154,10 @@ impl Page {
     }
 
     /// Many cells: the grid itself, stretched over the frame.
-    fn cells(&self, density: &Density, shades: Vec<u8>, strength: f64) -> Grid {
+    fn cells(&self, density: &Density, shades: Shades, strength: f64) -> Grid {
         let [x, y] = density.ranges();
         let ([left, top], [right, bottom]) = (self.at([x[0], y[1]]), self.at([x[1], y[0]]));
         let place = [left, top, right - left, bottom - top];
-        Grid::Cells { shades, columns: density.cells()[0], place, strength }
+        Grid::Cells { shades, place, strength }
     }
 }

@@ -57,6 +57,8 @@ fn blocks_are_of_a_kind_that_is_checked() {
                     block.file.is_some() || page.path.ends_with("model-file.md") || page.path.ends_with("extending.md")
                 }
                 "csv" => block.file.is_some(),
+                // A doctest, by python/tests/test_documents.py.
+                "python" => page.path.ends_with("python.md"),
                 // A doctest.
                 "rust" => page.path.ends_with("theory.md"),
                 // Formulas, drawings and templates.
