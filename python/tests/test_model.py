@@ -56,7 +56,7 @@ def test_rows_of_a_table_stand_in_a_dict() -> None:
         (rows[::-1], "cam.rows: "),
         (rows[:2], "cam.rows has 2 rows; 3 to 1000000 are allowed"),
         ([], "has 0 rows"),
-        (rows[:, 0], "must be a list of rows, each of two numbers"),
+        (rows[:, 0], "must be a list of rows, each of two finite numbers"),
         (np.delete(rows, slice(40, 80), axis=0), "rows are missing"),
         (np.vstack([rows[:9], rows[8:]]), "repeats the angle of the row before: must be above 8, row 9"),
         (rows - [[1.0, 0.0]], "must be an angle from 0 to 360"),

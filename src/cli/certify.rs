@@ -20,7 +20,7 @@ use crate::study::certify::{BITS, CertifyError, certify, proved_counts, proved_o
 pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
-    /// Range of speeds, rpm, or with --orbits and --resting one speed [default: the model's [study]].
+    /// Range of speeds, rpm; with --orbits also one speed, with --resting only one [default: the model's [study]].
     #[arg(long, value_name = "LO:HI", value_parser = rpm_or_range)]
     rpm: Option<[f64; 2]>,
     /// Turns of the cam after which the orbits repeat, and no fewer.

@@ -202,7 +202,7 @@ impl Fields {
                 Err(self.reject(path, format!("has {} rows; {fewest} to {most} are allowed", rows.len())))
             }
             Value::Array(0) => Err(self.reject(path, format!("has 0 rows; {fewest} to {most} are allowed"))),
-            _ => Err(self.reject(path, "must be a list of rows, each of two numbers")),
+            _ => Err(self.reject(path, "must be a list of rows, each of two finite numbers")),
         }
     }
 

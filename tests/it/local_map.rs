@@ -187,10 +187,10 @@ fn the_follower_does_what_the_local_map_predicts_where_it_is_chaotic() {
         let local = exponent(&found.outcomes[0].fates[0].end);
         let theorem = found.outcomes[0].robust_chaos.unwrap();
         assert!(theorem.holds() && (theorem.hypotheses[4].value - phi).abs() < 1e-3, "{name}: {theorem:?}");
-        let page = found.text().unwrap();
+        let page = found.text().unwrap().split_whitespace().collect::<Vec<_>>().join(" ");
         // Neither fixed point is one that a motion follows, so nothing is said to have nowhere to go.
         assert!(page.contains("Both are unstable") && !page.contains("nowhere to go"), "{page}");
-        assert!(page.contains("theorem: robust chaos") && page.contains("phi = 0.9"), "{page}");
+        assert!(page.contains("theorem: the local map has robust chaos") && page.contains("phi = 0.9"), "{page}");
         assert!(real.chars().all(|letter| letter != '?') && real.contains('L') && real.contains('R'), "{name}");
         let section = section_at(&read(name), &found, DT);
         let motion = section.machine.start(section.cam_angle, found.at.state).unwrap();
