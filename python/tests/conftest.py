@@ -1,5 +1,6 @@
 """What all tests use: the paper's model, and the command, whose output the package is held against."""
 
+import signal
 import subprocess
 import sys
 from collections.abc import Callable
@@ -13,6 +14,9 @@ ROOT = Path(__file__).parents[2]
 MODELS = sorted((ROOT / "models").rglob("*.toml"))
 
 Command = Callable[..., str]
+
+# What a shell starts in the background ignores Ctrl-C, and so does what that starts: the tests would wait for ever.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(scope="session")
