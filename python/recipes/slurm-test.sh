@@ -31,5 +31,6 @@ python "$recipes/dask_slurm.py" "$model" dask.zarr 300 2
 python "$recipes/processes.py" "$model" processes.zarr 300 2
 diff -r dask.zarr processes.zarr
 
+trap 'rm -rf "$folder"' EXIT
 "$recipes/slurm-node.sh" stop
 echo "both recipes fill what one process fills"
