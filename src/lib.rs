@@ -5,7 +5,7 @@
 //!  model file (TOML)
 //!    │  model            what the user wrote, checked
 //!    ▼
-//!  cam · flight · impact the physical laws
+//!  cam · flight · impact the physical laws; reading, a model whole
 //!    ▼
 //!  simulate              the only event loop: fly, contact, impact or stick, release; the variational flow
 //!    ▼
@@ -80,8 +80,10 @@ pub mod file;
 pub mod model;
 
 pub mod cam;
+
 pub mod flight;
 pub mod impact;
+pub mod reading;
 
 pub mod simulate;
 

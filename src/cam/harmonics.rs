@@ -45,6 +45,11 @@ impl Harmonics {
         Self { offset: profile.offset, terms, bounds }
     }
 
+    /// How many waves its highest cosine has in a turn.
+    pub(super) fn highest(&self) -> usize {
+        self.terms.len()
+    }
+
     /// Lift and derivatives at `angle`, rad.
     #[inline]
     pub fn lift<N: Number>(&self, angle: N) -> Lift<N> {

@@ -12,6 +12,7 @@ mod cyclic;
 mod harmonics;
 mod jet;
 mod law;
+mod least;
 mod lift;
 mod polynomial;
 mod profile;
@@ -32,6 +33,7 @@ pub use corners::{Corner, Side};
 pub use harmonics::Harmonics;
 pub(crate) use jet::Jet;
 pub use law::Law;
+pub use least::Least;
 pub use lift::Lift;
 pub use polynomial::Polynomial;
 pub use sinusoid::Sinusoid;
@@ -74,7 +76,7 @@ document!(Segment as it {
     start_deg: it.start.to_degrees(),
     end_deg: it.end.to_degrees(),
     law: it.law.name(),
-    lift_m: it.bounds.lift,
+    lift_m: it.extremes(),
 });
 
 /// What is known of where segments meet before looking.

@@ -78,7 +78,8 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let basins = watched("", |watch| grid.basins_watched(&section.map.machine, patience, threads, watch))?;
     let wall_s = clock.elapsed().as_secs_f64();
     if let Some(path) = &arguments.out {
-        let table = |table: &mut dyn Write| Ok(table.write_all(csv::basins(&basins).as_bytes())?);
+        let table =
+            |table: &mut dyn Write| Ok(table.write_all(csv::told(&csv::basins(&basins), &model.units).as_bytes())?);
         let picture = || {
             let Border { stable, saddles, curves } = &section.border(&basins);
             let title = format!("{} at {} rpm: what each start ends on", model.name, arguments.rpm);

@@ -35,7 +35,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let claims = Claims::hold(&context, &progress)?;
     drop(progress);
     let page = match (arguments.json, arguments.markdown) {
-        (true, _) => json::render(&claims)?,
+        (true, _) => json::render(&claims, &model.units)?,
         (_, true) => {
             let (lead, sections) = pages::claims::document(&claims);
             markdown::page(&lead, &sections)?

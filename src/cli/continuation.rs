@@ -77,7 +77,9 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         // Nobody is left to tell where standard error is closed.
         let _ = session.err.write_all(pages::branches::branch(branch, name, index + 1).as_bytes());
     }
-    let table = |table: &mut dyn Write| Ok(table.write_all(csv::branches(name, &found.branches).as_bytes())?);
+    let table = |table: &mut dyn Write| {
+        Ok(table.write_all(csv::told(&csv::branches(name, &found.branches), &model.units).as_bytes())?)
+    };
     target.fill(table, || {
         let settled = watched("", |watch| found.settled(arguments.runs, watch))?;
         Ok(branches_figure(&found.title(), (name, *range), &found.branches, &settled, &corners))

@@ -117,8 +117,11 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let swept = match target.map(|path| Target::create(path, &mut *session.out)).transpose()? {
         None => Swept::new(name, &sweep, threads, &progress, |_: Counted| Ok::<(), CommandError>(()))?,
         Some(Target::Table(mut file)) => {
-            file.write_all(csv::diagram(&sweep).as_bytes())?;
-            let take = |lines: csv::Lines| Ok::<(), CommandError>(file.write_all(lines.0.as_bytes())?);
+            let columns = csv::diagram(&sweep);
+            file.write_all(model.units.columns(&columns).as_bytes())?;
+            let take = |lines: csv::Lines| {
+                Ok::<(), CommandError>(file.write_all(csv::in_units(&lines.0, &columns, &model.units).as_bytes())?)
+            };
             let swept = Swept::new(name, &sweep, threads, &progress, take)?;
             super::commit(vec![file])?;
             swept
@@ -157,7 +160,7 @@ fn one_row(arguments: &Arguments, sweep: &Sweep, session: &mut Session<'_>) -> R
     let lengths = Lengths { transient: arguments.transient, record: arguments.record };
     let (start, threads) = (arguments.start.start(), arguments.threads.map(usize::from));
     let points = watched("", |watch| swept::one_row(&sweep.machine, &sweep.speeds, start, lengths, threads, watch))?;
-    file.write_all(csv::one_row(&sweep.speeds, &points).as_bytes())?;
+    file.write_all(csv::told(&csv::one_row(&sweep.speeds, &points), &session.units).as_bytes())?;
     super::commit(vec![file])?;
     Ok(Exit::Agrees)
 }

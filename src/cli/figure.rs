@@ -99,7 +99,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
 fn list(model: &Model, subject: &Subject, as_json: bool) -> Result<String, CommandError> {
     let figures = listed(subject);
     if as_json {
-        return Ok(json::render(&List { schema: SCHEMA, model: model.name.clone(), figures })?);
+        return Ok(json::render(&List { schema: SCHEMA, model: model.name.clone(), figures }, &model.units)?);
     }
     let wide = |part: fn(&Listed) -> &str| figures.iter().map(|figure| part(figure).len()).max().unwrap_or(0);
     let (ids, places) = (wide(|figure| figure.id), wide(|figure| figure.place));
@@ -112,7 +112,10 @@ fn list(model: &Model, subject: &Subject, as_json: bool) -> Result<String, Comma
 
 fn one(subject: &Subject, plate: Plate, arguments: &Arguments) -> Result<String, CommandError> {
     if arguments.json {
-        return Ok(json::render(&One { schema: SCHEMA, model: subject.model.name.clone(), plate })?);
+        return Ok(json::render(
+            &One { schema: SCHEMA, model: subject.model.name.clone(), plate },
+            &subject.model.units,
+        )?);
     }
     let of = match (plate.place, subject.is_paper) {
         ("", _) => String::new(),

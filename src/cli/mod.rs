@@ -38,7 +38,7 @@ use session::Session;
 pub use session::Terminal;
 
 use crate::file::{self, FileError, Output};
-use crate::model::ModelError;
+use crate::model::{ModelError, Units};
 
 /// How a command ended; the process's exit code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -163,7 +163,7 @@ pub fn run_at(
 ) -> Exit {
     let words: Vec<OsString> = arguments.into_iter().collect();
     // What is wrong with a command line is coloured as it says itself.
-    let mut session = Session { out, err, terminal, color: session::said(&words) };
+    let mut session = Session { out, err, terminal, color: session::said(&words), units: Units::default() };
     let matches = help::command(session.width()).try_get_matches_from(words);
     let arguments = match matches.and_then(|matches| Arguments::from_arg_matches(&matches)) {
         Ok(arguments) => arguments,

@@ -49,6 +49,7 @@ impl ModelArgument {
                 model
             }
         };
+        session.units = model.units.clone();
         Ok(model.changed(&self.changes.numbers)?)
     }
 }

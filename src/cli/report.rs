@@ -70,7 +70,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         session.complain(&format!("{route} did not run; the page says why"));
     }
     match (arguments.json, &path) {
-        (true, _) => session.print(&json::render(&report)?)?,
+        (true, _) => session.print(&json::render(&report, &model.units)?)?,
         (false, Some(path)) if path.as_path() != Path::new("-") => session.print(&format!("{}\n", path.display()))?,
         _ => {}
     }

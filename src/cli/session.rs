@@ -7,7 +7,8 @@ use clap::{ColorChoice, ValueEnum};
 use serde::Serialize;
 
 use super::{CommandError, Exit, complaint};
-use crate::model::ModelError;
+use crate::model::{ModelError, Units};
+use crate::show::block::in_units;
 use crate::show::{Page, Paged, json};
 
 /// The colours that a command line asks for before it is known to be one.
@@ -85,6 +86,8 @@ pub(super) struct Session<'a> {
     pub(super) terminal: Terminal,
     /// What `--color` says.
     pub(super) color: ColorChoice,
+    /// Those of the model that the command is about.
+    pub(super) units: Units,
 }
 
 impl Session<'_> {
@@ -153,7 +156,11 @@ impl Session<'_> {
 
     /// Prints what was found: one document for a program, or the page for people, in as many columns as there are.
     pub(super) fn answer(&mut self, found: &(impl Serialize + Paged), as_json: bool) -> Result<Exit, CommandError> {
-        let text = if as_json { json::render(found)? } else { self.shown(&found.page(self.width())?) };
+        let text = if as_json {
+            json::render(found, &self.units)?
+        } else {
+            self.shown(&Page::of(self.width(), &in_units(found.blocks(), &self.units))?)
+        };
         self.print(&text)?;
         Ok(Exit::Agrees)
     }

@@ -111,26 +111,28 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         file.write_all(columns.as_bytes())?;
         Ok(file)
     };
-    let mut events = events.as_deref().map(|path| open(path, csv::EVENTS)).transpose()?;
-    let mut states = strobe_out.as_deref().map(|path| open(path, csv::STROBE)).transpose()?;
+    let mut events = events.as_deref().map(|path| open(path, &model.units.columns(csv::EVENTS))).transpose()?;
+    let mut states = strobe_out.as_deref().map(|path| open(path, &model.units.columns(csv::STROBE))).transpose()?;
     let is_drawn = |path: &&Path| picture::kind(path).is_some();
     let trace = trace.as_deref();
-    let written = trace.filter(|path| !is_drawn(path)).map(|path| open(path, csv::TRACE)).transpose()?;
+    let written =
+        trace.filter(|path| !is_drawn(path)).map(|path| open(path, &model.units.columns(csv::TRACE))).transpose()?;
     let trace = trace.filter(is_drawn).map(Canvas::create).transpose()?;
     let mut lines = String::new();
     let see = |sight: Sight<'_>| -> Result<(), CommandError> {
         lines.clear();
-        let file = match sight {
+        let (file, columns) = match sight {
             Sight::Events(seen) => {
                 let omega = machine.angular_velocity();
                 seen.iter().for_each(|event| csv::event(&mut lines, event, first.cam_angle, omega));
-                &mut events
+                (&mut events, csv::EVENTS)
             }
             Sight::State(motion) => {
                 csv::strobe(&mut lines, machine, motion);
-                &mut states
+                (&mut states, csv::STROBE)
             }
         };
+        let lines = csv::in_units(&lines, columns, &model.units);
         Ok(file.as_mut().map_or(Ok(()), |file| file.write_all(lines.as_bytes()))?)
     };
     let run = watched("", |watch| simulation.run(wanted, watch, see))?;
@@ -140,7 +142,8 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     };
     let written = written.map(|mut file| -> Result<_, CommandError> {
         let (omega, mass) = (machine.angular_velocity(), model.follower.mass);
-        file.write_all(csv::trace(&seen(figures::Run::WRITTEN)?.samples, first.cam_angle, omega, mass).as_bytes())?;
+        let lines = csv::trace(&seen(figures::Run::WRITTEN)?.samples, first.cam_angle, omega, mass);
+        file.write_all(csv::in_units(&lines, csv::TRACE, &model.units).as_bytes())?;
         Ok(file)
     });
     let mut files: Vec<Output<'_>> = [events, states, written.transpose()?].into_iter().flatten().collect();

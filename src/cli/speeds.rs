@@ -51,7 +51,8 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let resolution = Resolution { step, starts: arguments.starts as usize };
     let found = watched("", |watch| speeds(&model, rpm, resolution, watch))?;
     if let Some(path) = &arguments.out {
-        let table = |table: &mut dyn Write| Ok(table.write_all(csv::speeds(&found).as_bytes())?);
+        let table =
+            |table: &mut dyn Write| Ok(table.write_all(csv::told(&csv::speeds(&found), &model.units).as_bytes())?);
         Target::create(path, &mut *session.out)?.fill(table, || Ok(speeds_figure(&found, &corners)))?;
     }
     if is_standard(arguments.out.as_ref()) { Ok(Exit::Agrees) } else { session.answer(&found, arguments.json) }

@@ -74,24 +74,34 @@ impl Change {
         let impacts = at.cycle.impacts.len();
         let Varied::Number(name) = varied else { return Ok(Self::of_period(impacts)) };
         let Follower { mass, damping, stiffness, rest_position, .. } = model.follower;
+        // By the number in the unit of its field.
+        let unit = name.strip_prefix("follower.").and_then(|name| model.units.of_follower(name));
+        let scale = unit.map_or(1.0, |unit| unit.inside(1.0));
         // M = [[0, 1], [-k/m, -b/m]],  f = (0, k rest/m - g)
         let bottom = |position: f64, velocity: f64, force: f64| Self {
-            matrix: Matrix2::new(0.0, 0.0, position, velocity),
-            force: Vector2::new(0.0, force),
+            matrix: Matrix2::new(0.0, 0.0, position * scale, velocity * scale),
+            force: Vector2::new(0.0, force * scale),
             ..Self::none(impacts)
         };
+        // A preload keeps k (c_min - rest): d(k rest)/dk = c_min.
+        let slack = rest_position + model.preload.map_or(0.0, |preload| preload / stiffness);
         Ok(match name.as_str() {
             "follower.mass" => {
                 bottom(stiffness / (mass * mass), damping / (mass * mass), -stiffness * rest_position / (mass * mass))
             }
             "follower.damping" => bottom(0.0, -1.0 / mass, 0.0),
-            "follower.stiffness" => bottom(-1.0 / mass, 0.0, rest_position / mass),
+            "follower.stiffness" => bottom(-1.0 / mass, 0.0, slack / mass),
             "follower.gravity" => bottom(0.0, 0.0, -1.0),
             "follower.rest_position" => bottom(0.0, 0.0, stiffness / mass),
+            "follower.preload" => bottom(0.0, 0.0, -1.0 / mass),
             "follower.restitution" => Self { restitution: 1.0, ..Self::none(impacts) },
             _ => {
-                let (lifts, lift_errors) = lift_changes(model, at, name, side)?;
-                Self { lifts, lift_errors, ..Self::none(impacts) }
+                let (mut lifts, mut lift_errors) = lift_changes(model, at, name, side)?;
+                // The last one is that of the lowest lift, which a preload goes with.
+                let (lowest, _) = (lifts.pop().unwrap_or_default(), lift_errors.pop());
+                let moved = if model.preload.is_some() { lowest.value } else { 0.0 };
+                let force = Vector2::new(0.0, stiffness / mass * moved);
+                Self { lifts, lift_errors, force, ..Self::none(impacts) }
             }
         })
     }
@@ -108,7 +118,7 @@ pub(super) fn value_of(model: &Model, name: &str) -> Result<f64, NoChange> {
     value.ok_or_else(|| NoChange::Unknown { name: name.into() })
 }
 
-/// The lift under every impact by a number of the cam, and the errors: a difference over six cams on either side,
+/// The lift under every impact by a number of the cam, then the lowest lift, and the errors: a difference over six cams on either side,
 ///
 /// ```text
 /// h df/dp = (45 (f_1 - f_-1) - 9 (f_2 - f_-2) + (f_3 - f_-3))/60 + O(h^7)
@@ -129,7 +139,9 @@ fn lift_changes(
     let family = Family::new(model, at.speed_rpm(), vec![Parameter::Field(name.into())])?;
     let here = family.machine(&[value])?.0;
     let scale = LARGEST * if value == 0.0 { 1.0 } else { value.abs() };
-    let impacts = impacts(here.cam(), at, side);
+    let mut impacts = impacts(here.cam(), at, side);
+    let lowest = here.cam().lowest();
+    impacts.push((lowest.segment, lowest.angle));
     let mut failure = NoChange::OtherSegments { name: name.into(), value };
     let (mut wider, mut best): (Option<Vec<LiftChange>>, Option<_>) = (None, None);
     for halving in 0..STEPS {

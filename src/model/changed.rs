@@ -27,14 +27,14 @@ impl Model {
         }
     }
 
-    /// The same model with another number in `field`, a dotted path, checked as the file is.
-    pub fn with_number(&self, field: &str, number: f64) -> Result<Self, ModelError> {
+    /// The same model with another number in `field`, a dotted path, checked as the file is but for what needs the cam.
+    pub(crate) fn rewritten(&self, field: &str, number: f64) -> Result<Self, ModelError> {
         Self::from_fields(self.fields.with_number(field, number)?)
     }
 
-    /// The same model with other numbers, of `[study]` as well, each named as for [`Self::path_of`], checked together as the file is; they become
-    /// a part of its name.
-    pub fn changed(&self, numbers: &[(String, f64)]) -> Result<Self, ModelError> {
+    /// The same model with other numbers, of `[study]` as well, each named as for [`Self::path_of`], checked together as the file is but for
+    /// what needs the cam; they become a part of its name.
+    pub(crate) fn renamed(&self, numbers: &[(String, f64)]) -> Result<Self, ModelError> {
         let (mut fields, mut new) = (self.fields.clone(), Vec::new());
         for (name, number) in numbers {
             let path = self.path_in(&["follower", "cam", "study"], name, &[])?.to_owned();

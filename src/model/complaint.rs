@@ -33,7 +33,7 @@ pub struct Pointer {
 }
 
 impl ModelError {
-    pub(super) fn file(file: &str, allowed: String) -> Self {
+    pub(crate) fn file(file: &str, allowed: String) -> Self {
         Self { file: file.into(), line: None, field: None, value: None, allowed, pointer: Box::default() }
     }
 

@@ -29,7 +29,7 @@ impl Allowed {
         Self { low, low_is_allowed: false, high }
     }
 
-    fn contains(self, number: f64) -> bool {
+    pub(super) fn contains(self, number: f64) -> bool {
         let above = if self.low_is_allowed { number >= self.low } else { number > self.low };
         number.is_finite() && above && number <= self.high
     }
@@ -100,7 +100,7 @@ impl Field {
 /// Every name of a field or a table: none of them is a slip for another.
 const NAMES: &str = "name source follower cam study mass damping stiffness gravity rest_position restitution law base_radius \
     flank_radius nose_radius flank_start_deg nose_end_deg offset amplitude amplitudes phases_deg base \
-    corner_rounding_deg segment motion span_deg rise start_deg coefficients file rows spline rpm_min rpm_max lift";
+    corner_rounding_deg preload units length force angle segment motion span_deg rise start_deg coefficients file rows spline rpm_min rpm_max lift";
 
 /// The fields of a model file by dotted path, and which of them have been asked for.
 #[derive(Clone, Debug)]

@@ -13,6 +13,7 @@ mod profile;
 mod table;
 mod text;
 mod toml;
+mod units;
 
 use std::path::Path;
 
@@ -27,6 +28,7 @@ pub(crate) use profile::{
 };
 pub use profile::{CamProfile, HarmonicProfile, Motion};
 pub(crate) use table::{Spline, TableProfile};
+pub use units::{Unit, Units};
 
 /// The model whose numbers the paper prints, built in so that the binary needs no other file.
 pub const OSORIO_2008: &str = include_str!("../../models/osorio-2008.toml");
@@ -44,6 +46,10 @@ pub struct Model {
     pub cam: CamProfile,
     /// Where to look for a corner impact.
     pub study: Option<Study>,
+    /// What its numbers are in, and answers about it.
+    pub units: Units,
+    /// The spring's force on the base circle, as it is inside, where that is given and not `rest_position`.
+    pub preload: Option<f64>,
     fields: Fields,
     changes: Vec<(String, f64)>,
 }
@@ -75,43 +81,52 @@ pub struct Study {
 }
 
 impl Model {
-    /// Reads and checks a model file.
-    pub fn read(path: &Path) -> Result<Self, ModelError> {
-        let file = path.display().to_string();
-        let text = std::fs::read_to_string(path)
-            .map_err(|error| ModelError::file(&file, format!("cannot be read: {error}")))?;
-        Self::parse(&file, &text)
-    }
-
     /// What complaints call the built-in model where others have a file.
-    const BUILT_IN: &str = "the built-in model";
+    pub(crate) const BUILT_IN: &str = "the built-in model";
 
-    /// The paper's model, which needs no file.
-    pub fn built_in() -> Result<Self, ModelError> {
-        Self::parse(Self::BUILT_IN, OSORIO_2008)
-    }
-
-    /// Checks the text of a model file; `file` is the name that complaints carry.
-    pub fn parse(file: &str, text: &str) -> Result<Self, ModelError> {
+    /// The text of a model file, checked but for what needs the cam; `file` is the name that complaints carry.
+    pub(crate) fn written(file: &str, text: &str) -> Result<Self, ModelError> {
         Self::from_fields(Fields::parse(file, text)?)
     }
 
-    /// Checks a document with the fields of a model file; `name` is the name that complaints carry.
-    pub fn of_document(name: &str, document: &serde_json::Value) -> Result<Self, ModelError> {
+    /// The same of a document with the fields of a model file; `name` is the name that complaints carry.
+    pub(crate) fn written_as(name: &str, document: &serde_json::Value) -> Result<Self, ModelError> {
         Self::from_fields(Fields::of_document(name, document)?)
     }
 
     fn from_fields(mut fields: Fields) -> Result<Self, ModelError> {
         let name = fields.text_or("name", "unnamed")?;
         let source = fields.text_or("source", "")?;
-        let follower = Follower {
-            mass: fields.number("follower.mass", Allowed::POSITIVE)?,
-            damping: fields.number("follower.damping", Allowed::NOT_NEGATIVE)?,
-            stiffness: fields.number("follower.stiffness", Allowed::NOT_NEGATIVE)?,
-            gravity: fields.number("follower.gravity", Allowed::FINITE)?,
-            rest_position: fields.number("follower.rest_position", Allowed::FINITE)?,
-            restitution: fields.number("follower.restitution", Allowed::between(0.0, 1.0))?,
+        let units = Units::read(&mut fields)?;
+        let mass = units.number(&mut fields, "mass", Allowed::POSITIVE)?;
+        let damping = units.number(&mut fields, "damping", Allowed::NOT_NEGATIVE)?;
+        let stiffness = units.number(&mut fields, "stiffness", Allowed::NOT_NEGATIVE)?;
+        let gravity = units.number(&mut fields, "gravity", Allowed::FINITE)?;
+        fields.may_hold("follower.preload");
+        let preload = if fields.has("follower.preload") {
+            let preload = units.number(&mut fields, "preload", Allowed::NOT_NEGATIVE)?;
+            fields.may_hold("follower.rest_position");
+            let words = if fields.has("follower.rest_position") {
+                Some("is there beside follower.rest_position: one of them says where the spring is slack")
+            } else if stiffness == 0.0 {
+                Some("needs a spring: follower.stiffness is 0")
+            } else {
+                None
+            };
+            if let Some(words) = words {
+                return Err(fields.reject("follower.preload", words));
+            }
+            Some(preload)
+        } else {
+            None
         };
+        let rest_position = match preload {
+            // The cam has the lowest lift, which says where the spring is slack.
+            Some(_) => f64::NAN,
+            None => fields.number("follower.rest_position", Allowed::FINITE)?,
+        };
+        let restitution = fields.number("follower.restitution", Allowed::between(0.0, 1.0))?;
+        let follower = Follower { mass, damping, stiffness, gravity, rest_position, restitution };
         let cam = profile::read(&mut fields)?;
         fields.may_hold("study.rpm_min");
         let study = if fields.has("study") {
@@ -125,18 +140,12 @@ impl Model {
             None
         };
         fields.finish()?;
-        Ok(Self { name, source, follower, cam, study, fields, changes: Vec::new() })
+        Ok(Self { name, source, follower, cam, study, units, preload, fields, changes: Vec::new() })
     }
 
     /// The fields that hold a number and shape the motion, by dotted path, with their values: what a study may vary.
     pub fn numbers(&self) -> impl Iterator<Item = (&str, f64)> {
         self.fields.numbers_in(&["follower", "cam"])
-    }
-
-    /// Whether follower and cam are the paper's, whatever the model is called.
-    pub fn is_the_papers(&self) -> Result<bool, ModelError> {
-        let paper = Self::built_in()?;
-        Ok(self.follower == paper.follower && self.cam == paper.cam)
     }
 
     /// The `[study]` range, or the complaint that it is missing.

@@ -2,7 +2,7 @@
 
 use crate::cam::Corner;
 use crate::show::Paged;
-use crate::show::block::{Block, Column, Table, Words, words};
+use crate::show::block::{Block, Column, Span, Table, Words, words};
 use crate::show::digits::Digits;
 use crate::study::cam::CamSheet;
 
@@ -27,7 +27,7 @@ const NINE: Digits = Digits::Significant(9);
 /// The law, and the range of its lift.
 pub(crate) fn lift(sheet: &CamSheet) -> Words {
     let [low, high] = sheet.lift_m;
-    words![format!("law \"{}\", lift from ", sheet.law), (low, NINE), " to ", (high, NINE), " m"]
+    words![format!("law \"{}\", lift from ", sheet.law), (low, NINE), " to ", (high, NINE), " ", Span::Unit("m")]
 }
 
 fn segments(sheet: &CamSheet) -> Vec<Block> {
@@ -36,15 +36,15 @@ fn segments(sheet: &CamSheet) -> Vec<Block> {
         Column::right("from deg", 12),
         Column::right("to deg", 12),
         Column::left("law", 2, 12),
-        Column::right("lowest m", 16),
-        Column::right("highest m", 16),
+        Column::right(words!["lowest ", Span::Unit("m")], 16),
+        Column::right(words!["highest ", Span::Unit("m")], 16),
     ];
     let mut table = Table::new("Segments of the cam", columns);
     let mut spans = [f64::INFINITY, 0.0_f64];
     for segment in &sheet.segments {
         let [start, end] = [segment.start, segment.end].map(f64::to_degrees);
         spans = [spans[0].min(end - start), spans[1].max(end - start)];
-        let [low, high] = segment.bounds.lift.map(|lift| words![(lift, NINE)]);
+        let [low, high] = segment.extremes().map(|lift| words![(lift, NINE)]);
         let [from, to] = [start, end].map(|angle| words![(angle, Digits::Fixed(6))]);
         table.row([from, to, segment.law.name().into(), low, high]);
     }
@@ -68,10 +68,14 @@ fn corners(sheet: &CamSheet) -> Vec<Block> {
         blocks.push(Block::paragraph(none));
         return blocks;
     }
-    blocks.push(Block::paragraph(
+    blocks.push(Block::paragraph(words![
         "order: of the lowest derivative of the lift that jumps (1 velocity, 2 acceleration, 3 jerk); jump: of that \
-         derivative, after less before, m/rad^order; slopes in m/rad.",
-    ));
+         derivative, after less before, ",
+        Span::Unit("m/rad^order"),
+        "; slopes in ",
+        Span::Unit("m/rad"),
+        "."
+    ]));
     blocks.push(Block::Gap);
     let of_order = |order: usize| sheet.corners.iter().filter(move |corner| corner.jump_order == order);
     let long: Vec<usize> = (1..=sheet.highest_order).filter(|order| of_order(*order).count() > LONGEST).collect();
@@ -107,7 +111,7 @@ fn table(corners: &[&Corner]) -> Block {
         Column::right("angle deg", 12),
         Column::right("order", 7),
         Column::right("jump", 16),
-        Column::right("lift m", 16),
+        Column::right(words!["lift ", Span::Unit("m")], 16),
         Column::right("slope before", 16),
         Column::right("slope after", 16),
     ];

@@ -1,7 +1,7 @@
 //! The page of `certify`: what is proved of each corner impact, with the digits that are, and what is not.
 
 use crate::ball::Ball;
-use crate::show::block::{Block, Column, Mark, Table, Words, words};
+use crate::show::block::{Block, Column, Mark, Span, Table, Words, words};
 use crate::show::digits::Digits;
 use crate::show::{Paged, words};
 use crate::study::certify::{
@@ -35,8 +35,13 @@ impl Paged for ProvedOrbits {
         let mut page = vec![Block::Title(format!("Periodic orbits at {} rpm, proved", self.speed_rpm).into())];
         for orbit in &self.orbits {
             let start = |start: &ProvedStart| {
-                let words =
-                    words![&start.cam_angle_rad.mid, " rad, leaves at ", &start.relative_velocity_m_s.mid, " m/s"];
+                let words = words![
+                    &start.cam_angle_rad.mid,
+                    " rad, leaves at ",
+                    &start.relative_velocity_m_s.mid,
+                    " ",
+                    Span::Unit("m/s")
+                ];
                 ("impact".into(), words)
             };
             let (impacts, kind) = (words::many(orbit.impacts.len() as u64, "impact"), orbit.kind.to_string());

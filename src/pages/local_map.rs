@@ -150,7 +150,10 @@ fn held(found: &Verification, asked: impl Fn(&Range) -> bool + Copy) -> impl Ite
 /// Where the fixed point of a side is.
 fn branch(side: Side, [first, second]: [Vector2<f64>; 2]) -> (Words, Words) {
     let pair = |of: Vector2<f64>| Words::prose("({}, {})", [0, 1].map(|row| words![(of[row], Digits::Significant(8))]));
-    (format!("fixed point {side}").into(), words!["dx = ", pair(first), " dT + ", pair(second), " dT^2, m and m/s"])
+    (
+        format!("fixed point {side}").into(),
+        words!["dx = ", pair(first), " dT + ", pair(second), " dT^2, ", Span::Unit("m"), " and ", Span::Unit("m/s")],
+    )
 }
 
 fn range_words(range: &Range) -> Words {

@@ -2,7 +2,7 @@
 
 use crate::known::{Complete, Known};
 use crate::orbit::{Course, PeriodicOrbit, Undecided};
-use crate::show::block::{Block, Mark, Span, words};
+use crate::show::block::{Block, Mark, Span, Words, words};
 use crate::show::digits::Digits;
 use crate::show::{Paged, words};
 use crate::study::orbit::Orbits;
@@ -56,21 +56,27 @@ fn one(number: usize, orbit: &PeriodicOrbit) -> Vec<Block> {
         Block::Gap,
         Block::Line(words![format!("  {number}. {turns}, {what}, "), stable]),
         Block::Line(words!["     multipliers   ", one, "   ", two]),
-        Block::Line(format!("     at cam angle 0   q = {q} m, v = {v} m/s").into()),
+        Block::Line(words![
+            format!("     at cam angle 0   q = {q} "),
+            Span::Unit("m"),
+            format!(", v = {v} "),
+            Span::Unit("m/s")
+        ]),
     ];
-    let mut line = |text: String| lines.push(Block::Line(text.into()));
+    let mut line = |text: Words| lines.push(Block::Line(text));
     let six = |value: f64| Digits::Fixed(6).text(value);
     for impact in orbit.impacts().take(SHOWN) {
         let (angle, turn) = (six(impact.cam_angle.to_degrees()), impact.revolution);
         let (before, after) = (six(impact.velocity_before), six(impact.velocity_after));
-        line(format!("     impact at {angle:>11} deg of revolution {turn}   v {before:>14} -> {after} m/s"));
+        let text = format!("     impact at {angle:>11} deg of revolution {turn}   v {before:>14} -> {after} ");
+        line(words![text, Span::Unit("m/s")]);
     }
     if impacts > SHOWN {
-        line(format!("     and {} more", impacts - SHOWN));
+        line(format!("     and {} more", impacts - SHOWN).into());
     }
     for rest in orbit.rests() {
         let (angle, turn) = (six(rest.cam_angle.to_degrees()), rest.revolution);
-        line(format!("     {:<7} at {angle:>10} deg of revolution {turn}", rest.kind.name()));
+        line(format!("     {:<7} at {angle:>10} deg of revolution {turn}", rest.kind.name()).into());
     }
     lines
 }

@@ -1,6 +1,6 @@
 //! The pages of `simulate` and `diagram`: what a run and a sweep came to.
 
-use crate::show::block::Block;
+use crate::show::block::{Block, Span, Words, words as sentence};
 use crate::show::digits::Digits;
 use crate::show::{Paged, words};
 use crate::study::diagram::Swept;
@@ -13,19 +13,25 @@ impl Paged for Run {
         let nine = |value| Digits::Fixed(9).text(value);
         let (degrees, q, v) = (cam_angle_rad.to_degrees(), nine(position_m), nine(velocity_m_s));
         let place = if contact { ", on the cam" } else { "" };
-        let mut lines = vec![
-            format!("{model} at {rpm} rpm, {revolutions} revolutions"),
-            format!("  impacts {impacts}, sticks {sticks}, releases {releases}"),
-            format!("  ends at {degrees:.4} deg with q = {q} m, v = {v} m/s{place}"),
+        let mut lines: Vec<Words> = vec![
+            format!("{model} at {rpm} rpm, {revolutions} revolutions").into(),
+            format!("  impacts {impacts}, sticks {sticks}, releases {releases}").into(),
+            sentence![
+                format!("  ends at {degrees:.4} deg with q = {q} "),
+                Span::Unit("m"),
+                format!(", v = {v} "),
+                Span::Unit("m/s"),
+                place
+            ],
         ];
         if let Some(exponent) = self.lyapunov_per_revolution {
             let stuck = exponent == f64::NEG_INFINITY;
             let why = if stuck { ": it stuck to the cam, where every deviation is lost" } else { "" };
             let error = self.lyapunov_standard_error.map_or(String::new(), |error| format!(" ± {error:.4}"));
-            lines.push(format!("  Lyapunov exponent {exponent:.4}{error} per revolution{why}"));
+            lines.push(format!("  Lyapunov exponent {exponent:.4}{error} per revolution{why}").into());
         }
-        lines.push(format!("  {wall_s:.3} s{}", per_turn(*wall_s, *revolutions)));
-        lines.into_iter().map(|line| Block::Line(line.into())).collect()
+        lines.push(format!("  {wall_s:.3} s{}", per_turn(*wall_s, *revolutions)).into());
+        lines.into_iter().map(Block::Line).collect()
     }
 }
 

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::flight::Flight;
-use crate::model::{CORNER_ROUNDING, Model};
+use crate::model::{CORNER_ROUNDING, Model, Units};
 
 /// A number of a model.
 #[derive(Clone, Debug, Serialize)]
@@ -17,16 +17,17 @@ pub struct Quantity {
     /// Its value.
     pub value: f64,
     /// Its unit; empty for a pure number.
-    pub unit: &'static str,
+    pub unit: String,
 }
 
 /// Fields that are known by name: path, symbol, meaning, unit.
-const KNOWN: [(&str, &str, &str, &str); 15] = [
+const KNOWN: [(&str, &str, &str, &str); 16] = [
     ("follower.mass", "m", "mass of the follower", "kg"),
     ("follower.damping", "b", "damping", "N s/m"),
     ("follower.stiffness", "k", "stiffness of the spring", "N/m"),
     ("follower.gravity", "g", "gravity", "m/s²"),
     ("follower.rest_position", "", "position where the spring is slack", "m"),
+    ("follower.preload", "", "force of the spring at the lowest lift", "N"),
     ("follower.restitution", "r", "coefficient of restitution", ""),
     ("cam.base_radius", "ρ₀", "radius of the base circle", "m"),
     ("cam.flank_radius", "ρ₁", "radius of the flank", "m"),
@@ -46,31 +47,41 @@ pub(crate) fn quantities(model: &Model) -> Vec<Quantity> {
     let mut numbers: Vec<(&str, f64)> = model.numbers().filter(is_said).collect();
     // Those of the table in its order, the others after them as they come.
     numbers.sort_by_key(|(field, _)| place(field).unwrap_or(KNOWN.len()));
-    let mut quantities: Vec<Quantity> = numbers.into_iter().map(|(field, value)| written(field, value)).collect();
+    let mut quantities: Vec<Quantity> =
+        numbers.into_iter().map(|(field, value)| written(&model.units, field, value)).collect();
     if let Some(study) = model.study {
         for (field, meaning, value) in [
             ("study.rpm_min", "lowest speed at which a corner impact is looked for", study.rpm_min),
             ("study.rpm_max", "highest speed at which a corner impact is looked for", study.rpm_max),
         ] {
-            quantities.push(Quantity { field: field.into(), symbol: "", meaning: meaning.into(), value, unit: "rpm" });
+            quantities.push(Quantity {
+                field: field.into(),
+                symbol: "",
+                meaning: meaning.into(),
+                value,
+                unit: "rpm".into(),
+            });
         }
     }
     let flight = Flight::new(&model.follower);
-    let follows = |symbol, meaning: &str, value, unit| Quantity {
+    let follows = |symbol, meaning: &str, value, unit: &str| Quantity {
         field: String::new(),
         symbol,
         meaning: meaning.into(),
         value,
-        unit,
+        unit: unit.into(),
     };
     quantities.push(follows("ζ", "damping over twice the mass", flight.zeta(), "1/s"));
     quantities.push(follows("ω₀", "root of stiffness over mass", flight.omega0_squared().sqrt(), "rad/s"));
     quantities
 }
 
-fn written(field: &str, value: f64) -> Quantity {
+fn written(units: &Units, field: &str, value: f64) -> Quantity {
+    let of_follower =
+        field.strip_prefix("follower.").and_then(|name| units.of_follower(name)).filter(|_| units.are_given);
+    let told = |unit: &str| of_follower.map_or_else(|| units.spelled(unit), |unit| unit.name().to_owned());
     if let Some((_, symbol, meaning, unit)) = KNOWN.iter().find(|(path, ..)| *path == field) {
-        return Quantity { field: field.into(), symbol, meaning: (*meaning).into(), value, unit };
+        return Quantity { field: field.into(), symbol, meaning: (*meaning).into(), value, unit: told(unit) };
     }
     let name = field.rsplit('.').next().unwrap_or(field);
     let unit = match name.split('[').next().unwrap_or(name) {
@@ -81,5 +92,5 @@ fn written(field: &str, value: f64) -> Quantity {
         _ => "",
     };
     let words = name.split('[').next().unwrap_or(name).trim_end_matches("_deg").replace('_', " ");
-    Quantity { field: field.into(), symbol: "", meaning: words, value, unit }
+    Quantity { field: field.into(), symbol: "", meaning: words, value, unit: told(unit) }
 }

@@ -5,6 +5,7 @@
 
 use maud::Markup;
 
+use crate::model::Units;
 use crate::show::digits::Digits;
 
 /// What a stretch of text is.
@@ -39,6 +40,8 @@ pub enum Span {
     Matrix(Vec<Vec<f64>>, Digits),
     /// What is typed: a command, a field of a file.
     Code(String),
+    /// A unit, written in metres: `m/s`. It is told in the length of the model.
+    Unit(&'static str),
     /// Words that stand out.
     Marked(Mark, String),
     /// The end of a line.
@@ -165,6 +168,14 @@ impl From<Symbol> for Words {
     }
 }
 
+impl Words {
+    /// The same with units in the length of a model.
+    fn in_units(self, units: &Units) -> Self {
+        let told = |span| if let Span::Unit(unit) = span { Span::Text(units.spelled(unit)) } else { span };
+        Self(self.0.into_iter().map(told).collect())
+    }
+}
+
 /// A piece of a page.
 #[derive(Clone, Debug)]
 pub enum Block {
@@ -200,6 +211,33 @@ impl Block {
     pub(crate) fn paragraph(words: impl Into<Words>) -> Self {
         Self::Paragraph(2, words.into())
     }
+}
+
+/// Blocks with units in the length of a model.
+pub(crate) fn in_units(blocks: Vec<Block>, units: &Units) -> Vec<Block> {
+    let told = |words: Words| words.in_units(units);
+    let all = |words: Vec<Words>| words.into_iter().map(told).collect::<Vec<_>>();
+    let of_block = |block| match block {
+        Block::Title(words) => Block::Title(told(words)),
+        Block::Heading(words) => Block::Heading(told(words)),
+        Block::Line(words) => Block::Line(told(words)),
+        Block::Paragraph(indent, words) => Block::Paragraph(indent, told(words)),
+        Block::Note(words) => Block::Note(told(words)),
+        Block::Entries(width, entries) => {
+            Block::Entries(width, entries.into_iter().map(|(name, words)| (told(name), told(words))).collect())
+        }
+        Block::Table(table) => {
+            let columns = table.columns.into_iter().map(|column| Column { head: told(column.head), ..column });
+            let rows = table.rows.into_iter().map(|row| Row { cells: all(row.cells), ..row });
+            Block::Table(Table { columns: columns.collect(), rows: rows.collect(), ..table })
+        }
+        Block::List(items) => Block::List(all(items)),
+        Block::Details(summary, blocks) => Block::Details(told(summary), in_units(blocks, units)),
+        Block::Brief(blocks) => Block::Brief(in_units(blocks, units)),
+        Block::Full(blocks) => Block::Full(in_units(blocks, units)),
+        Block::Gap | Block::Markup(_) => block,
+    };
+    blocks.into_iter().map(of_block).collect()
 }
 
 /// A part of a page that can be linked to.

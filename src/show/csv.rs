@@ -1,12 +1,14 @@
 //! Tables as lines of CSV: numbers in the fewest digits that read back as the same double, without a point where they are
 //! whole and never with a power of ten, which is why the csv crate, that writes `1.0` and `1e-7`, does not write them.
 
+use std::borrow::Cow;
 use std::fmt::{Display, Write};
 
 use crate::border_collision::EventCurve;
 use crate::diagram::{Block, Row, Section, Seen, Speeds, Starts, Sweep};
 use crate::estimate::Estimate;
 use crate::flight::State;
+use crate::model::Units;
 use crate::orbit::Eigenvalue;
 use crate::orbit::branch::{Branch, Kind};
 use crate::orbit::ending::Ending;
@@ -15,6 +17,36 @@ use crate::simulate::{Event, Machine, Motion};
 use crate::study::basins::Basins;
 use crate::study::chart::{Chart, Charted, Point, class};
 use crate::study::speeds::{At, Attractor, Speeds as Surveyed};
+
+/// A table in the units of a model.
+pub(crate) fn told<'a>(table: &'a str, units: &Units) -> Cow<'a, str> {
+    in_units(table, table.lines().next().unwrap_or_default(), units)
+}
+
+/// Lines under `columns`, or a whole table whose first line they are, in the units of a model.
+pub(crate) fn in_units<'a>(lines: &'a str, columns: &str, units: &Units) -> Cow<'a, str> {
+    if !units.are_given {
+        return lines.into();
+    }
+    let names: Vec<&str> = columns.trim_end().split(',').collect();
+    let mut told = String::with_capacity(lines.len());
+    for line in lines.lines() {
+        if line == columns.trim_end() {
+            told.push_str(&units.columns(line));
+            continue;
+        }
+        for (index, cell) in line.split(',').enumerate() {
+            told.push_str(if index > 0 { "," } else { "" });
+            match (units.converted(names.get(index).copied().unwrap_or_default()), cell.parse()) {
+                // Writing to a string does not fail.
+                (Some(convert), Ok(value)) => _ = write!(told, "{}", convert(units, value)),
+                _ => told.push_str(cell),
+            }
+        }
+        told.push('\n');
+    }
+    told.into()
+}
 
 /// The columns of a run's events.
 pub(crate) const EVENTS: &str =

@@ -86,6 +86,7 @@ fn span(span: &Span) -> Markup {
                 tbody { @for row in rows { tr { @for entry in row { td { (digits.markup(*entry)) } } } } }
             },
             Span::Code(text) => code { (text) },
+            Span::Unit(unit) => (unit),
             Span::Marked(Mark::Strong | Mark::Heading, text) => strong { (text) },
             Span::Marked(Mark::Good, text) => span.good { (text) },
             Span::Marked(Mark::Bad, text) => span.bad { (text) },

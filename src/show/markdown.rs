@@ -66,6 +66,7 @@ fn table(out: &mut String, table: &Table) -> fmt::Result {
 fn text(words: &Words) -> String {
     let of = |span: &Span| match span {
         Span::Code(text) => format!("`{text}`"),
+        Span::Unit(unit) => (*unit).to_owned(),
         Span::Marked(_, text) => format!("*{}*", escaped(text)),
         Span::Break => "<br>".into(),
         span => escaped(&page::text(&span.clone().into())),

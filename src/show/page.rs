@@ -153,6 +153,7 @@ impl Page {
 pub(crate) fn text(words: &Words) -> String {
     let of = |span: &Span| match span {
         Span::Text(text) | Span::Code(text) => text.clone(),
+        Span::Unit(unit) => (*unit).to_owned(),
         Span::Number(value, digits) | Span::Against(value, _, digits) => digits.text(*value),
         Span::Complex([re, im], digits) if *im == 0.0 => digits.text(*re),
         Span::Complex([re, im], digits) => {

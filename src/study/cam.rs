@@ -15,7 +15,7 @@ pub struct CamSheet {
     pub source: String,
     /// The law that `[cam]` names.
     pub law: &'static str,
-    /// A range that holds every lift, lowest and highest.
+    /// Its lowest and its highest lift.
     pub lift_m: [f64; 2],
     /// In order of angle.
     pub segments: Vec<Segment>,
@@ -29,14 +29,13 @@ impl CamSheet {
     /// What a model's cam is made of, with corners up to an order.
     pub fn new(model: &Model, cam: &Cam, highest_order: usize) -> Self {
         let segments = cam.segments().to_vec();
-        let lowest = segments.iter().fold(f64::INFINITY, |lowest, segment| lowest.min(segment.bounds.lift[0]));
         let highest_order = highest_order.min(Jet::HIGHEST_JUMP);
         Self {
             schema: "corner-impact/cam/1",
             model: model.name.clone(),
             source: model.source.clone(),
             law: model.cam.law(),
-            lift_m: [lowest, cam.top()],
+            lift_m: [cam.lowest().value, -cam.least([-1.0, 0.0, 0.0]).value],
             segments,
             highest_order,
             corners: cam.corners().into_iter().filter(|corner| corner.jump_order <= highest_order).collect(),

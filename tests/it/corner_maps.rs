@@ -113,6 +113,19 @@ fn b_by_every_number_is_what_machines_with_that_number_show() {
     assert!((1..4).contains(&untouched), "{untouched}");
 }
 
+/// A preload stays when stiffness or cam are others, and numbers are in the units of their fields.
+#[test]
+fn b_of_a_preloaded_machine_in_grams_is_what_machines_show() {
+    let text = common::osorio_text(&[("mass", "1221")]).replace("rest_position = 0.3", "preload = 143.08");
+    let model = Model::parse("preloaded.toml", &format!("{text}\n[units]\nmass = \"g\"\n")).unwrap();
+    let Case { model, cam, at } = case(model, 673.234445, 1);
+    for name in ["follower.mass", "follower.stiffness", "follower.preload", "follower.gravity", "cam.base_radius"] {
+        let by = Varied::Number(name.into());
+        let product = variational::route_by(&model, &cam, &at, &by).unwrap();
+        assert_agree(&[product, finite_difference::route_by(&model, &cam, &at, &by).unwrap()], name);
+    }
+}
+
 #[test]
 fn a_fit_by_a_number_finds_the_same() {
     let Case { model, cam, at } = case(common::osorio(), 736.110814, 1);

@@ -63,6 +63,7 @@ mod stopped;
 mod targets;
 mod tolerance;
 mod trapping;
+mod units;
 mod verify;
 mod whole_files;
 mod work;

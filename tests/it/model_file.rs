@@ -52,11 +52,13 @@ fn samples(page: &Page) -> Vec<(String, String)> {
     let plain = page.blocks.iter().filter(|block| block.file.is_none()).map(|block| &block.text);
     let plain: Vec<&String> = plain.collect();
     let first = |start: &str| plain.iter().find(|text| text.starts_with(start)).unwrap();
-    let (follower, study) = (first("[follower]"), first("[study]"));
+    let (units, follower, study) = (first("[units]"), first("[follower]"), first("[study]"));
     let law = |cam: &str| cam.split('"').nth(1).unwrap().to_owned();
     let cams = plain.iter().filter(|text| text.starts_with("[cam]"));
-    cams.map(|cam| (law(cam), format!("name = \"sample\"\nsource = \"the page\"\n\n{follower}\n{study}\n{cam}")))
-        .collect()
+    cams.map(|cam| {
+        (law(cam), format!("name = \"sample\"\nsource = \"the page\"\n\n{units}\n{follower}\n{study}\n{cam}"))
+    })
+    .collect()
 }
 
 /// A folder with the page's table of lifts.
@@ -77,6 +79,7 @@ fn place(samples: &[(String, String)], heading: &str) -> (String, String) {
     match heading {
         "At the top" => (of("arcs"), String::new()),
         "`[follower]`" => (of("arcs"), "[follower]".into()),
+        "`[units]`" => (of("arcs"), "[units]".into()),
         "`[study]`" => (of("arcs"), "[study]".into()),
         "`[cam]`" => (of("arcs"), "[cam]".into()),
         "`[[cam.segment]]` of a program" => (of("program"), "[[cam.segment]]".into()),
@@ -143,7 +146,7 @@ fn the_page_has_every_field_and_no_other() {
         let allowed: BTreeSet<String> = list.split(", ").map(|word| word.trim().to_owned()).collect();
         let mut listed: BTreeSet<String> = section.rows.iter().map(|row| row.field.clone()).collect();
         match section.heading.as_str() {
-            "At the top" => listed.extend(["follower", "cam", "study"].map(String::from)),
+            "At the top" => listed.extend(["follower", "cam", "study", "units"].map(String::from)),
             // The laws' own sections list what comes beside it.
             "`[cam]`" => listed.extend(rows("`law = \"arcs\"`")),
             heading if heading.starts_with("`law") => listed.extend(rows("`[cam]`")),
@@ -179,7 +182,7 @@ fn every_field_allows_what_the_page_says() {
             assert_eq!(is_missed, *needed, "{place}: {without:?}");
             let wrong = match allowed.as_str() {
                 "text" => complaint(Some("1")),
-                words if words.starts_with("one of") => complaint(Some("\"none\"")),
+                words if words.starts_with("one of") || words.starts_with("a ") => complaint(Some("\"none\"")),
                 words if words.ends_with("numbers") || words.ends_with("rows") => complaint(Some("[]")),
                 _ => complaint(Some("nan")),
             };
@@ -191,6 +194,7 @@ fn every_field_allows_what_the_page_says() {
                     let quoted: Vec<String> = words[8..].split(", ").map(|word| format!("\"{word}\"")).collect();
                     format!("must be one of: {}", quoted.join(", "))
                 }
+                words if words.starts_with("a ") => format!("must be {words}"),
                 words if words.ends_with(" rows") => {
                     format!("has 0 rows; {} are allowed", words.trim_end_matches(" rows"))
                 }

@@ -12,11 +12,14 @@ use crate::study::verify::Verification;
 pub(crate) fn map(found: &Verification) -> Vec<Block> {
     let mut blocks = vec![
         Block::Heading("Its local map:  dx' = A dx + B dT".into()),
-        Block::paragraph(
-            "dx is the deviation of the state (position in m, velocity in m/s) from x*, dT that of the period from T* (s), dx' \
-             the deviation one revolution later. minus holds where the impact comes before the corner, plus where it comes \
+        Block::paragraph(words![
+            "dx is the deviation of the state (position in ",
+            Span::Unit("m"),
+            ", velocity in ",
+            Span::Unit("m/s"),
+            ") from x*, dT that of the period from T* (s), dx' the deviation one revolution later. minus holds where the impact comes before the corner, plus where it comes \
              after it. C = h (A+ - A-), D = h (B+ - B-), h = [1 0]: the sides meet where C dx + D dT = 0.",
-        ),
+        ]),
         Block::Full(vec![Block::paragraph(
             "Each column is computed on its own: no two share a formula for A and B. Finite difference and least squares run \
              the same simulator; symbolic and scipy run no code of this program, and certificate proves what it is \

@@ -37,20 +37,29 @@ pub(crate) fn orbit(found: &Verification) -> Vec<Block> {
     let degrees = |angle: f64| fixed(angle.to_degrees(), 6);
     let period = Words::prose("_T^*_ = {} s   ({} rpm)", [significant(at.period, 14), fixed(at.speed_rpm(), 9)]);
     let x_star = Words::prose(
-        "_x^*_ = ({}, {}){}half a revolution from the impact; position is measured from _q_ = {} m",
-        [significant(state[0], 13), significant(state[1], 13), Span::Break.into(), significant(at.origin, 9)],
+        "_x^*_ = ({}, {}){}half a revolution from the impact; position is measured from _q_ = {} {}",
+        [
+            significant(state[0], 13),
+            significant(state[1], 13),
+            Span::Break.into(),
+            significant(at.origin, 9),
+            Span::Unit("m").into(),
+        ],
     );
     let impact = Words::prose(
-        "at cam angle {} deg, where c'' jumps from {} to {} m/s^2{}_q_ = {} m, _v_ = {} before and {} after, c' = {} m/s",
+        "at cam angle {} deg, where c'' jumps from {} to {} {}{}_q_ = {} {}, _v_ = {} before and {} after, c' = {} {}",
         [
             degrees(at.corner.angle),
             fixed(acceleration.minus, 4),
             fixed(acceleration.plus, 4),
+            Span::Unit("m/s^2").into(),
             Span::Break.into(),
             fixed(at.corner.plus.value, 9),
+            Span::Unit("m").into(),
             fixed(at.velocity_before, 6),
             fixed(at.velocity_after, 6),
             fixed(at.cam_velocity, 6),
+            Span::Unit("m/s").into(),
         ],
     );
     let mut entries: Vec<(Words, Words)> =
@@ -149,7 +158,8 @@ fn classification(kind: &Classification) -> Vec<(Words, Words)> {
 
 /// The fixed point of each side, and the rule that counts them.
 fn fixed_points(kind: &Classification) -> [Block; 2] {
-    let columns = ["", "det(I - A)", "fixed point for dT = 1 s, in m and m/s"].map(Column::words);
+    let head = words!["fixed point for dT = 1 s, in ", Span::Unit("m"), " and ", Span::Unit("m/s")];
+    let columns = ["".into(), "det(I - A)".into(), head].map(Column::words);
     let mut table = Table::new("The fixed point of each side", columns);
     for (side, SideCounts { determinant, fixed_point, .. }) in [(Side::Minus, &kind.minus), (Side::Plus, &kind.plus)] {
         let [determinant, position, velocity] =

@@ -79,10 +79,15 @@ impl Section {
         let StroboscopicMap { machine, cam_angle } = &self.map;
         let lift = machine.cam().lift(*cam_angle);
         let cam_velocity = machine.angular_velocity() * lift.slope;
-        let (mut highest, mut range) = (machine.cam().top(), [cam_velocity.min(-1.0), cam_velocity.max(1.0)]);
+        let (mut highest, mut range) = (machine.cam().top(), [cam_velocity.min(0.0), cam_velocity.max(0.0)]);
         for State { position, velocity } in self.orbits.iter().filter_map(|orbit| self.crossing(orbit)) {
             highest = highest.max(position);
             range = [range[0].min(velocity), range[1].max(velocity)];
+        }
+        if range[0] == range[1] {
+            // Nothing but the cam at rest there: as fast as the cam's whole height in a radian.
+            let fast = machine.angular_velocity() * (machine.cam().top() - machine.cam().lowest().value);
+            range = [-fast, fast];
         }
         let span = range[1] - range[0];
         let positions = positions.unwrap_or([lift.value, lift.value + 2.0 * (highest - lift.value)]);

@@ -38,7 +38,13 @@ fn numbers(report: &Report) -> Table {
             field => (Digits::All, Span::Code(field.into()).into()),
         };
         let letter = words![symbol(quantity.symbol, quantity.symbol, "", "")];
-        table.row([(&quantity.meaning).into(), letter, words![(quantity.value, digits)], quantity.unit.into(), field]);
+        table.row([
+            (&quantity.meaning).into(),
+            letter,
+            words![(quantity.value, digits)],
+            (&quantity.unit).into(),
+            field,
+        ]);
     }
     table
 }

@@ -1,0 +1,84 @@
+//! The least value round the cam of a lift, or of a force that its derivatives make.
+
+use std::f64::consts::TAU;
+
+use super::{Cam, Law, Lift, Segment};
+use crate::bracket::{Width, halve};
+
+/// Where on a cam something is least.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Least {
+    /// Index of the segment: at a corner either side may have it.
+    pub segment: usize,
+    /// Cam angle, rad.
+    pub angle: f64,
+    /// What is least.
+    pub value: f64,
+    /// Lift and derivatives there, of that segment.
+    pub lift: Lift,
+}
+
+/// Angles of a turn that are looked at, and of a segment at least; of a cosine, in each of its periods.
+const OF_A_TURN: f64 = 1440.0;
+const OF_A_SEGMENT: usize = 8;
+
+impl Cam {
+    /// The lowest lift.
+    pub fn lowest(&self) -> Least {
+        self.least([1.0, 0.0, 0.0])
+    }
+
+    /// Where `a_0 c + a_1 c' + a_2 c''` is least: from the sign of its derivative between neighbouring angles, of which the
+    /// shortest wave of the cam has eight.
+    pub fn least(&self, weights: [f64; 3]) -> Least {
+        let segments = self.segments().iter().enumerate();
+        let of_segments = segments.map(|(index, segment)| of_segment(index, segment, weights));
+        // A cam has a segment.
+        of_segments.min_by(|one, other| one.value.total_cmp(&other.value)).unwrap_or(Least {
+            segment: 0,
+            angle: 0.0,
+            value: f64::NAN,
+            lift: Lift::constant(f64::NAN),
+        })
+    }
+}
+
+impl Segment {
+    /// Its lowest and its highest lift, m.
+    pub fn extremes(&self) -> [f64; 2] {
+        [of_segment(0, self, [1.0, 0.0, 0.0]).value, -of_segment(0, self, [-1.0, 0.0, 0.0]).value]
+    }
+}
+
+fn of_segment(index: usize, segment: &Segment, weights: [f64; 3]) -> Least {
+    let Segment { start, end, law, .. } = segment;
+    let at = |angle: f64| {
+        let lift = law.lift(angle);
+        let value = weights[0] * lift.value + weights[1] * lift.slope + weights[2] * lift.curvature;
+        Least { segment: index, angle, value, lift }
+    };
+    let waves = match law {
+        Law::Harmonics(harmonics) => harmonics.highest(),
+        _ => 0,
+    };
+    let part = (end - start) / TAU;
+    let count = (OF_A_TURN * part).ceil().max(OF_A_SEGMENT as f64).max(part * (OF_A_SEGMENT * waves) as f64) as usize;
+    let angle = |place: usize| start + (end - start) * place as f64 / count as f64;
+    let falls = |angle: f64| {
+        let Lift { slope, curvature, third, .. } = law.lift(angle);
+        weights[0] * slope + weights[1] * curvature + weights[2] * third < 0.0
+    };
+    let looked: Vec<Least> = (0..=count).map(|place| at(angle(place))).collect();
+    let mut least = if looked[count].value < looked[0].value { looked[count] } else { looked[0] };
+    for place in 1..count {
+        let [before, here, after] = [looked[place - 1], looked[place], looked[place + 1]];
+        if here.value <= before.value && here.value <= after.value && falls(before.angle) && !falls(after.angle) {
+            let ends = [before.angle, after.angle];
+            let Ok(found) = halve::<std::convert::Infallible>(ends, Width::Halvings(60), |angle| Ok(!falls(angle)));
+            let found = at(found[1]);
+            let found = if found.value < here.value { found } else { here };
+            least = if found.value < least.value { found } else { least };
+        }
+    }
+    least
+}

@@ -1,0 +1,221 @@
+//! `[units]`: what the numbers of a model file are in, and what answers are told in.
+//!
+//! Inside, masses are in kg, times in s and lengths in the file's own unit: every position, velocity and matrix is then in
+//! the units of the file as it is computed. Stiffness and damping, kg/s^2 and kg/s, are N/m and N s/m whatever the length. Only
+//! forces, kg times that length over s^2, are converted where they are told.
+
+use std::borrow::Cow;
+
+use super::ModelError;
+use super::fields::{Allowed, Fields};
+
+/// A unit: its name, and how much of the unit inside one of it is, as a quotient of numbers that are as exact as can be.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unit {
+    name: Cow<'static, str>,
+    ratio: [f64; 2],
+}
+
+impl Unit {
+    const fn new(name: &'static str, above: f64, below: f64) -> Self {
+        Self { name: Cow::Borrowed(name), ratio: [above, below] }
+    }
+
+    /// What it is called in files and answers.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// A value in it as it is inside.
+    pub fn inside(&self, value: f64) -> f64 {
+        value * self.ratio[0] / self.ratio[1]
+    }
+
+    /// A value from inside in it.
+    pub fn told(&self, value: f64) -> f64 {
+        value * self.ratio[1] / self.ratio[0]
+    }
+
+    fn over(&self, other: &Self) -> [f64; 2] {
+        [self.ratio[0] * other.ratio[1], self.ratio[1] * other.ratio[0]]
+    }
+}
+
+/// Units by name, as parts of the SI's; the first is the SI's own.
+const LENGTHS: [Unit; 6] = [
+    Unit::new("m", 1.0, 1.0),
+    Unit::new("cm", 1.0, 100.0),
+    Unit::new("mm", 1.0, 1000.0),
+    Unit::new("um", 1.0, 1e6),
+    Unit::new("in", 127.0, 5000.0),
+    Unit::new("ft", 381.0, 1250.0),
+];
+const MASSES: [Unit; 5] = [
+    Unit::new("kg", 1.0, 1.0),
+    Unit::new("g", 1.0, 1000.0),
+    Unit::new("t", 1000.0, 1.0),
+    Unit::new("lb", 45_359_237.0, 1e8),
+    Unit::new("oz", 45_359_237.0, 16e8),
+];
+const FORCES: [Unit; 5] = [
+    Unit::new("N", 1.0, 1.0),
+    Unit::new("mN", 1.0, 1000.0),
+    Unit::new("kN", 1000.0, 1.0),
+    Unit::new("kgf", 980_665.0, 1e5),
+    // A pound times the standard acceleration of gravity.
+    Unit::new("lbf", 44_482_216_152_605.0, 1e13),
+];
+
+/// The units of a model file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Units {
+    /// Whether the file says any of them.
+    pub are_given: bool,
+    /// The unit of length, as a part of a metre: lengths are in it inside, too.
+    pub length: Unit,
+    /// As a part of a kilogram.
+    pub mass: Unit,
+    /// Of forces, inside kg times the unit of length over s^2.
+    pub force: Unit,
+    /// As a part of N/m.
+    pub stiffness: Unit,
+    /// As a part of N s/m.
+    pub damping: Unit,
+    /// Of gravity, inside the unit of length over s^2.
+    pub gravity: Unit,
+    /// Whether answers give angles in degrees.
+    pub degrees: bool,
+}
+
+/// The unit of a table that a field names, its own name where it names none.
+fn simple(fields: &mut Fields, path: &str, table: &[Unit]) -> Result<Unit, ModelError> {
+    let choices: Vec<(&str, usize)> = table.iter().enumerate().map(|(index, unit)| (unit.name(), index)).collect();
+    if !fields.has(path) {
+        fields.may_hold(path);
+        return Ok(table[0].clone());
+    }
+    Ok(table[fields.choice(path, &choices)?].clone())
+}
+
+fn named(table: &[Unit], name: &str) -> Option<Unit> {
+    table.iter().find(|unit| unit.name() == name.trim()).cloned()
+}
+
+/// A quotient that a field names: `part` makes two units of what stands before and behind the stroke.
+fn quotient(
+    fields: &mut Fields,
+    path: &str,
+    usual: &'static str,
+    is_like: &str,
+    part: impl Fn(&str, &str) -> Option<[Unit; 2]>,
+) -> Result<Unit, ModelError> {
+    let text = fields.text_or(path, usual)?;
+    let units = text.split_once('/').and_then(|(above, below)| part(above, below));
+    let [above, below] = units.ok_or_else(|| fields.reject(path, format!("must be {is_like}")))?;
+    let name = if text == usual { Cow::Borrowed(usual) } else { Cow::Owned(text) };
+    Ok(Unit { name, ratio: above.over(&below) })
+}
+
+impl Units {
+    /// The table `[units]`; where it says nothing, the SI's.
+    pub(super) fn read(fields: &mut Fields) -> Result<Self, ModelError> {
+        let length = simple(fields, "units.length", &LENGTHS)?;
+        let mass = simple(fields, "units.mass", &MASSES)?;
+        let force = simple(fields, "units.force", &FORCES)?;
+        let of_length = |unit: Unit| Unit { ratio: unit.over(&length), ..unit };
+        let stiffness =
+            quotient(fields, "units.stiffness", "N/m", "a force over a length, such as N/mm", |one, two| {
+                Some([named(&FORCES, one)?, named(&LENGTHS, two)?])
+            })?;
+        let like = "a force times s over a length, such as N s/mm";
+        let damping = quotient(fields, "units.damping", "N s/m", like, |one, two| {
+            let force = one.trim().strip_suffix('s')?.trim_end_matches([' ', '*', '·']);
+            Some([named(&FORCES, force)?, named(&LENGTHS, two)?])
+        })?;
+        let like = "a length over s^2, such as mm/s^2";
+        let gravity = quotient(fields, "units.gravity", "m/s^2", like, |one, two| {
+            let is_square = ["s^2", "s2", "s²"].contains(&two.trim());
+            is_square.then_some([named(&LENGTHS, one)?, LENGTHS[0].clone()])
+        })?;
+        fields.may_hold("units.angle");
+        let degrees = fields.has("units.angle") && fields.choice("units.angle", &[("rad", false), ("deg", true)])?;
+        let (force, gravity) = (of_length(force), of_length(gravity));
+        Ok(Self { are_given: fields.has("units"), length, mass, force, stiffness, damping, gravity, degrees })
+    }
+
+    /// The unit of a number of the follower, or none of a pure number or a length.
+    pub(crate) fn of_follower(&self, name: &str) -> Option<&Unit> {
+        match name {
+            "mass" => Some(&self.mass),
+            "damping" => Some(&self.damping),
+            "stiffness" => Some(&self.stiffness),
+            "gravity" => Some(&self.gravity),
+            "preload" => Some(&self.force),
+            _ => None,
+        }
+    }
+
+    /// A number of the follower as it is inside.
+    pub(super) fn number(&self, fields: &mut Fields, name: &str, allowed: Allowed) -> Result<f64, ModelError> {
+        let path = format!("follower.{name}");
+        let written = fields.number(&path, allowed)?;
+        let number = self.of_follower(name).map_or(written, |unit| unit.inside(written));
+        // What is too large for a number, or 0 where that may not be, once it is converted.
+        if allowed.contains(number) { Ok(number) } else { Err(fields.reject(&path, "is too large or too small")) }
+    }
+
+    /// A unit that is written in metres, as this file's length has it: `m/s^2` is `mm/s^2`.
+    pub(crate) fn spelled(&self, unit: &str) -> String {
+        let word = |text: &str| if text == "m" { self.length.name().to_owned() } else { text.to_owned() };
+        let ends = unit.match_indices(|letter: char| !letter.is_alphabetic());
+        let (mut spelled, mut from) = (String::new(), 0);
+        for (at, between) in ends {
+            spelled.push_str(&word(&unit[from..at]));
+            spelled.push_str(between);
+            from = at + between.len();
+        }
+        spelled + &word(&unit[from..])
+    }
+
+    /// The name of a field or a column in these units: `gap_m` is `gap_mm`.
+    pub fn field(&self, name: &str) -> String {
+        let (head, unit) = ["_m_s", "_m", "_rad", "_n"]
+            .into_iter()
+            .find_map(|unit| Some((name.strip_suffix(unit)?, unit)))
+            .unwrap_or((name, ""));
+        let length = self.length.name();
+        match unit {
+            "_m_s" => format!("{head}_{length}_s"),
+            "_m" => format!("{head}_{length}"),
+            "_rad" if self.degrees => format!("{head}_deg"),
+            "_n" => format!("{head}_{}", self.force.name().to_lowercase()),
+            unit => format!("{head}{unit}"),
+        }
+    }
+
+    /// The first line of a table, with its line end, in these units.
+    pub fn columns(&self, line: &str) -> String {
+        let names = line.trim_end().split(',').map(|name| self.field(name));
+        names.collect::<Vec<_>>().join(",") + "\n"
+    }
+
+    /// What becomes of the values of a field or a column whose name is another in these units, where they are not lengths.
+    pub(crate) fn converted(&self, name: &str) -> Option<fn(&Self, f64) -> f64> {
+        if name.ends_with("_rad") && self.degrees {
+            Some(|_, angle| angle.to_degrees())
+        } else if name.ends_with("_n") {
+            Some(|units, force| units.force.told(force))
+        } else {
+            None
+        }
+    }
+}
+
+impl Default for Units {
+    /// The SI's.
+    fn default() -> Self {
+        let [length, mass, force] = [&LENGTHS[0], &MASSES[0], &FORCES[0]].map(Unit::clone);
+        let [stiffness, damping, gravity] = ["N/m", "N s/m", "m/s^2"].map(|name| Unit::new(name, 1.0, 1.0));
+        Self { are_given: false, length, mass, force, stiffness, damping, gravity, degrees: false }
+    }
+}

@@ -1,0 +1,201 @@
+//! Is a machine in millimetres the one in metres, in every answer, and does a preload say where the spring is slack?
+
+use std::path::Path;
+
+use corner_impact::model::Model;
+use serde_json::Value;
+
+use crate::common::{self, corner_impact, program, text};
+
+/// A valve with a cam of cycloidal motions: its units, follower and rise as written.
+fn valve(units: &str, [mass, stiffness, spring, rise]: [&str; 4]) -> String {
+    let motion = |rise: &str| format!("[[cam.segment]]\nmotion = \"cycloidal\"\nspan_deg = 90\nrise = {rise}\n");
+    format!(
+        "name = \"valve\"\n{units}[follower]\nmass = {mass}\ndamping = 3\nstiffness = {stiffness}\ngravity = 9.81\n\
+         {spring}\nrestitution = 0.3\n[cam]\nlaw = \"program\"\nbase = 0\n{}{}\
+         [[cam.segment]]\nmotion = \"dwell\"\nspan_deg = 180\n",
+        motion(rise),
+        motion(&format!("-{rise}")),
+    )
+}
+
+const MILLIMETRES: &str =
+    "[units]\nlength = \"mm\"\nmass = \"g\"\nstiffness = \"N/mm\"\nforce = \"kN\"\nangle = \"deg\"\n";
+
+fn both() -> [String; 2] {
+    [valve("", ["0.11", "30000", "preload = 220", "0.01"]), valve(MILLIMETRES, ["110", "30", "preload = 0.22", "10"])]
+}
+
+/// What the program prints about a model whose text is given.
+fn printed(text_of_model: &str, command: &str, rest: &[&str]) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("valve.toml");
+    std::fs::write(&file, text_of_model).unwrap();
+    let output = program([command, file.to_str().unwrap()]).args(rest).output().unwrap();
+    assert!(output.status.success(), "{}", text(output.stderr));
+    text(output.stdout)
+}
+
+fn close(one: f64, other: f64, place: &str) {
+    assert!((one - other).abs() <= 1e-11 * other.abs().max(1e-9), "{place}: {one} {other}");
+}
+
+/// Name in metres, name in millimetres and degrees, and how many of the latter one of the former is.
+fn told(name: &str) -> (String, f64) {
+    let ends = [
+        ("_m_s", "_mm_s", 1e3),
+        ("_m", "_mm", 1e3),
+        ("_rad", "_deg", 180.0 / std::f64::consts::PI),
+        ("_n", "_kn", 1e-3),
+    ];
+    let end = ends.iter().find(|(si, ..)| name.ends_with(si));
+    end.map_or((name.to_owned(), 1.0), |(si, here, scale)| (name.replace(si, here), *scale))
+}
+
+#[test]
+fn tables_are_the_same_in_any_units() {
+    let tables: [(&str, &[&str]); 5] = [
+        ("simulate", &["--rpm", "4500", "--revolutions", "3", "--events", "-"]),
+        ("simulate", &["--rpm", "4500", "--revolutions", "3", "--trace", "-", "--points-per-revolution", "40"]),
+        ("simulate", &["--rpm", "4500", "--revolutions", "3", "--strobe", "1", "--strobe-out", "-"]),
+        ("diagram", &["--rpm", "4200:4800:3", "--transient", "5", "--record", "2", "--out", "-"]),
+        ("basins", &["--rpm", "4500", "--grid", "3x2", "--revolutions", "3", "--out", "-"]),
+    ];
+    let [metres, millimetres] = both();
+    for (command, rest) in tables {
+        // Starts of basins are of the machine's own size.
+        let [one, other] = [&metres, &millimetres].map(|model| printed(model, command, rest));
+        let rows = |table: &str| -> Vec<Vec<String>> {
+            table.lines().map(|line| line.split(',').map(String::from).collect()).collect()
+        };
+        let (one, other) = (rows(&one), rows(&other));
+        assert!(one.len() > 3 && one.len() == other.len(), "{command}: {} {}", one.len(), other.len());
+        for (column, name) in one[0].iter().enumerate() {
+            let (here, scale) = told(name);
+            assert_eq!(other[0][column], here);
+            for (row, other) in one.iter().zip(&other).skip(1) {
+                match (row[column].parse::<f64>(), other[column].parse::<f64>()) {
+                    (Ok(si), Ok(here)) => close(here, scale * si, name),
+                    _ => assert_eq!(row[column], other[column]),
+                }
+            }
+        }
+    }
+}
+
+fn compare(si: &Value, here: &Value, scale: f64, place: &str) {
+    match (si, here) {
+        (Value::Object(si), Value::Object(here)) => {
+            assert_eq!(si.len(), here.len(), "{place}");
+            for (name, value) in si {
+                let (told, scale) = told(name);
+                let other = here.get(&told).unwrap_or_else(|| panic!("{place}: no {told}"));
+                compare(value, other, scale, name);
+            }
+        }
+        (Value::Array(si), Value::Array(here)) => {
+            si.iter().zip(here).for_each(|(si, here)| compare(si, here, scale, place))
+        }
+        (Value::Number(si), Value::Number(here)) => close(here.as_f64().unwrap(), scale * si.as_f64().unwrap(), place),
+        _ => assert_eq!(si, here, "{place}"),
+    }
+}
+
+#[test]
+fn documents_are_the_same_in_any_units() {
+    let [metres, millimetres] = both();
+    for (command, rest) in
+        [("cam", &["--json"][..]), ("simulate", &["--rpm", "4500", "--revolutions", "3", "--summary"])]
+    {
+        let [si, here] = [&metres, &millimetres].map(|model| {
+            let mut document: Value = serde_json::from_str(&printed(model, command, rest)).unwrap();
+            document.as_object_mut().unwrap().remove("wall_s");
+            // A jump and slopes are of a length, which their names do not say; a list of rounding's size has no digits.
+            for list in ["corners", "segments"] {
+                document.as_object_mut().unwrap().remove(list);
+            }
+            document
+        });
+        compare(&si, &here, 1.0, command);
+    }
+}
+
+#[test]
+fn pages_tell_the_unit_of_length() {
+    let [metres, millimetres] = both();
+    let page = |model: &str| printed(model, "simulate", &["--rpm", "4500", "--revolutions", "3"]);
+    assert!(page(&metres).contains(" m, v = ") && page(&metres).contains(" m/s"), "{}", page(&metres));
+    assert!(page(&millimetres).contains(" mm, v = ") && page(&millimetres).contains(" mm/s"), "{}", page(&millimetres));
+    let page = |model: &str| printed(model, "cam", &[]);
+    assert!(page(&metres).contains("to 0.01 m\n") && page(&millimetres).contains("to 10 mm\n"));
+}
+
+/// `k (c_min - rest) = preload`, in every unit.
+#[test]
+fn a_preload_says_where_the_spring_is_slack() {
+    let [metres, millimetres] = both().map(|text| Model::parse("valve.toml", &text).unwrap());
+    close(metres.follower.rest_position, -220.0 / 30_000.0, "metres");
+    close(millimetres.follower.rest_position, -220.0 / 30.0, "millimetres");
+    close(millimetres.follower.gravity, 9810.0, "gravity");
+    close(millimetres.follower.mass, 0.11, "mass");
+    // It stays when the stiffness is another, and goes with the lowest lift.
+    let stiffer = metres.with_number("follower.stiffness", 60_000.0).unwrap();
+    close(stiffer.follower.rest_position, -220.0 / 60_000.0, "stiffer");
+    let higher = metres.with_number("cam.base", 0.5).unwrap();
+    close(higher.follower.rest_position, 0.5 - 220.0 / 30_000.0, "higher");
+    let pounds =
+        "[units]\nlength = \"in\"\nmass = \"lb\"\nstiffness = \"lbf/in\"\nforce = \"lbf\"\ndamping = \"lbf s/in\"\n";
+    let pounds = Model::parse("valve.toml", &valve(pounds, ["0.25", "170", "preload = 50", "0.4"])).unwrap();
+    close(pounds.follower.rest_position, -50.0 / 170.0, "inches");
+    // 1 lbf/in = 4.4482216152605 N / 0.0254 m
+    close(pounds.follower.stiffness, 170.0 * 4.448_221_615_260_5 / 0.025_4, "lbf/in");
+    close(pounds.follower.damping, 3.0 * 4.448_221_615_260_5 / 0.025_4, "lbf s/in");
+    close(pounds.follower.gravity, 9.81 / 0.025_4, "in/s^2");
+}
+
+/// On every law, and where the lowest lift is inside a segment.
+#[test]
+fn the_lowest_lift_is_found() {
+    for (file, lowest) in [
+        ("models/osorio-2008.toml", 0.4),
+        ("models/laws/rectified-sine.toml", f64::NAN),
+        ("models/laws/harmonic.toml", f64::NAN),
+        ("models/laws/polynomial.toml", f64::NAN),
+        ("models/laws/table-quintic.toml", f64::NAN),
+    ] {
+        let cam = common::cam(&common::read(&Path::new(common::ROOT).join(file)));
+        let found = cam.lowest();
+        let seen = (0..200_000).map(|index| cam.lift(f64::from(index) * std::f64::consts::TAU / 200_000.0).value);
+        let seen = seen.fold(f64::INFINITY, f64::min);
+        assert!(found.value <= seen && seen - found.value < 1e-9, "{file}: {} {seen}", found.value);
+        assert!(lowest.is_nan() || (found.value - lowest).abs() < 1e-15, "{file}: {}", found.value);
+    }
+}
+
+#[test]
+fn units_that_make_no_sense_are_told() {
+    let wrong = |units: &str, spring: &str| {
+        let model = valve(units, ["0.11", "30000", spring, "0.01"]);
+        Model::parse("valve.toml", &model).unwrap_err().to_string()
+    };
+    let preload = "preload = 220";
+    for (units, spring, says) in [
+        ("[units]\nlength = \"mmm\"\n", preload, "units.length = \"mmm\": must be one of: \"m\", \"cm\""),
+        ("[units]\nstiffness = \"mm/N\"\n", preload, "must be a force over a length, such as N/mm"),
+        ("[units]\ndamping = \"N/mm\"\n", preload, "must be a force times s over a length"),
+        ("[units]\ngravity = \"mm/s\"\n", preload, "must be a length over s^2"),
+        ("[units]\nmas = \"g\"\n", preload, "unknown field"),
+        ("[units]\nmass = \"t\"\n", "preload = -1", "follower.preload = -1: must be a finite number, 0 or more"),
+        ("", "preload = 1\nrest_position = 0", "is there beside follower.rest_position"),
+        ("", "", "follower.rest_position is missing"),
+    ] {
+        let told = wrong(units, spring);
+        assert!(told.contains(says), "{told}");
+    }
+    let loose = valve("", ["0.11", "0", preload, "0.01"]);
+    assert!(Model::parse("v.toml", &loose).unwrap_err().to_string().contains("follower.stiffness is 0"));
+    let heavy = valve("[units]\nmass = \"t\"\n", ["1e308", "1", preload, "0.01"]);
+    assert!(Model::parse("v.toml", &heavy).unwrap_err().to_string().contains("too large"));
+    let output = corner_impact(["cam", "models/osorio-2008.toml", "--set", "preload=3"]);
+    assert_eq!(output.status.code(), Some(2));
+}
