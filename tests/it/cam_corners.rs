@@ -203,7 +203,8 @@ fn the_cam_document_lists_segments_and_corners() {
         assert_eq!(entry["start_deg"], segment.start.to_degrees());
         assert_eq!(entry["end_deg"], segment.end.to_degrees());
         assert_eq!(entry["law"], segment.law.name());
-        assert_eq!(entry["lift_m"][1], segment.bounds.lift[1]);
+        let highest = entry["lift_m"][1].as_f64().unwrap();
+        assert!(highest <= segment.bounds.lift[1] && segment.bounds.lift[1] - highest < 1e-9, "{highest}");
     }
     for (entry, corner) in corners.iter().zip(cam.corners()) {
         assert_eq!(entry["cam_angle_rad"], corner.angle);
