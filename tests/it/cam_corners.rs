@@ -218,7 +218,7 @@ fn the_cam_document_lists_segments_and_corners() {
             [corner.minus.curvature, corner.plus.curvature]
         );
     }
-    assert_eq!(document["lift_m"][1], cam.top());
+    assert_eq!(document["lift_m"][1], 0.064);
     let few = corner_impact(["cam", "--json", "--order", "2", &law_file("program.toml")]);
     let few: Value = serde_json::from_slice(&few.stdout).unwrap();
     assert_eq!((few["corners"].as_array().unwrap().len(), &few["highest_order"]), (4, &2.into()));
