@@ -5,7 +5,7 @@
 use std::ops::ControlFlow;
 
 use corner_impact::cam::Cam;
-use corner_impact::draw::{Density, svg};
+use corner_impact::draw::{Density, Look, svg};
 use corner_impact::figures::{corner_marks, impact_diagram};
 use corner_impact::model::{Model, OSORIO_2008};
 use corner_impact::simulate::{Event, EventKind, Machine, Unobserved, angular_velocity};
@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         })?;
     }
     let figure = impact_diagram("Where the follower hits the cam", points, &corners, None);
-    std::fs::write(&file, svg::render(&figure)?)?;
+    std::fs::write(&file, svg::render(&figure, &Look::default())?)?;
     println!("{impacts} impacts at 91 speeds drawn to {file}");
     Ok(())
 }

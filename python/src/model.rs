@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use corner_impact::cam::{Cam, within_a_turn};
 use corner_impact::diagram::{Following, Section, Starts, Sweep, SweepError};
-use corner_impact::draw::svg;
+use corner_impact::draw::{Look, svg};
 use corner_impact::figures::cam_figure;
 use corner_impact::flight::State;
 use corner_impact::model;
@@ -505,7 +505,7 @@ impl Model {
 
     /// Lift, velocity and acceleration of the cam, as a picture.
     fn _repr_svg_(&self) -> PyResult<String> {
-        svg::render(&cam_figure(self.machine.cam(), &self.model.name)).or_raise()
+        svg::render(&cam_figure(self.machine.cam(), &self.model.name), &Look::default()).or_raise()
     }
 }
 

@@ -47,9 +47,11 @@ pub(super) struct Arguments {
     /// Threads [default: one for each core].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// A table (.csv, or - for standard output) or a picture (.svg, .png).
-    #[arg(long, value_name = "FILE", value_parser = picture::picture_or_table)]
+    /// A table (.csv, or - for standard output) or a picture (.svg, .png, .pdf).
+    #[arg(long, value_name = "FILE", value_parser = picture::picture_or_table, group = "picture")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    picture: picture::PictureArguments,
     /// Print a summary as one JSON document.
     #[arg(long)]
     summary: bool,
@@ -85,7 +87,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
             let title = format!("{} at {} rpm: what each start ends on", model.name, arguments.rpm);
             Ok(basins_figure(&title, &basins, stable, saddles, curves))
         };
-        Target::create(path, &mut *session.out)?.fill(table, picture)?;
+        Target::create(path, &mut *session.out, arguments.picture.look()?)?.fill(table, picture)?;
     }
     let summary = Summary::new(&model, arguments.rpm, basins, wall_s);
     if !to_standard {

@@ -23,9 +23,11 @@ pub(super) struct Arguments {
     /// Leave out corners where only a derivative above this order jumps.
     #[arg(long, value_name = "N", default_value_t = Jet::HIGHEST_JUMP)]
     order: usize,
-    /// Draw lift, velocity and acceleration against the cam angle (.svg or .png).
-    #[arg(long, value_name = "FILE", value_parser = picture::picture)]
+    /// Draw lift, velocity and acceleration against the cam angle (.svg, .png or .pdf).
+    #[arg(long, value_name = "FILE", value_parser = picture::picture, group = "picture")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    picture: picture::PictureArguments,
 }
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
@@ -33,7 +35,9 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let progress = Progress::spinner("laying out the cam");
     let cam = Cam::new(&model)?;
     if let Some(path) = &arguments.out {
-        super::commit(vec![picture::Canvas::create(path)?.draw(&cam_figure(&cam, &model.name))?])?;
+        super::commit(vec![
+            picture::Canvas::create(path, arguments.picture.look()?)?.draw(cam_figure(&cam, &model.name))?,
+        ])?;
     }
     drop(progress);
     let sheet = CamSheet::new(&model, &cam, arguments.order);

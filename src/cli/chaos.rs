@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::picture::{Canvas, picture};
+use super::picture::{Canvas, PictureArguments, picture};
 use super::start::rpm_or_range;
 use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::figures::chaos_figure;
@@ -25,21 +25,23 @@ pub(super) struct Arguments {
     /// Print one JSON document instead of the page.
     #[arg(long)]
     json: bool,
-    /// A picture (.svg, .png) of the h-set, its strips and where they are carried, at the lowest speed with a proof.
-    #[arg(long, value_name = "FILE", value_parser = picture)]
+    /// A picture (.svg, .png, .pdf) of the h-set, its strips and where they are carried, at the lowest speed with a proof.
+    #[arg(long, value_name = "FILE", value_parser = picture, group = "picture")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    picture: PictureArguments,
 }
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let model = arguments.model.read(session)?;
-    let canvas = arguments.out.as_ref().map(|path| Canvas::create(path)).transpose()?;
+    let canvas = arguments.out.as_ref().map(|path| Canvas::create(path, arguments.picture.look()?)).transpose()?;
     let found = watched("", |watch| chaos(&model, arguments.rpm, watch))?;
     match (canvas, found.theorems.first()) {
         (Some(canvas), Some(theorem)) => {
             let rpm = theorem.set.rpm[0];
             let title = format!("{} at {rpm} rpm: strips of N, and where so many impacts carry them", model.name);
             let figure = chaos_figure(&title, &theorem.set, &portrait(&model, &theorem.set)?);
-            super::commit(vec![canvas.draw(&figure)?])?;
+            super::commit(vec![canvas.draw(figure)?])?;
         }
         (Some(_), None) => session.note("nothing is proved, so nothing is drawn"),
         (None, _) => {}

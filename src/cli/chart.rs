@@ -57,10 +57,12 @@ pub(super) struct Arguments {
     /// Threads [default: one for each core].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// A table (.csv, or - for standard output), a picture (.svg, .png), or a zarr store (.zarr): a folder of blocks of 100 x 100
+    /// A table (.csv, or - for standard output), a picture (.svg, .png, .pdf), or a zarr store (.zarr): a folder of blocks of 100 x 100
     /// points, of which those that are there already are not run again.
-    #[arg(long, value_name = "FILE", value_parser = out)]
+    #[arg(long, value_name = "FILE", value_parser = out, group = "picture")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    look: picture::LookArguments,
     /// Run the part I of N of a store's blocks; the others are for other processes, at the same time or later.
     #[arg(long, value_name = "I/N", value_parser = shard, requires = "out")]
     shard: Option<Shard>,
@@ -97,7 +99,7 @@ fn out(text: &str) -> Result<PathBuf, String> {
     if is_store(&path) {
         return Ok(path);
     }
-    picture::picture_or_table(text).map_err(|_| "must end in .csv, .zarr, .svg or .png, or be -".into())
+    picture::picture_or_table(text).map_err(|_| "must end in .csv, .zarr, .svg, .png or .pdf, or be -".into())
 }
 
 fn is_store(path: &Path) -> bool {
@@ -131,9 +133,9 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let (x, y) = (named(x)?, named(y)?);
     let lengths = Lengths { transient: arguments.transient, record: arguments.record };
     let chart = Chart::new(&model, arguments.rpm, [x, y], arguments.start.start(), lengths)?;
-    let drawn = arguments.out.as_deref().is_some_and(|path| picture::ends_in(path, &["svg", "png"]));
+    let drawn = arguments.out.as_deref().is_some_and(|path| picture::kind(path).is_some());
     if arguments.with_curves && !drawn {
-        return Err(CommandError::Words("--with-curves is for a picture: --out must end in .svg or .png".into()));
+        return Err(CommandError::Words("--with-curves is for a picture: --out must end in .svg, .png or .pdf".into()));
     }
     let threads = arguments.threads.map(usize::from);
     let folder = arguments.out.as_deref().filter(|path| is_store(path));
@@ -153,7 +155,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         None => run()?,
         Some(path) => {
             // Begun before the work: a name that cannot be is told at once.
-            let target = Target::create(path, &mut *session.out)?;
+            let target = Target::create(path, &mut *session.out, arguments.look.look()?)?;
             let found = run()?;
             let model = &found.chart.model;
             let wanted = Search { revolutions: 1, impacts: None };

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::PathBuf;
 
-use super::picture::{Target, picture_or_table};
+use super::picture::{PictureArguments, Target, picture_or_table};
 use super::start::{parameter, positive, rpm};
 use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::cam::Cam;
@@ -51,9 +51,11 @@ pub(super) struct Arguments {
     /// times in all.
     #[arg(long, value_name = "DOUBLINGS", num_args = 0..=1, require_equals = true, default_value_t = 0, default_missing_value = "3", value_parser = clap::value_parser!(u32).range(0..=10))]
     all: u32,
-    /// A table (.csv, or - for standard output) or a picture (.svg, .png).
-    #[arg(long, value_name = "FILE", default_value = "-", value_parser = picture_or_table)]
+    /// A table (.csv, or - for standard output) or a picture (.svg, .png, .pdf).
+    #[arg(long, value_name = "FILE", default_value = "-", value_parser = picture_or_table, group = "picture")]
     out: PathBuf,
+    #[command(flatten)]
+    picture: PictureArguments,
     /// Values of the parameter at which a picture shows what runs settle on; 0 for none.
     #[arg(long, value_name = "N", default_value_t = 400, value_parser = clap::value_parser!(u32).range(0..=100_000))]
     runs: u32,
@@ -69,7 +71,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         longest_step: arguments.step,
         most_points: arguments.points as usize,
     };
-    let target = Target::create(&arguments.out, &mut *session.out)?;
+    let target = Target::create(&arguments.out, &mut *session.out, arguments.picture.look()?)?;
     let wanted = Search { revolutions: arguments.revolutions, impacts: arguments.impacts };
     let found = watched("", |watch| branches(&model, arguments.from_rpm, &wanted, following, arguments.all, watch))?;
     let name = found.following.parameter.name();

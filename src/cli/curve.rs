@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::PathBuf;
 
-use super::picture::{Target, picture_or_table};
+use super::picture::{PictureArguments, Target, picture_or_table};
 use super::start::{parameter, positive, rpm_range};
 use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::draw::{extent, layout::widened};
@@ -44,9 +44,11 @@ pub(super) struct Arguments {
     /// The longest step, of the ranges and of a radian.
     #[arg(long, value_name = "STEP", default_value_t = LONGEST_STEP, value_parser = positive)]
     step: f64,
-    /// A table (.csv, or - for standard output) or a picture (.svg, .png).
-    #[arg(long, value_name = "FILE", default_value = "-", value_parser = picture_or_table)]
+    /// A table (.csv, or - for standard output) or a picture (.svg, .png, .pdf).
+    #[arg(long, value_name = "FILE", default_value = "-", value_parser = picture_or_table, group = "picture")]
     out: PathBuf,
+    #[command(flatten)]
+    picture: PictureArguments,
 }
 
 fn event(text: &str) -> Result<Bifurcation, String> {
@@ -64,7 +66,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let model = arguments.model.read(session)?;
     let (name, range) = &arguments.parameter;
     let parameter = Parameter::named(&model, name)?;
-    let target = Target::create(&arguments.out, &mut *session.out)?;
+    let target = Target::create(&arguments.out, &mut *session.out, arguments.picture.look()?)?;
     let wanted = Search { revolutions: arguments.revolutions, impacts: arguments.impacts };
     let following = Following { parameter, range: *range, longest_step: arguments.step, most_points: MOST_POINTS };
     let events = if arguments.events.is_empty() { &Bifurcation::ALL } else { arguments.events.as_slice() };

@@ -53,9 +53,11 @@ pub(super) struct Arguments {
     /// Threads [default: one for each core]; up and down go from speed to speed on one.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// A table (.csv, or - for standard output) or a picture (.svg, .png).
-    #[arg(long, value_name = "FILE", value_parser = picture::picture_or_table)]
+    /// A table (.csv, or - for standard output) or a picture (.svg, .png, .pdf).
+    #[arg(long, value_name = "FILE", value_parser = picture::picture_or_table, group = "picture")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    picture: picture::PictureArguments,
     /// Write one row a speed: what the run comes to, its period, impacts, growth and fastest impact, as in `chart`.
     #[arg(long, requires = "out", conflicts_with_all = ["attractors", "following", "section", "strobe", "lyapunov", "summary"])]
     one_row: bool,
@@ -114,35 +116,36 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     }
     let (threads, target) = (arguments.threads.map(usize::from), arguments.out.as_deref());
     let (name, progress) = (model.name.as_str(), Progress::spinner(""));
-    let swept = match target.map(|path| Target::create(path, &mut *session.out)).transpose()? {
-        None => Swept::new(name, &sweep, threads, &progress, |_: Counted| Ok::<(), CommandError>(()))?,
-        Some(Target::Table(mut file)) => {
-            let columns = csv::diagram(&sweep);
-            file.write_all(model.units.columns(&columns).as_bytes())?;
-            let take = |lines: csv::Lines| {
-                Ok::<(), CommandError>(file.write_all(csv::in_units(&lines.0, &columns, &model.units).as_bytes())?)
-            };
-            let swept = Swept::new(name, &sweep, threads, &progress, take)?;
-            super::commit(vec![file])?;
-            swept
-        }
-        Some(Target::Picture(canvas)) => {
-            let mut shown = Shown::new(&sweep);
-            let take = |found: Places| -> Result<(), CommandError> {
-                shown.take(&found);
-                Ok(())
-            };
-            let swept = Swept::new(name, &sweep, threads, &progress, take)?;
-            let (places, exponents) = shown.places();
-            let (title, exponents) = (title(name, &sweep), arguments.lyapunov.then_some(exponents.as_slice()));
-            let figure = match sweep.section {
-                Section::Impacts => impact_diagram(&title, places, &corners, exponents),
-                Section::Strobe(_) => strobe_diagram(&title, places, exponents),
-            };
-            super::commit(vec![canvas.draw(&figure)?])?;
-            swept
-        }
-    };
+    let swept =
+        match target.map(|path| Target::create(path, &mut *session.out, arguments.picture.look()?)).transpose()? {
+            None => Swept::new(name, &sweep, threads, &progress, |_: Counted| Ok::<(), CommandError>(()))?,
+            Some(Target::Table(mut file)) => {
+                let columns = csv::diagram(&sweep);
+                file.write_all(model.units.columns(&columns).as_bytes())?;
+                let take = |lines: csv::Lines| {
+                    Ok::<(), CommandError>(file.write_all(csv::in_units(&lines.0, &columns, &model.units).as_bytes())?)
+                };
+                let swept = Swept::new(name, &sweep, threads, &progress, take)?;
+                super::commit(vec![file])?;
+                swept
+            }
+            Some(Target::Picture(canvas)) => {
+                let mut shown = Shown::new(&sweep);
+                let take = |found: Places| -> Result<(), CommandError> {
+                    shown.take(&found);
+                    Ok(())
+                };
+                let swept = Swept::new(name, &sweep, threads, &progress, take)?;
+                let (places, exponents) = shown.places();
+                let (title, exponents) = (title(name, &sweep), arguments.lyapunov.then_some(exponents.as_slice()));
+                let figure = match sweep.section {
+                    Section::Impacts => impact_diagram(&title, places, &corners, exponents),
+                    Section::Strobe(_) => strobe_diagram(&title, places, exponents),
+                };
+                super::commit(vec![canvas.draw(figure)?])?;
+                swept
+            }
+        };
     drop(progress);
     if !to_standard {
         session.answer(&swept, arguments.summary)?;
@@ -152,8 +155,11 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
 
 /// A row for each speed, in a table.
 fn one_row(arguments: &Arguments, sweep: &Sweep, session: &mut Session<'_>) -> Result<Exit, CommandError> {
-    let Some(Target::Table(mut file)) =
-        arguments.out.as_deref().map(|path| Target::create(path, &mut *session.out)).transpose()?
+    let Some(Target::Table(mut file)) = arguments
+        .out
+        .as_deref()
+        .map(|path| Target::create(path, &mut *session.out, arguments.picture.look()?))
+        .transpose()?
     else {
         return Err(CommandError::Words("--one-row is a table: --out must end in .csv or be -".into()));
     };

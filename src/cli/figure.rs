@@ -26,9 +26,11 @@ pub(super) struct Arguments {
     words: Vec<String>,
     #[command(flatten)]
     changes: Changes,
-    /// The picture (.svg or .png).
-    #[arg(long, value_name = "FILE", value_parser = picture::picture)]
+    /// The picture (.svg, .png or .pdf).
+    #[arg(long, value_name = "FILE", value_parser = picture::picture, group = "picture")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    picture: picture::PictureArguments,
     /// Print one JSON document: the list, or the figure with every number that it shows.
     #[arg(long)]
     json: bool,
@@ -78,12 +80,16 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
                 return Err(CommandError::Words(format!("no figure called \"{id}\"; there are: {there}")));
             };
             // Opened before the work: a name that cannot be is told at once.
-            let canvas = arguments.out.as_deref().map(picture::Canvas::create).transpose()?;
+            let canvas = arguments
+                .out
+                .as_deref()
+                .map(|path| picture::Canvas::create(path, arguments.picture.look()?))
+                .transpose()?;
             let progress = Progress::spinner("computing the figure");
             let plate = entry.plate(&subject);
             drop(progress);
             match (&plate.drawn, canvas) {
-                (Ok(drawn), Some(canvas)) => super::commit(vec![canvas.draw(&drawn.figure)?])?,
+                (Ok(drawn), Some(canvas)) => super::commit(vec![canvas.draw(drawn.figure.clone())?])?,
                 // A document says why there is none; a file cannot.
                 (Err(_), None) if arguments.json => {}
                 (Err(why), _) => return Err(CommandError::Words(format!("{}: no figure {id}: {why}", model.file()))),

@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Component, Path, PathBuf};
 
-use super::picture::{self, Canvas, is_standard, picture as drawn_only, picture_or_table};
+use clap::ArgGroup;
+
+use super::picture::{self, Canvas, PictureArguments, is_standard, picture as drawn_only, picture_or_table};
 use super::start::{StartArguments, count, finite, rpm};
 use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::cam::within_a_turn;
@@ -15,6 +17,7 @@ use crate::study::simulate::{Sight, Simulation, Until, Wanted};
 
 /// Runs one motion of a model and says what happened.
 #[derive(clap::Args)]
+#[command(group = ArgGroup::new("picture").multiple(true))]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact simulate --rpm 183 --revolutions 10 --events -\n\
     \x20 corner-impact simulate models/osorio-2008.toml --rpm 183 --trace trace.svg\n\
@@ -51,11 +54,11 @@ pub(super) struct Arguments {
     /// twenty blocks of revolutions: -inf (null in JSON) where the follower came to stick to the cam, be it once.
     #[arg(long, conflicts_with = "impacts")]
     lyapunov: bool,
-    /// Draw follower, cam and gap over the last revolutions (.svg or .png), or write them, with the contact force, as CSV (.csv).
-    #[arg(long, value_name = "FILE", value_parser = picture_or_table, conflicts_with = "impacts")]
+    /// Draw follower, cam and gap over the last revolutions (.svg, .png or .pdf), or write them, with the contact force, as CSV (.csv).
+    #[arg(long, value_name = "FILE", value_parser = picture_or_table, conflicts_with = "impacts", group = "picture")]
     trace: Option<PathBuf>,
-    /// Draw the gap against its velocity over the last revolutions (.svg or .png).
-    #[arg(long, value_name = "FILE", value_parser = drawn_only, conflicts_with = "impacts")]
+    /// Draw the gap against its velocity over the last revolutions (.svg, .png or .pdf).
+    #[arg(long, value_name = "FILE", value_parser = drawn_only, conflicts_with = "impacts", group = "picture")]
     phase_plane: Option<PathBuf>,
     /// Moments of each revolution that --trace shows, beside the events [default: 3600 in a picture, 360 in a table].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), requires = "trace")]
@@ -63,6 +66,8 @@ pub(super) struct Arguments {
     /// How many revolutions are drawn [default: 2].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
     drawn: Option<u64>,
+    #[command(flatten)]
+    picture: PictureArguments,
 }
 
 /// Revolutions that are drawn where nothing else is asked for.
@@ -101,8 +106,9 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         lyapunov: arguments.lyapunov,
     };
 
+    let look = arguments.picture.look()?;
     // Every file is begun before the run: a name that cannot be is told at once.
-    let plane = phase_plane.as_deref().map(Canvas::create).transpose()?;
+    let plane = phase_plane.as_deref().map(|path| Canvas::create(path, look.clone())).transpose()?;
     // At most one of the tables is standard output.
     let mut out = Some(&mut *session.out);
     let mut open = |path: &Path, columns: &str| -> Result<Output<'_>, CommandError> {
@@ -117,7 +123,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let trace = trace.as_deref();
     let written =
         trace.filter(|path| !is_drawn(path)).map(|path| open(path, &model.units.columns(csv::TRACE))).transpose()?;
-    let trace = trace.filter(is_drawn).map(Canvas::create).transpose()?;
+    let trace = trace.filter(is_drawn).map(|path| Canvas::create(path, look)).transpose()?;
     let mut lines = String::new();
     let see = |sight: Sight<'_>| -> Result<(), CommandError> {
         lines.clear();
@@ -149,10 +155,10 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let mut files: Vec<Output<'_>> = [events, states, written.transpose()?].into_iter().flatten().collect();
     let title = format!("{} at {} rpm", model.name, arguments.rpm);
     if let Some(canvas) = trace {
-        files.push(canvas.draw(&time_trace(&title, &seen(figures::Run::DRAWN)?))?);
+        files.push(canvas.draw(time_trace(&title, &seen(figures::Run::DRAWN)?))?);
     }
     if let Some(canvas) = plane {
-        files.push(canvas.draw(&phase_plane_figure(&title, &seen(figures::Run::DRAWN)?))?);
+        files.push(canvas.draw(phase_plane_figure(&title, &seen(figures::Run::DRAWN)?))?);
     }
     super::commit(files)?;
     if arguments.summary || streams == 0 {

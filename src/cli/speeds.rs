@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::PathBuf;
 
-use super::picture::{Target, is_standard, picture_or_table};
+use super::picture::{PictureArguments, Target, is_standard, picture_or_table};
 use super::start::{positive, rpm_range};
 use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::cam::Cam;
@@ -38,9 +38,11 @@ pub(super) struct Arguments {
     /// Print one JSON document instead of the page.
     #[arg(long)]
     json: bool,
-    /// A picture (.svg, .png) of impacts, attractors and shares over the speeds, or a table (.csv, or - for standard output).
-    #[arg(long, value_name = "FILE", value_parser = picture_or_table)]
+    /// A picture (.svg, .png, .pdf) of impacts, attractors and shares over the speeds, or a table (.csv, or - for standard output).
+    #[arg(long, value_name = "FILE", value_parser = picture_or_table, group = "picture")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    picture: PictureArguments,
 }
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
@@ -53,7 +55,8 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     if let Some(path) = &arguments.out {
         let table =
             |table: &mut dyn Write| Ok(table.write_all(csv::told(&csv::speeds(&found), &model.units).as_bytes())?);
-        Target::create(path, &mut *session.out)?.fill(table, || Ok(speeds_figure(&found, &corners)))?;
+        Target::create(path, &mut *session.out, arguments.picture.look()?)?
+            .fill(table, || Ok(speeds_figure(&found, &corners)))?;
     }
     if is_standard(arguments.out.as_ref()) { Ok(Exit::Agrees) } else { session.answer(&found, arguments.json) }
 }

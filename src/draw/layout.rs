@@ -1,13 +1,13 @@
 //! Where everything of a figure stands on the page, so that no label covers another.
 //!
-//! The page is [`WIDTH`] units wide and as high as it needs to be. Widths of letters are guessed on the safe side: an SVG
-//! is read with whatever sans-serif font there is.
+//! The page is as many units wide as its look says, [`WIDTH`] where it says nothing, and as high as it needs to be. Widths of
+//! letters are guessed on the safe side: an SVG is read with whatever sans-serif font there is.
 
 use super::ticks::{self, Tick, ticks};
 use super::{Axis, Data, Figure, Mark, Panel};
 use crate::tolerance;
 
-/// Width of the page.
+/// Width of the page where nothing else is asked for.
 pub const WIDTH: f64 = 720.0;
 /// Height of most letters.
 pub const TEXT: f64 = 12.5;
@@ -181,9 +181,12 @@ fn name(axis: &Axis, exponent: i32) -> String {
 
 fn vertical_ticks(panel: &Panel, range: Option<[f64; 2]>, height: f64) -> ticks::Ticks {
     let Some(range) = range else { return ticks::Ticks::default() };
-    ticks(range, panel.y.spacing, (height / 30.0) as usize, |ticks| {
+    let fits = |ticks: &[Tick]| {
         ticks.windows(2).all(|pair| height * (share(pair[1].at, range) - share(pair[0].at, range)) >= LINE)
-    })
+    };
+    let few = ticks(range, panel.y.spacing, (height / 30.0) as usize, fits);
+    // One tick tells no scale: as many as have room do.
+    if few.ticks.len() == 1 { ticks(range, panel.y.spacing, (height / LINE) as usize, fits) } else { few }
 }
 
 fn horizontal_ticks(axis: &Axis, range: Option<[f64; 2]>, across: f64) -> ticks::Ticks {
@@ -301,13 +304,12 @@ fn legend(panel: &Panel, name: &str, left: f64, right: f64) -> (Vec<(usize, [f64
 }
 
 impl Layout {
-    /// Lays a figure out.
-    pub fn new(figure: &Figure) -> Self {
-        let mut heights: Vec<f64> = figure
-            .panels
-            .iter()
-            .map(|panel| WIDTH * if panel.height.is_nan() { 0.5 } else { panel.height.clamp(0.08, 2.0) })
-            .collect();
+    /// Lays a figure out under a title on a page so many units wide.
+    pub fn new(figure: &Figure, title: &str, wide: f64) -> Self {
+        // A narrow figure has the same letters: its panels are higher in proportion, or they would have no room for ticks.
+        let tall = wide * (WIDTH / wide).sqrt().clamp(1.0, 1.5);
+        let height = |panel: &Panel| tall * if panel.height.is_nan() { 0.5 } else { panel.height.clamp(0.08, 2.0) };
+        let mut heights: Vec<f64> = figure.panels.iter().map(height).collect();
         let ranges: Vec<_> = figure.panels.iter().map(vertical_range).collect();
         let vertical: Vec<_> = figure
             .panels
@@ -327,12 +329,12 @@ impl Layout {
             let labelled = figure.marks.iter().filter(|mark| !mark.label.is_empty() && share(mark.at, range) <= 1.0);
             labelled.map(past).fold(0.0, f64::max)
         };
-        let right = WIDTH - EDGE - right.max(overhang(WIDTH - left - right - EDGE));
-        let across = (right - left).max(0.3 * WIDTH);
+        let right = wide - EDGE - right.max(overhang(wide - left - right - EDGE));
+        let across = (right - left).max(0.3 * wide);
         for ((panel, height), range_y) in figure.panels.iter().zip(&mut heights).zip(&ranges) {
             let ratio = range_y.map_or(f64::NAN, |[low, high]| (high - low) / (range[1] - range[0]));
             if panel.y.to_scale && ratio.is_finite() {
-                *height = (across * ratio).clamp(0.08 * WIDTH, 2.0 * WIDTH);
+                *height = (across * ratio).clamp(0.08 * wide, 2.0 * wide);
             }
         }
         let horizontal = horizontal_ticks(&figure.x, known, across);
@@ -342,7 +344,7 @@ impl Layout {
             y += by;
             y
         };
-        let title = lines(&figure.title, TITLE, WIDTH - 2.0 * EDGE);
+        let title = lines(title, TITLE, wide - 2.0 * EDGE);
         let title = title.into_iter().map(|text| Text { at: [EDGE, down(TITLE + 4.0) - 4.0], text });
         let title: Vec<Text> = title.collect();
         down(if title.is_empty() { 0.0 } else { GAP });
@@ -359,7 +361,7 @@ impl Layout {
                 let (lines, mut rows) = above(&figure.marks, range, &frame);
                 let first = lines.iter().filter_map(|line| line.label.as_ref()).map(|label| label.at[0]);
                 // The axis's name moves into the lowest row of labels where it has room.
-                if rows > 0 && entries.is_empty() && first.fold(WIDTH, f64::min) > EDGE + width(&name, TEXT) + GAP {
+                if rows > 0 && entries.is_empty() && first.fold(wide, f64::min) > EDGE + width(&name, TEXT) + GAP {
                     rows -= 1;
                     base += rows as f64 * LINE;
                 }
@@ -388,7 +390,7 @@ impl Layout {
         let text = name(&figure.x, horizontal.exponent);
         let middle = left + (across - width(&text, TEXT)).max(0.0) / 2.0;
         let name = Text { at: [middle, down(LINE - 2.0).max(below)], text };
-        let note = lines(&figure.note, TEXT, WIDTH - 2.0 * EDGE);
+        let note = lines(&figure.note, TEXT, wide - 2.0 * EDGE);
         down(if note.is_empty() { 0.0 } else { GAP });
         let note = note.into_iter().map(|text| Text { at: [EDGE, down(LINE)], text }).collect();
         let height = down(EDGE).ceil();

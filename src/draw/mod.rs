@@ -1,13 +1,16 @@
-//! A figure as one value, and two renderers of it: SVG, and PNG from the SVG.
+//! A figure as one value, and three renderers of it: SVG, and PNG and PDF from the SVG.
 //!
-//! A [`Figure`] says what is drawn in the data's own units; [`layout`] decides where on the page, [`svg`] and [`png`] only
-//! write that down. Nothing here computes anything from the data but its extent; the figures themselves are built in
+//! A [`Figure`] says what is drawn in the data's own units; [`layout`] decides where on the page, [`svg`], [`png`] and [`pdf`] only
+//! write that down, as a [`Look`] has it. Nothing here computes anything from the data but its extent; the figures themselves are built in
 //! [`crate::figures`].
 
 mod density;
 mod element;
+pub mod font;
 mod grid;
 pub mod layout;
+pub mod look;
+pub mod pdf;
 pub mod png;
 mod series;
 mod sheet;
@@ -19,6 +22,7 @@ mod words;
 use serde::Serialize;
 
 pub use density::{Cloud, Density};
+pub use look::{Look, Theme};
 pub use ticks::Spacing;
 
 /// What is drawn: panels below each other that share the horizontal axis.

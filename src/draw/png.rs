@@ -1,14 +1,13 @@
 //! The figure as PNG, from its SVG; letters come with the program, for machines that have none.
 
 use std::io::Write;
-use std::sync::Arc;
 
 use resvg::tiny_skia::{Color, Pixmap, Transform};
-use resvg::usvg::fontdb::Source;
-use resvg::usvg::{Options, Tree};
+use resvg::usvg::Tree;
 
 use super::grid::Grid;
-use super::layout::{Layout, WIDTH};
+use super::layout::Layout;
+use super::look::Look;
 use super::sheet::Layer;
 use super::svg;
 use super::{Colour, Figure};
@@ -35,43 +34,44 @@ pub enum PngError {
     Pack(String),
 }
 
-/// Stands for the raised minus, which the letters lack: one letter from other letters would take its whole line there.
-const RAISED_MINUS: &str = r#"<tspan baseline-shift="35%" font-size="70%">−</tspan>"#;
-
 /// What is drawn over the layers before it.
 enum Paint {
     Drawing(Box<Tree>),
     Grid(Grid, Colour, [f64; 4]),
 }
 
+/// Dots an inch of an image on paper.
+const DOTS: f64 = 300.0;
+
+impl Look {
+    /// Pixels across, at 300 to the inch of the width on paper.
+    pub fn pixels(&self) -> u32 {
+        (DOTS * self.points() / 72.0).round() as u32
+    }
+}
+
 /// The figure on white paper, `width` pixels wide.
-pub fn render(figure: &Figure, width: u32) -> Result<Vec<u8>, PngError> {
+pub fn render(figure: &Figure, look: &Look, width: u32) -> Result<Vec<u8>, PngError> {
     if !(1..=WIDEST).contains(&width) {
         return Err(PngError::Width(width));
     }
-    let mut options = Options::default();
-    let fonts = options.fontdb_mut();
-    fonts.load_font_source(Source::Binary(Arc::new(epaint_default_fonts::UBUNTU_LIGHT)));
-    let family = fonts.faces().next().and_then(|face| face.families.first()).map(|(name, _)| name.clone());
-    if let Some(family) = family {
-        fonts.set_sans_serif_family(family);
-    }
-    // Only for what the first has no glyph of: a model's name may have any.
-    fonts.load_font_source(Source::Binary(Arc::new(epaint_default_fonts::HACK_REGULAR)));
-    let layers = svg::write(figure, true)?.into_iter().map(|layer| match layer {
-        Layer::Drawing(text) => {
-            let tree = Tree::from_str(&text.replace('⁻', RAISED_MINUS), &options);
-            tree.map(|tree| Paint::Drawing(Box::new(tree)))
-        }
+    let fonts = look.fonts.clone().unwrap_or_default();
+    let layers = svg::write(figure, look, "", true)?.into_iter().map(|layer| match layer {
+        Layer::Drawing(text) => fonts.tree(&text).map(|tree| Paint::Drawing(Box::new(tree))),
         Layer::Grid(grid, colour, frame) => Ok(Paint::Grid(grid, colour, frame)),
     });
     let layers: Vec<Paint> = layers.collect::<Result<_, _>>()?;
-    let scale = f64::from(width) / WIDTH;
-    let height = (Layout::new(figure).height * scale).ceil() as u32;
+    let scale = f64::from(width) / look.across();
+    let height = (Layout::new(figure, look.title(figure), look.across()).height * scale).ceil() as u32;
     let pack = |error: png::EncodingError| PngError::Pack(error.to_string());
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Rgb);
+    if look.is_sized() {
+        // Pixels a metre.
+        let [xppu, yppu] = [(f64::from(width) / look.points() * 72.0 / 0.0254).round() as u32; 2];
+        encoder.set_pixel_dims(Some(png::PixelDimensions { xppu, yppu, unit: png::Unit::Meter }));
+    }
     let mut writer = encoder.write_header().map_err(pack)?;
     let mut stream = writer.stream_writer().map_err(pack)?;
     // Band by band: all pixels of a page at once would be most of the program's memory.

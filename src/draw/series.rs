@@ -40,7 +40,9 @@ impl Page {
                 self.heads(out, points, colour)
             }
             Data::Points { points, marker } => self.points(out, points, *marker, colour),
-            Data::Words(words) => words.iter().try_for_each(|word| words::write(out, word, self.at(word.at), colour)),
+            Data::Words(words) => {
+                words.iter().try_for_each(|word| words::write(out, word, self.at(word.at), self.height, colour))
+            }
             Data::Density(density) => self.density(out, density, colour),
             Data::Region { cells, .. } if cells.occupied() == 0 => Ok(()),
             Data::Region { cells, strength } => {

@@ -4,8 +4,13 @@
 
 use std::fmt::{self, Write};
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+
 use super::element::{escaped, fill, markers, number, stroke, stroked};
-use super::layout::{Frame, Layout, MarkLine, PanelLayout, SAMPLE, TEXT, TITLE, Text, WIDTH, share};
+use super::font::{cut, used};
+use super::layout::{Frame, Layout, MarkLine, PanelLayout, SAMPLE, TEXT, TITLE, Text, share};
+use super::look::{Look, Theme};
 use super::series::Page;
 use super::sheet::{Layer, Sheet};
 use super::{Colour, Data, Figure, Marker, Panel, Series};
@@ -14,9 +19,42 @@ use super::{Colour, Data, Figure, Marker, Panel, Series};
 const DARK_PAPER: &str = "#15171a";
 /// An image has its colours inside: on a dark screen light and dark change places, hues stay.
 const DARK_IMAGE: &str = "invert(1) hue-rotate(180deg)";
+
+/// Why there is no SVG.
+#[derive(Debug, thiserror::Error)]
+pub enum SvgError {
+    /// It could not be written.
+    #[error("the figure could not be written as SVG: {0}")]
+    Svg(#[from] fmt::Error),
+    /// It could not be read, for the letters that it has.
+    #[error("the figure's SVG could not be read: {0}")]
+    Read(#[from] resvg::usvg::Error),
+}
+
 /// The figure as an SVG document.
-pub fn render(figure: &Figure) -> Result<String, fmt::Error> {
-    let drawings = write(figure, false)?.into_iter().filter_map(|layer| match layer {
+pub fn render(figure: &Figure, look: &Look) -> Result<String, SvgError> {
+    let letters = if look.brings_letters() { letters(figure, look)? } else { String::new() };
+    Ok(document(figure, look, &letters)?)
+}
+
+/// The letters that a figure has, for its style.
+fn letters(figure: &Figure, look: &Look) -> Result<String, SvgError> {
+    let tree = look.fonts.clone().unwrap_or_default().tree(&document(figure, look, "")?)?;
+    let mut faces = String::new();
+    for (id, glyphs) in used(&tree) {
+        let name = tree.fontdb().face(id).and_then(|face| Some(face.families.first()?.0.clone())).unwrap_or_default();
+        let face = tree.fontdb().with_face_data(id, |data, index| cut(data, index, &glyphs)).flatten();
+        if let Some(face) = face {
+            let (name, data) = (escaped(&name), STANDARD.encode(face.data));
+            write!(faces, "@font-face {{ font-family: '{name}'; src: url(data:font/ttf;base64,{data}) }} ")?;
+        }
+    }
+    Ok(faces)
+}
+
+/// The document, with what its style says of letters.
+pub(super) fn document(figure: &Figure, look: &Look, letters: &str) -> Result<String, fmt::Error> {
+    let drawings = write(figure, look, letters, false)?.into_iter().filter_map(|layer| match layer {
         Layer::Drawing(text) => Some(text),
         Layer::Grid(..) => None,
     });
@@ -24,17 +62,25 @@ pub fn render(figure: &Figure) -> Result<String, fmt::Error> {
 }
 
 /// The figure in layers, dense grids among them if they are to stand `apart`, else one document.
-pub(super) fn write(figure: &Figure, apart: bool) -> Result<Vec<Layer>, fmt::Error> {
-    let layout = Layout::new(figure);
+pub(super) fn write(figure: &Figure, look: &Look, letters: &str, apart: bool) -> Result<Vec<Layer>, fmt::Error> {
+    let wide = look.across();
+    let layout = Layout::new(figure, look.title(figure), wide);
     let height = layout.height;
+    // Layers are scaled by what draws them.
+    let size = match look.is_sized() && !apart {
+        true => format!(r#"width="{}pt" height="{}pt""#, number(look.points()), number(look.points() * height / wide)),
+        false => r#"width="100%""#.into(),
+    };
+    let chosen = look.brings_letters().then(|| look.fonts.clone().unwrap_or_default());
+    let family = chosen.map(|fonts| format!("'{}', ", escaped(fonts.family()))).unwrap_or_default();
     let page = format!(
-        r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" width="100%" role="img" font-family="sans-serif" font-size="{TEXT}">"#
+        r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {wide} {height}" {size} role="img" font-family="{family}sans-serif" font-size="{TEXT}">"#
     );
     let ink = format!("<g {}>", fill(Colour::Ink));
     let mut out = Sheet::new(format!("{page}\n{ink}\n"), apart);
     writeln!(out, "{page}\n<title>{}</title>", escaped(&figure.title))?;
-    style(&mut out)?;
-    writeln!(out, r##"<rect class="paper" width="{WIDTH}" height="{height}" fill="#ffffff"/>"##)?;
+    style(&mut out, look.theme, letters)?;
+    writeln!(out, r##"<rect class="paper" width="{wide}" height="{height}" fill="#ffffff"/>"##)?;
     writeln!(out, "{ink}")?;
     for line in &layout.title {
         text(&mut out, line.at, &format!(r#" font-size="{TITLE}""#), &line.text)?;
@@ -58,8 +104,12 @@ pub(super) fn write(figure: &Figure, apart: bool) -> Result<Vec<Layer>, fmt::Err
     Ok(out.layers())
 }
 
-fn style(out: &mut Sheet) -> fmt::Result {
-    write!(out, "<style>@media screen and (prefers-color-scheme: dark) {{ .paper {{ fill: {DARK_PAPER} }}")?;
+/// The letters that come with the document, and colours on a dark screen; nothing where there are neither.
+fn style(out: &mut Sheet, theme: Theme, letters: &str) -> fmt::Result {
+    if theme == Theme::Print {
+        return if letters.is_empty() { Ok(()) } else { writeln!(out, "<style>{}</style>", letters.trim_end()) };
+    }
+    write!(out, "<style>{letters}@media screen and (prefers-color-scheme: dark) {{ .paper {{ fill: {DARK_PAPER} }}")?;
     for (class, _, dark) in Colour::ALL.map(Colour::shades) {
         write!(out, " .s-{class} {{ stroke: {dark} }} .f-{class} {{ fill: {dark} }}")?;
     }

@@ -11,12 +11,12 @@ const AWAY: f64 = 7.0;
 /// How far letters are lowered or raised.
 const SHIFT: f64 = 4.0;
 
-/// A word beside a place on the page; nothing where the place is none.
-pub(super) fn write(out: &mut impl Write, word: &Word, [x, y]: [f64; 2], colour: Colour) -> fmt::Result {
+/// A word beside a place in a frame of this height, which is not to cut it; nothing where the place is none.
+pub(super) fn write(out: &mut impl Write, word: &Word, [x, y]: [f64; 2], height: f64, colour: Colour) -> fmt::Result {
     if x.is_nan() || y.is_nan() {
         return Ok(());
     }
-    let (x, y, anchor) = match word.beside {
+    let (x, y, anchor) = match within(word.beside, y, height) {
         Beside::Right => (x + AWAY, y + 0.35 * TEXT, "start"),
         Beside::Left => (x - AWAY, y + 0.35 * TEXT, "end"),
         Beside::Above => (x, y - AWAY, "middle"),
@@ -34,6 +34,20 @@ pub(super) fn write(out: &mut impl Write, word: &Word, [x, y]: [f64; 2], colour:
         r##"<text {place} class="halo" stroke="#ffffff" stroke-width="3.5" stroke-linejoin="round">{text}</text>"##
     )?;
     writeln!(out, r#"<text {place} {}>{text}</text>"#, fill(colour))
+}
+
+/// The side of a place at this height, or the one across where a frame ends before the word does.
+fn within(beside: Beside, y: f64, height: f64) -> Beside {
+    let (is_high, is_low) = (y < AWAY + 0.75 * TEXT, y > height - AWAY - 0.75 * TEXT);
+    match beside {
+        Beside::Above if is_high => Beside::Below,
+        Beside::AboveRight if is_high => Beside::BelowRight,
+        Beside::AboveLeft if is_high => Beside::BelowLeft,
+        Beside::Below if is_low => Beside::Above,
+        Beside::BelowRight if is_low => Beside::AboveRight,
+        Beside::BelowLeft if is_low => Beside::AboveLeft,
+        _ => beside,
+    }
 }
 
 /// `_` and `^` as lowered and raised letters.

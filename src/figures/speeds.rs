@@ -8,8 +8,13 @@ use crate::orbit::ending::Kind;
 use crate::show::words;
 use crate::study::speeds::{Attractor, Speeds};
 
-/// The colours of attractors.
+/// The colours of attractors, and the marks by which those are told apart without them.
 const COLOURS: [Colour; 4] = [Colour::Blue, Colour::Vermilion, Colour::Green, Colour::Purple];
+const MARKERS: [Marker; 4] = [Marker::Dot, Marker::Ring, Marker::Triangle, Marker::Square];
+
+fn marker(colour: Colour) -> Marker {
+    COLOURS.iter().zip(MARKERS).find(|(known, _)| **known == colour).map_or(Marker::Dot, |(_, marker)| marker)
+}
 
 /// Each kind of motion with the stroke of its bar.
 const BARS: [(Kind, Stroke); 5] = [
@@ -34,7 +39,7 @@ pub fn speeds_figure(found: &Speeds, corners: &[CornerMark]) -> Figure {
         let places =
             attractor.at.iter().flat_map(|at| at.impact_angles.iter().map(|phase| [at.rpm, phase.to_degrees()]));
         if attractor.kind == Kind::Periodic {
-            return Series::points("", colour(index), Marker::Dot, places).if_any();
+            return Series::points("", colour(index), marker(colour(index)), places).if_any();
         }
         let mut points = Density::new(found.rpm, WHOLE_CAM);
         places.for_each(|[rpm, degrees]| points.push(rpm, degrees));
@@ -51,7 +56,7 @@ pub fn speeds_figure(found: &Speeds, corners: &[CornerMark]) -> Figure {
     let shares = Panel::new(Axis::new("share of starts", "%").over(SHARES), 0.14, shares);
     let title = format!("{}: attractors from {} to {} rpm", found.model, found.rpm[0], found.rpm[1]);
     let axis = Axis::new(SPEED[0], SPEED[1]).over(found.rpm);
-    let mut figure = Figure::new(&title, axis, vec![impacts, bars(found), shares]);
+    let mut figure = Figure::new(&title, axis, vec![impacts, bars(found, &colours), shares]);
     if !found.coexistence.is_empty() {
         figure.note = "grey: several attractors, each reached by runs".into();
     }
@@ -77,7 +82,7 @@ fn colours(found: &Speeds) -> Vec<Colour> {
 const SHARES: [f64; 2] = [-5.0, 105.0];
 
 /// The range of speeds of each attractor as a bar, stroked by its kind, in as few lanes as they fit into.
-fn bars(found: &Speeds) -> Panel {
+fn bars(found: &Speeds, colours: &[Colour]) -> Panel {
     /// Of the range: what a name takes, and what is left between two bars of a lane.
     const NAME: f64 = 0.03;
     const APART: f64 = 0.004;
@@ -100,12 +105,18 @@ fn bars(found: &Speeds) -> Panel {
             of_kind.flat_map(|(attractor, lane)| [BREAK, [attractor.rpm[0], *lane], [attractor.rpm[1], *lane]]);
         Series::line(words::kind(*kind), Colour::Ink, *stroke, points).if_any()
     });
+    // In the middle of each bar stands what the attractor has above.
+    let marks = placed.iter().zip(colours).filter_map(|((attractor, lane), colour)| {
+        let middle = [0.5 * (attractor.rpm[0] + attractor.rpm[1]), *lane];
+        let cloud = attractor.kind != Kind::Periodic;
+        Series::points("", *colour, if cloud { Marker::Dot } else { marker(*colour) }, [middle]).if_any()
+    });
     // At the right edge there is no room beside the bar's beginning but on the left.
     let beside = |from: f64| if from + NAME * span > found.rpm[1] { Beside::AboveLeft } else { Beside::AboveRight };
     let names = placed
         .iter()
         .map(|(attractor, lane)| Word::new([attractor.rpm[0], *lane], &attractor.id, beside(attractor.rpm[0])));
-    let series = bars.chain(Series::words(names).if_any()).collect();
+    let series = bars.chain(marks).chain(Series::words(names).if_any()).collect();
     let lanes = [-(lanes.len() as f64) + 0.5, 0.9];
     let axis = Axis { spacing: Spacing::Nothing, ..Axis::new("attractor", "").over(lanes) };
     Panel::new(axis, 0.06 + 0.03 * (lanes[1] - lanes[0]), series)

@@ -139,13 +139,12 @@ fn arguments_that_exclude_or_need_each_other() {
         ("--events - --summary", ["standard output", "files"]),
         ("--strobe 1 --strobe-out - --events -", ["standard output", "files"]),
         ("--strobe 1 --strobe-out - --summary", ["standard output", "files"]),
-        ("--trace x.pdf", ["--trace <FILE>", ".svg or .png"]),
-        ("--phase-plane x", ["--phase-plane <FILE>", ".svg or .png"]),
-        ("--phase-plane -", ["--phase-plane <FILE>", ".svg or .png"]),
-        ("--phase-plane x.csv", ["--phase-plane <FILE>", ".svg or .png"]),
+        ("--trace x.eps", ["--trace <FILE>", ".svg, .png or .pdf"]),
+        ("--phase-plane x", ["--phase-plane <FILE>", ".svg, .png or .pdf"]),
+        ("--phase-plane -", ["--phase-plane <FILE>", ".svg, .png or .pdf"]),
+        ("--phase-plane x.csv", ["--phase-plane <FILE>", ".svg, .png or .pdf"]),
         ("--drawn 5", ["--drawn", "--trace and --phase-plane"]),
     ] {
-        let says: Vec<&str> = says.into_iter().filter(|part| *part != "x.pdf").collect();
         place.refuses(&format!("simulate MODEL --rpm 700 {line}"), &says);
     }
     place.refuses("diagram MODEL --rpm 600:700:3 --out - --summary", &["--out -", "--summary", "standard output"]);
@@ -157,9 +156,9 @@ fn arguments_that_exclude_or_need_each_other() {
         place.refuses(&format!("diagram MODEL --rpm 600:700:3 {line}"), &says);
     }
     // A table is not to be taken for a picture.
-    for name in ["out.pdf", "out.jpg", "out.svg.gz", "out.csv.png.tiff"] {
+    for name in ["out.eps", "out.jpg", "out.svg.gz", "out.csv.png.tiff"] {
         let line = format!("diagram MODEL --rpm 600:700:3 --out {name}");
-        place.refuses(&line, &["--out <FILE>", name, ".csv, .svg or .png"]);
+        place.refuses(&line, &["--out <FILE>", name, ".csv, .svg, .png or .pdf"]);
     }
     // Of two files of one name the second alone would be left.
     for [(one, first), (other, second)] in [
@@ -171,6 +170,38 @@ fn arguments_that_exclude_or_need_each_other() {
         let says = [one, other].map(|option| option.trim_start_matches("--strobe 1 "));
         let name = second.trim_start_matches("./");
         place.refuses(&format!("simulate MODEL --rpm 700 {one} {first} {other} {second}"), &[says[0], says[1], name]);
+    }
+}
+
+/// Widths, letters and ranges that make no figure; and where there is none to have them.
+#[test]
+fn looks_that_cannot_be() {
+    let place = Place::new();
+    for (look, says) in [
+        ("--width 85", ["--width <WIDTH>", "85mm"]),
+        ("--width 0mm", ["--width <WIDTH>", "above 0"]),
+        ("--width nanmm", ["--width <WIDTH>", "finite"]),
+        ("--width=-85mm", ["--width <WIDTH>", "above 0"]),
+        ("--width 1mm", ["cannot be made", "30 to 2400 pt"]),
+        ("--width 85mm --size 40pt", ["letters of 40.00 pt", "do not fit"]),
+        ("--size 8", ["--size <SIZE>", "unit"]),
+        ("--font nosuch.ttf", ["nosuch.ttf", "cannot be read as a font"]),
+        ("--font NoSuchLetters", ["NoSuchLetters", "is installed"]),
+        ("--theme dark", ["--theme <THEME>", "screen, print"]),
+        ("--x 2:1", ["--x <LO:HI>", "not below"]),
+        ("--x 1:inf", ["--x <LO:HI>", "finite"]),
+        ("--x 5:6", ["--x from 5 to 6", "shows nothing"]),
+        ("--y 7:8", ["--y from 7 to 8", "shows nothing"]),
+        ("--y 0.4:0.4001", ["--y from 0.4", "less than a hundredth"]),
+    ] {
+        place.refuses(&format!("simulate MODEL --rpm 183 --revolutions 3 --trace out.svg {look}"), &says);
+    }
+    for look in ["--width 85mm", "--size 8pt", "--no-title", "--theme print", "--x 0:1", "--y 0:1"] {
+        place.refuses(&format!("cam MODEL {look}"), &["--out <FILE>", "not provided"]);
+        place.refuses(
+            &format!("diagram MODEL --rpm 600:700:3 --out out.csv {look}"),
+            &["pictures", ".svg, .png or .pdf"],
+        );
     }
 }
 

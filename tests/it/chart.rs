@@ -186,7 +186,7 @@ fn what_is_no_chart_is_refused_with_a_reason() {
     assert!(refused(&["--x", "rpm=760:600:3", "--y", y]).contains("is below the lowest"));
     assert!(refused(&["--x", "rpm=-5:600:3", "--y", y]).contains("above 0"));
     assert!(refused(&["--x", "rpm=600:760:100000", "--y", "mass=1:2:100000"]).contains("1 to 100000000"));
-    assert!(refused(&["--x", x, "--y", y, "--out", "a.pdf"]).contains(".csv, .zarr, .svg or .png"));
+    assert!(refused(&["--x", x, "--y", y, "--out", "a.eps"]).contains(".csv, .zarr, .svg, .png or .pdf"));
 }
 
 /// The nonsmooth fold of the paper goes over the chart at omega* where the restitution is the paper's, whichever axis is which.

@@ -6,7 +6,7 @@ use corner_impact::cam::Cam;
 use corner_impact::draw::layout::{Layout, TEXT, Text, WIDTH, width};
 use corner_impact::draw::ticks::{Tick, ticks, unit};
 use corner_impact::draw::{
-    Axis, Cloud, Colour, Data, Density, Figure, Mark, Marker, Panel, Series, Spacing, Stroke, png, svg, thin,
+    Axis, Cloud, Colour, Data, Density, Figure, Look, Mark, Marker, Panel, Series, Spacing, Stroke, png, svg, thin,
 };
 use corner_impact::figures::{
     CornerMark, Run, cam_figure, corner_marks, impact_diagram, phase_plane, strobe_diagram, time_trace,
@@ -37,7 +37,7 @@ fn parabola() -> Figure {
 
 /// The SVG, after it was read as XML and as SVG.
 fn drawn(figure: &Figure) -> String {
-    let text = svg::render(figure).unwrap();
+    let text = svg::render(figure, &Look::default()).unwrap();
     Document::parse(&text).unwrap();
     Tree::from_str(&text, &Options::default()).unwrap();
     text
@@ -188,7 +188,7 @@ fn no_label_covers_another() {
             figure.panels[0].y = Axis::degrees("phase").over([0.0, 360.0]);
             figure.marks.clone_from(&marks);
             figure.panels[0].marks = marks;
-            let layout = Layout::new(&figure);
+            let layout = Layout::new(&figure, &figure.title, WIDTH);
             let frame = layout.panels[0].frame;
             let mut labels: Vec<Text> = layout.marks.iter().map(|mark| mark.label.clone().unwrap()).collect();
             for (mark, label) in layout.marks.iter().map(|mark| (mark, mark.label.as_ref().unwrap())) {
@@ -222,7 +222,7 @@ fn legends_wrap_instead_of_running_off_the_page() {
     let many = (0..9)
         .map(|i| Series { label: format!("a rather long name, number {i}"), ..figure.panels[0].series[0].clone() });
     figure.panels[0].series = many.collect();
-    let layout = Layout::new(&figure);
+    let layout = Layout::new(&figure, &figure.title, WIDTH);
     let panel = &layout.panels[0];
     assert_eq!(panel.legend.len(), 9);
     for (index, (_, label)) in panel.legend.iter().enumerate() {
@@ -305,12 +305,12 @@ fn nothing_to_draw_is_said() {
         let svg = drawn(&figure);
         assert!(svg.contains(">no data<"), "{svg}");
         assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
-        assert!(png::render(&figure, 300).is_ok());
+        assert!(png::render(&figure, &Look::default(), 300).is_ok());
     }
     let empty = Run { rpm: 60.0, samples: vec![], events: vec![] };
     assert_eq!(drawn(&time_trace("", &empty)).matches(">no data<").count(), 2);
     let none = Figure { panels: vec![], ..parabola() };
-    assert!(drawn(&none).contains("<svg") && png::render(&none, 100).is_ok());
+    assert!(drawn(&none).contains("<svg") && png::render(&none, &Look::default(), 100).is_ok());
     assert!(!drawn(&parabola()).contains("no data"));
 }
 
@@ -353,16 +353,16 @@ fn a_million_points_stay_small() {
         (state >> 11) as f64 / (1_u64 << 53) as f64
     };
     (0..1_000_000).for_each(|_| noise.push(random(), random()));
-    let lines = |points: Vec<[f64; 2]>| svg::render(&figure(line(points))).unwrap().len();
+    let lines = |points: Vec<[f64; 2]>| svg::render(&figure(line(points)), &Look::default()).unwrap().len();
     let wave = |i: i32| [f64::from(i) * 1e-6, (f64::from(i) * 0.7).sin()];
     for (what, size) in [
-        ("sweep", svg::render(&figure(Data::Density(grid))).unwrap().len()),
-        ("noise", svg::render(&figure(Data::Density(noise))).unwrap().len()),
+        ("sweep", svg::render(&figure(Data::Density(grid)), &Look::default()).unwrap().len()),
+        ("noise", svg::render(&figure(Data::Density(noise)), &Look::default()).unwrap().len()),
         ("fast wave", lines((0..1_000_000).map(wave).collect())),
         ("tangle", lines((0..1_000_000).map(|_| [random(), random()]).collect())),
         ("scatter", {
             let points = (0..1_000_000).map(|_| [random(), random()]).collect();
-            svg::render(&figure(Data::Points { points, marker: Marker::Ring })).unwrap().len()
+            svg::render(&figure(Data::Points { points, marker: Marker::Ring }), &Look::default()).unwrap().len()
         }),
     ] {
         assert!((5_000..1_000_000).contains(&size), "{what}: {size} bytes");
@@ -399,8 +399,8 @@ fn points_are_drawn_where_they_are() {
         let mut figure = figure(data);
         figure.x.range = Some([0.0, 1.0]);
         figure.panels[0].y.range = Some([0.0, 1.0]);
-        let frame = Layout::new(&figure).panels[0].frame;
-        let image = Pixmap::decode_png(&png::render(&figure, 2880).unwrap()).unwrap();
+        let frame = Layout::new(&figure, &figure.title, WIDTH).panels[0].frame;
+        let image = Pixmap::decode_png(&png::render(&figure, &Look::default(), 2880).unwrap()).unwrap();
         move |x: f64, y: f64| {
             let at = [frame.left + frame.width * x, frame.bottom() - frame.height * y].map(|part| (4.0 * part) as u32);
             image.pixel(at[0], at[1]).unwrap().red()
@@ -435,8 +435,8 @@ fn a_grid_lies_between_what_is_below_and_above_it() {
         figure.panels[0].y.range = Some([0.0, 1.0]);
         figure.panels[0].series.insert(0, below);
         figure.panels[0].series.push(above);
-        let frame = Layout::new(&figure).panels[0].frame;
-        let image = Pixmap::decode_png(&png::render(&figure, 2880).unwrap()).unwrap();
+        let frame = Layout::new(&figure, &figure.title, WIDTH).panels[0].frame;
+        let image = Pixmap::decode_png(&png::render(&figure, &Look::default(), 2880).unwrap()).unwrap();
         let pixel = |x: f64, y: f64| {
             let at = [frame.left + frame.width * x, frame.bottom() - frame.height * y].map(|part| (4.0 * part) as u32);
             let pixel = image.pixel(at[0], at[1]).unwrap();
@@ -560,16 +560,16 @@ fn light_on_paper_and_dark_on_a_dark_screen() {
         ["fill", "stroke"].iter().any(|name| node.attribute(*name).is_some_and(|value| value != "none"))
     });
     assert!(painted.clone().count() > 3 && painted.clone().all(|node| node.attribute("class").is_some()));
-    let image = Pixmap::decode_png(&png::render(&parabola(), 400).unwrap()).unwrap();
+    let image = Pixmap::decode_png(&png::render(&parabola(), &Look::default(), 400).unwrap()).unwrap();
     let corner = image.pixel(0, 0).unwrap();
     assert_eq!((corner.red(), corner.green(), corner.blue(), corner.alpha()), (255, 255, 255, 255));
 }
 
 #[test]
 fn a_png_has_its_size_and_letters() {
-    let image = |figure: &Figure| Pixmap::decode_png(&png::render(figure, 900).unwrap()).unwrap();
+    let image = |figure: &Figure| Pixmap::decode_png(&png::render(figure, &Look::default(), 900).unwrap()).unwrap();
     let (plain, mut other) = (image(&parabola()), parabola());
-    let layout = Layout::new(&other);
+    let layout = Layout::new(&other, &other.title, WIDTH);
     assert_eq!(plain.width(), 900);
     assert!((f64::from(plain.height()) - 900.0 * layout.height / WIDTH).abs() <= 1.0);
     other.title = "U".into();
@@ -586,7 +586,9 @@ fn a_png_has_its_size_and_letters() {
     unknown.panels[0].y.unit = "10\u{e123}".into();
     assert_ne!(image(&other), image(&unknown), "both are drawn as the box of a missing letter");
     for width in [0, 10_001, u32::MAX] {
-        assert!(png::render(&parabola(), width).unwrap_err().to_string().contains(&width.to_string()));
+        assert!(
+            png::render(&parabola(), &Look::default(), width).unwrap_err().to_string().contains(&width.to_string())
+        );
     }
 }
 
@@ -597,8 +599,11 @@ fn the_same_figure_is_the_same_bytes() {
         sweep(2000, 100, |rpm, phase| grid.push(rpm, phase));
         impact_diagram("D", grid, &[], None)
     };
-    assert_eq!(svg::render(&build()).unwrap(), svg::render(&build()).unwrap());
-    assert_eq!(png::render(&build(), 500).unwrap(), png::render(&build(), 500).unwrap());
+    assert_eq!(svg::render(&build(), &Look::default()).unwrap(), svg::render(&build(), &Look::default()).unwrap());
+    assert_eq!(
+        png::render(&build(), &Look::default(), 500).unwrap(),
+        png::render(&build(), &Look::default(), 500).unwrap()
+    );
     let json = serde_json::to_string(&build()).unwrap();
     assert!(
         json.contains("\"density\"") && json.contains("\"cam speed ω\"") && json.len() < 2_000_000,

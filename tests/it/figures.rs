@@ -9,8 +9,8 @@ use crate::common::ROOT;
 use approx::assert_relative_eq;
 use corner_impact::cam::Side;
 use corner_impact::cli::{Exit, run};
-use corner_impact::draw::layout::Layout;
-use corner_impact::draw::{Data, Figure, Series, svg};
+use corner_impact::draw::layout::{Layout, WIDTH};
+use corner_impact::draw::{Data, Figure, Look, Series, svg};
 use corner_impact::figures::{Effort, Neighbour, Outline, Plate, Subject, listed, plate, plates};
 use corner_impact::flight::State;
 use corner_impact::model::{Model, OSORIO_2008};
@@ -53,7 +53,7 @@ fn series(figure: &Figure, panel: usize, label: &str) -> Vec<[f64; 2]> {
 /// Whether a figure can be read: numbers, or breaks; something to see in each panel; a small file.
 fn check(plate: &Plate) {
     let figure = &plate.drawn.as_ref().unwrap().figure;
-    let (id, layout) = (plate.id, Layout::new(figure));
+    let (id, layout) = (plate.id, Layout::new(figure, &figure.title, WIDTH));
     for (panel, place) in figure.panels.iter().zip(&layout.panels) {
         let mut seen = false;
         for series in &panel.series {
@@ -71,7 +71,7 @@ fn check(plate: &Plate) {
         }
         assert!(seen, "{id}: nothing to see in {}", panel.y.label);
     }
-    let text = svg::render(figure).unwrap();
+    let text = svg::render(figure, &Look::default()).unwrap();
     assert!(text.len() < 250_000, "{id}: {} bytes", text.len());
     let paths = text.split(" d=\"").skip(1).filter_map(|rest| rest.split('"').next());
     for path in paths {
@@ -203,7 +203,7 @@ fn the_shape_is_the_papers_construction() {
     let turn = points(&figure.panels[0].series.iter().find(turns).unwrap().data);
     assert!(turn[turn.len() - 1][0] < turn[0][0], "the cam turns to the left");
     // On the page a circle is one.
-    let layout = Layout::new(&figure);
+    let layout = Layout::new(&figure, &figure.title, WIDTH);
     let (frame, range) = (layout.panels[0].frame, layout.panels[0].range);
     let [across, up] = [frame.width / (layout.range[1] - layout.range[0]), frame.height / (range[1] - range[0])];
     assert_relative_eq!(across, up, max_relative = 1e-9);

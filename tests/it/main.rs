@@ -43,6 +43,7 @@ mod page;
 mod physics;
 mod planted;
 mod pointed;
+mod print;
 mod progress;
 mod properties;
 mod proved_orbits;

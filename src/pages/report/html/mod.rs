@@ -12,10 +12,9 @@ mod slider;
 mod speeds;
 mod verdict;
 
-use std::fmt;
-
 use maud::{DOCTYPE, PreEscaped, html};
 
+use crate::draw::svg::SvgError;
 use crate::pages::{local_map, verify};
 use crate::report::{Report, VERSION};
 use crate::show::block::{Block, Section};
@@ -30,7 +29,7 @@ const SCRIPTS: [&str; 2] = [include_str!("ledger.js"), include_str!("slider.js")
 pub enum HtmlError {
     /// A figure could not be written.
     #[error("figure: {0}")]
-    Figure(#[from] fmt::Error),
+    Figure(#[from] SvgError),
     /// The slider's data could not be written.
     #[error("data: {0}")]
     Data(#[from] serde_json::Error),

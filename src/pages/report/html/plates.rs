@@ -2,7 +2,7 @@
 
 use maud::{Markup, PreEscaped, html};
 
-use crate::draw::svg;
+use crate::draw::{Look, svg};
 use crate::figures::{Drawn, Plate};
 use crate::pages::report::html::HtmlError;
 use crate::report::Report;
@@ -52,7 +52,7 @@ fn place(plate: &Plate, report: &Report) -> Markup {
 pub(crate) fn plate(plate: &Plate, report: &Report) -> Result<Markup, HtmlError> {
     let (drawing, caption) = match &plate.drawn {
         Ok(Drawn { figure, caption }) => {
-            let drawing = PreEscaped(svg::render(figure)?);
+            let drawing = PreEscaped(svg::render(figure, &Look::default())?);
             let region = html! { div.wide.drawing role="region" aria-label=(plate.title) tabindex="0" { (drawing) } };
             (region, html! { (caption) code.command { (plate.command) } })
         }

@@ -1,0 +1,327 @@
+//! Do figures stand on paper as they are asked to: as wide, with letters as high, in the font, between the ends?
+
+use std::collections::BTreeSet;
+use std::io::Read;
+use std::sync::Arc;
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use corner_impact::cam::Cam;
+use corner_impact::draw::font::Fonts;
+use corner_impact::draw::layout::{Layout, TEXT, Text, width};
+use corner_impact::draw::{
+    Axis, Beside, Colour, Data, Density, Figure, Look, Marker, Panel, Series, Stroke, Theme, Word, pdf, png, svg,
+};
+use corner_impact::figures::{cam_figure, corner_marks, impact_diagram, speeds_figure};
+use corner_impact::model::{Model, OSORIO_2008};
+use corner_impact::progress::Unwatched;
+use corner_impact::study::attractors::{Resolution, Step};
+use corner_impact::study::speeds::speeds;
+use flate2::read::ZlibDecoder;
+use resvg::tiny_skia::{Pixmap, Transform};
+use resvg::usvg::fontdb::Source;
+use resvg::usvg::roxmltree::{Document, ParsingOptions};
+use resvg::usvg::{Options, Tree};
+
+use crate::common;
+
+/// Points of a millimetre.
+const MM: f64 = 72.0 / 25.4;
+
+/// 85 mm wide, with letters of 8 pt.
+fn column() -> Look {
+    Look { width: Some(85.0 * MM), size: Some(8.0), theme: Theme::Print, ..Look::default() }
+}
+
+fn parabola() -> Figure {
+    let points: Vec<[f64; 2]> = (0..100).map(|i| [f64::from(i), f64::from(i * i)]).collect();
+    let series = |colour, data| Series { label: String::new(), colour, data };
+    let word = Word { at: [50.0, 2500.0], text: "half_way".into(), beside: Beside::Right };
+    let mut cloud = Density::new([0.0, 100.0], [0.0, 1e4]);
+    (0..200).for_each(|i| (0..200).for_each(|j| cloud.push(0.5 * f64::from(i), 50.0 * f64::from(j))));
+    let all = vec![
+        series(Colour::Grey, Data::Density(cloud)),
+        series(Colour::Blue, Data::Line { points: points.clone(), stroke: Stroke::Dashed }),
+        series(Colour::Green, Data::Points { points, marker: Marker::Ring }),
+        series(Colour::Ink, Data::Words(vec![word])),
+    ];
+    let panel = |series| Panel { y: Axis::new("height", "m"), height: 0.4, series, marks: vec![] };
+    let panels = vec![panel(all.clone()), panel(all)];
+    Figure { title: "A parabola".into(), x: Axis::new("length", "s"), marks: vec![], panels, note: "noté".into() }
+}
+
+/// The streams of a PDF that are packed, and all the rest of it as text.
+fn streams(pdf: &[u8]) -> (Vec<Vec<u8>>, String) {
+    let (mut streams, mut rest, mut text) = (Vec::new(), pdf, String::new());
+    let find = |bytes: &[u8], what: &[u8]| bytes.windows(what.len()).position(|part| part == what);
+    while let Some(at) = find(rest, b"stream\n") {
+        text += &String::from_utf8_lossy(&rest[..at]);
+        let body = &rest[at + 7..];
+        let end = find(body, b"\nendstream").unwrap();
+        let mut unpacked = Vec::new();
+        let is_packed = ZlibDecoder::new(&body[..end]).read_to_end(&mut unpacked).is_ok();
+        streams.push(if is_packed { unpacked } else { body[..end].to_vec() });
+        rest = &body[end + 10..];
+    }
+    (streams, text + &String::from_utf8_lossy(rest))
+}
+
+/// How high letters are on the page, each time that a font is set.
+fn heights(content: &str) -> Vec<f64> {
+    let (mut scale, mut kept, mut heights) = (1.0, Vec::new(), Vec::new());
+    for line in content.lines() {
+        let part = |at: usize| line.split(' ').nth(at).and_then(|part| part.parse::<f64>().ok());
+        match line.rsplit(' ').next() {
+            Some("q") => kept.push(scale),
+            Some("Q") => scale = kept.pop().unwrap(),
+            Some("cm") => scale *= part(0).unwrap(),
+            Some("Tf") => heights.push(scale * part(1).unwrap()),
+            _ => {}
+        }
+    }
+    heights
+}
+
+/// The bytes of a string of a PDF in brackets.
+fn unescaped(text: &[u8]) -> Vec<u8> {
+    let (mut bytes, mut rest) = (Vec::new(), text.iter().copied().peekable());
+    while let Some(byte) = rest.next() {
+        let octal = |byte: &u8| (b'0'..b'8').contains(byte);
+        match byte {
+            b'\\' if rest.peek().is_some_and(octal) => {
+                let digits: Vec<u8> = rest.by_ref().take(3).collect();
+                bytes.push(digits.iter().fold(0, |all, digit| 8 * all + (digit - b'0')));
+            }
+            b'\\' => bytes.extend(rest.next().map(|byte| match byte {
+                b'n' => b'\n',
+                b'r' => b'\r',
+                b't' => b'\t',
+                b'b' => 8,
+                b'f' => 12,
+                byte => byte,
+            })),
+            byte => bytes.push(byte),
+        }
+    }
+    bytes
+}
+
+#[test]
+fn a_figure_is_as_wide_and_its_letters_as_high_as_asked() {
+    let figure = parabola();
+    for (mm, size) in [(85.0, 8.0), (85.0, 6.0), (170.0, 10.0), (60.0, 5.0)] {
+        let look = Look { width: Some(mm * MM), size: Some(size), ..column() }.checked().unwrap();
+        let text = svg::render(&figure, &look).unwrap();
+        let options = ParsingOptions::default();
+        let document = Document::parse_with_options(&text, options).unwrap();
+        let root = document.root_element();
+        let points: f64 = root.attribute("width").unwrap().strip_suffix("pt").unwrap().parse().unwrap();
+        let across: f64 = root.attribute("viewBox").unwrap().split(' ').nth(2).unwrap().parse().unwrap();
+        let letters: f64 = root.attribute("font-size").unwrap().parse().unwrap();
+        assert!(
+            (points - mm * MM).abs() < 0.01 && (letters * points / across - size).abs() < 0.01,
+            "{mm}: {text:.300}"
+        );
+
+        let (streams, rest) = streams(&pdf::render(&figure, &look).unwrap());
+        let page: Vec<f64> = rest
+            .split("/MediaBox [")
+            .nth(1)
+            .unwrap()
+            .split(']')
+            .next()
+            .unwrap()
+            .split(' ')
+            .map(|side| side.parse().unwrap())
+            .collect();
+        assert!((page[2] - mm * MM).abs() < 0.01, "{page:?}");
+        let content =
+            streams.iter().map(|stream| String::from_utf8_lossy(stream)).find(|stream| stream.contains(" Tf")).unwrap();
+        let letters = heights(&content);
+        // Most letters; the title's are higher, lowered ones smaller.
+        assert!(
+            letters.iter().filter(|height| (**height - size).abs() < 0.01).count() > letters.len() / 2,
+            "{letters:?}"
+        );
+    }
+    let image = png::render(&figure, &column(), column().pixels()).unwrap();
+    let decoder = ::png::Decoder::new(std::io::Cursor::new(&image));
+    let reader = decoder.read_info().unwrap();
+    let (dots, across) = (reader.info().pixel_dims.unwrap(), reader.info().width);
+    assert!((f64::from(across) / f64::from(dots.xppu) - 0.085).abs() < 1e-4, "{across} at {dots:?}");
+    assert_eq!(dots.xppu, dots.yppu);
+}
+
+/// Whatever the width: nothing beyond the page, and two ticks at least on each axis, or it tells no scale.
+#[test]
+fn a_narrow_figure_holds_its_words_and_ticks() {
+    let model = Model::parse("osorio-2008.toml", OSORIO_2008).unwrap();
+    let cam = Cam::new(&model).unwrap();
+    let mut cloud = Density::new([660.0, 750.0], [0.0, 360.0]);
+    (0..90).for_each(|i| cloud.push(660.0 + f64::from(i), f64::from(4 * i)));
+    let impacts = impact_diagram("impacts of 100 revolutions", cloud, &corner_marks(&cam), None);
+    for figure in [parabola(), cam_figure(&cam, "osorio-2008"), impacts] {
+        for mm in [70.0, 85.0, 120.0, 170.0] {
+            let wide = Look { width: Some(mm * MM), ..column() }.across();
+            let layout = Layout::new(&figure, &figure.title, wide);
+            let panels = layout.panels.iter();
+            let labels =
+                panels.clone().flat_map(|panel| panel.legend.iter().map(|(_, label)| label).chain([&panel.name]));
+            let labels =
+                labels.chain(panels.flat_map(|panel| panel.marks.iter().filter_map(|mark| mark.label.as_ref())));
+            let labels = labels.chain(layout.marks.iter().filter_map(|mark| mark.label.as_ref()));
+            for Text { at, text } in labels.chain([&layout.name]).chain(&layout.note) {
+                assert!(at[0] >= 0.0 && at[0] + width(text, TEXT) <= wide, "{mm} mm: \"{text}\" at {at:?} of {wide}");
+            }
+            assert!(
+                layout.ticks.len() > 1 && layout.panels.iter().all(|panel| panel.ticks.len() > 1),
+                "{}: {mm} mm",
+                figure.title
+            );
+        }
+    }
+}
+
+/// A reader without the font sees the same letters: those of the font that the SVG brings alone.
+#[test]
+fn an_svg_brings_its_letters() {
+    // Letters by themselves: those that are pushed together are so by a table that is left out. This one is put together from two.
+    let mut figure = Figure { title: "é".into(), x: Axis::new("é", ""), note: "é".into(), ..parabola() };
+    for panel in &mut figure.panels {
+        panel.series.pop();
+        panel.y = Axis::new("é", "");
+    }
+    let look = column();
+    let text = svg::render(&figure, &look).unwrap();
+    let brought = text.split("font/ttf;base64,").nth(1).and_then(|rest| STANDARD.decode(rest.split(')').next()?).ok());
+    let brought = brought.unwrap();
+    assert!(brought.len() < epaint_default_fonts::UBUNTU_LIGHT.len() / 10, "{} bytes of letters", brought.len());
+    let image = |font: &[u8]| {
+        let mut options = Options::default();
+        options.fontdb_mut().load_font_source(Source::Binary(Arc::new(font.to_vec())));
+        let mut image = Pixmap::new(1200, 1200).unwrap();
+        let tree = Tree::from_str(&text, &options).unwrap();
+        resvg::render(&tree, Transform::from_scale(3.0, 3.0), &mut image.as_mut());
+        image
+    };
+    let [brought, full, none] = [brought.as_slice(), epaint_default_fonts::UBUNTU_LIGHT, &[]].map(image);
+    assert!(brought == full && full != none);
+    assert!(!svg::render(&figure, &Look::default()).unwrap().contains("@font-face"));
+}
+
+/// Letters of a PDF can be looked for and copied: glyphs, by the table that says what they stand for, are the words.
+#[test]
+fn a_pdf_has_its_words_and_fonts() {
+    let (streams, rest) = streams(&pdf::render(&parabola(), &column()).unwrap());
+    assert!(rest.contains("LETTER+Ubuntu-Light") && rest.contains("/FontFile2") && rest.contains("/SMask"), "{rest}");
+    let text = |stream: &[u8]| String::from_utf8_lossy(stream).into_owned();
+    let map = streams.iter().map(|stream| text(stream)).find(|stream| stream.contains("beginbfchar")).unwrap();
+    let meant = |glyph: u16| {
+        let line = map.lines().find_map(|line| line.strip_prefix(&format!("<{glyph:04X}> <")))?;
+        char::from_u32(u32::from_str_radix(line.get(..4)?, 16).ok()?)
+    };
+    let content = streams.iter().find(|stream| text(stream).contains(" Tf")).unwrap();
+    let mut words = String::new();
+    for part in content.split(|byte| *byte == b'\n').filter(|line| line.ends_with(b" Tj")) {
+        let inside = &part[1..part.len() - 4];
+        let hex = || u16::from_str_radix(&text(inside), 16).unwrap().to_be_bytes().to_vec();
+        let glyph = if part[0] == b'<' { hex() } else { unescaped(inside) };
+        let glyph: [u8; 2] = glyph.try_into().unwrap();
+        words.extend(meant(u16::from_be_bytes(glyph)));
+    }
+    for said in ["A parabola", "length (s)", "noté"] {
+        assert!(words.contains(said), "no \"{said}\" in {words}");
+    }
+    assert_eq!(words.matches("half").count(), 2, "once a panel, the rim being none of it: {words}");
+}
+
+#[test]
+fn titles_and_ends_of_axes_are_as_asked() {
+    let look = Look { untitled: true, x: Some([20.0, 60.0]), y: Some([500.0, 2500.0]), ..column() };
+    let figure = look.framed(parabola()).unwrap();
+    let layout = Layout::new(&figure, "", look.across());
+    assert_eq!((layout.range, layout.panels[0].range), ([20.0, 60.0], [500.0, 2500.0]));
+    assert!(layout.panels[1].range[1] > 9000.0, "the second panel keeps its own: {:?}", layout.panels[1].range);
+    let text = svg::render(&figure, &look).unwrap();
+    assert_eq!(text.matches("A parabola").count(), 1, "for a reader aloud alone");
+    for (x, y, says) in [
+        (Some([200.0, 300.0]), None, "--x from 200 to 300 shows nothing"),
+        (Some([20.0, 20.5]), None, "--x from 20 to 20.5 is less than a hundredth"),
+        (None, Some([2e4, 3e4]), "--y from 20000 to 30000 shows nothing"),
+    ] {
+        let why = Look { x, y, ..column() }.framed(parabola()).unwrap_err().to_string();
+        assert!(why.contains(says), "{why}");
+    }
+    for (width, size) in [(5.0, None), (f64::NAN, None), (240.0, Some(40.0)), (240.0, Some(0.1)), (1e9, None)] {
+        assert!(Look { width: Some(width), size, ..Look::default() }.checked().is_err(), "{width} {size:?}");
+    }
+}
+
+#[test]
+fn a_font_of_a_file_is_taken_or_refused() {
+    let folder = tempfile::TempDir::new().unwrap();
+    let file = folder.path().join("letters.ttf");
+    std::fs::write(&file, epaint_default_fonts::HACK_REGULAR).unwrap();
+    let fonts = Fonts::named(file.to_str().unwrap()).unwrap();
+    assert_eq!(fonts.family(), "Hack");
+    let look = Look { fonts: Some(fonts), ..column() };
+    assert!(svg::render(&parabola(), &look).unwrap().contains("font-family=\"'Hack', sans-serif\""));
+    let (_, rest) = streams(&pdf::render(&parabola(), &look).unwrap());
+    assert!(rest.contains("LETTER+Hack-Regular") && !rest.contains("Ubuntu"), "{rest}");
+    // Cut off anywhere, a font is refused or drawn without the letters that are gone; nothing breaks.
+    let whole = epaint_default_fonts::HACK_REGULAR;
+    for share in [0.0, 0.001, 0.3, 0.9] {
+        std::fs::write(&file, &whole[..(share * whole.len() as f64) as usize]).unwrap();
+        if let Ok(fonts) = Fonts::named(file.to_str().unwrap()) {
+            let look = Look { fonts: Some(fonts), ..column() };
+            let _ = (svg::render(&parabola(), &look), pdf::render(&parabola(), &look));
+        }
+    }
+    assert!(
+        Fonts::named("No Such Letters").unwrap_err().to_string().contains("no font \"No Such Letters\" is installed")
+    );
+    assert!(Fonts::named("none.ttf").unwrap_err().to_string().contains("none.ttf: cannot be read as a font"));
+}
+
+/// Readable in grey: motions that repeat are told apart by the shapes of their points, and a bar bears the shape of its motion.
+#[test]
+fn attractors_are_told_apart_by_shapes() {
+    let model = common::osorio();
+    let resolution = Resolution { step: Step::for_speeds([738.8, 739.4], 12), starts: 8 };
+    let found = speeds(&model, [738.8, 739.4], resolution, &Unwatched).unwrap();
+    let figure = speeds_figure(&found, &[]);
+    let shapes = |panel: &Panel| {
+        let of = |series: &Series| match &series.data {
+            Data::Points { marker, .. } => Some((format!("{:?}", series.colour), format!("{marker:?}"))),
+            _ => None,
+        };
+        panel.series.iter().filter_map(of).collect::<BTreeSet<_>>()
+    };
+    let [places, bars] = [&figure.panels[0], &figure.panels[1]].map(shapes);
+    let (colours, markers): (BTreeSet<_>, BTreeSet<_>) = places.iter().cloned().unzip();
+    assert!(colours.len() > 1 && colours.len() == markers.len() && places.len() == colours.len(), "{places:?}");
+    assert!(places.is_subset(&bars), "{places:?}, {bars:?}");
+}
+
+/// Every command that draws has the options of paper.
+#[test]
+fn every_picture_takes_the_options() {
+    for command in ["cam", "simulate", "diagram", "chart", "figure", "speeds", "basins", "continue", "curve", "chaos"] {
+        let help = common::text(common::corner_impact([command, "--help"]).stdout);
+        for option in ["--width <", "--size <", "--font <", "--no-title", "--theme <", "--x <", "--y <", ".pdf"] {
+            assert!(help.contains(option), "{command}: no {option}");
+        }
+    }
+    let folder = tempfile::TempDir::new().unwrap();
+    for name in ["a.svg", "a.png", "a.pdf"] {
+        let file = folder.path().join(name);
+        let line = format!(
+            "simulate --rpm 183 --revolutions 3 --width 85mm --size 8pt --y 0.4:0.5 --theme print --trace {}",
+            file.display()
+        );
+        let output = common::corner_impact(line.split(' '));
+        assert_eq!(output.status.code(), Some(0), "{line}: {}", common::text(output.stderr));
+        let begins: [&[u8]; 3] = [b"<svg", b"\x89PNG", b"%PDF"];
+        assert!(begins.iter().any(|begin| std::fs::read(&file).unwrap().starts_with(begin)), "{name}");
+    }
+}
