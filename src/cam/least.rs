@@ -25,12 +25,12 @@ const OF_A_SEGMENT: usize = 8;
 impl Cam {
     /// The lowest lift.
     pub fn lowest(&self) -> Least {
-        self.least([1.0, 0.0, 0.0])
+        self.least([1.0, 0.0, 0.0, 0.0])
     }
 
-    /// Where `a_0 c + a_1 c' + a_2 c''` is least: from the sign of its derivative between neighbouring angles, of which the
+    /// Where `a_0 c + a_1 c' + a_2 c'' + a_3 c'''` is least: from the sign of its derivative between neighbouring angles, of which the
     /// shortest wave of the cam has eight.
-    pub fn least(&self, weights: [f64; 3]) -> Least {
+    pub fn least(&self, weights: [f64; 4]) -> Least {
         let segments = self.segments().iter().enumerate();
         let of_segments = segments.map(|(index, segment)| of_segment(index, segment, weights));
         // A cam has a segment.
@@ -46,15 +46,16 @@ impl Cam {
 impl Segment {
     /// Its lowest and its highest lift, m.
     pub fn extremes(&self) -> [f64; 2] {
-        [of_segment(0, self, [1.0, 0.0, 0.0]).value, -of_segment(0, self, [-1.0, 0.0, 0.0]).value]
+        [of_segment(0, self, [1.0, 0.0, 0.0, 0.0]).value, -of_segment(0, self, [-1.0, 0.0, 0.0, 0.0]).value]
     }
 }
 
-fn of_segment(index: usize, segment: &Segment, weights: [f64; 3]) -> Least {
+fn of_segment(index: usize, segment: &Segment, weights: [f64; 4]) -> Least {
     let Segment { start, end, law, .. } = segment;
     let at = |angle: f64| {
         let lift = law.lift(angle);
-        let value = weights[0] * lift.value + weights[1] * lift.slope + weights[2] * lift.curvature;
+        let value =
+            weights[0] * lift.value + weights[1] * lift.slope + weights[2] * lift.curvature + weights[3] * lift.third;
         Least { segment: index, angle, value, lift }
     };
     let waves = match law {
@@ -66,7 +67,8 @@ fn of_segment(index: usize, segment: &Segment, weights: [f64; 3]) -> Least {
     let angle = |place: usize| start + (end - start) * place as f64 / count as f64;
     let falls = |angle: f64| {
         let Lift { slope, curvature, third, .. } = law.lift(angle);
-        weights[0] * slope + weights[1] * curvature + weights[2] * third < 0.0
+        let fourth = if weights[3] == 0.0 { 0.0 } else { law.jet(angle).0[4] };
+        weights[0] * slope + weights[1] * curvature + weights[2] * third + weights[3] * fourth < 0.0
     };
     let looked: Vec<Least> = (0..=count).map(|place| at(angle(place))).collect();
     let mut least = if looked[count].value < looked[0].value { looked[count] } else { looked[0] };

@@ -11,10 +11,12 @@ use super::{
 };
 use crate::cam::{Cam, within_a_turn};
 use crate::diagram::{Counted, Following, Places, Section, Speeds, Starts, Sweep};
-use crate::figures::{corner_marks, impact_diagram, strobe_diagram};
+use crate::figures::{corner_marks, impact_diagram, loads_diagram, strobe_diagram};
+use crate::model::Model;
 use crate::show::csv;
 use crate::simulate::{Machine, angular_velocity};
 use crate::study::chart::{Lengths, growth};
+use crate::study::design::loads::Load;
 use crate::study::diagram::{self as swept, Shown, Swept, on_attractors};
 
 /// Sweeps over speeds: what the motion settles on, as a table or a picture.
@@ -61,6 +63,11 @@ pub(super) struct Arguments {
     /// Write one row a speed: what the run comes to, its period, impacts, growth and fastest impact, as in `chart`.
     #[arg(long, requires = "out", conflicts_with_all = ["attractors", "following", "section", "strobe", "lyapunov", "summary"])]
     one_row: bool,
+    /// Show a load of each revolution that is recorded: the fastest impact, the largest gap, the energy that impacts take, or the largest
+    /// contact force; a table has all of them.
+    #[arg(long, value_name = "LOAD", value_parser = load, requires = "out",
+        conflicts_with_all = ["attractors", "following", "section", "strobe", "lyapunov", "summary", "one_row"])]
+    show: Option<Load>,
     /// Add the Lyapunov exponent of each speed, per revolution, and its error: two columns, or a second panel. Of a motion that
     /// repeats it is that of its multipliers; -inf where the follower came to stick to the cam, be it once.
     #[arg(long, requires = "out")]
@@ -111,6 +118,9 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         },
         growth: arguments.lyapunov.then_some(growth),
     };
+    if let Some(load) = arguments.show {
+        return loads(arguments, &model, &sweep, load, session);
+    }
     if arguments.one_row {
         return one_row(arguments, &sweep, session);
     }
@@ -150,6 +160,31 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     if !to_standard {
         session.answer(&swept, arguments.summary)?;
     }
+    Ok(Exit::Agrees)
+}
+
+/// A load of each revolution.
+pub(super) fn load(text: &str) -> Result<Load, String> {
+    let names = || format!("must be one of: {}", Load::ALL.map(|load| load.to_string()).join(", "));
+    Load::ALL.into_iter().find(|load| load.to_string() == text).ok_or_else(names)
+}
+
+/// Loads of each revolution, as a table or a picture of one of them.
+fn loads(
+    arguments: &Arguments,
+    model: &Model,
+    sweep: &Sweep,
+    load: Load,
+    session: &mut Session<'_>,
+) -> Result<Exit, CommandError> {
+    let Some(path) = arguments.out.as_deref() else { return Ok(Exit::BadInput) };
+    let target = Target::create(path, &mut *session.out)?;
+    let lengths = Lengths { transient: arguments.transient, record: arguments.record };
+    let (start, threads) = (arguments.start.start(), arguments.threads.map(usize::from));
+    let found = watched("", |watch| swept::loads(model, sweep, start, lengths, threads, watch))?;
+    let table = |table: &mut dyn Write| Ok(table.write_all(csv::told(&csv::loads(&found), &model.units).as_bytes())?);
+    let title = format!("{}: {} by speed", model.name, load.to_string().replace('-', " "));
+    target.fill(table, || Ok(loads_diagram(&title, &found, load, &model.units)))?;
     Ok(Exit::Agrees)
 }
 

@@ -10,6 +10,7 @@ mod complaint;
 mod completions;
 mod continuation;
 mod curve;
+mod design;
 mod diagram;
 mod figure;
 mod help;
@@ -94,6 +95,7 @@ subcommands! {
         Cam = cam,
         Simulate = simulate,
         Speeds = speeds,
+        Design = design,
         Diagram = diagram,
         Chart = chart,
         Figure = figure,

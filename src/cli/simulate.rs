@@ -10,7 +10,7 @@ use super::picture::{self, Canvas, PictureArguments, is_standard, picture as dra
 use super::start::{StartArguments, count, finite, rpm};
 use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::cam::within_a_turn;
-use crate::figures::{self, phase_plane as phase_plane_figure, time_trace};
+use crate::figures::{self, phase_plane as phase_plane_figure, time_trace, with_force};
 use crate::file::Output;
 use crate::show::csv;
 use crate::study::simulate::{Sight, Simulation, Until, Wanted};
@@ -54,7 +54,7 @@ pub(super) struct Arguments {
     /// twenty blocks of revolutions: -inf (null in JSON) where the follower came to stick to the cam, be it once.
     #[arg(long, conflicts_with = "impacts")]
     lyapunov: bool,
-    /// Draw follower, cam and gap over the last revolutions (.svg, .png or .pdf), or write them, with the contact force, as CSV (.csv).
+    /// Draw follower, cam, gap and contact force over the last revolutions (.svg, .png or .pdf), or write them as CSV (.csv).
     #[arg(long, value_name = "FILE", value_parser = picture_or_table, conflicts_with = "impacts", group = "picture")]
     trace: Option<PathBuf>,
     /// Draw the gap against its velocity over the last revolutions (.svg, .png or .pdf).
@@ -155,7 +155,9 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let mut files: Vec<Output<'_>> = [events, states, written.transpose()?].into_iter().flatten().collect();
     let title = format!("{} at {} rpm", model.name, arguments.rpm);
     if let Some(canvas) = trace {
-        files.push(canvas.draw(time_trace(&title, &seen(figures::Run::DRAWN)?))?);
+        let run = seen(figures::Run::DRAWN)?;
+        let figure = with_force(time_trace(&title, &run), &run, model.follower.mass, &model.units.force);
+        files.push(canvas.draw(figure)?);
     }
     if let Some(canvas) = plane {
         files.push(canvas.draw(phase_plane_figure(&title, &seen(figures::Run::DRAWN)?))?);

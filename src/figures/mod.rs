@@ -11,6 +11,7 @@ mod chaos;
 mod chart;
 mod composition;
 mod curve;
+mod design;
 mod discontinuity_mapping;
 mod impacts;
 mod local_map;
@@ -34,6 +35,7 @@ pub use chaos::chaos_figure;
 pub use chart::{Coloured, chart_figure};
 pub use composition::{Composition, Line, Neighbour};
 pub use curve::curve_figure;
+pub use design::{design_figure, loads_diagram};
 pub use impacts::{impact_diagram, strobe_diagram};
 pub use local_map::{NextToCorner, Ray};
 pub use phase_plane::phase_plane;
@@ -41,7 +43,7 @@ pub use section::Crossings;
 pub use speeds::speeds_figure;
 pub use subject::{Effort, Fast, Shown, Slow, Subject};
 pub use through_corner::through_corner;
-pub use trace::{Run, time_trace};
+pub use trace::{Run, time_trace, with_force};
 
 /// Every figure of the report, in the paper's order.
 pub(crate) const FIGURES: [Entry; 15] = [

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use crate::draw::{Axis, Colour, Data, Figure, Marker, Panel, Series, Stroke, extent};
 use crate::figures::cam::corner_marks;
 use crate::figures::{Drawn, Entry, Subject, drawn};
+use crate::model::Unit;
 use crate::section::{self, Sample};
 use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError};
 
@@ -174,6 +175,15 @@ fn in_words(run: &Run) -> String {
         _ => format!("comes to rest on it {}", times(EventKind::Stick)),
     };
     format!("In {SLOW_TURNS} revolutions the follower hits the cam {} and {rests}.", times(EventKind::Impact))
+}
+
+/// The trace with the force between follower and cam below, `mass` in kg.
+pub fn with_force(mut figure: Figure, run: &Run, mass: f64, unit: &Unit) -> Figure {
+    let first = run.samples.first().map_or(0.0, |sample| sample.turned);
+    let points = run.samples.iter().map(|sample| [(sample.turned - first) / TAU, unit.told(mass * sample.pressing)]);
+    let line = Series::line("", Colour::Blue, Stroke::Solid, points);
+    figure.panels.push(Panel::new(Axis::new("contact force", unit.name()), 0.2, vec![line]).with_zero());
+    figure
 }
 
 /// Follower and cam over revolutions, with impacts and contact marked, and the gap below.

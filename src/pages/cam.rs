@@ -4,7 +4,7 @@ use crate::cam::Corner;
 use crate::show::Paged;
 use crate::show::block::{Block, Column, Span, Table, Words, words};
 use crate::show::digits::Digits;
-use crate::study::cam::CamSheet;
+use crate::study::cam::{CamSheet, Largest};
 
 /// The longest list that a terminal prints line by line.
 const LONGEST: usize = 40;
@@ -13,9 +13,22 @@ impl Paged for CamSheet {
     fn blocks(&self) -> Vec<Block> {
         let title = Block::Title(words!["Cam of ", &self.model]);
         let mut blocks = vec![title, Block::paragraph(&self.source), Block::Gap, Block::paragraph(lift(self))];
+        blocks.extend(largest(self));
         blocks.extend(parts(self));
         blocks
     }
+}
+
+/// The largest velocity, acceleration and jerk, each in a line.
+fn largest(sheet: &CamSheet) -> Vec<Block> {
+    const NAMES: [(&str, &str); 3] = [("velocity", "m/rad"), ("acceleration", "m/rad^2"), ("jerk", "m/rad^3")];
+    let line = |(largest, (name, unit)): (&Largest, (&'static str, &'static str))| {
+        let (value, at) =
+            ((largest.value_m, Digits::Significant(6)), (largest.cam_angle_rad.to_degrees(), Digits::Fixed(3)));
+        (name.into(), words![value, " ", Span::Unit(unit), " at ", at, " deg"])
+    };
+    let entries = sheet.largest.iter().zip(NAMES).map(line).collect();
+    vec![Block::Gap, Block::paragraph("Largest between corners:"), Block::Entries(14, entries)]
 }
 
 pub(crate) fn parts(sheet: &CamSheet) -> Vec<Block> {
@@ -35,18 +48,18 @@ fn segments(sheet: &CamSheet) -> Vec<Block> {
     let columns = [
         Column::right("from deg", 12),
         Column::right("to deg", 12),
-        Column::left("law", 2, 12),
+        Column::left("motion", 2, 12),
         Column::right(words!["lowest ", Span::Unit("m")], 16),
         Column::right(words!["highest ", Span::Unit("m")], 16),
     ];
     let mut table = Table::new("Segments of the cam", columns);
     let mut spans = [f64::INFINITY, 0.0_f64];
-    for segment in &sheet.segments {
+    for (segment, motion) in sheet.segments.iter().zip(&sheet.motions) {
         let [start, end] = [segment.start, segment.end].map(f64::to_degrees);
         spans = [spans[0].min(end - start), spans[1].max(end - start)];
         let [low, high] = segment.extremes().map(|lift| words![(lift, NINE)]);
         let [from, to] = [start, end].map(|angle| words![(angle, Digits::Fixed(6))]);
-        table.row([from, to, segment.law.name().into(), low, high]);
+        table.row([from, to, (*motion).into(), low, high]);
     }
     if table.rows.len() <= LONGEST {
         return vec![Block::Heading(title.into()), Block::Table(table)];

@@ -16,6 +16,7 @@ use crate::section::Sample;
 use crate::simulate::{Event, Machine, Motion};
 use crate::study::basins::Basins;
 use crate::study::chart::{Chart, Charted, Point, class};
+use crate::study::design::loads::Loads;
 use crate::study::speeds::{At, Attractor, Speeds as Surveyed};
 
 /// A table in the units of a model.
@@ -189,6 +190,17 @@ pub(crate) fn one_row(speeds: &Speeds, points: &[Result<Point, String>]) -> Stri
     for (index, point) in points.iter().enumerate() {
         let _ = write!(lines, "{},", speeds.value(index));
         self::point(&mut lines, point);
+    }
+    lines
+}
+
+/// A line for each revolution of a sweep: what follower and cam bear in it.
+pub(crate) fn loads(sweep: &[Vec<Loads>]) -> String {
+    let mut lines = String::from("rpm,revolution,impact_speed_m_s,gap_m,off_cam_share,energy_lost_j,largest_force_n\n");
+    for (revolution, Loads { rpm, impact_speed, gap, off_cam, energy, force }) in
+        sweep.iter().flat_map(|speed| speed.iter().enumerate())
+    {
+        let _ = writeln!(lines, "{rpm},{revolution},{impact_speed},{gap},{off_cam},{energy},{force}");
     }
     lines
 }

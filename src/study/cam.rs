@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::cam::{Cam, Corner, Jet, Segment};
-use crate::model::Model;
+use crate::model::{CamProfile, Model, Motion};
 
 /// Segments and corners of a model's cam; serializes to the document `corner-impact/cam/1`.
 #[derive(Clone, Debug, Serialize)]
@@ -19,10 +19,66 @@ pub struct CamSheet {
     pub lift_m: [f64; 2],
     /// In order of angle.
     pub segments: Vec<Segment>,
+    /// What the user calls each of them: the motion of a program, the circle of a cam of arcs, else the kind of its law.
+    pub motions: Vec<&'static str>,
+    /// The largest velocity, acceleration and jerk between corners, with where they are.
+    pub largest: [Largest; 3],
     /// The highest order of a jump that is listed.
     pub highest_order: usize,
     /// In order of angle.
     pub corners: Vec<Corner>,
+}
+
+/// The largest size of a derivative of the lift between corners.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Largest {
+    /// Of which: 1 velocity, 2 acceleration, 3 jerk.
+    pub order: usize,
+    /// With its sign, m/rad^order.
+    pub value_m: f64,
+    /// Where, rad.
+    pub cam_angle_rad: f64,
+}
+
+impl Largest {
+    fn of(cam: &Cam, order: usize) -> Self {
+        let least = |sign: f64| {
+            let mut weights = [0.0; 4];
+            weights[order] = sign;
+            let least = cam.least(weights);
+            Self { order, value_m: sign * least.value, cam_angle_rad: least.angle }
+        };
+        let (lowest, highest) = (least(1.0), least(-1.0));
+        if lowest.value_m.abs() > highest.value_m.abs() { lowest } else { highest }
+    }
+}
+
+/// What the user calls each segment.
+fn motions(model: &Model, cam: &Cam) -> Vec<&'static str> {
+    /// From the middle of the base circle on, as Appendix A has them.
+    const ARCS: [&str; 7] = ["base circle", "flank", "nose", "top dwell", "nose", "flank", "base circle"];
+    let mut profile = &model.cam;
+    while let CamProfile::Rounded { sharp, .. } = profile {
+        profile = sharp;
+    }
+    let names = |at: &dyn Fn(usize, f64) -> Option<&'static str>| {
+        let name = |(index, segment): (usize, &Segment)| {
+            at(index, 0.5 * (segment.start + segment.end).to_degrees()).unwrap_or(segment.law.name())
+        };
+        cam.segments().iter().enumerate().map(name).collect()
+    };
+    match profile {
+        CamProfile::Program(program) => names(&|_, middle| {
+            let mut end = 0.0;
+            let motion = program.segments.iter().find(|motion| {
+                end += motion.span_deg;
+                middle < end
+            })?;
+            Motion::NAMES.iter().find(|(_, of)| *of == motion.motion).map(|(name, _)| *name)
+        }),
+        CamProfile::Arcs(_) if cam.segments().len() == ARCS.len() => names(&|index, _| ARCS.get(index).copied()),
+        _ => names(&|_, _| None),
+    }
 }
 
 impl CamSheet {
@@ -35,7 +91,9 @@ impl CamSheet {
             model: model.name.clone(),
             source: model.source.clone(),
             law: model.cam.law(),
-            lift_m: [cam.lowest().value, -cam.least([-1.0, 0.0, 0.0]).value],
+            lift_m: [cam.lowest().value, -cam.least([-1.0, 0.0, 0.0, 0.0]).value],
+            motions: motions(model, cam),
+            largest: [1, 2, 3].map(|order| Largest::of(cam, order)),
             segments,
             highest_order,
             corners: cam.corners().into_iter().filter(|corner| corner.jump_order <= highest_order).collect(),

@@ -9,10 +9,12 @@ use serde::Serialize;
 
 use crate::diagram::{Block, Following, Places, Section, Speeds, Start, Sweep, SweepError, Tally};
 use crate::draw::{Cloud, Density};
+use crate::model::Model;
 use crate::progress::Watch;
 use crate::simulate::{Machine, Motion, SimulateError, angular_velocity};
 use crate::study::attractors::Here;
 use crate::study::chart::{Lengths, Point};
+use crate::study::design::loads::Loads;
 
 /// A motion on each of the attractors of `machine` that are found at its speed alone.
 pub fn on_attractors(machine: &Machine) -> Result<Vec<Motion>, SimulateError> {
@@ -42,6 +44,33 @@ pub fn one_row(
         run.map_err(|error| error.to_string())
     };
     Ok(crate::diagram::threads(threads)?.install(|| (0..speeds.count).into_par_iter().map(one).collect()))
+}
+
+/// The loads of each recorded revolution of a run from `start` at each of `speeds`; an error where it cannot be run.
+pub fn loads(
+    model: &Model,
+    sweep: &Sweep,
+    start: Start,
+    lengths: Lengths,
+    threads: Option<usize>,
+    watch: &dyn Watch,
+) -> Result<Vec<Vec<Loads>>, SweepError> {
+    let (machine, speeds) = (&sweep.machine, &sweep.speeds);
+    let done = AtomicU64::new(0);
+    let of_speed = |rpm: f64| -> Result<Vec<Loads>, SimulateError> {
+        let machine = machine.at_speed(angular_velocity(rpm));
+        let mut motion = start.motion(&machine)?;
+        machine.revolve(&mut motion, lengths.transient)?;
+        let found = Loads::recorded(model, &machine, motion, lengths.record)?;
+        // As it was asked for, and not as the angular velocity has it.
+        Ok(found.into_iter().map(|loads| Loads { rpm, ..loads }).collect())
+    };
+    let one = |index: usize| {
+        watch.at("", done.fetch_add(1, Ordering::Relaxed), speeds.count as u64);
+        let rpm = speeds.value(index);
+        of_speed(rpm).map_err(|error| SweepError::Simulate { rpm, error })
+    };
+    crate::diagram::threads(threads)?.install(|| (0..speeds.count).into_par_iter().map(one).collect())
 }
 
 /// What a sweep came to: the document of `diagram --summary`.

@@ -9,6 +9,7 @@ pub mod chart;
 pub mod compared;
 pub mod continuation;
 pub mod curve;
+pub mod design;
 pub mod diagram;
 pub mod locate;
 pub mod orbit;
@@ -73,6 +74,11 @@ pub enum StudyError {
         cam_angle.to_degrees()
     )]
     NoImpact { waited: u64, impacts: u64, cam_angle: f64, revolution: u64 },
+    /// No speeds were named, and the machine has none of its own.
+    #[error(
+        "no range of speeds: the follower leaves the cam at every speed or at none, and the model has no [study]; give --rpm"
+    )]
+    NoSpeeds,
     /// No starts were named, and the machine has none of its own.
     #[error("no range to put starts in: give --position and --velocity")]
     NoStarts,

@@ -8,7 +8,7 @@ use crate::common::{PROGRAM, ROOT, corner_impact, program, text};
 use rayon::prelude::*;
 use tempfile::TempDir;
 
-pub const COMMANDS: [&str; 19] = [
+pub const COMMANDS: [&str; 20] = [
     "verify",
     "report",
     "claims",
@@ -17,6 +17,7 @@ pub const COMMANDS: [&str; 19] = [
     "cam",
     "simulate",
     "speeds",
+    "design",
     "diagram",
     "figure",
     "orbit",
@@ -119,6 +120,7 @@ fn pages_fit_the_width_that_is_asked_for() {
     for (line, widths) in [
         ("verify --no-external", narrow),
         ("cam", all),
+        ("design --speeds 5", narrow),
         ("cam models/laws/program.toml", all),
         ("locate --rpm 660:760", all),
         ("certify --rpm 600:760", narrow),

@@ -22,6 +22,7 @@ mod complete;
 mod corner_maps;
 mod curves;
 mod derived;
+mod design;
 mod digits;
 mod drawing;
 mod dynamics;

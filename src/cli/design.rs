@@ -1,0 +1,88 @@
+//! `corner-impact design [MODEL]`.
+
+use std::path::PathBuf;
+
+use super::diagram::load;
+use super::picture::{Canvas, picture};
+use super::start::{axis, positive, rpm_or_range};
+use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
+use crate::diagram::Speeds;
+use crate::figures::design_figure;
+use crate::study::design::loads::Load;
+use crate::study::design::needs::{Lever, Need};
+use crate::study::design::{Asked, design};
+
+/// Tells up to which speed the follower stays on the cam, how hard it hits beyond, and what must be changed.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:\n\
+    \x20 corner-impact design\n\
+    \x20 corner-impact design models/laws/program.toml --need \"no separation to 600 rpm\"\n\
+    \x20 corner-impact design models/laws/program.toml --rpm 300 --out force.svg\n\
+    \n\
+    Where runs are looked at, it is those from four starts at each speed: another motion may do worse.\n\
+    Exit code: 0 done, 2 bad model file, usage or file, or a run that cannot go on.")]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    model: ModelArgument,
+    /// Lowest and highest speed, or one, at which the force is told round the cam [default: half to one and a half times the
+    /// speed at which the follower first leaves the cam].
+    #[arg(long, value_name = "R|LO:HI", value_parser = rpm_or_range, allow_hyphen_values = true)]
+    rpm: Option<[f64; 2]>,
+    /// Speeds of a range.
+    #[arg(long, value_name = "N", default_value_t = 21, value_parser = clap::value_parser!(u32).range(2..=10_000))]
+    speeds: u32,
+    /// What is needed: \"no separation to 4500 rpm\", \"impact speed below 0.5 m/s to 6000 rpm\"; also gap, energy and force (may
+    /// be repeated).
+    #[arg(long, value_name = "TEXT", value_parser = need)]
+    need: Vec<(String, Need)>,
+    /// Tell where a load is first more than this, in the units of the model: impact-speed=0.5; also gap, energy and force (may
+    /// be repeated).
+    #[arg(long, value_name = "NAME=VALUE", value_parser = limit)]
+    limit: Vec<(Load, f64)>,
+    /// What is needed against one of preload, stiffness, damping and mass, in the units of the model.
+    #[arg(long, value_name = "NAME=LO:HI:N", value_parser = against, requires = "need", allow_hyphen_values = true)]
+    against: Option<(Lever, Speeds)>,
+    /// Print one JSON document instead of the page.
+    #[arg(long)]
+    json: bool,
+    /// Draw forces and loads against the speed, the force round the cam at one speed, or what --against asks (.svg, .png).
+    #[arg(long, value_name = "FILE", value_parser = picture)]
+    out: Option<PathBuf>,
+}
+
+fn need(text: &str) -> Result<(String, Need), String> {
+    Ok((text.into(), text.parse()?))
+}
+
+fn limit(text: &str) -> Result<(Load, f64), String> {
+    let (name, value) = text.split_once('=').ok_or("must be NAME=VALUE: a load, and what it may be at most")?;
+    Ok((load(name.trim())?, positive(value)?))
+}
+
+fn against(text: &str) -> Result<(Lever, Speeds), String> {
+    let (name, values) = axis(text)?;
+    let lever = Lever::ALL.into_iter().find(|lever| lever.to_string() == name);
+    let lever =
+        lever.ok_or_else(|| format!("must be one of: {}", Lever::ALL.map(|lever| lever.to_string()).join(", ")))?;
+    if values.low <= 0.0 { Err("must be above 0".into()) } else { Ok((lever, values)) }
+}
+
+pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
+    let model = arguments.model.read(session)?;
+    let canvas = arguments.out.as_ref().map(|path| Canvas::create(path)).transpose()?;
+    let asked = Asked {
+        rpm: arguments.rpm,
+        speeds: arguments.speeds,
+        needs: arguments.need.clone(),
+        limits: arguments.limit.clone(),
+        against: arguments
+            .against
+            .as_ref()
+            .map(|(lever, values)| (*lever, [values.low, values.high], values.count as u32)),
+    };
+    let found = watched("", |watch| design(&model, &asked, watch))?;
+    if let Some(canvas) = canvas {
+        super::commit(vec![canvas.draw(&design_figure(&found))?])?;
+    }
+    session.answer(&found, arguments.json)
+}

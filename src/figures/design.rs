@@ -1,0 +1,95 @@
+//! What an engineer asks, drawn: the contact force round the cam, forces and loads against the speed, or one number against another.
+
+use crate::draw::{Axis, Colour, Figure, Mark, Marker, Panel, Series, Stroke, extent};
+use crate::figures::SPEED;
+use crate::figures::impacts::WHOLE_CAM;
+use crate::model::Units;
+use crate::study::design::Design;
+use crate::study::design::loads::{Load, Loads};
+
+/// Trades where there are any, else the force round the cam at one speed, else forces and loads against the speed.
+pub fn design_figure(found: &Design) -> Figure {
+    if !found.trades.is_empty() {
+        return trades(found);
+    }
+    if !found.round.is_empty() { round(found) } else { speeds(found) }
+}
+
+fn force_axis(found: &Design, name: &str) -> Axis {
+    Axis::new(name, found.units.force.name())
+}
+
+fn round(found: &Design) -> Figure {
+    let points = found.round.iter().map(|[angle, force]| [angle.to_degrees(), found.force(*force)]);
+    let line = Series::line("", Colour::Blue, Stroke::Solid, points);
+    let panel = Panel::new(force_axis(found, "contact force"), 0.5, vec![line]).with_zero();
+    let rpm = found.forces.first().map_or(f64::NAN, |at| at.rpm);
+    let title = format!("{} at {rpm} rpm: contact force round the cam", found.model.name);
+    Figure::new(&title, Axis::degrees("cam angle").over(WHOLE_CAM), vec![panel])
+}
+
+fn speeds(found: &Design) -> Figure {
+    let all = found.forces.iter().map(|at| at.rpm).chain(found.loads.iter().map(|loads| loads.rpm));
+    let range = extent(all);
+    let forces = found.forces.iter().map(|at| [at.rpm, found.force(at.least.value)]);
+    let mut panels = Vec::new();
+    if !found.forces.is_empty() {
+        let line = Series::line("", Colour::Blue, Stroke::Solid, forces);
+        panels.push(Panel::new(force_axis(found, "least contact force"), 0.24, vec![line]).with_zero());
+    }
+    let quantities: [(&str, &str, fn(&Loads) -> f64); 4] = [
+        ("impact speed", "m/s", |loads| loads.impact_speed),
+        ("largest gap", "m", |loads| loads.gap),
+        ("time off the cam", "%", |loads| 100.0 * loads.off_cam),
+        ("energy lost a revolution", "J", |loads| loads.energy),
+    ];
+    if !found.loads.is_empty() {
+        panels.extend(quantities.map(|(name, unit, value)| {
+            let points = found.loads.iter().map(|loads| [loads.rpm, value(loads)]);
+            let line = Series::line("", Colour::Vermilion, Stroke::Solid, points);
+            Panel::new(Axis::new(name, unit), 0.15, vec![line]).with_zero()
+        }));
+    }
+    let at = found.separation.speed();
+    let marks = (range[0] <= at && at <= range[1]).then(|| Mark { at, label: format!("separation, {at:.1} rpm") });
+    let title = format!("{}: contact force and loads", found.model.name);
+    let axis = Axis::new(SPEED[0], SPEED[1]).over(range);
+    Figure { marks: marks.into_iter().collect(), ..Figure::new(&title, axis, panels) }
+}
+
+/// One load in each revolution of a sweep, against the speed.
+pub fn loads_diagram(title: &str, sweep: &[Vec<Loads>], load: Load, units: &Units) -> Figure {
+    let told = |value: f64| if load == Load::Force { units.force.told(value) } else { value };
+    let points = sweep.iter().flatten().map(|loads| [loads.rpm, told(loads.of(load))]);
+    let (name, unit) = match load {
+        Load::ImpactSpeed => ("fastest impact of a revolution", "m/s"),
+        Load::Gap => ("largest gap of a revolution", "m"),
+        Load::Energy => ("energy lost in a revolution", "J"),
+        Load::Force => ("largest contact force of a revolution", units.force.name()),
+    };
+    let range = extent(sweep.iter().flatten().map(|loads| loads.rpm));
+    let range = if range[0] < range[1] { range } else { [0.99 * range[0], 1.01 * range[1]] };
+    let series = Series::points("", Colour::Blue, Marker::Dot, points);
+    Figure::new(
+        title,
+        Axis::new(SPEED[0], SPEED[1]).over(range),
+        vec![Panel::new(Axis::new(name, unit), 0.5, vec![series])],
+    )
+}
+
+fn trades(found: &Design) -> Figure {
+    let panels = found.trades.iter().map(|trade| {
+        let points = trade.pairs.iter().map(|(given, found)| [*given, found.unwrap_or(f64::NAN)]);
+        let line = Series::line("", Colour::Blue, Stroke::Solid, points);
+        let bound = if trade.parameter.is_upper_bound() { "most" } else { "least" };
+        Panel::new(Axis::new(&format!("{bound} {}", trade.parameter), &trade.unit), 0.22, vec![line])
+    });
+    let (against, unit) = found
+        .trades
+        .first()
+        .map_or((String::new(), ""), |trade| (trade.against.to_string(), trade.against_unit.as_str()));
+    let range = extent(found.trades.iter().flat_map(|trade| trade.pairs.iter().map(|(given, _)| *given)));
+    let needs: Vec<&str> = found.trades.iter().map(|trade| trade.need.as_str()).collect();
+    let title = format!("{}: {}", found.model.name, needs.first().unwrap_or(&""));
+    Figure::new(&title, Axis::new(&against, unit).over(range), panels.collect())
+}

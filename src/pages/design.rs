@@ -1,0 +1,210 @@
+//! The page of `design`: the answer in sentences first, then speeds, limits and what must be changed.
+
+use crate::show::Paged;
+use crate::show::block::{Block, Column, Mark, Span, Table, Words, words};
+use crate::show::digits::Digits;
+use crate::study::design::contact::Separation;
+use crate::study::design::needs::Answer;
+use crate::study::design::{Design, Trade};
+
+/// A column of numbers, apart from the one before.
+fn number(head: impl Into<Words>) -> Column {
+    Column { gap: 2, ..Column::number(head) }
+}
+
+const SIX: Digits = Digits::Significant(6);
+
+impl Paged for Design {
+    fn blocks(&self) -> Vec<Block> {
+        let title = Block::Title(words!["Design of ", &self.model.name]);
+        let mut page =
+            vec![title, Block::paragraph(&self.model.source), Block::Gap, Block::paragraph(separation(self))];
+        if let Some(words) = margin(self) {
+            page.push(Block::paragraph(words));
+        }
+        page.extend(speeds(self));
+        page.extend(limits(self));
+        page.extend(needs(self));
+        page.extend(rounded(self));
+        page.extend(self.trades.iter().flat_map(trade));
+        page
+    }
+}
+
+/// Where the follower leaves the cam, in a sentence.
+pub(crate) fn separation(found: &Design) -> Words {
+    let degrees = |angle: f64| (angle.to_degrees(), Digits::Fixed(3));
+    match found.separation {
+        Separation::At { rpm, cam_angle, .. } => words![
+            "The follower leaves the cam first at ",
+            (rpm, Digits::Fixed(6)),
+            " rpm, at ",
+            degrees(cam_angle),
+            " deg (computed from the contact force)."
+        ],
+        Separation::NotPressed { cam_angle } => {
+            words!["The follower leaves the cam at every speed: nothing presses it on at ", degrees(cam_angle), " deg."]
+        }
+        Separation::Kink { cam_angle } => words![
+            "The follower leaves the cam at every speed: the cam's velocity jumps at ",
+            degrees(cam_angle),
+            " deg."
+        ],
+        Separation::Never => {
+            "The follower leaves the cam at no speed: the cam nowhere accelerates away from it.".into()
+        }
+    }
+}
+
+/// The least force at the highest speed at which they touch everywhere.
+pub(crate) fn margin(found: &Design) -> Option<Words> {
+    /// Of the speed of separation: at that itself what is left is rounding.
+    const BELOW: f64 = 0.999;
+    let below = BELOW * found.separation.speed();
+    let last = found.forces.iter().rfind(|at| at.rpm < below)?;
+    let force = (found.force(last.least.value), SIX);
+    let (rpm, angle) = ((last.rpm, SIX), (last.least.angle.to_degrees(), Digits::Fixed(3)));
+    let unit = found.units.force.name();
+    Some(words!["At ", rpm, " rpm the cam presses with ", force, format!(" {unit} at least, at "), angle, " deg."])
+}
+
+fn speeds(found: &Design) -> Vec<Block> {
+    let force = found.units.force.name();
+    let mut columns = vec![number("rpm"), number(format!("least force {force}")), number("at deg")];
+    let head = |name: &str, unit: &'static str| number(words![name, Span::Unit(unit)]);
+    if !found.loads.is_empty() {
+        columns.extend([
+            head("impact speed ", "m/s"),
+            head("gap ", "m"),
+            number("off cam %"),
+            number("lost J/rev"),
+            number(format!("largest force {force}")),
+        ]);
+    }
+    let mut table = Table::new("Contact force and loads by speed", columns);
+    let mut speeds: Vec<f64> = found.forces.iter().map(|at| at.rpm).collect();
+    speeds.extend(found.loads.iter().map(|loads| loads.rpm));
+    speeds.sort_by(f64::total_cmp);
+    speeds.dedup_by(|one, two| (*one - *two).abs() <= 1e-9 * two.abs());
+    let is_at = |rpm: f64, at: f64| (rpm - at).abs() <= 1e-9 * at;
+    for rpm in speeds {
+        let mut cells = vec![words![(rpm, SIX)]];
+        match found.forces.iter().find(|at| is_at(rpm, at.rpm)) {
+            Some(at) => cells.extend([
+                words![(found.force(at.least.value), SIX)],
+                words![(at.least.angle.to_degrees(), Digits::Fixed(2))],
+            ]),
+            None => cells.extend([Words::default(), Words::default()]),
+        }
+        if !found.loads.is_empty() {
+            let three = |value: f64| words![(value, Digits::Significant(3))];
+            match found.loads.iter().find(|loads| is_at(rpm, loads.rpm)) {
+                Some(loads) => cells.extend([
+                    three(loads.impact_speed),
+                    three(loads.gap),
+                    words![(100.0 * loads.off_cam, Digits::Fixed(1))],
+                    three(loads.energy),
+                    three(found.force(loads.force)),
+                ]),
+                None => cells.extend((0..5).map(|_| "".into())),
+            }
+        }
+        table.row(cells);
+    }
+    let mut blocks = vec![Block::Heading("Speeds".into()), Block::Table(table)];
+    blocks.push(Block::Note(
+        "least force: between follower and cam as long as they touch, where it is below 0 they part; computed.".into(),
+    ));
+    if !found.loads.is_empty() {
+        let words = "The other columns are the most of what four starts come to: over 8 revolutions after up to 200; sampled. \
+                     Energy is what impacts take, force that between them.";
+        blocks.push(Block::Note(words.into()));
+    }
+    blocks
+}
+
+fn limits(found: &Design) -> Vec<Block> {
+    let sentence = |passed: &crate::study::design::Passed| {
+        let name = passed.limit.to_string().replace('-', " ");
+        let limit = words![format!("{name} of "), (passed.value, SIX), format!(" {}: ", passed.unit)];
+        match passed.speed_rpm {
+            Some(rpm) => {
+                words![
+                    limit,
+                    Span::Marked(Mark::Bad, "passed".into()),
+                    " at ",
+                    (rpm, SIX),
+                    " rpm and perhaps before, of the speeds above"
+                ]
+            }
+            None => words![limit, Span::Marked(Mark::Good, "kept".into()), " at each of the speeds above"],
+        }
+    };
+    if found.limits.is_empty() {
+        return Vec::new();
+    }
+    vec![Block::Heading("Limits".into()), Block::List(found.limits.iter().map(sentence).collect())]
+}
+
+fn needs(found: &Design) -> Vec<Block> {
+    let mut blocks = Vec::new();
+    for of_need in found.needs.chunk_by(|one, two| one.need == two.need) {
+        let columns = [
+            Column::words("change"),
+            number("now"),
+            Column::words(""),
+            number("to"),
+            Column::words("unit"),
+            Column::words("known"),
+            Column::words(""),
+        ];
+        let mut table = Table::new(&of_need[0].need, columns);
+        for Answer { lever, now, value, unit, note, known, .. } in of_need {
+            let digits =
+                if *known == crate::known::Known::Computed { Digits::Significant(9) } else { Digits::Significant(3) };
+            let bound = if lever.is_upper_bound() { "at most" } else { "at least" };
+            table.row([
+                lever.to_string().into(),
+                words![(*now, Digits::Short)],
+                if value.is_some() { bound.into() } else { Words::default() },
+                value.map_or("none".into(), |value| words![(value, digits)]),
+                unit.into(),
+                known.to_string().into(),
+                note.into(),
+            ]);
+        }
+        blocks.push(Block::Heading(of_need[0].need.as_str().into()));
+        blocks.push(Block::Table(table));
+        blocks.push(Block::Note("Each alone, with the others kept.".into()));
+    }
+    blocks
+}
+
+fn rounded(found: &Design) -> Vec<Block> {
+    if found.rounded.is_empty() {
+        return Vec::new();
+    }
+    let columns = [
+        number("rounded over deg"),
+        number("leaves the cam at rpm"),
+        number(words!["largest jerk ", Span::Unit("m/rad^3")]),
+    ];
+    let mut table = Table::new("The cam with its corners rounded", columns);
+    for at in &found.rounded {
+        let speed = at.separation_rpm.map_or("".into(), |rpm| words![(rpm, Digits::Significant(7))]);
+        table.row([words![(at.corner_rounding_deg, SIX)], speed, words![(at.jerk, SIX)]]);
+    }
+    let words = "The acceleration of the cam jumps, and its jerk is infinite there. Rounded (corner_rounding_deg):";
+    vec![Block::Heading("Jumps of the acceleration".into()), Block::paragraph(words), Block::Table(table)]
+}
+
+fn trade(trade: &Trade) -> [Block; 2] {
+    let Trade { need, parameter, unit, against, against_unit, pairs } = trade;
+    let columns = [number(format!("{against} {against_unit}")), number(format!("{parameter} {unit}"))];
+    let mut table = Table::new(need, columns);
+    for (given, found) in pairs {
+        table.row([words![(*given, SIX)], found.map_or("none".into(), |value| words![(value, SIX)])]);
+    }
+    let bound = if parameter.is_upper_bound() { "most" } else { "least" };
+    [Block::Heading(format!("{need}: the {bound} {parameter} for each {against}").into()), Block::Table(table)]
+}

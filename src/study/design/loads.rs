@@ -1,0 +1,158 @@
+//! What the follower and the cam bear at a speed at which they part: impacts, gaps, time off the cam and energy, of what attracts.
+
+use std::f64::consts::TAU;
+
+use serde::Serialize;
+
+use crate::model::{Model, Units};
+use crate::orbit::fate::{Run, Settling};
+use crate::section::trace;
+use crate::simulate::{EventKind, Machine, Motion, SimulateError};
+use crate::study::attractors::Patience;
+
+/// What a load is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Load {
+    /// The largest speed of follower and cam against each other at an impact.
+    ImpactSpeed,
+    /// The largest gap.
+    Gap,
+    /// The energy that impacts take in a revolution.
+    Energy,
+    /// The largest force between follower and cam while they touch, but for impacts.
+    Force,
+}
+
+named!(Load);
+
+impl Load {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::ImpactSpeed, Self::Gap, Self::Energy, Self::Force];
+
+    /// A value in the unit that it is told in as it is inside.
+    pub fn inside(self, units: &Units, value: f64) -> f64 {
+        if self == Self::Force { units.force.inside(value) } else { value }
+    }
+
+    /// The unit that it is told in.
+    pub fn unit(self, units: &Units) -> String {
+        match self {
+            Self::ImpactSpeed => units.spelled("m/s"),
+            Self::Gap => units.spelled("m"),
+            Self::Energy => "J".into(),
+            Self::Force => units.force.name().into(),
+        }
+    }
+}
+
+/// The loads of what runs come to at one speed: the largest among several starts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Loads {
+    /// Speed, rpm.
+    pub rpm: f64,
+    /// Of follower and cam against each other at the fastest impact, m/s; 0 without any.
+    pub impact_speed: f64,
+    /// The largest gap, m.
+    pub gap: f64,
+    /// The part of the time that the follower is off the cam.
+    pub off_cam: f64,
+    /// What impacts take in a revolution, J: `sum m (1 - r^2) u^2/2`.
+    pub energy: f64,
+    /// The largest force while they touch, but for impacts, kg m/s^2 with the model's length.
+    pub force: f64,
+}
+
+document!(Loads as it {
+    speed_rpm: it.rpm,
+    impact_speed_m_s: it.impact_speed,
+    gap_m: it.gap,
+    off_cam_share: it.off_cam,
+    energy_lost_j: it.energy,
+    largest_force_n: it.force,
+});
+
+impl Loads {
+    /// Revolutions before anything is recorded at most, where the motion comes to repeat or to rest earlier; and after a rest.
+    pub const TRANSIENT: u64 = 200;
+    const AFTER_A_REST: u64 = 20;
+    /// Revolutions that are recorded.
+    pub const RECORD: u64 = 8;
+    /// Starts at each speed: on the cam at as many angles, let go as fast as the cam moves there, and at rest at 0.
+    pub const STARTS: u32 = 4;
+    /// Moments of a revolution at which gap and force are looked at.
+    const MOMENTS: u32 = 360;
+
+    /// That load.
+    pub fn of(&self, load: Load) -> f64 {
+        match load {
+            Load::ImpactSpeed => self.impact_speed,
+            Load::Gap => self.gap,
+            Load::Energy => self.energy,
+            Load::Force => self.force,
+        }
+    }
+
+    /// Of what several starts come to.
+    pub fn at(model: &Model, machine: &Machine) -> Result<Self, SimulateError> {
+        let mut worst = Self::NONE;
+        for start in 0..Self::STARTS {
+            let angle = TAU * f64::from(start) / f64::from(Self::STARTS);
+            let fast = machine.angular_velocity() * machine.cam().lift(angle).slope.abs();
+            let mut motion = machine.start_on_cam(angle, if start == 0 { 0.0 } else { fast })?;
+            let settling = Settling::unaided(machine, Patience::default().longest, 0);
+            if let Run::Released(_) = settling.run(&mut motion, Self::TRANSIENT)? {
+                // What follows a rest has forgotten the start, but may rest elsewhere for some time.
+                machine.revolve(&mut motion, Self::AFTER_A_REST)?;
+            }
+            for loads in Self::recorded(model, machine, motion, Self::RECORD)? {
+                worst = worst.or_more(&loads);
+            }
+        }
+        Ok(Self { rpm: machine.angular_velocity() / TAU * 60.0, ..worst })
+    }
+
+    const NONE: Self = Self { rpm: 0.0, impact_speed: 0.0, gap: 0.0, off_cam: 0.0, energy: 0.0, force: 0.0 };
+
+    fn or_more(&self, other: &Self) -> Self {
+        Self {
+            rpm: other.rpm,
+            impact_speed: self.impact_speed.max(other.impact_speed),
+            gap: self.gap.max(other.gap),
+            off_cam: self.off_cam.max(other.off_cam),
+            energy: self.energy.max(other.energy),
+            force: self.force.max(other.force),
+        }
+    }
+
+    /// Of each of so many revolutions of a motion.
+    pub fn recorded(
+        model: &Model,
+        machine: &Machine,
+        motion: Motion,
+        revolutions: u64,
+    ) -> Result<Vec<Self>, SimulateError> {
+        let (follower, units) = (&model.follower, &model.units);
+        let (samples, events) = trace(machine, motion, revolutions, Self::MOMENTS)?;
+        let first = samples.first().map_or(0.0, |sample| sample.turned);
+        let rpm = machine.angular_velocity() / TAU * 60.0;
+        let mut found = vec![Self { rpm, ..Self::NONE }; revolutions as usize];
+        let place = |turned: f64| (((turned - first) / TAU) as usize).min((revolutions as usize).saturating_sub(1));
+        for pair in samples.windows(2) {
+            let [one, two] = pair else { continue };
+            let Some(loads) = found.get_mut(place(one.turned)) else { continue };
+            loads.gap = loads.gap.max(one.gap);
+            loads.force = loads.force.max(follower.mass * one.pressing);
+            loads.off_cam += if one.contact { 0.0 } else { (two.turned - one.turned) / TAU };
+        }
+        // kg L^2/s^2 of the unit of length L.
+        let joule = units.length.inside(units.length.inside(1.0));
+        for event in events.iter().filter(|event| event.kind == EventKind::Impact) {
+            let Some(loads) = found.get_mut(place(event.turned_since(0.0))) else { continue };
+            let speed = (event.velocity_before - event.cam_velocity).abs();
+            loads.impact_speed = loads.impact_speed.max(speed);
+            loads.energy += joule * 0.5 * follower.mass * (1.0 - follower.restitution.powi(2)) * speed * speed;
+        }
+        Ok(found)
+    }
+}

@@ -1,0 +1,280 @@
+//! What does an engineer ask of a cam and its follower? Up to which speed they touch and how hard, what happens beyond, and what must
+//! be changed.
+
+pub mod contact;
+pub mod loads;
+pub mod needs;
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::{ModelLabel, StudyError, machine};
+use crate::cam::{Cam, Least};
+use crate::known::Known;
+use crate::model::{CORNER_ROUNDING, Model, Units};
+use crate::progress::Watch;
+use contact::{Contact, Separation};
+use loads::{Load, Loads};
+use needs::{Answer, Changed, Lever, Need};
+
+/// The document of `design --json`.
+#[derive(Clone, Debug)]
+pub struct Design {
+    /// Which model.
+    pub model: ModelLabel,
+    /// What its numbers are told in.
+    pub units: Units,
+    /// Where the follower first leaves the cam.
+    pub separation: Separation,
+    /// The least force at each speed, in the unit inside.
+    pub forces: Vec<ForceAt>,
+    /// The force round the cam at the one speed that is asked for.
+    pub round: Vec<[f64; 2]>,
+    /// What attracts where the follower leaves the cam.
+    pub loads: Vec<Loads>,
+    /// Where a limit is first passed.
+    pub limits: Vec<Passed>,
+    /// What must be changed.
+    pub needs: Vec<Answer>,
+    /// What rounding the jumps of the acceleration gives.
+    pub rounded: Vec<Rounded>,
+    /// What must be changed, against another number.
+    pub trades: Vec<Trade>,
+}
+
+/// The least force at a speed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ForceAt {
+    /// Speed, rpm.
+    pub rpm: f64,
+    /// Where it is, and how large.
+    pub least: Least,
+}
+
+document!(ForceAt as it { speed_rpm: it.rpm, least_n: it.least.value, cam_angle_rad: it.least.angle });
+
+/// A limit that the user sets, and the first speed of those looked at that is past it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Passed {
+    /// Of which load.
+    pub limit: Load,
+    /// In the unit that is told.
+    pub value: f64,
+    /// The unit.
+    pub unit: String,
+    /// The first of the speeds at which it is passed, rpm; none where it is not.
+    pub speed_rpm: Option<f64>,
+}
+
+/// What one number has to be for each value of another.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Trade {
+    /// What is needed.
+    pub need: String,
+    /// The number that is found, and its unit.
+    pub parameter: Lever,
+    /// Its unit.
+    pub unit: String,
+    /// The number that is given.
+    pub against: Lever,
+    /// Its unit.
+    pub against_unit: String,
+    /// Pairs of what is given and what is found; nothing where no value does it.
+    pub pairs: Vec<(f64, Option<f64>)>,
+}
+
+document!(Design as it {
+    schema: "corner-impact/design/1",
+    model: it.model,
+    separation: it.separated(),
+    separates: it.separates(),
+    contact_force: it.forces,
+    force_round_the_cam: it.told_round(),
+    loads: it.loads,
+    loads_known: Known::Sampled,
+    limits: it.limits,
+    needs: it.needs,
+    rounded: it.rounded,
+    trades: it.trades,
+});
+
+/// The same machine with the corners of its cam rounded.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Rounded {
+    /// Over this angle.
+    pub corner_rounding_deg: f64,
+    /// Where the follower first leaves the cam then, rpm; none where it does at every speed or at none.
+    pub separation_rpm: Option<f64>,
+    /// The largest size of the jerk, m/rad^3.
+    pub jerk: f64,
+}
+
+/// Over some angles, as far as the cam allows; nothing where there is no jump of the acceleration, or it is rounded already.
+fn rounded(model: &Model, cam: &Cam) -> Vec<Rounded> {
+    /// Degrees.
+    const ANGLES: [f64; 4] = [1.0, 2.0, 5.0, 10.0];
+    let jumps = cam.corners().iter().any(|corner| corner.jump_order == 2);
+    let at = |angle: f64| {
+        let model = model.with_number(CORNER_ROUNDING, angle).ok()?;
+        let cam = Cam::new(&model).ok()?;
+        let jerk = |sign: f64| -cam.least([0.0, 0.0, 0.0, sign]).value;
+        let speed = Contact::new(&cam, model.follower).separation().speed();
+        let separation_rpm = (speed > 0.0 && speed.is_finite()).then_some(speed);
+        Some(Rounded { corner_rounding_deg: angle, separation_rpm, jerk: jerk(1.0).max(jerk(-1.0)) })
+    };
+    if jumps { ANGLES.into_iter().filter_map(at).collect() } else { Vec::new() }
+}
+
+/// What is asked.
+#[derive(Clone, Debug, Default)]
+pub struct Asked {
+    /// Lowest and highest speed, rpm; of one speed the force is told round the cam. None: around the separation.
+    pub rpm: Option<[f64; 2]>,
+    /// Speeds of a range.
+    pub speeds: u32,
+    /// Each as it was said.
+    pub needs: Vec<(String, Need)>,
+    /// In the units of the model.
+    pub limits: Vec<(Load, f64)>,
+    /// A number, its lowest and highest value and how many, in its unit.
+    pub against: Option<(Lever, [f64; 2], u32)>,
+}
+
+#[derive(Serialize)]
+struct Separated {
+    speed_rpm: f64,
+    error_rpm: f64,
+    cam_angle_rad: f64,
+    located: bool,
+}
+
+impl Design {
+    fn separated(&self) -> Option<Separated> {
+        match self.separation {
+            Separation::At { rpm, error, cam_angle } => {
+                Some(Separated { speed_rpm: rpm, error_rpm: error, cam_angle_rad: cam_angle, located: true })
+            }
+            _ => None,
+        }
+    }
+
+    fn separates(&self) -> &'static str {
+        match self.separation {
+            Separation::At { .. } => "at-a-speed",
+            Separation::NotPressed { .. } | Separation::Kink { .. } => "at-every-speed",
+            Separation::Never => "never",
+        }
+    }
+
+    fn told_round(&self) -> Vec<RoundEntry> {
+        self.round.iter().map(|[angle, force]| RoundEntry { cam_angle_rad: *angle, force_n: *force }).collect()
+    }
+
+    /// A force as it is told.
+    pub fn force(&self, force: f64) -> f64 {
+        self.units.force.told(force)
+    }
+}
+
+#[derive(Serialize)]
+struct RoundEntry {
+    cam_angle_rad: f64,
+    force_n: f64,
+}
+
+/// Answers what is asked of a model; `watch` is told how far the runs are.
+pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design, StudyError> {
+    /// Moments of the force round the cam, beside the ends of segments.
+    const MOMENTS: usize = 720;
+    /// Of the separation, where nothing says which speeds.
+    const USUAL: [f64; 2] = [0.5, 1.5];
+    let cam = Cam::new(model)?;
+    let contact = Contact::new(&cam, model.follower);
+    let separation = contact.separation();
+    let range = asked.rpm.or(match separation {
+        Separation::At { rpm, .. } => Some(USUAL.map(|part| part * rpm)),
+        _ => model.study.map(|study| [study.rpm_min, study.rpm_max]),
+    });
+    let [low, high] = range.ok_or(StudyError::NoSpeeds)?;
+    let count = if low == high { 1 } else { asked.speeds.max(2) };
+    let speed =
+        |index: u32| if count == 1 { low } else { low + (high - low) * f64::from(index) / f64::from(count - 1) };
+    let speeds: Vec<f64> = (0..count).map(speed).collect();
+    let has_force = !matches!(separation, Separation::Kink { .. });
+    let force_at = |rpm: &f64| ForceAt { rpm: *rpm, least: contact.least(*rpm) };
+    let forces = if has_force { speeds.iter().map(force_at).collect() } else { Vec::new() };
+    let round = if count == 1 && has_force { round(&contact, low, MOMENTS) } else { Vec::new() };
+    let parted: Vec<f64> = speeds.iter().copied().filter(|rpm| *rpm > separation.speed()).collect();
+    let done = std::sync::atomic::AtomicU64::new(0);
+    let loads_at = |rpm: &f64| -> Result<Loads, StudyError> {
+        let loads = Loads::at(model, &machine(model, *rpm)?)?;
+        let done = 1 + done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        watch.at("what attracts where the follower leaves the cam", done, parted.len() as u64);
+        Ok(loads)
+    };
+    let loads = parted.par_iter().map(loads_at).collect::<Result<Vec<_>, _>>()?;
+    let passed = |(limit, value): &(Load, f64)| Passed {
+        limit: *limit,
+        value: *value,
+        unit: limit.unit(&model.units),
+        speed_rpm: loads
+            .iter()
+            .find(|loads| loads.of(*limit) > limit.inside(&model.units, *value))
+            .map(|loads| loads.rpm),
+    };
+    let limits = asked.limits.iter().map(passed).collect();
+    let changed = Changed::new(model, &contact);
+    let mut needs = Vec::new();
+    let total = (asked.needs.len() * Lever::ALL.len()) as u64;
+    for (text, need) in &asked.needs {
+        for lever in Lever::ALL {
+            watch.at(&format!("the {lever} for \"{text}\""), needs.len() as u64, total);
+            needs.push(needs::answer(&changed, need, text, lever)?);
+        }
+    }
+    let mut trades = Vec::new();
+    if let Some((against, [from, to], count)) = asked.against {
+        let (_, against_unit) = changed.told(against, 0.0);
+        let inside =
+            |value: f64| model.units.of_follower(&against.to_string()).map_or(value, |unit| unit.inside(value));
+        for (text, need) in &asked.needs {
+            for parameter in Lever::ALL.into_iter().filter(|lever| *lever != against) {
+                watch.at(&format!("the {parameter} against the {against} for \"{text}\""), 0, 0);
+                let value = |index: u32| from + (to - from) * f64::from(index) / f64::from(count.max(2) - 1);
+                let pair = |index: u32| -> Result<(f64, Option<f64>), StudyError> {
+                    let (found, _) = needs::find(&changed.with(against, inside(value(index))), need, parameter)?;
+                    Ok((value(index), found.map(|found| changed.told(parameter, found).0)))
+                };
+                let pairs = (0..count).into_par_iter().map(pair).collect::<Result<_, _>>()?;
+                let (unit, against_unit) = (changed.told(parameter, 0.0).1, against_unit.clone());
+                trades.push(Trade { need: text.clone(), parameter, unit, against, against_unit, pairs });
+            }
+        }
+    }
+    let (label, units) = (ModelLabel::of(model), model.units.clone());
+    Ok(Design {
+        model: label,
+        units,
+        separation,
+        forces,
+        round,
+        loads,
+        limits,
+        needs,
+        rounded: rounded(model, &cam),
+        trades,
+    })
+}
+
+/// Cam angle, rad, and force, at moments evenly spaced and at both sides of every corner.
+fn round(contact: &Contact<'_>, rpm: f64, moments: usize) -> Vec<[f64; 2]> {
+    let omega = crate::simulate::angular_velocity(rpm);
+    let mut points = Vec::new();
+    for segment in contact.cam.segments() {
+        let part = (segment.end - segment.start) / std::f64::consts::TAU;
+        let count = (part * moments as f64).ceil().max(1.0) as usize;
+        let angle = |index: usize| segment.start + (segment.end - segment.start) * index as f64 / count as f64;
+        points.extend((0..=count).map(|index| [angle(index), contact.force(&segment.law.lift(angle(index)), omega)]));
+    }
+    points
+}

@@ -1,0 +1,190 @@
+//! Is the contact force the one that holds the follower on the cam, and is what must be changed enough and no more than enough?
+
+use corner_impact::cam::Cam;
+use corner_impact::model::Model;
+use corner_impact::progress::Unwatched;
+use corner_impact::study::attractors::detachment;
+use corner_impact::study::design::contact::{Contact, Separation};
+use corner_impact::study::design::needs::{Lever, Need};
+use corner_impact::study::design::{Asked, Design, design};
+use serde_json::Value;
+
+use crate::common::{self, corner_impact, text};
+
+fn valve(follower: &str, motion: &str) -> Model {
+    let text = format!(
+        "name = \"valve\"\n[units]\nlength = \"mm\"\nstiffness = \"N/mm\"\n[follower]\n{follower}\ngravity = 9.81\nrestitution = 0.3\n[cam]\n\
+         law = \"program\"\nbase = 2\n[[cam.segment]]\nmotion = \"{motion}\"\nspan_deg = 80\nrise = 10\n[[cam.segment]]\n\
+         motion = \"{motion}\"\nspan_deg = 110\nrise = -10\n[[cam.segment]]\nmotion = \"dwell\"\nspan_deg = 170\n"
+    );
+    Model::parse("valve.toml", &text).unwrap()
+}
+
+fn separation(model: &Model) -> Separation {
+    Contact::new(&Cam::new(model).unwrap(), model.follower).separation()
+}
+
+/// Two routes: the force, and runs that look whether the follower stays. With and without damping and gravity, on cams whose
+/// acceleration jumps and on others.
+#[test]
+fn separation_is_the_detachment_that_runs_find() {
+    let followers = [
+        "mass = 0.11\ndamping = 0\nstiffness = 30\npreload = 220",
+        "mass = 0.11\ndamping = 40\nstiffness = 30\npreload = 220",
+        "mass = 0.3\ndamping = 900\nstiffness = 0.4\nrest_position = -300",
+        "mass = 0.3\ndamping = 0\nstiffness = 0\nrest_position = 0",
+    ];
+    let motions = ["cycloidal", "modified-sine", "parabolic", "poly345"];
+    let mut models: Vec<Model> =
+        followers.iter().flat_map(|follower| motions.iter().map(|motion| valve(follower, motion))).collect();
+    models.extend(common::model_files().iter().map(|file| common::read(file)));
+    models.push(common::read(&std::path::Path::new(common::ROOT).join("models/laws/table-quintic.toml")));
+    let mut seen = 0;
+    for model in &models {
+        let Separation::At { rpm, error, .. } = separation(model) else { continue };
+        let by_runs = detachment(model, [0.7 * rpm, 1.3 * rpm]).unwrap();
+        let by_runs = by_runs.unwrap_or_else(|| panic!("{}: no detachment near {rpm}", model.name));
+        // A run sees a gap once it is more than rounding.
+        assert!((by_runs - rpm).abs() < 1e-7 * rpm, "{}: {rpm} and {by_runs}", model.name);
+        assert!(error < 1e-9 * rpm, "{}: {error}", model.name);
+        seen += 1;
+    }
+    assert!(seen >= 20, "{seen}");
+}
+
+/// 220 N, 30 N/mm, 0.11 kg: on a cycloidal rise of 10 mm in 90 deg and return in 90, the detachment in closed form is
+/// where 220 N + 30 N/mm c + 1.08 N + m w^2 c'' is 0 at least.
+#[test]
+fn a_need_is_met_at_its_value_and_not_beyond() {
+    let model = valve("mass = 0.11\ndamping = 0\nstiffness = 30\npreload = 220", "modified-sine");
+    let goal = 1.2 * separation(&model).speed();
+    let words = format!("no separation to {goal} rpm");
+    let need: Need = words.parse().unwrap();
+    let asked = Asked { speeds: 2, needs: vec![(words, need)], ..Asked::default() };
+    let found = design(&model, &asked, &Unwatched).unwrap();
+    assert_eq!(found.needs.len(), 4);
+    let mut met = 0;
+    for answer in &found.needs {
+        let Some(value) = answer.value else {
+            // The return is what leaves first, and damping lets it go sooner.
+            assert_eq!(answer.lever, Lever::Damping, "{answer:?}");
+            assert!(answer.note.contains("does it"), "{}", answer.note);
+            continue;
+        };
+        let with =
+            |value: f64| separation(&model.with_number(&format!("follower.{}", answer.lever), value).unwrap()).speed();
+        assert!((with(value) - goal).abs() < 1e-9 * goal, "{answer:?}: {}", with(value));
+        let worse = value * if answer.lever.is_upper_bound() { 1.001 } else { 0.999 };
+        assert!(with(worse) < goal, "{answer:?}");
+        met += 1;
+    }
+    assert_eq!(met, 3);
+}
+
+fn document(words: &[&str]) -> Value {
+    let output = corner_impact(words);
+    assert!(output.status.success(), "{}", text(output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+#[test]
+fn the_document_has_the_fields_of_the_contract() {
+    let found = document(&[
+        "design",
+        "models/preloaded.toml",
+        "--rpm",
+        "150:250",
+        "--speeds",
+        "3",
+        "--need",
+        "no separation to 250 rpm",
+        "--need",
+        "impact speed below 3 m/s to 200 rpm",
+        "--limit",
+        "gap=0.001",
+        "--json",
+    ]);
+    assert_eq!(found["schema"], "corner-impact/design/1");
+    for field in ["speed_rpm", "error_rpm", "cam_angle_rad"] {
+        assert!(found["separation"][field].is_f64(), "{field}");
+    }
+    assert_eq!(found["separation"]["located"], true);
+    let forces = found["contact_force"].as_array().unwrap();
+    assert_eq!(forces.len(), 3);
+    assert!(forces.iter().all(|at| at["least_n"].is_f64() && at["cam_angle_rad"].is_f64() && at["speed_rpm"].is_f64()));
+    let needs = found["needs"].as_array().unwrap();
+    assert_eq!(needs.len(), 8);
+    for need in needs {
+        assert!(need["unit"].is_string() && need["parameter"].is_string() && need["need"].is_string());
+        assert!(need["value"].is_f64() || need["note"].as_str().unwrap().contains("does it"), "{need}");
+    }
+    assert!(needs[..4].iter().all(|need| need["known"] == "computed"));
+    assert!(needs[4..].iter().all(|need| need["known"] == "sampled"));
+    assert!(found["limits"][0]["speed_rpm"].is_f64(), "{}", found["limits"]);
+}
+
+/// Beyond the separation the machine that is changed as asked keeps the limit, by runs of its own.
+#[test]
+fn what_is_searched_by_runs_keeps_the_limit() {
+    let model = valve("mass = 0.11\ndamping = 0\nstiffness = 30\npreload = 220", "modified-sine");
+    let goal = 1.3 * separation(&model).speed();
+    let words = format!("impact speed below 300 mm/s to {goal} rpm");
+    let asked =
+        |needs: Vec<(String, Need)>| Asked { rpm: Some([0.9 * goal, goal]), speeds: 5, needs, ..Asked::default() };
+    let found = design(&model, &asked(vec![(words.clone(), words.parse().unwrap())]), &Unwatched).unwrap();
+    let fastest = |found: &Design| found.loads.iter().fold(0.0_f64, |most, loads| most.max(loads.impact_speed));
+    assert!(fastest(&found) > 300.0, "{}", fastest(&found));
+    let preload = found.needs.iter().find(|answer| answer.lever == Lever::Preload).unwrap().value.unwrap();
+    let changed = model.with_number("follower.preload", preload).unwrap();
+    let then = design(&changed, &asked(Vec::new()), &Unwatched).unwrap();
+    assert!(fastest(&then) < 300.0, "{preload}: {}", fastest(&then));
+}
+
+#[test]
+fn what_cannot_be_answered_is_told() {
+    // A kink, and no pressing at all.
+    assert!(matches!(
+        separation(&common::read(&std::path::Path::new(common::ROOT).join("models/laws/rectified-sine.toml"))),
+        Separation::Kink { .. }
+    ));
+    let slack = valve("mass = 1\ndamping = 0\nstiffness = 1\nrest_position = 30", "poly345");
+    assert!(matches!(separation(&slack), Separation::NotPressed { .. }));
+    for (words, says) in [
+        (vec!["--need", "no separation"], "must be like"),
+        (vec!["--need", "impact speed below 3 kg to 200 rpm"], "\"kg\": impact speed is in one of: m/s"),
+        (vec!["--need", "no separation to -3 rpm"], "is not a number above 0"),
+        (vec!["--limit", "noise=3"], "must be one of: impact-speed, gap, energy, force"),
+        (vec!["--against", "length=1:2:3", "--need", "no separation to 200 rpm"], "must be one of: preload"),
+    ] {
+        let output = corner_impact([vec!["design", "models/preloaded.toml"], words].concat());
+        assert_eq!(output.status.code(), Some(2));
+        assert!(text(output.stderr).contains(says), "{says}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("force.svg");
+    let output = corner_impact(["design", "models/laws/rectified-sine.toml", "--out", path.to_str().unwrap()]);
+    assert_eq!((output.status.code(), path.exists()), (Some(2), false), "{}", text(output.stderr));
+}
+
+/// The loads of a table are those of its picture's speeds, and energy is what impacts of a follower with restitution take.
+#[test]
+fn loads_of_a_sweep_are_those_of_its_impacts() {
+    let sweep =
+        ["diagram", "models/preloaded.toml", "--rpm", "200:200:1", "--transient", "50", "--record", "3", "--out", "-"];
+    let rows = |more: &[&str]| -> Vec<Vec<String>> {
+        let output = text(corner_impact([&sweep[..], more].concat()).stdout);
+        output.lines().skip(1).map(|line| line.split(',').map(String::from).collect()).collect()
+    };
+    let (loads, impacts) = (rows(&["--show", "energy"]), rows(&[]));
+    assert_eq!(loads.len(), 3);
+    let number = |cell: &String| cell.parse::<f64>().unwrap();
+    // m (v-^2 - v+^2)/2 in the cam's frame: u+ = -r u-.
+    let (mass, restitution) = (1.221, 0.6);
+    let speed = |row: &Vec<String>| (number(&row[5]) - number(&row[6])).abs() / (1.0 + restitution);
+    let hits: Vec<f64> = impacts.iter().filter(|row| row[3] == "impact").map(speed).collect();
+    let lost: f64 = hits.iter().map(|speed| 0.5 * mass * (1.0 - restitution * restitution) * speed * speed).sum();
+    let told: f64 = loads.iter().map(|row| number(&row[5])).sum();
+    assert!((told - lost).abs() < 1e-9 * lost && lost > 0.0, "{told} {lost}");
+    let fastest = loads.iter().map(|row| number(&row[2])).fold(0.0, f64::max);
+    assert!((fastest - hits.iter().copied().fold(0.0, f64::max)).abs() < 1e-9 * fastest);
+}
