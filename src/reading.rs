@@ -1,9 +1,10 @@
 //! A model whole: what its fields say, and what of the follower needs the cam.
 
+use std::f64::consts::TAU;
 use std::path::Path;
 
 use crate::cam::Cam;
-use crate::model::{Model, ModelError, OSORIO_2008};
+use crate::model::{Follower, Model, ModelError, OSORIO_2008};
 
 impl Model {
     /// Reads and checks a model file.
@@ -44,6 +45,46 @@ impl Model {
     pub fn is_the_papers(&self) -> Result<bool, ModelError> {
         let paper = Self::built_in()?;
         Ok(self.follower == paper.follower && self.cam == paper.cam && self.units.length == paper.units.length)
+    }
+
+    /// What is odd about numbers whose units are not said, at speeds, rpm, that are asked for or those of `[study]`: a question
+    /// for the user, no reason to refuse. Only sizes are looked at that no machine has which turns and presses as it should.
+    pub fn doubt(&self, rpm: Option<[f64; 2]>) -> Result<Option<String>, ModelError> {
+        /// m: of a cam that somebody turns.
+        const LARGEST_RISE: f64 = 5.0;
+        /// Weights that a spring presses with.
+        const MOST_WEIGHTS: f64 = 5000.0;
+        /// The cam's speed over the frequency of follower and spring, and a spring's compression over the rise.
+        const MOST_TIMES: f64 = 20.0;
+        const MOST_RISES: f64 = 100.0;
+        /// m/s^2, of weights, also where the model has no gravity.
+        const GRAVITY: f64 = 9.81;
+        /// From N/m to N/mm.
+        const THOUSAND: f64 = 1000.0;
+        if self.units.are_given {
+            return Ok(None);
+        }
+        let cam = Cam::new(self)?;
+        let Follower { mass, stiffness, rest_position, .. } = self.follower;
+        let lowest = cam.lowest().value;
+        let (rise, compressed) = (cam.top() - lowest, lowest - rest_position);
+        let weights = stiffness * compressed / (mass * GRAVITY);
+        let own = (stiffness / mass).sqrt() / TAU * 60.0;
+        let slowest = rpm.or(self.study.map(|study| [study.rpm_min, study.rpm_max])).map(|[low, _]| low);
+        let too_soft = |speed: f64| speed > MOST_TIMES * own && speed < MOST_TIMES * THOUSAND.sqrt() * own;
+        let meant = if rise > LARGEST_RISE {
+            format!("the lift rises by {rise:.4} m: did you mean mm?")
+        } else if stiffness > 0.0 && (compressed > MOST_RISES * rise || slowest.is_some_and(too_soft)) {
+            format!("stiffness {stiffness} with mass {mass}: did you mean N/mm?")
+        } else if weights > MOST_WEIGHTS {
+            format!(
+                "the spring presses with {:.0} N, {weights:.0} times the weight of mass {mass}: is it in kg?",
+                stiffness * compressed
+            )
+        } else {
+            return Ok(None);
+        };
+        Ok(Some(format!("{meant} [units] says what numbers are in")))
     }
 
     /// The model with the spring slack where its preload says: `k (c_min - rest_position) = preload`.

@@ -1,6 +1,5 @@
 //! `corner-impact basins [MODEL] --rpm R --grid NxM`.
 
-use std::io::Write;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -80,14 +79,13 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let basins = watched("", |watch| grid.basins_watched(&section.map.machine, patience, threads, watch))?;
     let wall_s = clock.elapsed().as_secs_f64();
     if let Some(path) = &arguments.out {
-        let table =
-            |table: &mut dyn Write| Ok(table.write_all(csv::told(&csv::basins(&basins), &model.units).as_bytes())?);
+        let table = || csv::basins(&basins);
         let picture = || {
             let Border { stable, saddles, curves } = &section.border(&basins);
             let title = format!("{} at {} rpm: what each start ends on", model.name, arguments.rpm);
             Ok(basins_figure(&title, &basins, stable, saddles, curves))
         };
-        Target::create(path, &mut *session.out, arguments.picture.look()?)?.fill(table, picture)?;
+        Target::create(path, &mut *session.out, arguments.picture.look()?)?.fill(&model.units, table, picture)?;
     }
     let summary = Summary::new(&model, arguments.rpm, basins, wall_s);
     if !to_standard {

@@ -36,7 +36,8 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let cam = Cam::new(&model)?;
     if let Some(path) = &arguments.out {
         super::commit(vec![
-            picture::Canvas::create(path, arguments.picture.look()?)?.draw(cam_figure(&cam, &model.name))?,
+            picture::Canvas::create(path, arguments.picture.look()?)?
+                .draw(cam_figure(&cam, &model.name), &model.units)?,
         ])?;
     }
     drop(progress);

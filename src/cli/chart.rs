@@ -1,6 +1,5 @@
 //! `corner-impact chart [MODEL] --x NAME=LO:HI:N --y NAME=LO:HI:N`.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
@@ -163,9 +162,8 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
                 watched("", |watch| curves(model, rpm, &wanted, &Bifurcation::ALL, &following, watch))
             };
             let over = ground.map(events).transpose()?.map(|found| found.curves).unwrap_or_default();
-            let table =
-                |table: &mut dyn Write| Ok(table.write_all(csv::told(&csv::chart(&found), &model.units).as_bytes())?);
-            target.fill(table, || Ok(chart_figure(&found, arguments.show.coloured(), &over)))?;
+            let table = || csv::chart(&found);
+            target.fill(&model.units, table, || Ok(chart_figure(&found, arguments.show.coloured(), &over)))?;
             found
         }
     };

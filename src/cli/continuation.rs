@@ -1,6 +1,5 @@
 //! `corner-impact continue [MODEL] --from-rpm R --parameter NAME=LO:HI`.
 
-use std::io::Write;
 use std::path::PathBuf;
 
 use super::picture::{PictureArguments, Target, picture_or_table};
@@ -79,10 +78,8 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         // Nobody is left to tell where standard error is closed.
         let _ = session.err.write_all(pages::branches::branch(branch, name, index + 1).as_bytes());
     }
-    let table = |table: &mut dyn Write| {
-        Ok(table.write_all(csv::told(&csv::branches(name, &found.branches), &model.units).as_bytes())?)
-    };
-    target.fill(table, || {
+    let table = || csv::branches(name, &found.branches);
+    target.fill(&model.units, table, || {
         let settled = watched("", |watch| found.settled(arguments.runs, watch))?;
         Ok(branches_figure(&found.title(), (name, *range), &found.branches, &settled, &corners))
     })?;

@@ -1,6 +1,5 @@
 //! `corner-impact curve [MODEL] --rpm LO:HI --parameter NAME=LO:HI`.
 
-use std::io::Write;
 use std::path::PathBuf;
 
 use super::picture::{PictureArguments, Target, picture_or_table};
@@ -85,9 +84,8 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     }
     // Nobody is left to tell where standard error is closed.
     let _ = session.err.write_all(accounts.as_bytes());
-    let table =
-        |table: &mut dyn Write| Ok(table.write_all(csv::told(&csv::curves(name, &curves), &model.units).as_bytes())?);
-    target.fill(table, || {
+    let table = || csv::curves(name, &curves);
+    target.fill(&model.units, table, || {
         let title = format!("{}: events against {name}", model.name);
         let speeds = curves.iter().flat_map(|found| &found.points).map(|point| point.rpm);
         let found = extent(speeds);

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::diagram::load;
-use super::picture::{Canvas, picture};
+use super::picture::{Canvas, PictureArguments, picture};
 use super::start::{axis, positive, rpm_or_range};
 use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::diagram::Speeds;
@@ -45,9 +45,11 @@ pub(super) struct Arguments {
     /// Print one JSON document instead of the page.
     #[arg(long)]
     json: bool,
-    /// Draw forces and loads against the speed, the force round the cam at one speed, or what --against asks (.svg, .png).
-    #[arg(long, value_name = "FILE", value_parser = picture)]
+    /// Draw forces and loads against the speed, the force round the cam at one speed, or what --against asks (.svg, .png, .pdf).
+    #[arg(long, value_name = "FILE", value_parser = picture, group = "picture")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    picture: PictureArguments,
 }
 
 fn need(text: &str) -> Result<(String, Need), String> {
@@ -69,7 +71,7 @@ fn against(text: &str) -> Result<(Lever, Speeds), String> {
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let model = arguments.model.read(session)?;
-    let canvas = arguments.out.as_ref().map(|path| Canvas::create(path)).transpose()?;
+    let canvas = arguments.out.as_ref().map(|path| Canvas::create(path, arguments.picture.look()?)).transpose()?;
     let asked = Asked {
         rpm: arguments.rpm,
         speeds: arguments.speeds,
@@ -82,7 +84,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     };
     let found = watched("", |watch| design(&model, &asked, watch))?;
     if let Some(canvas) = canvas {
-        super::commit(vec![canvas.draw(&design_figure(&found))?])?;
+        super::commit(vec![canvas.draw(design_figure(&found), &model.units)?])?;
     }
     session.answer(&found, arguments.json)
 }

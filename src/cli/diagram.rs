@@ -152,7 +152,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
                     Section::Impacts => impact_diagram(&title, places, &corners, exponents),
                     Section::Strobe(_) => strobe_diagram(&title, places, exponents),
                 };
-                super::commit(vec![canvas.draw(figure)?])?;
+                super::commit(vec![canvas.draw(figure, &model.units)?])?;
                 swept
             }
         };
@@ -178,13 +178,13 @@ fn loads(
     session: &mut Session<'_>,
 ) -> Result<Exit, CommandError> {
     let Some(path) = arguments.out.as_deref() else { return Ok(Exit::BadInput) };
-    let target = Target::create(path, &mut *session.out)?;
+    let target = Target::create(path, &mut *session.out, arguments.picture.look()?)?;
     let lengths = Lengths { transient: arguments.transient, record: arguments.record };
     let (start, threads) = (arguments.start.start(), arguments.threads.map(usize::from));
     let found = watched("", |watch| swept::loads(model, sweep, start, lengths, threads, watch))?;
-    let table = |table: &mut dyn Write| Ok(table.write_all(csv::told(&csv::loads(&found), &model.units).as_bytes())?);
+    let table = || csv::loads(&found);
     let title = format!("{}: {} by speed", model.name, load.to_string().replace('-', " "));
-    target.fill(table, || Ok(loads_diagram(&title, &found, load, &model.units)))?;
+    target.fill(&model.units, table, || Ok(loads_diagram(&title, &found, load, &model.units)))?;
     Ok(Exit::Agrees)
 }
 

@@ -89,7 +89,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
             let plate = entry.plate(&subject);
             drop(progress);
             match (&plate.drawn, canvas) {
-                (Ok(drawn), Some(canvas)) => super::commit(vec![canvas.draw(drawn.figure.clone())?])?,
+                (Ok(drawn), Some(canvas)) => super::commit(vec![canvas.draw(drawn.figure.clone(), &model.units)?])?,
                 // A document says why there is none; a file cannot.
                 (Err(_), None) if arguments.json => {}
                 (Err(why), _) => return Err(CommandError::Words(format!("{}: no figure {id}: {why}", model.file()))),

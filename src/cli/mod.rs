@@ -165,8 +165,9 @@ pub fn run_at(
 ) -> Exit {
     let words: Vec<OsString> = arguments.into_iter().collect();
     // What is wrong with a command line is coloured as it says itself.
-    let mut session = Session { out, err, terminal, color: session::said(&words), units: Units::default() };
+    let mut session = Session { out, err, terminal, color: session::said(&words), rpm: None, units: Units::default() };
     let matches = help::command(session.width()).try_get_matches_from(words);
+    session.rpm = matches.as_ref().ok().and_then(session::speeds);
     let arguments = match matches.and_then(|matches| Arguments::from_arg_matches(&matches)) {
         Ok(arguments) => arguments,
         Err(error) => return session.refuse(&error),

@@ -49,7 +49,11 @@ impl ModelArgument {
                 model
             }
         };
+        let model = model.changed(&self.changes.numbers)?;
         session.units = model.units.clone();
-        Ok(model.changed(&self.changes.numbers)?)
+        if let Some(words) = model.doubt(session.rpm)? {
+            session.note(&words);
+        }
+        Ok(model)
     }
 }

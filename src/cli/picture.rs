@@ -10,6 +10,8 @@ use super::start::{positive, range};
 use crate::draw::font::Fonts;
 use crate::draw::{Figure, Look, Theme, pdf, png, svg};
 use crate::file::Output;
+use crate::model::Units;
+use crate::show::csv;
 
 /// How a picture stands on paper.
 #[derive(clap::Args)]
@@ -138,8 +140,9 @@ impl Canvas {
         Ok(Self { file: Output::file(path)?, kind: kind(path).unwrap_or(Kind::Svg), look: look.unwrap_or_default() })
     }
 
-    /// The figure, written but not yet a file of that name.
-    pub(super) fn draw(mut self, figure: Figure) -> Result<Output<'static>, CommandError> {
+    /// The figure with the units of a model, written but not yet a file of that name.
+    pub(super) fn draw(mut self, figure: Figure, units: &Units) -> Result<Output<'static>, CommandError> {
+        let figure = figure.in_units(|unit| units.spelled(unit));
         let (look, figure) = (&self.look, self.look.framed(figure)?);
         let bytes = match self.kind {
             Kind::Png => png::render(&figure, look, look.pixels())?,
@@ -170,15 +173,19 @@ impl<'a> Target<'a> {
         })
     }
 
-    /// Writes the one or the other, and gives the file its name.
+    /// Writes the one or the other in the units of a model, and gives the file its name.
     pub(super) fn fill(
         self,
-        table: impl FnOnce(&mut dyn Write) -> Result<(), CommandError>,
+        units: &Units,
+        table: impl FnOnce() -> String,
         figure: impl FnOnce() -> Result<Figure, CommandError>,
     ) -> Result<(), CommandError> {
         let file = match self {
-            Self::Table(mut file) => table(&mut file).map(|()| file)?,
-            Self::Picture(canvas) => canvas.draw(figure()?)?,
+            Self::Table(mut file) => {
+                file.write_all(csv::told(&table(), units).as_bytes())?;
+                file
+            }
+            Self::Picture(canvas) => canvas.draw(figure()?, units)?,
         };
         super::commit(vec![file])
     }

@@ -22,6 +22,15 @@ pub(super) fn said(words: &[OsString]) -> ColorChoice {
     said
 }
 
+/// The lowest and the highest of the speeds that a command line asks for by `--rpm`, as far as they can be read.
+pub(super) fn speeds(matches: &clap::ArgMatches) -> Option<[f64; 2]> {
+    let (_, of_command) = matches.subcommand()?;
+    let text = of_command.try_get_raw("rpm").ok().flatten()?.next()?.to_str()?;
+    let mut parts = text.split(':').map(|part| part.trim().parse::<f64>().ok());
+    let low = parts.next()??;
+    Some([low, parts.next().flatten().unwrap_or(low)])
+}
+
 /// What the streams of a process are connected to, and what its environment wants.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Terminal {
@@ -86,6 +95,8 @@ pub(super) struct Session<'a> {
     pub(super) terminal: Terminal,
     /// What `--color` says.
     pub(super) color: ColorChoice,
+    /// The speeds that the command line asks for, rpm.
+    pub(super) rpm: Option<[f64; 2]>,
     /// Those of the model that the command is about.
     pub(super) units: Units,
 }

@@ -157,10 +157,10 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     if let Some(canvas) = trace {
         let run = seen(figures::Run::DRAWN)?;
         let figure = with_force(time_trace(&title, &run), &run, model.follower.mass, &model.units.force);
-        files.push(canvas.draw(figure)?);
+        files.push(canvas.draw(figure, &model.units)?);
     }
     if let Some(canvas) = plane {
-        files.push(canvas.draw(phase_plane_figure(&title, &seen(figures::Run::DRAWN)?))?);
+        files.push(canvas.draw(phase_plane_figure(&title, &seen(figures::Run::DRAWN)?), &model.units)?);
     }
     super::commit(files)?;
     if arguments.summary || streams == 0 {

@@ -1,6 +1,5 @@
 //! `corner-impact speeds [MODEL]`.
 
-use std::io::Write;
 use std::path::PathBuf;
 
 use super::picture::{PictureArguments, Target, is_standard, picture_or_table};
@@ -53,10 +52,9 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let resolution = Resolution { step, starts: arguments.starts as usize };
     let found = watched("", |watch| speeds(&model, rpm, resolution, watch))?;
     if let Some(path) = &arguments.out {
-        let table =
-            |table: &mut dyn Write| Ok(table.write_all(csv::told(&csv::speeds(&found), &model.units).as_bytes())?);
+        let table = || csv::speeds(&found);
         Target::create(path, &mut *session.out, arguments.picture.look()?)?
-            .fill(table, || Ok(speeds_figure(&found, &corners)))?;
+            .fill(&model.units, table, || Ok(speeds_figure(&found, &corners)))?;
     }
     if is_standard(arguments.out.as_ref()) { Ok(Exit::Agrees) } else { session.answer(&found, arguments.json) }
 }

@@ -45,6 +45,14 @@ impl Figure {
     pub(crate) fn new(title: &str, x: Axis, panels: Vec<Panel>) -> Self {
         Self { title: title.into(), x, marks: Vec::new(), panels, note: String::new() }
     }
+
+    /// The same with each axis' unit written otherwise.
+    pub fn in_units(mut self, spelled: impl Fn(&str) -> String) -> Self {
+        for axis in self.panels.iter_mut().map(|panel| &mut panel.y).chain([&mut self.x]) {
+            axis.unit = spelled(&axis.unit);
+        }
+        self
+    }
 }
 
 /// An axis: its name, unit and range.

@@ -148,7 +148,9 @@ pub fn plate(subject: &Subject, id: &str) -> Option<Plate> {
 impl Entry {
     pub(crate) fn plate(&self, subject: &Subject) -> Plate {
         let title = (self.title)(subject);
-        let drawn = (self.draw)(subject, &title);
+        let units = &subject.model.units;
+        let in_units = |drawn: Drawn| Drawn { figure: drawn.figure.in_units(|unit| units.spelled(unit)), ..drawn };
+        let drawn = (self.draw)(subject, &title).map(in_units);
         let command = command("figure", &subject.model, &format!("{} --out {}.svg", self.id, self.id));
         Plate { id: self.id, place: self.place, title, command, drawn }
     }

@@ -164,17 +164,10 @@ impl Units {
         if allowed.contains(number) { Ok(number) } else { Err(fields.reject(&path, "is too large or too small")) }
     }
 
-    /// A unit that is written in metres, as this file's length has it: `m/s^2` is `mm/s^2`.
+    /// A unit of a length, its velocity or its acceleration that is written in metres, in this file's length: `m/s` is `mm/s`.
     pub(crate) fn spelled(&self, unit: &str) -> String {
-        let word = |text: &str| if text == "m" { self.length.name().to_owned() } else { text.to_owned() };
-        let ends = unit.match_indices(|letter: char| !letter.is_alphabetic());
-        let (mut spelled, mut from) = (String::new(), 0);
-        for (at, between) in ends {
-            spelled.push_str(&word(&unit[from..at]));
-            spelled.push_str(between);
-            from = at + between.len();
-        }
-        spelled + &word(&unit[from..])
+        let rest = unit.strip_prefix('m').filter(|rest| rest.is_empty() || rest.starts_with('/'));
+        rest.map_or_else(|| unit.to_owned(), |rest| format!("{}{rest}", self.length.name()))
     }
 
     /// The name of a field or a column in these units: `gap_m` is `gap_mm`.

@@ -126,6 +126,13 @@ fn pages_tell_the_unit_of_length() {
     let page = |model: &str| printed(model, "simulate", &["--rpm", "4500", "--revolutions", "3"]);
     assert!(page(&metres).contains(" m, v = ") && page(&metres).contains(" m/s"), "{}", page(&metres));
     assert!(page(&millimetres).contains(" mm, v = ") && page(&millimetres).contains(" mm/s"), "{}", page(&millimetres));
+    let folder = tempfile::tempdir().unwrap();
+    for (model, unit) in [(&metres, "(m)"), (&millimetres, "(mm)")] {
+        let svg = folder.path().join("trace.svg");
+        printed(model, "simulate", &["--rpm", "4500", "--trace", svg.to_str().unwrap()]);
+        let drawn = std::fs::read_to_string(&svg).unwrap();
+        assert!(drawn.contains(&format!("position {unit}")), "{unit}");
+    }
     let page = |model: &str| printed(model, "cam", &[]);
     assert!(page(&metres).contains("to 0.01 m\n") && page(&millimetres).contains("to 10 mm\n"));
 }
@@ -169,6 +176,36 @@ fn the_lowest_lift_is_found() {
         let seen = seen.fold(f64::INFINITY, f64::min);
         assert!(found.value <= seen && seen - found.value < 1e-9, "{file}: {} {seen}", found.value);
         assert!(lowest.is_nan() || (found.value - lowest).abs() < 1e-15, "{file}: {}", found.value);
+    }
+}
+
+/// One note for each machine that nobody has, and none for those that somebody has.
+#[test]
+fn numbers_that_are_odd_are_asked_about() {
+    let spoken = |numbers: [&str; 4], units: &str, rpm: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("valve.toml");
+        std::fs::write(&file, valve(units, numbers)).unwrap();
+        let output =
+            program(["simulate", file.to_str().unwrap(), "--rpm", rpm, "--revolutions", "1"]).output().unwrap();
+        text(output.stderr)
+    };
+    let soft = "note: stiffness 30 with mass 0.11: did you mean N/mm? [units] says what numbers are in\n";
+    assert_eq!(spoken(["0.11", "30", "preload = 220", "0.01"], "", "3000"), soft);
+    assert_eq!(spoken(["0.11", "30", "rest_position = -0.0073", "0.01"], "", "4000"), soft);
+    assert_eq!(spoken(["0.11", "30", "rest_position = -0.0073", "0.01"], "", "200"), "");
+    assert!(
+        spoken(["0.11", "30000", "rest_position = -7.3", "25"], "", "3000")
+            .contains("rises by 25.0000 m: did you mean mm?")
+    );
+    assert!(spoken(["0.11", "30000", "preload = 22000", "0.01"], "", "3000").contains("times the weight of mass 0.11"));
+    assert_eq!(spoken(["0.11", "30000", "preload = 220", "0.01"], "", "3000"), "");
+    assert_eq!(
+        spoken(["0.11", "30", "preload = 220", "10"], "[units]\nlength = \"mm\"\nstiffness = \"N/mm\"\n", "3000"),
+        ""
+    );
+    for file in common::model_files() {
+        assert_eq!(common::read(&file).doubt(None).unwrap(), None, "{}", file.display());
     }
 }
 
