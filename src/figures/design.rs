@@ -29,6 +29,7 @@ fn round(found: &Design) -> Figure {
 }
 
 fn speeds(found: &Design) -> Figure {
+    type Quantity = (&'static str, &'static str, fn(&Loads) -> f64);
     let all = found.forces.iter().map(|at| at.rpm).chain(found.loads.iter().map(|loads| loads.rpm));
     let range = extent(all);
     let forces = found.forces.iter().map(|at| [at.rpm, found.force(at.least.value)]);
@@ -37,7 +38,7 @@ fn speeds(found: &Design) -> Figure {
         let line = Series::line("", Colour::Blue, Stroke::Solid, forces);
         panels.push(Panel::new(force_axis(found, "least contact force"), 0.24, vec![line]).with_zero());
     }
-    let quantities: [(&str, &str, fn(&Loads) -> f64); 4] = [
+    let quantities: [Quantity; 4] = [
         ("impact speed", "m/s", |loads| loads.impact_speed),
         ("largest gap", "m", |loads| loads.gap),
         ("time off the cam", "%", |loads| 100.0 * loads.off_cam),

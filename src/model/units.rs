@@ -87,6 +87,9 @@ pub struct Units {
     pub degrees: bool,
 }
 
+/// How a value from inside is told.
+pub(crate) type Converted = fn(&Units, f64) -> f64;
+
 /// The unit of a table that a field names, its own name where it names none.
 fn simple(fields: &mut Fields, path: &str, table: &[Unit]) -> Result<Unit, ModelError> {
     let choices: Vec<(&str, usize)> = table.iter().enumerate().map(|(index, unit)| (unit.name(), index)).collect();
@@ -193,7 +196,7 @@ impl Units {
     }
 
     /// What becomes of the values of a field or a column whose name is another in these units, where they are not lengths.
-    pub(crate) fn converted(&self, name: &str) -> Option<fn(&Self, f64) -> f64> {
+    pub(crate) fn converted(&self, name: &str) -> Option<Converted> {
         if name.ends_with("_rad") && self.degrees {
             Some(|_, angle| angle.to_degrees())
         } else if name.ends_with("_n") {
