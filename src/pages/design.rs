@@ -85,11 +85,10 @@ fn speeds(found: &Design) -> Vec<Block> {
     let mut speeds: Vec<f64> = found.forces.iter().map(|at| at.rpm).collect();
     speeds.extend(found.loads.iter().map(|loads| loads.rpm));
     speeds.sort_by(f64::total_cmp);
-    speeds.dedup_by(|one, two| (*one - *two).abs() <= 1e-9 * two.abs());
-    let is_at = |rpm: f64, at: f64| (rpm - at).abs() <= 1e-9 * at;
+    speeds.dedup();
     for rpm in speeds {
         let mut cells = vec![words![(rpm, SIX)]];
-        match found.forces.iter().find(|at| is_at(rpm, at.rpm)) {
+        match found.forces.iter().find(|at| at.rpm == rpm) {
             Some(at) => cells.extend([
                 words![(found.force(at.least.value), SIX)],
                 words![(at.least.angle.to_degrees(), Digits::Fixed(2))],
@@ -98,7 +97,7 @@ fn speeds(found: &Design) -> Vec<Block> {
         }
         if !found.loads.is_empty() {
             let three = |value: f64| words![(value, Digits::Significant(3))];
-            match found.loads.iter().find(|loads| is_at(rpm, loads.rpm)) {
+            match found.loads.iter().find(|loads| loads.rpm == rpm) {
                 Some(loads) => cells.extend([
                     three(loads.impact_speed),
                     three(loads.gap),

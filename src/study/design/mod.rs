@@ -207,7 +207,8 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
     let parted: Vec<f64> = speeds.iter().copied().filter(|rpm| *rpm > separation.speed()).collect();
     let done = std::sync::atomic::AtomicU64::new(0);
     let loads_at = |rpm: &f64| -> Result<Loads, StudyError> {
-        let loads = Loads::at(model, &machine(model, *rpm)?)?;
+        // As it was asked for, and not as the angular velocity has it.
+        let loads = Loads { rpm: *rpm, ..Loads::at(model, &machine(model, *rpm)?)? };
         let done = 1 + done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         watch.at("what attracts where the follower leaves the cam", done, parted.len() as u64);
         Ok(loads)

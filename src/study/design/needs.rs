@@ -241,7 +241,7 @@ pub(super) fn find(of: &Changed<'_>, need: &Need, lever: Lever) -> Result<(Optio
     };
     let (most, width) = match need.what {
         What::NoSeparation => (DOUBLINGS, tolerance::ROOT_WIDTH.value),
-        What::Below(..) => (DOUBLINGS_OF_RUNS, 1e-3),
+        What::Below(..) => (DOUBLINGS_OF_RUNS, tolerance::NEEDED_BY_RUNS.value),
     };
     let does = |value: f64| of.with(lever, value).does(need);
     let mut values: Vec<f64> = (-most..=most).map(|power| size * 2.0_f64.powi(power)).collect();
