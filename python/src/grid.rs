@@ -4,9 +4,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use corner_impact::diagram::Start;
+use corner_impact::model::Units;
 use corner_impact::orbit::Parameter;
 use corner_impact::progress::Unwatched;
-use corner_impact::study::chart::store::{SIDES, Store, VARIABLES, Variable, attributes, blocks_of};
+use corner_impact::study::chart::store::{SIDES, Store, VARIABLES, attributes, blocks_of};
 use corner_impact::study::chart::{Axis, Chart, Lengths};
 use numpy::{IntoPyArray, PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
@@ -117,7 +118,7 @@ impl Grid {
     /// What a dataset says of where it comes from, with CF's conventions: the model's whole text, the start, the lengths, the version.
     #[getter]
     fn attributes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        document(py, &attributes(&self.chart))
+        document(py, &attributes(&self.chart), &Units::default())
     }
 
     /// What the runs of some rows and columns, (first, end) each, come to, without them of all: two-dimensional arrays by name,
@@ -206,10 +207,15 @@ pub(crate) fn blocks_done(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, P
 }
 
 /// The arrays of a chart: a dict for each with `name`, `dtype` and `attributes`, those of the store; `class` has the meanings of its
-/// codes as `flag_meanings`.
+/// codes as `flag_meanings`. Units are those of a `chart`'s model, without one the SI's.
 #[pyfunction]
-pub(crate) fn chart_variables(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
+#[pyo3(signature = (chart=None))]
+pub(crate) fn chart_variables<'py>(py: Python<'py>, chart: Option<&Grid>) -> PyResult<Bound<'py, PyList>> {
     let all = PyList::empty(py);
-    VARIABLES.iter().map(Variable::document).try_for_each(|variable| all.append(document(py, &variable)?))?;
+    let units = chart.map_or_else(Units::default, |grid| grid.chart.model.units.clone());
+    let documents = VARIABLES.iter().map(|variable| variable.document(&units));
+    documents
+        .map(|variable| document(py, &variable, &Units::default()))
+        .try_for_each(|variable| all.append(variable?))?;
     Ok(all)
 }

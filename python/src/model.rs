@@ -16,6 +16,7 @@ use corner_impact::study::StudyError;
 use corner_impact::study::attractors::{Resolution, Step};
 use corner_impact::study::certify::{certify, proved_counts, proved_orbits};
 use corner_impact::study::chart::growth;
+use corner_impact::study::design::{Asked, design};
 use corner_impact::study::locate::locate;
 use corner_impact::study::orbit::{Wanted, orbits};
 use corner_impact::study::simulate::{self, Sight, Simulation, Until};
@@ -28,7 +29,7 @@ use rayon::prelude::*;
 
 use crate::arrays::{Events, Rows, columns};
 use crate::error::OrRaise;
-use crate::values::{self, count, document, item, numbers, pairs, refused, start, thread_count, within};
+use crate::values::{self, count, document, in_units, item, numbers, pairs, refused, start, thread_count, within};
 use crate::work::{alone, shared, spread};
 
 /// A follower and its cam. What a model is does not change: another number makes another model.
@@ -162,7 +163,8 @@ impl Model {
             });
         }
         let [lift, slope, curvature] = found;
-        Ok(columns!(py, "lift_m": lift, "slope_m_rad": slope, "curvature_m_rad2": curvature))
+        let columns = columns!(py, "lift_m": lift, "slope_m_rad": slope, "curvature_m_rad2": curvature);
+        in_units(&columns, &self.model.units)
     }
 
     /// The events of `revolutions` of one run at `rpm`, after `transient` revolutions that are not recorded.
@@ -211,7 +213,7 @@ impl Model {
             });
             run.map(|_| events)
         };
-        alone(py, run)?.or_raise()?.columns(py)
+        in_units(&alone(py, run)?.or_raise()?.columns(py)?, &self.model.units)
     }
 
     /// What happens at each of evenly spaced speeds, (lowest, highest, how many) rpm, in `record` revolutions after `transient`.
@@ -274,7 +276,7 @@ impl Model {
             });
             found.map(|_| rows)
         };
-        shared(py, run)?.or_raise()?.columns(py, strobe.is_some(), lyapunov)
+        in_units(&shared(py, run)?.or_raise()?.columns(py, strobe.is_some(), lyapunov)?, &self.model.units)
     }
 
     /// Where `revolutions` take the states `position`, m, and `velocity`, m/s, N each, at `cam_angle`, rad: `position_m` and
@@ -325,7 +327,7 @@ impl Model {
             let entries = images.iter().flat_map(|image| image[2..].iter().copied()).collect::<Vec<_>>();
             columns.set_item("jacobian", PyArray1::from_vec(py, entries).reshape([images.len(), 2, 2])?)?;
         }
-        Ok(columns)
+        in_units(&columns, &self.model.units)
     }
 
     /// The first impact after the follower leaves the cam at `cam_angle`, rad, with `relative_velocity`, m/s, 0 or more, N each:
@@ -356,11 +358,12 @@ impl Model {
             })
         };
         let images = map_over(py, &starts, image, threads)?;
-        Ok(columns!(py,
+        let columns = columns!(py,
             "cam_angle_rad": images.iter().map(|image| image[0]).collect::<Vec<_>>(),
             "relative_velocity_m_s": images.iter().map(|image| image[1]).collect::<Vec<_>>(),
             "flight_s": images.iter().map(|image| image[2]).collect::<Vec<_>>(),
-        ))
+        );
+        in_units(&columns, &self.model.units)
     }
 
     /// The periodic orbits at `rpm` with so many `revolutions` in a period, and with so many `impacts`, if given; or the one that
@@ -387,7 +390,7 @@ impl Model {
             }
         };
         let rpm = values::speed(rpm)?;
-        document(py, &spread(py, || orbits(&self.model, rpm, wanted, &Unwatched))?.or_raise()?)
+        document(py, &spread(py, || orbits(&self.model, rpm, wanted, &Unwatched))?.or_raise()?, &self.model.units)
     }
 
     /// The corner impacts over a range of speeds, (lowest, highest) rpm, of orbits with so many `revolutions` in a period: the
@@ -406,7 +409,7 @@ impl Model {
         let [rpm_min, rpm_max] = values::speed_range(rpm)?;
         let revolutions = within("revolutions", revolutions, [1, Search::MOST_REVOLUTIONS])?;
         let range = model::Study { rpm_min, rpm_max };
-        document(py, &spread(py, || locate(&self.model, range, revolutions))?.or_raise()?)
+        document(py, &spread(py, || locate(&self.model, range, revolutions))?.or_raise()?, &self.model.units)
     }
 
     /// The attractors over a range of speeds, (lowest, highest) rpm, or over the one that `corner-impact speeds` takes: at `speeds`
@@ -428,7 +431,42 @@ impl Model {
             Some(step) => return refused(format!("step = {step} must be a finite number above 0")),
         };
         let resolution = Resolution { step, starts: within("starts", starts, [1, 1_000_000])? as usize };
-        document(py, &spread(py, || self::speeds(&self.model, rpm, resolution, &Unwatched))?.or_raise()?)
+        document(
+            py,
+            &spread(py, || self::speeds(&self.model, rpm, resolution, &Unwatched))?.or_raise()?,
+            &self.model.units,
+        )
+    }
+
+    /// What an engineer asks: the contact force and the speed of the first separation, loads beyond it, and for each of `needs`, such
+    /// as "no separation to 700 rpm", what the preload, the stiffness, the damping and the mass would have to be. At `speeds`
+    /// speeds over `rpm`, (lowest, highest), or around the separation: the document of `corner-impact design --json`.
+    ///
+    /// >>> found = Model.paper().design(needs=["no separation to 130 rpm"])
+    /// >>> round(found["separation"]["speed_rpm"], 4)
+    /// 114.9793
+    /// >>> {need["parameter"]: need["value"] is not None for need in found["needs"]}
+    /// {'preload': True, 'stiffness': True, 'damping': False, 'mass': True}
+    #[pyo3(signature = (rpm=None, *, speeds=21, needs=Vec::new()),
+        text_signature = "($self, rpm=None, *, speeds=21, needs=())")]
+    fn design<'py>(
+        &self,
+        py: Python<'py>,
+        rpm: Option<(f64, f64)>,
+        #[pyo3(from_py_with = count)] speeds: u64,
+        needs: Vec<String>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let need = |text: String| match text.parse() {
+            Ok(need) => Ok((text, need)),
+            Err(words) => refused(words),
+        };
+        let asked = Asked {
+            rpm: rpm.map(values::speed_range).transpose()?,
+            speeds: within("speeds", speeds, [2, 10_000])? as u32,
+            needs: needs.into_iter().map(need).collect::<PyResult<_>>()?,
+            ..Asked::default()
+        };
+        document(py, &spread(py, || design(&self.model, &asked, &Unwatched))?.or_raise()?, &self.model.units)
     }
 
     /// The corner impact of the model's `[study]`, its map by every route, all compared, and what happens there: the document of
@@ -441,7 +479,7 @@ impl Model {
     #[pyo3(signature = (external=true))]
     fn verify<'py>(&self, py: Python<'py>, external: bool) -> PyResult<Bound<'py, PyDict>> {
         let external = if external { External::Run } else { External::LeftOut };
-        document(py, &spread(py, || verify(&self.model, external))?.or_raise()?)
+        document(py, &spread(py, || verify(&self.model, external))?.or_raise()?, &self.model.units)
     }
 
     /// What is proved in ball arithmetic of the corner impacts over a range of speeds, (lowest, highest) rpm, without it the model's
@@ -464,11 +502,11 @@ impl Model {
         let revolutions = within("revolutions", revolutions, [1, Search::MOST_REVOLUTIONS])?;
         match (range, rpm) {
             (Some(range), _) if orbits => {
-                document(py, &spread(py, || proved_counts(&self.model, range, bits))?.or_raise()?)
+                document(py, &spread(py, || proved_counts(&self.model, range, bits))?.or_raise()?, &self.model.units)
             }
             (None, Some(rpm)) if orbits => {
                 let rpm = values::speed(rpm.extract()?)?;
-                document(py, &spread(py, || proved_orbits(&self.model, rpm, bits))?.or_raise()?)
+                document(py, &spread(py, || proved_orbits(&self.model, rpm, bits))?.or_raise()?, &self.model.units)
             }
             (None, None) if orbits => refused("orbits: at which rpm?".into()),
             (None, Some(rpm)) => refused(format!("rpm = {rpm} must be (lowest, highest)")),
@@ -477,7 +515,11 @@ impl Model {
                     Some([rpm_min, rpm_max]) => model::Study { rpm_min, rpm_max },
                     None => self.model.study().or_raise()?,
                 };
-                document(py, &spread(py, || certify(&self.model, range, revolutions, bits))?.or_raise()?)
+                document(
+                    py,
+                    &spread(py, || certify(&self.model, range, revolutions, bits))?.or_raise()?,
+                    &self.model.units,
+                )
             }
         }
     }

@@ -3,6 +3,8 @@
 use corner_impact::cam::within_a_turn;
 use corner_impact::diagram::{Placed, Speeds, Start};
 use corner_impact::flight::State;
+use corner_impact::model::Units;
+use corner_impact::show::json;
 use numpy::{AllowTypeChange, PyArrayLike1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -107,9 +109,23 @@ pub(crate) fn pairs(
     Ok(first.into_iter().zip(second).map(|(first, second)| [first, second]).collect())
 }
 
-/// A document as the command prints it, as a dict.
-pub(crate) fn document<'py>(py: Python<'py>, found: &impl Serialize) -> PyResult<Bound<'py, PyDict>> {
-    let text = serde_json::to_string(found).map_err(|error| raised(&error))?;
+/// Columns under their names in the units of a model, with the values that those make others.
+pub(crate) fn in_units<'py>(columns: &Bound<'py, PyDict>, units: &Units) -> PyResult<Bound<'py, PyDict>> {
+    let told = PyDict::new(columns.py());
+    for (name, values) in columns {
+        let name: String = name.extract()?;
+        let values = match units.converted(&name) {
+            Some(convert) => values.mul(convert(units, 1.0))?,
+            None => values,
+        };
+        told.set_item(units.field(&name), values)?;
+    }
+    Ok(told)
+}
+
+/// A document as the command prints it about a model in these units, as a dict.
+pub(crate) fn document<'py>(py: Python<'py>, found: &impl Serialize, units: &Units) -> PyResult<Bound<'py, PyDict>> {
+    let text = json::render(found, units).map_err(|error| raised(&error))?;
     Ok(py.import("json")?.call_method1("loads", (text,))?.cast_into()?)
 }
 

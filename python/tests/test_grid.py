@@ -173,3 +173,19 @@ def test_a_store_that_cannot_be_written_is_told(grid: Chart, tmp_path: Path) -> 
     assert not blocks_done(store).any() and not (store / "class/c/0/0").exists()
     assert not [path for path in store.rglob("*") if path.name.endswith(".tmp")]
     assert grid.fill(store, 0) and blocks_done(store).all()
+
+def test_a_machine_in_millimetres_answers_in_them(paper: Model) -> None:
+    text = paper.text.replace("rest_position = 0.3", "rest_position = 300.0")
+    for radius in ("base_radius = 0.4", "flank_radius = 0.85", "nose_radius = 0.15"):
+        name, value = radius.split(" = ")
+        text = text.replace(radius, f"{name} = {1000 * float(value)!r}")
+    told = Model.parse(text + '\n[units]\nlength = "mm"\nangle = "deg"\n')
+    metres, millimetres = (it.simulate(700, 3, transient=10) for it in (paper, told))
+    assert list(millimetres)[2:5] == ["cam_angle_deg", "event", "position_mm"]
+    np.testing.assert_allclose(millimetres["position_mm"], 1000 * metres["position_m"], rtol=1e-11)
+    np.testing.assert_allclose(millimetres["cam_angle_deg"], np.degrees(metres["cam_angle_rad"]), rtol=1e-11)
+    impact = told.orbits(680)["orbits"][1]["impacts"][0]
+    assert 152.2 < impact["cam_angle_deg"] < 152.3 and impact["velocity_before_mm_s"] < -100_000
+    grid = Chart(told, {"rpm": [690, 700], "restitution": [0.7, 0.8]})
+    variables = {it["name"]: it["attributes"]["units"] for it in chart_variables(grid)}
+    assert variables["impact_speed"] == "mm s-1"

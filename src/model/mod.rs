@@ -28,7 +28,7 @@ pub(crate) use profile::{
 };
 pub use profile::{CamProfile, HarmonicProfile, Motion};
 pub(crate) use table::{Spline, TableProfile};
-pub use units::{Unit, Units};
+pub use units::{Converted, Unit, Units};
 
 /// The model whose numbers the paper prints, built in so that the binary needs no other file.
 pub const OSORIO_2008: &str = include_str!("../../models/osorio-2008.toml");

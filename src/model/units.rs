@@ -88,7 +88,7 @@ pub struct Units {
 }
 
 /// How a value from inside is told.
-pub(crate) type Converted = fn(&Units, f64) -> f64;
+pub type Converted = fn(&Units, f64) -> f64;
 
 /// The unit of a table that a field names, its own name where it names none.
 fn simple(fields: &mut Fields, path: &str, table: &[Unit]) -> Result<Unit, ModelError> {
@@ -147,7 +147,7 @@ impl Units {
     }
 
     /// The unit of a number of the follower, or none of a pure number or a length.
-    pub(crate) fn of_follower(&self, name: &str) -> Option<&Unit> {
+    pub fn of_follower(&self, name: &str) -> Option<&Unit> {
         match name {
             "mass" => Some(&self.mass),
             "damping" => Some(&self.damping),
@@ -168,8 +168,8 @@ impl Units {
     }
 
     /// A unit of a length, its velocity or its acceleration that is written in metres, in this file's length: `m/s` is `mm/s`.
-    pub(crate) fn spelled(&self, unit: &str) -> String {
-        let rest = unit.strip_prefix('m').filter(|rest| rest.is_empty() || rest.starts_with('/'));
+    pub fn spelled(&self, unit: &str) -> String {
+        let rest = unit.strip_prefix('m').filter(|rest| rest.is_empty() || rest.starts_with(['/', ' ']));
         rest.map_or_else(|| unit.to_owned(), |rest| format!("{}{rest}", self.length.name()))
     }
 
@@ -196,7 +196,7 @@ impl Units {
     }
 
     /// What becomes of the values of a field or a column whose name is another in these units, where they are not lengths.
-    pub(crate) fn converted(&self, name: &str) -> Option<Converted> {
+    pub fn converted(&self, name: &str) -> Option<Converted> {
         if name.ends_with("_rad") && self.degrees {
             Some(|_, angle| angle.to_degrees())
         } else if name.ends_with("_n") {

@@ -7,7 +7,7 @@ pub(crate) mod command;
 pub(crate) mod csv;
 pub(crate) mod digits;
 pub(crate) mod html;
-pub(crate) mod json;
+pub mod json;
 pub mod markdown;
 pub(crate) mod page;
 pub(crate) mod words;

@@ -65,7 +65,7 @@ def lazy(chart: Chart, chunks: tuple[int, int] = (100, 100)) -> xr.Dataset:
 
 
 def _described(chart: Chart, arrays: dict[str, Any]) -> xr.Dataset:
-    names, attributes = list(chart.axes), {of["name"]: of["attributes"] for of in chart_variables()}
+    names, attributes = list(chart.axes), {of["name"]: of["attributes"] for of in chart_variables(chart)}
     coordinates = {name: (name, values, {"units": "rpm"} if name == "rpm" else {}) for name, values in chart.axes.items()}
     variables = {name: (names, values, attributes[name]) for name, values in arrays.items()}
     return xr.Dataset(variables, coordinates, chart.attributes)

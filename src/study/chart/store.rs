@@ -13,6 +13,7 @@ use super::{Axis, Blocks, Chart, ChartError, Filled, Point, class};
 use crate::diagram::{Placed, Start};
 use crate::file::{FileError, Output};
 use crate::flight::State;
+use crate::model::Units;
 use crate::orbit::ending::Kind;
 use crate::progress::{Unwatched, Watch};
 
@@ -181,12 +182,12 @@ impl Variable {
     }
 
     /// Its name, type and attributes, those of CF among them.
-    pub fn document(&self) -> Value {
-        json!({ "name": self.name, "dtype": self.data_type(), "attributes": self.attributes() })
+    pub fn document(&self, units: &Units) -> Value {
+        json!({ "name": self.name, "dtype": self.data_type(), "attributes": self.attributes(units) })
     }
 
-    fn attributes(&self) -> Value {
-        let mut attributes = json!({ "units": self.units, "long_name": self.long_name });
+    fn attributes(&self, units: &Units) -> Value {
+        let mut attributes = json!({ "units": units.spelled(self.units), "long_name": self.long_name });
         if self.name == "class" {
             attributes["flag_values"] = json!((0..CLASSES.len()).collect::<Vec<_>>());
             attributes["flag_meanings"] = json!(CLASSES.map(class).join(" "));
@@ -309,7 +310,7 @@ impl<'a> Store<'a> {
                 variable.data_type(),
                 &fill,
                 &[y.0, x.0],
-                &variable.attributes(),
+                &variable.attributes(&chart.model.units),
             );
             arrays.insert(variable.name.into(), document);
         }
