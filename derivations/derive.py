@@ -25,6 +25,7 @@ import normal_form
 import points
 import printed_equations
 import recover
+import smoothing_spline
 from proof import Proof, show
 
 GOLDEN = Path(__file__).resolve().parent.parent / "golden" / "derived"
@@ -73,6 +74,11 @@ def run():
         Proof(f"closed_forms.py in double precision meets them to {DOUBLE}", 0 if rounding < DOUBLE else 1),
     ])  # fmt: skip
 
+    apart = smoothing_spline.scipys()
+    stage("smoothing spline", [
+        Proof(f"the B-splines of smoothing_spline.py meet scipy's to {DOUBLE}", 0 if apart < DOUBLE else 1),
+    ])  # fmt: skip
+
     note = "written by derivations/derive.py; do not edit"
     files = {
         "closed_forms.json": pretty({
@@ -85,6 +91,7 @@ def run():
         "points.json": lines({"note": note, "seed": points.SEED, "digits": points.DIGITS, "points": [points.entry(row) for row in rows]}, "points"),
         "printed_equations.json": pretty({"note": note, "equations": verdicts}),
         "recovery.json": pretty({"note": note, **recover.document()}),
+        "smoothing_spline.json": pretty({"note": note, **smoothing_spline.document()}),
         "proofs.json": pretty({"note": note, "stages": stated}),
     }  # fmt: skip
     return files, complete

@@ -7,6 +7,8 @@
 //!    ▼
 //!  cam · flight · impact the physical laws; reading, a model whole
 //!    ▼
+//!  measured              how well a cam of measured lifts is known, and the cams that it may as well be
+//!    ▼
 //!  simulate              the only event loop: fly, contact, impact or stick, release; the variational flow
 //!    ▼
 //!  section · diagram     the stroboscopic map and traces; sweeps over speeds, Lyapunov exponents
@@ -84,6 +86,8 @@ pub mod cam;
 pub mod flight;
 pub mod impact;
 pub mod reading;
+
+pub mod measured;
 
 pub mod simulate;
 

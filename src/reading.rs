@@ -41,6 +41,18 @@ impl Model {
         self.renamed(numbers)?.sprung()
     }
 
+    /// The same model with a smoothing spline near other lifts at the angles of its table, m, of a weight by its logarithm, with
+    /// corners at these places, or near them, and these dwells, degrees.
+    pub(crate) fn with_lifts(
+        &self,
+        lifts: &[f64],
+        corners: (&[f64], bool),
+        dwells: &[[f64; 2]],
+        weight: f64,
+    ) -> Result<Self, ModelError> {
+        self.relifted(lifts, corners, dwells, weight)?.sprung()
+    }
+
     /// Whether follower and cam are the paper's, whatever the model is called.
     pub fn is_the_papers(&self) -> Result<bool, ModelError> {
         let paper = Self::built_in()?;

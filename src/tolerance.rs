@@ -44,6 +44,25 @@ table! {
     /// How wide a gap between the rows of a table may be.
     TABLE_GAP = 0.1, "the median gap over the widest: ten median gaps without a row are rows that are missing, and a spline \
         would make up the lift there; a table that is finer where the lift curves stays below";
+    /// From which noise on the rows of a table are told to have some.
+    NOISE_SEEN = 1e-9, "of the lift: rows with nine digits more than that are computed, and a spline through them has the noise of \
+        none";
+    /// How nearly the rows of a table go round once.
+    TURN_CLOSED = 1e-2, "of the mean gap between two rows: 2 pi to five digits is a thousandth of a degree off, and two rows that \
+        were meant to be apart are nowhere as near";
+    /// How near a row is to a knot that is one with it.
+    SAME_KNOT = 1e-6, "of the mean gap: a piece as short would make coefficients of 1e30 out of roundings";
+    /// What curvature may hide in the noise of rows that are called a dwell.
+    HIDDEN_CURVATURE = 1e-2, "of the cam's largest: below that an acceleration is none for any follower, and a motion's top, which \
+        turns round with its largest, never stays as long";
+    /// The least jump of the second derivative that is called a corner where rows show one.
+    CORNER_SHARE = 0.2, "of the largest second derivative: a smaller one is what a jump of the third derivative makes over a few rows";
+    /// How far rows may be from two cubics that meet at a corner, where they have less noise than that.
+    CORNER_MISFIT = 0.01, "of what the largest second derivative bends from one row to the next, twice over: two cubics follow a \
+        designed motion over six rows on either side that closely, and leave several times as much of a steep rise of the acceleration";
+    /// The noise of the rows beside what a corner leaves less of them than a smooth motion does.
+    CORNER_NOISE = 1.0 / 64.0, "of it, both squared: eight standard deviations, so that no steep rise of the acceleration that coarse \
+        rows half hide is taken for a corner";
     /// How closely the ranges of a segment's lift and derivatives enclose them.
     RANGE_WIDTH = 1e-3, "of the range, which is halved into pieces until what is added for what lies between the samples is \
         below this: closer ranges would save a search for contacts less than they cost";

@@ -74,7 +74,11 @@ impl Cam {
         let jump = |order: usize| plus.0[order] - minus.0[order];
         let jump_order = match self.joint() {
             // Two pieces that differ at all differ in the highest power, however little.
-            Joint::Spline { degree } => (jump(degree) != 0.0).then_some(degree)?,
+            Joint::Spline { degree, breaks } => {
+                let broken = breaks.iter().find(|(angle, _)| *angle == next.start);
+                let order = broken.map_or(*degree, |(_, order)| *order);
+                (jump(order) != 0.0).then_some(order)?
+            }
             Joint::Free => {
                 let (minus_size, plus_size) = (sizes(before), sizes(next));
                 let size = |order: usize| minus_size[order].max(plus_size[order]);

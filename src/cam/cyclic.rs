@@ -14,11 +14,16 @@ pub(super) struct Cyclic<const K: usize> {
     pub right: Vec<SVector<f64, K>>,
 }
 
+/// Of the inverse, for each i the blocks (i, i) and (i, i + 1).
+pub(super) type Blocks<const K: usize> = Vec<[SMatrix<f64, K, K>; 2]>;
+
 /// An eliminated unknown: `x_i = y - N x_{i+1} - W x_last`, everything already divided by its pivot.
 struct Eliminated<const K: usize> {
     y: SVector<f64, K>,
     next: SMatrix<f64, K, K>,
     last: SMatrix<f64, K, K>,
+    /// Of its pivot.
+    inverse: SMatrix<f64, K, K>,
 }
 
 impl<const K: usize> Cyclic<K> {
@@ -29,6 +34,35 @@ impl<const K: usize> Cyclic<K> {
 
     /// The solution; none where the system is not positive definite, or fewer than three unknowns.
     pub fn solve(self) -> Option<Vec<SVector<f64, K>>> {
+        self.factored().map(|(solution, _)| solution)
+    }
+
+    /// The solution, and of the inverse what a neighbour's equation meets: for each i the blocks (i, i) and (i, i + 1).
+    pub fn solve_and_invert(self) -> Option<(Vec<SVector<f64, K>>, Blocks<K>)> {
+        let (solution, (eliminated, corner)) = self.factored()?;
+        let last = eliminated.len();
+        // Without the last unknown the inverse is T^-1, from the last row back; with it z S^-1 z^T more, z = T^-1 times the
+        // border, and S what is left of the last equation. Between an unknown and the last one it is -z S^-1.
+        let mut blocks = vec![[SMatrix::zeros(); 2]; last + 1];
+        let (mut inner, mut z) = (SMatrix::zeros(), SMatrix::zeros());
+        for (index, row) in eliminated.iter().enumerate().rev() {
+            let is_neighbour = index + 1 == last;
+            let (below, z_below) = (inner, z);
+            z = row.last - row.next * z_below;
+            inner = row.inverse + row.next * below * row.next.transpose();
+            let beyond = match is_neighbour {
+                true => -z * corner,
+                false => z * corner * z_below.transpose() - row.next * below,
+            };
+            blocks[index] = [inner + z * corner * z.transpose(), beyond];
+        }
+        blocks[last] = [corner, -(z * corner).transpose()];
+        Some((solution, blocks))
+    }
+
+    /// The solution, the eliminated unknowns, and the inverse of what is left of the last equation.
+    #[expect(clippy::type_complexity, reason = "its two users take it apart at once")]
+    fn factored(self) -> Option<(Vec<SVector<f64, K>>, (Vec<Eliminated<K>>, SMatrix<f64, K, K>))> {
         let Self { diagonal, next, right } = self;
         let count = diagonal.len();
         if count < 3 {
@@ -47,7 +81,12 @@ impl<const K: usize> Cyclic<K> {
             }
             let to_next = if is_neighbour { SMatrix::zeros() } else { next[index] };
             let factor: Cholesky<f64, Const<K>> = pivot.cholesky()?;
-            let row = Eliminated { y: factor.solve(&y), next: factor.solve(&to_next), last: factor.solve(&border) };
+            let row = Eliminated {
+                y: factor.solve(&y),
+                next: factor.solve(&to_next),
+                last: factor.solve(&border),
+                inverse: factor.inverse(),
+            };
             // Schur complement: what is left of the next unknown and of the last one.
             corner -= border.transpose() * row.last;
             corner_right -= border.transpose() * row.y;
@@ -58,11 +97,12 @@ impl<const K: usize> Cyclic<K> {
             }
             eliminated.push(row);
         }
-        let x_last = corner.cholesky()?.solve(&corner_right);
+        let corner = corner.cholesky()?;
+        let x_last = corner.solve(&corner_right);
         let mut solution = vec![x_last; count];
         for (index, row) in eliminated.iter().enumerate().rev() {
             solution[index] = row.y - row.next * solution[index + 1] - row.last * x_last;
         }
-        Some(solution)
+        Some((solution, (eliminated, corner.inverse())))
     }
 }

@@ -9,6 +9,8 @@ mod arcs;
 mod bounds;
 mod corners;
 mod cyclic;
+mod features;
+mod fit;
 mod harmonics;
 mod jet;
 mod law;
@@ -20,6 +22,7 @@ mod program;
 mod round;
 mod rounding;
 mod sinusoid;
+mod smoothing;
 mod table;
 
 use std::f64::consts::TAU;
@@ -30,6 +33,7 @@ use crate::tolerance;
 pub use arc::Arc;
 pub(crate) use bounds::Bounds;
 pub use corners::{Corner, Side};
+pub(crate) use fit::{Fit, fit};
 pub use harmonics::Harmonics;
 pub(crate) use jet::Jet;
 pub use law::Law;
@@ -80,12 +84,12 @@ document!(Segment as it {
 });
 
 /// What is known of where segments meet before looking.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 enum Joint {
     /// Nothing: the laws tell.
     Free,
-    /// Pieces of a spline: derivatives below `degree` agree by construction.
-    Spline { degree: usize },
+    /// Pieces of a spline: derivatives below `degree` agree by construction, but for those of `breaks`, by angle, rad, and order.
+    Spline { degree: usize, breaks: std::sync::Arc<[(f64, usize)]> },
 }
 
 /// An angle, rad, in `[0, 2 pi)`.
@@ -128,8 +132,8 @@ impl Cam {
         Self { segments: std::sync::Arc::new(segments), joint: Joint::Free }
     }
 
-    fn joint(&self) -> Joint {
-        self.joint
+    fn joint(&self) -> &Joint {
+        &self.joint
     }
 
     /// The index of the segment that ends where another begins, once round.

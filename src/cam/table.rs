@@ -11,7 +11,7 @@ use nalgebra::{Matrix1, Matrix2, Vector1, Vector2};
 use super::cyclic::Cyclic;
 use super::law::Law;
 use super::polynomial::Polynomial;
-use super::{Cam, Joint};
+use super::{Cam, Joint, fit};
 use crate::model::{Model, ModelError, Spline, TableProfile};
 
 /// The stretch from one row to the next.
@@ -39,11 +39,12 @@ pub(super) fn build(model: &Model, profile: &TableProfile) -> Result<Cam, ModelE
         Gap { start, value: row.lift, width, slope: (lift - row.lift) / width }
     };
     let gaps: Vec<Gap> = (0..rows.len()).map(gap).collect();
-    let (pieces, degree) = match profile.spline {
+    let (pieces, degree) = match &profile.spline {
         Spline::Cubic => (cubic(&gaps), 3),
         Spline::Quintic => (quintic(&gaps), 5),
+        Spline::Smoothing(smoothing) => return Ok(fit::fit(model, profile, smoothing)?.cam()),
     };
-    let place = if profile.file.is_some() { "cam.file" } else { "cam.rows" };
+    let place = profile.place();
     let overflow = || model.reject(place, "has lifts too large, or angles too close, for a spline through them");
     let law = |(gap, mut piece): (&Gap, [f64; 6])| {
         let mut scale = 1.0;
@@ -56,7 +57,7 @@ pub(super) fn build(model: &Model, profile: &TableProfile) -> Result<Cam, ModelE
     };
     let pieces = pieces.ok_or_else(overflow)?;
     let laws: Option<Vec<_>> = gaps.iter().zip(pieces).map(law).collect();
-    Ok(Cam::from_laws(laws.ok_or_else(overflow)?, Joint::Spline { degree }))
+    Ok(Cam::from_laws(laws.ok_or_else(overflow)?, Joint::Spline { degree, breaks: [].into() }))
 }
 
 /// Coefficients of each piece in powers of the angle from its start, in units of the mean gap.

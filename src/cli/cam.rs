@@ -41,6 +41,6 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         ])?;
     }
     drop(progress);
-    let sheet = CamSheet::new(&model, &cam, arguments.order);
+    let sheet = CamSheet::new(&model, &cam, arguments.order)?;
     session.answer(&sheet, arguments.json)
 }

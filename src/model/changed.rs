@@ -1,6 +1,7 @@
 //! A model with other numbers than its file has, each under the name that a user calls it by.
 
-use super::{Model, ModelError, nearest};
+use super::fields::Value;
+use super::{CamProfile, Model, ModelError, Spline, TableProfile, Tolerance, nearest};
 
 impl Model {
     /// The dotted path of the number of follower or cam that a user calls `name`: the path itself, or the end of one that no
@@ -53,6 +54,37 @@ impl Model {
             model.name = format!("{} with {}", model.name, words.join(", "));
         }
         Ok(Self { changes, ..model })
+    }
+
+    /// The same model with a smoothing spline near other lifts at the angles of its table, m, of a weight by its logarithm, with
+    /// corners at these places, or near them, and these dwells, degrees, but for what needs the cam. Read once more with another number, it has a weight of its own.
+    pub(crate) fn relifted(
+        &self,
+        lifts: &[f64],
+        corners: (&[f64], bool),
+        dwells: &[[f64; 2]],
+        weight: f64,
+    ) -> Result<Self, ModelError> {
+        let table = self.table().ok_or_else(|| self.reject("cam.law", "is no table"))?;
+        let (corners, are_near) = corners;
+        let mut fields = self.fields.without_text();
+        fields.put_lifts(table, lifts.iter().copied());
+        fields.put("cam.spline", Value::Text("smoothing".into()));
+        fields.put("cam.corners_deg", Value::Array(corners.len()));
+        for (index, corner) in corners.iter().enumerate() {
+            fields.put(&format!("cam.corners_deg[{index}]"), Value::Number(*corner));
+        }
+        let rows = dwells.iter().map(|dwell| (*dwell, None)).collect();
+        fields.put("cam.dwells_deg", if dwells.is_empty() { Value::Array(0) } else { Value::Rows(rows) });
+        let mut model = Self { changes: self.changes.clone(), ..Self::from_fields(fields)? };
+        let mut cam = &mut model.cam;
+        while let CamProfile::Rounded { sharp, .. } = cam {
+            cam = sharp;
+        }
+        if let CamProfile::Table(TableProfile { spline: Spline::Smoothing(smoothing), .. }) = cam {
+            (smoothing.tolerance, smoothing.are_near) = (Tolerance::Weighted(weight), are_near);
+        }
+        Ok(model)
     }
 
     /// The numbers that are not those of the file, by dotted path.

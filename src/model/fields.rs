@@ -100,7 +100,8 @@ impl Field {
 /// Every name of a field or a table: none of them is a slip for another.
 const NAMES: &str = "name source follower cam study mass damping stiffness gravity rest_position restitution law base_radius \
     flank_radius nose_radius flank_start_deg nose_end_deg offset amplitude amplitudes phases_deg base \
-    corner_rounding_deg preload units length force angle segment motion span_deg rise start_deg coefficients file rows spline rpm_min rpm_max lift";
+    corner_rounding_deg preload units length force angle segment motion span_deg rise start_deg coefficients file rows spline \
+    tolerance corners_deg dwells_deg unit angle_unit rpm_min rpm_max lift";
 
 /// The fields of a model file by dotted path, and which of them have been asked for.
 #[derive(Clone, Debug)]
@@ -156,6 +157,11 @@ impl Fields {
         }
     }
 
+    /// The same fields as of no file.
+    pub(super) fn without_text(&self) -> Self {
+        Self { text: None, known: BTreeSet::new(), ..self.clone() }
+    }
+
     pub(super) fn has(&self, path: &str) -> bool {
         self.fields.contains_key(path)
     }
@@ -204,6 +210,11 @@ impl Fields {
             Value::Array(0) => Err(self.reject(path, format!("has 0 rows; {fewest} to {most} are allowed"))),
             _ => Err(self.reject(path, "must be a list of rows, each of two finite numbers")),
         }
+    }
+
+    /// Whether a list has nothing in it.
+    pub(super) fn is_empty_list(&self, path: &str) -> bool {
+        matches!(self.fields.get(path), Some(Field { value: Value::Array(0), .. }))
     }
 
     /// How many tables `[[path]]` there are, at least one.

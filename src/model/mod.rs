@@ -10,6 +10,7 @@ mod document;
 mod fields;
 mod nearest;
 mod profile;
+mod rows;
 mod table;
 mod text;
 mod toml;
@@ -27,7 +28,9 @@ pub(crate) use profile::{
     ArcsProfile, MOST_COEFFICIENTS, MotionSegment, PolynomialSegment, ProgramProfile, RectifiedSineProfile,
 };
 pub use profile::{CamProfile, HarmonicProfile, Motion};
-pub(crate) use table::{Spline, TableProfile};
+pub use rows::{Layout, Separator};
+pub use table::Reading;
+pub(crate) use table::{Smoothing, Spline, TableProfile, Tolerance};
 pub use units::{Converted, Unit, Units};
 
 /// The model whose numbers the paper prints, built in so that the binary needs no other file.
@@ -153,6 +156,15 @@ impl Model {
         self.study.ok_or_else(|| {
             self.reject("study.rpm_min", "is needed here: [study] says where to look for the corner impact")
         })
+    }
+
+    /// The table of lifts that its cam is given by, if it is.
+    pub(crate) fn table(&self) -> Option<&TableProfile> {
+        let mut sharp = &self.cam;
+        while let CamProfile::Rounded { sharp: inside, .. } = sharp {
+            sharp = inside;
+        }
+        if let CamProfile::Table(table) = sharp { Some(table) } else { None }
     }
 
     /// A complaint about `field` found by a later stage; `allowed` says what would be accepted.

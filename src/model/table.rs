@@ -1,4 +1,4 @@
-//! Measured lifts: a CSV file of angle and lift, read whole and checked row by row.
+//! Measured lifts: rows of angle and lift, in a file of their own or in the model's, read whole and checked row by row.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -6,154 +6,385 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::ModelError;
-use super::fields::{Fields, Pair};
+use super::fields::{Allowed, Fields, Pair, Value};
+use super::rows::{Layout, MOST_ROWS, Row, Table};
+use super::units::{LENGTHS, Unit, Units};
 use crate::tolerance;
 
-/// A spline through the rows of a file.
+/// A spline through the rows of a file, or near them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableProfile {
     /// The file as the model names it, from where the model file is; none where the model has the rows itself.
     pub file: Option<String>,
     /// How the lift goes from row to row.
     pub spline: Spline,
-    /// In order of angle, one for each angle of `[0, 360]`; shared, because a table may be long.
+    /// In order of angle, one for each angle of `[0, 360)`; shared, because a table may be long.
     pub rows: Arc<[Row]>,
+    /// How the rows were understood.
+    pub reading: Arc<Reading>,
 }
 
-document!(TableProfile as it { file if_any: it.file, spline: it.spline, rows: &it.rows[..] });
+document!(TableProfile as it {
+    file if_any: it.file,
+    spline: it.spline.name(),
+    tolerance if_any: it.spline.smoothing().map(|smoothing| smoothing.tolerance),
+    corners_deg if_any: it.spline.smoothing().and_then(|smoothing| smoothing.corners_deg.as_ref()),
+    dwells_deg if_any: it.spline.smoothing().and_then(|smoothing| smoothing.dwells_deg.as_ref()),
+    rows: &it.rows[..],
+});
 
-/// The periodic interpolating splines.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+impl TableProfile {
+    /// The field that says where its rows are.
+    pub fn place(&self) -> &'static str {
+        if self.file.is_some() { "cam.file" } else { "cam.rows" }
+    }
+}
+
+/// The periodic splines.
+#[derive(Clone, Debug, PartialEq)]
 pub enum Spline {
-    /// Pieces of degree 3; the third derivative jumps at every row.
+    /// Pieces of degree 3 through the rows; the third derivative jumps at every row.
     Cubic,
-    /// Pieces of degree 5; the fifth derivative jumps at every row.
+    /// Pieces of degree 5 through the rows; the fifth derivative jumps at every row.
     Quintic,
+    /// Pieces of degree 5 near the rows.
+    Smoothing(Smoothing),
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Row {
-    /// Cam angle, degrees.
-    pub angle_deg: f64,
-    /// Lift, m.
-    pub lift: f64,
-    /// Line in the file, from 1; of rows that came without a file, which one it is.
-    pub line: usize,
+impl Spline {
+    /// What a model file calls it.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Cubic => "cubic",
+            Self::Quintic => "quintic",
+            Self::Smoothing(_) => "smoothing",
+        }
+    }
+
+    /// What a smoothing spline is to keep to.
+    pub fn smoothing(&self) -> Option<&Smoothing> {
+        if let Self::Smoothing(smoothing) = self { Some(smoothing) } else { None }
+    }
 }
 
-/// First line of the file.
-const HEADER: &str = "angle_deg,lift";
+/// What a smoothing spline keeps to.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Smoothing {
+    /// How far it may be from a row.
+    pub tolerance: Tolerance,
+    /// Where its second derivative may jump, degrees, by rising angle; none where they are to be found.
+    pub corners_deg: Option<Vec<f64>>,
+    /// Where the lift stays, from and to, degrees, by rising angle of where they begin; none where they are to be found.
+    pub dwells_deg: Option<Vec<[f64; 2]>>,
+    /// Whether corners are near where they are given, and not there.
+    pub are_near: bool,
+}
+
+/// How far a smoothing spline may be from a row.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Tolerance {
+    /// As far as the rows themselves say.
+    #[default]
+    Auto,
+    /// So far, in the model's unit of length.
+    #[serde(untagged)]
+    Within(f64),
+    /// As far as this weight of the rows lets it, by its logarithm: that of another table.
+    #[serde(untagged)]
+    Weighted(f64),
+}
+
+/// How the rows of a table were understood.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Reading {
+    /// The unit of lifts in the table.
+    pub unit: String,
+    /// It, as a part of the model's unit of length.
+    #[serde(skip)]
+    pub in_model: Unit,
+    /// The unit of angles in the table.
+    pub angle_unit: &'static str,
+    /// The layout of its text; none where the model has the rows itself.
+    #[serde(flatten)]
+    pub layout: Option<Layout>,
+    /// Rows that are kept.
+    pub rows: usize,
+    /// The angle of the first row as it is written, degrees.
+    pub first_deg: f64,
+    /// Whether a last row repeated the first and was left out.
+    pub repeats_first: bool,
+    /// The step of the decimal grid that all lifts lie on, in the table's unit; none where there is none above the rounding of a
+    /// double.
+    pub step: Option<f64>,
+}
+
+impl Reading {
+    /// Half of the step that the lifts are rounded to, in the model's unit of length; 0 where there is none.
+    pub fn half_step(&self) -> f64 {
+        self.step.map_or(0.0, |step| self.in_model.inside(0.5 * step))
+    }
+}
+
+/// A spline, without what it is to keep to.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Cubic,
+    Quintic,
+    Smoothing,
+}
+
+/// The splines by the names that `spline` gives them.
+const SPLINES: [(&str, Kind); 3] = [("cubic", Kind::Cubic), ("quintic", Kind::Quintic), ("smoothing", Kind::Smoothing)];
 /// A periodic spline needs three rows to have a neighbour on either side.
 const FEWEST_ROWS: usize = 3;
-/// More are finer than any cam is made or measured.
-const MOST_ROWS: usize = 1_000_000;
-
+/// A smoothing spline has to tell a motion from what is measured about it.
+const FEWEST_SMOOTHED: usize = 12;
+/// More corners or dwells than any cam has.
+const MOST_FEATURES: usize = 1000;
 /// The fields of `law = "table"`, and the file that they name, if they do not have its rows.
 pub(super) fn read(fields: &mut Fields) -> Result<TableProfile, ModelError> {
-    let splines = [("cubic", Spline::Cubic), ("quintic", Spline::Quintic)];
     fields.may_hold("cam.rows");
     if fields.has("cam.rows") {
-        let rows = fields.rows("cam.rows", [FEWEST_ROWS, MOST_ROWS])?;
+        let spline = fields.choice("cam.spline", &SPLINES)?;
+        let pairs = fields.rows("cam.rows", [FEWEST_ROWS, MOST_ROWS])?;
         fields.may_hold("cam.file");
         if fields.has("cam.file") {
             return Err(fields.reject("cam.file", "is there beside cam.rows: the rows are here or in a file"));
         }
-        let spline = fields.choice("cam.spline", &splines)?;
-        let has_lines = rows.iter().all(|(_, line)| line.is_some());
-        let table = Table { file: fields.file().into(), text: fields.source(), has_lines };
+        let has_lines = pairs.iter().all(|(_, line)| line.is_some());
+        let text = fields.source().to_owned();
+        let table = Table { file: fields.file().into(), text: &text, has_lines };
         let row = |(index, ([angle_deg, lift], line)): (usize, Pair)| {
             let line = line.unwrap_or(index + 1);
-            if (0.0..=360.0).contains(&angle_deg) && lift.is_finite() {
+            if angle_deg.is_finite() && lift.is_finite() {
                 return Ok(Row { angle_deg, lift, line });
             }
-            let words = "must be an angle from 0 to 360 and a finite lift".into();
+            let words = "must be a finite angle and a finite lift".into();
             Err(table.reject(line, "cam.rows", &format!("[{angle_deg}, {lift}]"), words))
         };
-        let rows = rows.into_iter().enumerate().map(row).collect::<Result<_, _>>()?;
-        return Ok(TableProfile { file: None, spline, rows: table.checked(rows)?.into() });
+        let rows = pairs.into_iter().enumerate().map(row).collect::<Result<_, _>>()?;
+        return table.profile(fields, (None, spline), rows, None);
     }
     let file = fields.text("cam.file")?;
-    let spline = fields.choice("cam.spline", &splines)?;
+    let spline = fields.choice("cam.spline", &SPLINES)?;
     let path = Path::new(fields.file()).parent().unwrap_or(Path::new("")).join(&file);
     let shown = path.display().to_string();
     let text = std::fs::read_to_string(&path)
         .map_err(|error| fields.reject("cam.file", format!("cannot be read at {shown}: {error}")))?;
     // Spreadsheets begin UTF-8 with a mark.
     let table = Table { file: shown, text: text.strip_prefix('\u{feff}').unwrap_or(&text), has_lines: true };
-    let rows = table.rows()?;
-    Ok(TableProfile { file: Some(file), spline, rows: rows.into() })
+    let (rows, layout) = table.rows()?;
+    table.profile(fields, (Some(file), spline), rows, Some(layout))
 }
 
-/// A file being read, for complaints.
-struct Table<'a> {
-    file: String,
-    text: &'a str,
-    /// Whether rows are told by their lines in the text, and not by their numbers.
-    has_lines: bool,
+/// The unit that a field or a header names, by its place in a table; where neither does, the first.
+fn unit(fields: &mut Fields, path: &str, names: &[&str], header: Option<usize>) -> Result<usize, ModelError> {
+    fields.may_hold(path);
+    if !fields.has(path) {
+        return Ok(header.unwrap_or(0));
+    }
+    let choices: Vec<(&str, usize)> = names.iter().enumerate().map(|(index, name)| (*name, index)).collect();
+    let chosen = fields.choice(path, &choices)?;
+    match header.filter(|header| *header != chosen) {
+        Some(other) => Err(fields.reject(path, format!("is not what the header of the table says: {}", names[other]))),
+        None => Ok(chosen),
+    }
+}
+
+/// The fields of `spline = "smoothing"`; `step` is that of the lifts, in the table's unit, and `in_model` that as a part of the model's
+/// unit of length.
+fn smoothing(fields: &mut Fields, step: Option<f64>, in_model: &Unit) -> Result<Smoothing, ModelError> {
+    let path = "cam.tolerance";
+    fields.may_hold(path);
+    let tolerance = match fields.fields.get(path).map(|field| &field.value) {
+        None => Tolerance::Auto,
+        Some(Value::Text(_)) => fields.choice(path, &[("auto", Tolerance::Auto)])?,
+        Some(_) => {
+            let within = fields.number(path, Allowed::POSITIVE)?;
+            // Half of a decimal step is no decimal number of as many digits.
+            if let Some(step) = step.filter(|step| within < 0.5 * step * (1.0 - 8.0 * tolerance::ULP.value)) {
+                let words =
+                    format!("must be at least {}, half of the step {step} that the lifts are rounded to", 0.5 * step);
+                return Err(fields.reject(path, words));
+            }
+            Tolerance::Within(in_model.inside(within))
+        }
+    };
+    let path = "cam.dwells_deg";
+    fields.may_hold(path);
+    let mut dwells_deg = None;
+    if fields.has(path) && !fields.is_empty_list(path) {
+        let mut dwells: Vec<[f64; 2]> = Vec::new();
+        for ([from, to], _) in fields.rows(path, [1, MOST_FEATURES])? {
+            let (start, span) = (from.rem_euclid(360.0) % 360.0, (to - from).rem_euclid(360.0));
+            if !(from.is_finite() && to.is_finite() && span > 0.0) {
+                return Err(fields.reject(
+                    path,
+                    format!("has a dwell from {from} to {to}: it must have an end and be less than a turn"),
+                ));
+            }
+            dwells.push([start, start + span]);
+        }
+        dwells.sort_by(|one, two| one[0].total_cmp(&two[0]));
+        let after = |index: usize| dwells.get(index + 1).map_or(dwells[0][0] + 360.0, |next| next[0]);
+        if let Some(index) = (0..dwells.len()).find(|index| dwells[*index][1] >= after(*index)) {
+            let [from, to] = dwells[index];
+            return Err(fields.reject(
+                path,
+                format!("has dwells that meet: one from {from} to {to}, and one from {}", after(index) % 360.0),
+            ));
+        }
+        dwells_deg = Some(dwells);
+    } else if fields.has(path) {
+        dwells_deg = Some(Vec::new());
+    }
+    let path = "cam.corners_deg";
+    fields.may_hold(path);
+    let mut corners_deg = None;
+    if fields.has(path) {
+        let corners = if fields.is_empty_list(path) { Vec::new() } else { fields.numbers(path, MOST_FEATURES)? };
+        let mut corners: Vec<f64> = corners.into_iter().map(|corner| corner.rem_euclid(360.0)).collect();
+        corners.sort_by(f64::total_cmp);
+        corners.dedup();
+        let inside = |corner: &&f64| {
+            // An end of a dwell may be a corner, in another rounding.
+            let room = tolerance::SAME_KNOT.value;
+            let is_inside =
+                |[from, to]: &[f64; 2]| (room..to - from - room).contains(&(**corner - from).rem_euclid(360.0));
+            dwells_deg.iter().flatten().any(is_inside)
+        };
+        if let Some(corner) = corners.iter().find(inside) {
+            return Err(fields.reject(path, format!("has {corner}, which is inside of a dwell")));
+        }
+        corners_deg = Some(corners);
+    }
+    Ok(Smoothing { tolerance, corners_deg, dwells_deg, are_near: false })
+}
+
+/// The step of the coarsest decimal grid, 1, 2 or 5 times a power of ten, that all numbers lie on; none where they have as many
+/// digits as a double, or are all 0.
+fn grid(numbers: &[Row]) -> Option<f64> {
+    /// Digits of every number that a double can hold.
+    const DIGITS: f64 = 1e15;
+    // The shortest digits that read back as the same double are those that were written, but for zeros at the end.
+    let decimals = |row: &Row| row.lift.to_string().split_once('.').map_or(0, |(_, behind)| behind.len());
+    let decimals = numbers.iter().map(decimals).max().unwrap_or_default();
+    let power = 10.0_f64.powi(i32::try_from(decimals).ok()?);
+    let whole = |row: &Row| (row.lift * power).round().abs();
+    if !numbers.iter().all(|row| whole(row) < DIGITS) {
+        return None;
+    }
+    let common = numbers.iter().fold(0_u64, |common, row| {
+        let (mut one, mut two) = (common, whole(row) as u64);
+        while two != 0 {
+            (one, two) = (two, one % two);
+        }
+        one
+    });
+    let mut step = 1;
+    let mut largest = (common > 0).then_some(1_u64)?;
+    while step <= common {
+        largest = [1, 2, 5].iter().map(|digit| digit * step).filter(|size| common % size == 0).fold(largest, u64::max);
+        step *= 10;
+    }
+    Some(largest as f64 / power)
 }
 
 impl Table<'_> {
-    fn reject(&self, line: usize, column: &str, value: &str, allowed: String) -> ModelError {
-        let shown: String = value.chars().take(60).collect();
-        let (field, shown) = (Some(column.into()), Some(shown));
-        let complaint = ModelError { field, value: shown, ..self.complain(Some(line), allowed) };
-        complaint.in_line(self.text, Some(value))
-    }
-
-    fn complain(&self, line: Option<usize>, allowed: String) -> ModelError {
-        let line = line.filter(|_| self.has_lines);
-        ModelError { line, ..ModelError::file(&self.file, allowed) }.in_line(self.text, None)
-    }
-
-    fn rows(&self) -> Result<Vec<Row>, ModelError> {
-        let mut lines = self.text.lines().enumerate().map(|(index, line)| (index + 1, line.trim()));
-        match lines.next() {
-            Some((_, found)) if found.split(',').map(str::trim).eq(HEADER.split(',')) => {}
-            Some((line, found)) => return Err(self.reject(line, "header", found, format!("must be {HEADER}"))),
-            None => return Err(self.complain(None, format!("is empty; its first line must be {HEADER}"))),
-        }
-        let mut rows: Vec<Row> = Vec::new();
-        for (line, text) in lines.filter(|(_, text)| !text.is_empty()) {
-            let row = self.row(line, text)?;
-            if rows.len() == MOST_ROWS {
-                return Err(self.complain(Some(line), format!("more than {MOST_ROWS} rows")));
+    /// The profile of rows, each of which may stand alone, and of the fields beside them.
+    fn profile(
+        &self,
+        fields: &mut Fields,
+        (file, spline): (Option<String>, Kind),
+        mut rows: Vec<Row>,
+        layout: Option<Layout>,
+    ) -> Result<TableProfile, ModelError> {
+        let named = layout.as_ref();
+        let angle =
+            unit(fields, "cam.angle_unit", &["deg", "rad"], named.and_then(|named| named.radians).map(usize::from))?;
+        let of_model = Units::read(fields)?.length;
+        let named_length = named.and_then(|named| named.length);
+        let named_length = named_length
+            .or_else(|| LENGTHS.iter().position(|unit| *unit == of_model).filter(|_| !fields.has("cam.unit")));
+        let unit = &LENGTHS[unit(fields, "cam.unit", &LENGTHS.each_ref().map(Unit::name), named_length)?];
+        let in_model = unit.in_parts_of(&of_model);
+        let step = grid(&rows);
+        let first_deg =
+            rows.first().map_or(0.0, |row| if angle == 1 { row.angle_deg.to_degrees() } else { row.angle_deg });
+        for row in &mut rows {
+            row.lift = in_model.inside(row.lift);
+            if angle == 1 {
+                row.angle_deg = row.angle_deg.to_degrees();
             }
-            rows.push(row);
         }
-        self.checked(rows)
-    }
-
-    /// Rows, each of which may stand alone, as those of one table.
-    fn checked(&self, mut rows: Vec<Row>) -> Result<Vec<Row>, ModelError> {
-        rows.windows(2).try_for_each(|pair| self.in_order(&pair[0], &pair[1]))?;
-        self.close(&mut rows)?;
-        if rows.len() < FEWEST_ROWS {
-            let words = format!("{} different angles; {FEWEST_ROWS} to {MOST_ROWS} are needed", rows.len());
+        let repeats_first = self.turned(&mut rows, angle == 0)?;
+        let fewest = if spline == Kind::Smoothing { FEWEST_SMOOTHED } else { FEWEST_ROWS };
+        if rows.len() < fewest {
+            let words = format!("{} different angles; {fewest} to {MOST_ROWS} are needed", rows.len());
             return Err(self.complain(None, words));
         }
-        self.even(&rows)?;
-        Ok(rows)
+        let spline = match spline {
+            Kind::Cubic => Spline::Cubic,
+            Kind::Quintic => Spline::Quintic,
+            Kind::Smoothing => Spline::Smoothing(smoothing(fields, step, &in_model)?),
+        };
+        let reading = Reading {
+            unit: unit.name().to_owned(),
+            in_model,
+            angle_unit: ["deg", "rad"][angle],
+            layout,
+            rows: rows.len(),
+            first_deg,
+            repeats_first,
+            step,
+        };
+        Ok(TableProfile { file, spline, rows: rows.into(), reading: Arc::new(reading) })
     }
 
-    fn row(&self, line: usize, text: &str) -> Result<Row, ModelError> {
-        let Some((angle, lift)) = text.split_once(',') else {
-            return Err(self.reject(line, "row", text, format!("must be two numbers: {HEADER}")));
-        };
-        let number = |column: &str, text: &str, allowed: &str, is_allowed: fn(f64) -> bool| {
-            let number = text.trim().parse().ok().filter(|number| is_allowed(*number));
-            number.ok_or_else(|| self.reject(line, column, text.trim(), format!("must be a finite number{allowed}")))
-        };
-        let angle_deg = number("angle_deg", angle, " from 0 to 360", |angle| (0.0..=360.0).contains(&angle))?;
-        let lift = number("lift", lift, "", f64::is_finite)?;
-        Ok(Row { angle_deg, lift, line })
+    /// Puts the rows of one turn, from whatever angle on, in order from 0 to below 360; whether a last one repeated the first.
+    fn turned(&self, rows: &mut Vec<Row>, are_degrees: bool) -> Result<bool, ModelError> {
+        /// How far back angles go where they begin a new turn, degrees.
+        const BACK: f64 = 180.0;
+        let mut turns = 0.0;
+        let first = rows.first().map_or(0.0, |row| row.angle_deg);
+        // A turn is 2 pi to as many digits as were written.
+        let slack = tolerance::TURN_CLOSED.value * 360.0 / rows.len() as f64;
+        for index in 1..rows.len() {
+            let (before, row) = (rows[index - 1], &mut rows[index]);
+            let written = row.angle_deg;
+            if turns == 0.0 && before.angle_deg - written > BACK {
+                turns = 360.0;
+            }
+            row.angle_deg += turns;
+            let row = *row;
+            self.in_order(&before, &row, written)?;
+            if row.angle_deg - first > 360.0 + slack {
+                let words = format!("must be within a turn of the first row, from {first} to {}", first + 360.0);
+                return Err(self.reject(row.line, "angle_deg", &written.to_string(), words));
+            }
+        }
+        let last = rows.last().copied().filter(|last| last.angle_deg - first >= 360.0 - slack);
+        if let Some(last) = last {
+            self.closes(rows, &rows[0], &last)?;
+            rows.pop();
+        }
+        rows.iter_mut().for_each(|row| row.angle_deg = row.angle_deg.rem_euclid(360.0) % 360.0);
+        let start = rows.iter().enumerate().min_by(|one, two| one.1.angle_deg.total_cmp(&two.1.angle_deg));
+        let start = start.map_or(0, |(index, _)| index);
+        rows.rotate_left(start);
+        rows.windows(2).try_for_each(|pair| self.in_order(&pair[0], &pair[1], pair[1].angle_deg))?;
+        if rows.len() >= FEWEST_ROWS {
+            self.even(rows, are_degrees)?;
+        }
+        Ok(last.is_some())
     }
 
     fn place(&self, row: &Row) -> String {
         format!("{} {}", if self.has_lines { "line" } else { "row" }, row.line)
     }
 
-    fn in_order(&self, before: &Row, row: &Row) -> Result<(), ModelError> {
+    fn in_order(&self, before: &Row, row: &Row, written: f64) -> Result<(), ModelError> {
         // What cannot be told apart in radians is one angle.
         if row.angle_deg.to_radians() > before.angle_deg.to_radians() {
             return Ok(());
@@ -161,29 +392,28 @@ impl Table<'_> {
         let repeats = row.angle_deg >= before.angle_deg;
         let what = if repeats { "repeats the angle of the row before" } else { "angles must rise" };
         let words = format!("{what}: must be above {}, {}", before.angle_deg, self.place(before));
-        Err(self.reject(row.line, "angle_deg", &row.angle_deg.to_string(), words))
+        Err(self.reject(row.line, "angle_deg", &written.to_string(), words))
     }
 
-    /// A last row at 360 is the first one again: dropped where it says the same.
-    fn close(&self, rows: &mut Vec<Row>) -> Result<(), ModelError> {
-        let (Some(first), Some(last)) = (rows.first().copied(), rows.last().copied()) else {
-            return Ok(());
-        };
-        if first.angle_deg > 0.0 || last.angle_deg < 360.0 {
-            return Ok(());
-        }
+    /// A last row a turn after the first says the same.
+    fn closes(&self, rows: &[Row], first: &Row, last: &Row) -> Result<(), ModelError> {
         let largest = rows.iter().fold(0.0_f64, |largest, row| largest.max(row.lift.abs()));
         if (last.lift - first.lift).abs() > tolerance::CAM_CLOSURE.value * largest {
-            let words =
-                format!("must be {}, the lift at 0 on {}: 360 degrees are 0 again", first.lift, self.place(&first));
+            let words = format!(
+                "must be {}, the lift at {} on {}: a turn later it is the same again",
+                first.lift,
+                first.angle_deg,
+                self.place(first)
+            );
             return Err(self.reject(last.line, "lift", &last.lift.to_string(), words));
         }
-        rows.pop();
         Ok(())
     }
 
     /// Refuses a gap where rows are missing.
-    fn even(&self, rows: &[Row]) -> Result<(), ModelError> {
+    fn even(&self, rows: &[Row], are_degrees: bool) -> Result<(), ModelError> {
+        /// From how much of a turn without a row on the rows are those of another part of it.
+        const PART: f64 = 90.0;
         let next = |index: usize| match rows.get(index + 1) {
             Some(row) => row.angle_deg,
             None => rows[0].angle_deg + 360.0,
@@ -195,12 +425,24 @@ impl Table<'_> {
         let Some(index) = gaps.iter().position(|gap| *gap > widest) else {
             return Ok(());
         };
-        let words = format!(
-            "no row from {} to {}: rows are missing; a gap may be at most {widest}, {} times the median one",
-            rows[index].angle_deg,
-            next(index),
-            1.0 / tolerance::TABLE_GAP.value
-        );
-        Err(self.reject(rows[index].line, "angle_deg", &rows[index].angle_deg.to_string(), words))
+        let covered = 360.0 - gaps[index];
+        let words = if gaps[index] > PART {
+            format!(
+                "no row from {} to {}: the rows cover {covered} degrees, and a whole turn is needed, also of a cam that is its own \
+                 mirror image",
+                rows[index].angle_deg,
+                next(index)
+            )
+        } else {
+            format!(
+                "no row from {} to {}: rows are missing; a gap may be at most {widest}, {} times the median one",
+                rows[index].angle_deg,
+                next(index),
+                1.0 / tolerance::TABLE_GAP.value
+            )
+        };
+        let is_radians = are_degrees && covered <= std::f64::consts::TAU;
+        let meant = is_radians.then(|| "did you mean angle_unit = \"rad\" in [cam]?".to_owned());
+        Err(self.reject(rows[index].line, "angle_deg", &rows[index].angle_deg.to_string(), words).meaning(meant))
     }
 }

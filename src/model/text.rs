@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::fields::{Fields, Value};
-use super::{CamProfile, Model};
+use super::{Model, TableProfile, Tolerance};
 
 impl Model {
     /// The model as a file that needs no other: its own name, every number in the digits that read back as the same double, and the
@@ -12,14 +12,8 @@ impl Model {
         let mut fields = self.fields.clone();
         fields.put("name", Value::Text(self.name.clone()));
         fields.put("source", Value::Text(self.source.clone()));
-        let mut sharp = &self.cam;
-        while let CamProfile::Rounded { sharp: inside, .. } = sharp {
-            sharp = inside;
-        }
-        if let CamProfile::Table(table) = sharp {
-            fields.fields.remove("cam.file");
-            let rows = table.rows.iter().map(|row| ([row.angle_deg, row.lift], None));
-            fields.put("cam.rows", Value::Rows(rows.collect()));
+        if let Some(table) = self.table() {
+            fields.put_lifts(table, table.rows.iter().map(|row| row.lift));
         }
         let mut text = String::new();
         fields.write(&mut text, "");
@@ -28,6 +22,18 @@ impl Model {
 }
 
 impl Fields {
+    /// Puts rows in the place of those of a table and of its file: its angles, with other lifts, in the units of the model.
+    pub(super) fn put_lifts(&mut self, table: &TableProfile, lifts: impl Iterator<Item = f64>) {
+        for path in ["cam.file", "cam.unit", "cam.angle_unit"] {
+            self.fields.remove(path);
+        }
+        if let Some(Tolerance::Within(within)) = table.spline.smoothing().map(|smoothing| smoothing.tolerance) {
+            self.put("cam.tolerance", Value::Number(within));
+        }
+        let rows = table.rows.iter().zip(lifts).map(|(row, lift)| ([row.angle_deg, lift], None));
+        self.put("cam.rows", Value::Rows(rows.collect()));
+    }
+
     /// Writes what is inside of the table at `path`: what follows the header of a table within belongs to that, so values come first.
     fn write(&self, text: &mut String, path: &str) {
         let prefix = if path.is_empty() { String::new() } else { format!("{path}.") };

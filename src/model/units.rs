@@ -36,13 +36,19 @@ impl Unit {
         value * self.ratio[1] / self.ratio[0]
     }
 
+    /// The same unit as a part of another one, which is then the unit inside.
+    pub(super) fn in_parts_of(&self, other: &Self) -> Self {
+        let ratio = if self.ratio == other.ratio { [1.0; 2] } else { self.over(other) };
+        Self { name: self.name.clone(), ratio }
+    }
+
     fn over(&self, other: &Self) -> [f64; 2] {
         [self.ratio[0] * other.ratio[1], self.ratio[1] * other.ratio[0]]
     }
 }
 
 /// Units by name, as parts of the SI's; the first is the SI's own.
-const LENGTHS: [Unit; 6] = [
+pub(super) const LENGTHS: [Unit; 6] = [
     Unit::new("m", 1.0, 1.0),
     Unit::new("cm", 1.0, 100.0),
     Unit::new("mm", 1.0, 1000.0),

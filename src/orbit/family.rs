@@ -66,6 +66,11 @@ impl Family {
         Ok(Self { model: model.clone(), machine, rpm, free })
     }
 
+    /// The machines of `model`, whose own is there already, at `rpm`, with `free` to be chosen.
+    pub(crate) fn of(model: &Model, machine: &Machine, rpm: f64, free: Vec<Parameter>) -> Self {
+        Self { model: model.clone(), machine: machine.clone(), rpm, free }
+    }
+
     /// The machine with these values of the free numbers, and its speed, rpm.
     pub fn machine(&self, values: &[f64]) -> Result<(Machine, f64), FamilyError> {
         let (mut rpm, mut model) = (self.rpm, None);

@@ -1,9 +1,11 @@
 //! The page of `cam`: segments and corners.
 
 use crate::cam::Corner;
+use crate::measured::Measured;
 use crate::show::Paged;
 use crate::show::block::{Block, Column, Span, Table, Words, words};
-use crate::show::digits::Digits;
+use crate::show::digits::{Digits, with_error};
+use crate::show::words;
 use crate::study::cam::{CamSheet, Largest};
 
 /// The longest list that a terminal prints line by line.
@@ -14,6 +16,7 @@ impl Paged for CamSheet {
         let title = Block::Title(words!["Cam of ", &self.model]);
         let mut blocks = vec![title, Block::paragraph(&self.source), Block::Gap, Block::paragraph(lift(self))];
         blocks.extend(largest(self));
+        blocks.extend(self.measured.iter().flat_map(measured));
         blocks.extend(parts(self));
         blocks
     }
@@ -41,6 +44,50 @@ const NINE: Digits = Digits::Significant(9);
 pub(crate) fn lift(sheet: &CamSheet) -> Words {
     let [low, high] = sheet.lift_m;
     words![format!("law \"{}\", lift from ", sheet.law), (low, NINE), " to ", (high, NINE), " ", Span::Unit("m")]
+}
+
+/// How the table was understood, how well the cam is known, and what a smoothing spline has.
+fn measured(measured: &Measured) -> Vec<Block> {
+    let told = |length: f64| {
+        words![(measured.reading.in_model.told(length), Digits::Significant(2)), " ", &measured.reading.unit]
+    };
+    let mut blocks = vec![Block::paragraph(format!("table: {}", words::reading(&measured.reading)))];
+    let accuracy = match measured.step_m {
+        Some(_) => words::accuracy(measured),
+        None => "lifts with all digits of a double".to_owned(),
+    };
+    let (digits, error) = with_error(measured.curvature_error);
+    blocks.push(Block::paragraph(words![
+        format!("accuracy: {accuracy}; about a smooth motion the rows spread by "),
+        told(measured.noise_m),
+        "; the second derivative, ",
+        (measured.largest_curvature, digits),
+        " ",
+        Span::Unit("m"),
+        "/rad^2 at most, is known to ",
+        (error, digits),
+        " or better"
+    ]));
+    if measured.is_smoothed {
+        let list = |words: Vec<Words>| if words.is_empty() { "none".into() } else { Words::joined(words, ", ") };
+        let degrees = |angle: f64| words![(angle, Digits::UpTo(3))];
+        let corners = measured.corners_deg.iter().map(|corner| degrees(*corner)).collect();
+        let dwells =
+            measured.dwells_deg.iter().map(|[from, to]| words![degrees(*from), " to ", degrees(to % 360.0)]).collect();
+        let found = |is_found: bool| if is_found { " found: " } else { " given: " };
+        blocks.push(Block::paragraph(words![
+            "smoothing: at most ",
+            told(measured.largest_distance_m),
+            " from a row; corners",
+            found(measured.corners_are_found),
+            list(corners),
+            "; dwells",
+            found(measured.dwells_are_found),
+            list(dwells),
+            " (deg)"
+        ]));
+    }
+    blocks
 }
 
 fn segments(sheet: &CamSheet) -> Vec<Block> {

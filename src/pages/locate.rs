@@ -4,6 +4,7 @@ use crate::border_collision::Classification;
 use crate::corner::candidates::{MOST_IMPACTS, NEAREST_OTHER};
 use crate::corner::range::{FoundCornerImpacts, UndecidedSpeeds};
 use crate::orbit::branch::GRID_RATIO;
+use crate::pages::speeds::measured_speed;
 use crate::show::Paged;
 use crate::show::block::{Block, Column, Mark, Table, Words, words};
 use crate::show::digits::Digits;
@@ -29,6 +30,12 @@ impl Paged for Located {
         for (index, impact) in self.found.iter().enumerate().filter(|(_, impact)| !impact.agrees) {
             let words = format!("{}: {}. {}", index + 1, verdict(impact), disagreement(impact));
             page.extend([Block::Gap, Block::paragraph(words)]);
+        }
+        for (index, impact) in self.found.iter().enumerate() {
+            if let Some(cam) = self.measured.as_ref().filter(|cam| cam.is_noisy) {
+                let speed = measured_speed(impact.at.speed_rpm(), Digits::Fixed(9), impact.speed_error, Some(cam));
+                page.extend([Block::Gap, Block::paragraph(words![format!("{}: ", index + 1), speed])]);
+            }
         }
         page.push(Block::Heading("What happens there".into()));
         page.extend(meanings(&self.found));

@@ -1,8 +1,9 @@
 //! The page of `speeds`: the short answer first, then every attractor with where it begins and ends.
 
+use crate::measured::Measured;
 use crate::show::Paged;
 use crate::show::block::{Block, Column, Mark, Table, Words, words};
-use crate::show::digits::Digits;
+use crate::show::digits::{Digits, with_error};
 use crate::show::words;
 use crate::study::attractors::Change;
 use crate::study::speeds::{Attractor, Speeds};
@@ -25,6 +26,7 @@ impl Paged for Speeds {
             page.extend(rests(attractor).map(Block::paragraph));
         }
         page.push(Block::paragraph(how(self)));
+        page.extend(self.measured.iter().filter_map(cam));
         page.extend(self.failed.iter().map(|failed| {
             Block::paragraph(format!("At {} rpm nothing could be run: {}.", failed.speed_rpm, failed.why))
         }));
@@ -48,9 +50,23 @@ pub(crate) fn together(found: &Speeds) -> Vec<Words> {
 pub(crate) fn detachment(found: &Speeds) -> Words {
     let stays = found.attractors.iter().any(|attractor| attractor.kind == crate::orbit::ending::Kind::Stays);
     match found.detachment {
-        Some(rpm) => words![(rpm, Digits::Fixed(6)), " rpm"],
+        Some(rpm) => measured_speed(rpm, Digits::Fixed(6), found.detachment_error, found.measured.as_ref()),
         None if stays => "no speed in between".into(),
         None => format!("{} rpm already, or below", found.rpm[0]).into(),
+    }
+}
+
+/// A speed with what the accuracy of a measured cam leaves open, and why.
+pub(crate) fn measured_speed(rpm: f64, digits: Digits, error: Option<f64>, cam: Option<&Measured>) -> Words {
+    match (error, cam.filter(|cam| cam.is_noisy)) {
+        (Some(error), Some(cam)) => {
+            let (digits, error) = with_error(error);
+            words![(rpm, digits), " ± ", (error, digits), format!(" rpm: {}", words::accuracy(cam))]
+        }
+        (None, Some(cam)) => {
+            words![(rpm, digits), format!(" rpm, and how far off is not known: {}", words::accuracy(cam))]
+        }
+        _ => words![(rpm, digits), " rpm"],
     }
 }
 
@@ -64,6 +80,16 @@ pub(crate) fn how(found: &Speeds) -> String {
         found.step,
         100.0 * found.missed()
     )
+}
+
+/// What errors stand for, where the cam is measured.
+fn cam(measured: &Measured) -> Option<Block> {
+    let words = format!(
+        "± is what the cam leaves open, {}: how far the event moves among cams that are as likely. A speed without it is of the cam as \
+         it is drawn through the rows.",
+        words::accuracy(measured)
+    );
+    measured.is_noisy.then(|| Block::paragraph(words))
 }
 
 /// How often a motion rests that bounces as chaos does in between.
@@ -132,6 +158,10 @@ fn speed(rpm: f64, change: Option<&Change>) -> Words {
     const LOCATED: f64 = 6.0;
     let places = match change {
         None => return words![(rpm, Digits::UpTo(LOCATED as usize))],
+        Some(Change { error: Some(error), .. }) => {
+            let (digits, error) = with_error(*error);
+            return words![(rpm, digits), " ± ", (error, digits)];
+        }
         Some(change) if change.is_located() => LOCATED,
         Some(change) => (-(change.bracket[1] - change.bracket[0]).log10()).ceil().clamp(0.0, LOCATED),
     };

@@ -167,7 +167,7 @@ impl Report {
             source: model.source.clone(),
             file: model.file().to_owned(),
             quantities: quantities(model),
-            cam: CamSheet::new(model, &cam, Jet::HIGHEST_JUMP),
+            cam: CamSheet::new(model, &cam, Jet::HIGHEST_JUMP)?,
         };
         let commands = commands(model, verification.is_ok());
         Ok(Self { agrees, is_paper, model: sheet, verification, through, claims, speeds, attractors, plates, commands })

@@ -66,6 +66,16 @@ impl Digits {
     }
 }
 
+/// The digits of a number that may be off by so much: up to the second of the error; and the error, rounded there.
+pub(crate) fn with_error(error: f64) -> (Digits, f64) {
+    if !(error > 0.0 && error.is_finite()) {
+        return (Digits::Significant(9), error);
+    }
+    let place = 1.0 - error.log10().floor();
+    let unit = 10.0_f64.powf(place);
+    (Digits::Fixed(place.clamp(0.0, 12.0) as usize), (error * unit).ceil() / unit)
+}
+
 /// Digits as print has them: a minus as wide as a plus, a power of ten above the line.
 pub(crate) fn typeset(text: &str) -> Markup {
     let signed = |text: &str| text.replace('-', "\u{2212}");

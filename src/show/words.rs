@@ -11,6 +11,8 @@ use crate::cam::Side;
 use crate::corner::map::RouteName;
 use crate::covering::Unproved;
 use crate::covering::prove::Relation;
+use crate::measured::Measured;
+use crate::model::{Reading, Separator};
 use crate::orbit::branch::{self, Bifurcation};
 use crate::orbit::ending::{Ending, Kind};
 use crate::published::Verdict;
@@ -285,4 +287,47 @@ pub(crate) fn range(ends: [f64; 2], digits: Digits) -> String {
         [from, to] if from == to => from,
         [from, to] => format!("{from} to {to}"),
     }
+}
+
+/// What a table of lifts is not exact for.
+pub(crate) fn accuracy(measured: &Measured) -> String {
+    let (reading, unit) = (&measured.reading, &measured.reading.unit);
+    match reading.step.filter(|_| measured.is_rounded()) {
+        Some(step) => format!("lift rounded to {step} {unit}"),
+        None => {
+            format!("lift measured to {} {unit}", Digits::Significant(2).text(reading.in_model.told(measured.noise_m)))
+        }
+    }
+}
+
+/// How the rows of a table were understood.
+pub(crate) fn reading(reading: &Reading) -> String {
+    let mut words = format!("{} rows, angles in {} and lifts in {}", reading.rows, reading.angle_unit, reading.unit);
+    if let Some(layout) = &reading.layout {
+        words.push_str(match layout.separator {
+            Separator::Comma => ", columns parted by commas",
+            Separator::Semicolon => ", columns parted by semicolons",
+            Separator::Tab => ", columns parted by tabs",
+            Separator::Blanks => ", columns parted by blanks",
+        });
+        if layout.decimal_comma {
+            words.push_str(", with decimal commas");
+        }
+        match &layout.header {
+            Some(header) => words.push_str(&format!("; the header is \"{header}\"")),
+            None => words.push_str("; there is no header"),
+        }
+        match layout.comments {
+            0 => {}
+            1 => words.push_str("; 1 comment is left out"),
+            count => words.push_str(&format!("; {count} comments are left out")),
+        }
+    }
+    if reading.first_deg != 0.0 {
+        words.push_str(&format!("; they begin at {} deg, of whatever turn", Digits::UpTo(6).text(reading.first_deg)));
+    }
+    if reading.repeats_first {
+        words.push_str("; the last row repeats the first");
+    }
+    words
 }

@@ -3,7 +3,8 @@
 use serde::Serialize;
 
 use crate::cam::{Cam, Corner, Jet, Segment};
-use crate::model::{CamProfile, Model, Motion};
+use crate::measured::{Likely, Measured};
+use crate::model::{CamProfile, Model, ModelError, Motion};
 
 /// Segments and corners of a model's cam; serializes to the document `corner-impact/cam/1`.
 #[derive(Clone, Debug, Serialize)]
@@ -17,6 +18,9 @@ pub struct CamSheet {
     pub law: &'static str,
     /// Its lowest and its highest lift.
     pub lift_m: [f64; 2],
+    /// How well it is known, if it is measured.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub measured: Option<Measured>,
     /// In order of angle.
     pub segments: Vec<Segment>,
     /// What the user calls each of them: the motion of a program, the circle of a cam of arcs, else the kind of its law.
@@ -83,10 +87,10 @@ fn motions(model: &Model, cam: &Cam) -> Vec<&'static str> {
 
 impl CamSheet {
     /// What a model's cam is made of, with corners up to an order.
-    pub fn new(model: &Model, cam: &Cam, highest_order: usize) -> Self {
+    pub fn new(model: &Model, cam: &Cam, highest_order: usize) -> Result<Self, ModelError> {
         let segments = cam.segments().to_vec();
         let highest_order = highest_order.min(Jet::HIGHEST_JUMP);
-        Self {
+        Ok(Self {
             schema: "corner-impact/cam/1",
             model: model.name.clone(),
             source: model.source.clone(),
@@ -94,9 +98,10 @@ impl CamSheet {
             lift_m: [cam.lowest().value, -cam.least([-1.0, 0.0, 0.0, 0.0]).value],
             motions: motions(model, cam),
             largest: [1, 2, 3].map(|order| Largest::of(cam, order)),
+            measured: Likely::of(model)?.map(|likely| likely.measured),
             segments,
             highest_order,
             corners: cam.corners().into_iter().filter(|corner| corner.jump_order <= highest_order).collect(),
-        }
+        })
     }
 }

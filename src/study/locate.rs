@@ -17,8 +17,10 @@ use crate::corner::map::RouteName;
 use crate::corner::range::{FoundCornerImpacts, RangeError, find_corner_impacts};
 use crate::corner::{CornerImpact, CornerMap, variational};
 use crate::known::Known;
+use crate::measured::{Likely, Measured};
 use crate::model::{Model, ModelError, Study};
-use crate::orbit::branch::GRID_RATIO;
+use crate::orbit::branch::{Event, GRID_RATIO};
+use crate::simulate::Machine;
 use crate::study::ModelLabel;
 use crate::study::compared::{self, Log, Skipped, compare_borders};
 
@@ -35,6 +37,8 @@ pub struct Located {
     pub range: Study,
     /// Turns of the cam in one period of the orbits looked for.
     pub revolutions: u64,
+    /// How well the cam is known, if it is measured.
+    pub measured: Option<Measured>,
     /// Whether the routes agree at every one; true where there is none.
     pub agrees: bool,
 }
@@ -50,6 +54,7 @@ document!(Located as it {
     complete: it.looked_at.complete,
     undecided: it.looked_at.undecided,
     searched: Searched(&it.looked_at),
+    measured if_any: it.measured,
     agrees: it.agrees,
 });
 
@@ -69,6 +74,8 @@ document!(Searched<'_> as it {
 pub struct LocatedImpact {
     /// The orbit.
     pub at: CornerImpact,
+    /// How far a measured cam may have moved its speed, rpm; none where the cam is not measured or that is not known.
+    pub speed_error: Option<f64>,
     /// Its map by the product of propagators and saltation matrices; at a corner of velocity only `at.side` of it holds.
     pub map: CornerMap,
     /// What happens there.
@@ -84,6 +91,7 @@ pub struct LocatedImpact {
 document!(LocatedImpact as it {
     known: Known::Computed,
     speed_rpm: it.at.speed_rpm(),
+    error_rpm if_any: it.speed_error,
     period_s: it.at.period,
     orbit_period_s: it.at.period * it.at.cycle.revolutions as f64,
     revolutions: it.at.cycle.revolutions,
@@ -184,8 +192,29 @@ pub fn locate(model: &Model, range: Study, revolutions: u64) -> Result<Located, 
     let cam = Cam::new(model)?;
     let looked_at = find_corner_impacts(model, &cam, range, revolutions)?;
     let found: Vec<LocatedImpact> = looked_at.found.par_iter().map(|at| located(model, &cam, at)).collect();
+    let likely = if found.is_empty() { None } else { Likely::of(model)? };
+    let mut found = found;
+    if let Some(likely) = likely.as_ref().filter(|likely| likely.best.is_some()) {
+        found.par_iter_mut().for_each(|found| found.speed_error = speed_error(model, &cam, likely, &found.at));
+    }
     let agrees = found.iter().all(|located| located.agrees);
-    Ok(Located { model: ModelLabel::of(model), found, looked_at, range, revolutions, agrees })
+    Ok(Located {
+        model: ModelLabel::of(model),
+        found,
+        looked_at,
+        range,
+        revolutions,
+        measured: likely.map(|likely| likely.measured),
+        agrees,
+    })
+}
+
+/// How far a measured cam may have moved a corner impact, rpm.
+fn speed_error(model: &Model, cam: &Cam, likely: &Likely, at: &CornerImpact) -> Option<f64> {
+    let machine = Machine::new(cam.clone(), &model.follower, at.angular_velocity());
+    let at_end = at.cycle.impacts.get(at.impact)?.segment != at.corner.segment;
+    let event = Event::of_corner(&machine, at.speed_rpm(), &at.cycle, at.impact, at_end);
+    likely.error([at.speed_rpm()], |model, cam| event.moved(model, cam).map(|rpm| [rpm])).map(|[error]| error)
 }
 
 /// A corner impact with its map by each route that its corner has.
@@ -206,5 +235,5 @@ fn located(model: &Model, cam: &Cam, at: &CornerImpact) -> LocatedImpact {
         _ => Happens::Smooth,
     };
     let agrees = log.is_complete() && comparisons.iter().all(|item| item.agrees);
-    LocatedImpact { at: at.clone(), map, local, comparisons, skipped: log.0, agrees }
+    LocatedImpact { at: at.clone(), speed_error: None, map, local, comparisons, skipped: log.0, agrees }
 }

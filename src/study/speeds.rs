@@ -4,12 +4,14 @@ use serde::Serialize;
 
 use crate::estimate::Estimate;
 use crate::known::Known;
+use crate::measured::{Likely, Measured};
 use crate::model::Model;
+use crate::orbit::branch::Event;
 use crate::orbit::ending::{Ending, Kind};
 use crate::progress::Watch;
-use crate::simulate::{EventKind, SimulateError, angular_velocity};
+use crate::simulate::{EventKind, Machine, SimulateError, angular_velocity};
 use crate::study::attractors::{
-    Attractors, AttractorsError, Change, Here, Part, Resolution, Row, Wandering, attractors,
+    Attractors, AttractorsError, Cause, Change, Here, Part, Resolution, Row, Wandering, attractors, detachment_near,
 };
 use crate::study::machine;
 
@@ -26,6 +28,10 @@ pub struct Speeds {
     pub starts: usize,
     /// Where the follower first leaves the cam, rpm; `None` where it never does, or does so at the lowest speed already.
     pub detachment: Option<f64>,
+    /// How far a measured cam may have moved that, rpm.
+    pub detachment_error: Option<f64>,
+    /// How well the cam is known, if it is measured.
+    pub measured: Option<Measured>,
     /// The attractors, by rising speed.
     pub attractors: Vec<Attractor>,
     /// Where there are several.
@@ -43,6 +49,8 @@ document!(Speeds as it {
     starts: it.starts,
     missed_below_share: it.missed(),
     detachment_rpm: it.detachment,
+    detachment_error_rpm if_any: it.detachment_error,
+    measured if_any: it.measured,
     attractors: it.attractors,
     coexistence: it.coexistence,
     failed: it.failed,
@@ -183,8 +191,19 @@ pub fn speeds(
     resolution: Resolution,
     watch: &dyn Watch,
 ) -> Result<Speeds, AttractorsError> {
-    let Attractors { grid, rows, coexistence, detachment, .. } = attractors(model, range, resolution, watch)?;
+    let Attractors { grid, mut rows, coexistence, detachment, .. } = attractors(model, range, resolution, watch)?;
     let lowest = machine(model, range[0])?;
+    watch.at("what the measured cam leaves open", 0, 0);
+    let likely = Likely::of(model)?;
+    let noisy = likely.as_ref().filter(|likely| likely.best.is_some());
+    if let Some(likely) = noisy {
+        rows.iter_mut()
+            .flat_map(|row| row.ends.iter_mut().flatten())
+            .for_each(|change| change.error = error(&lowest, likely, change));
+    }
+    let first = |rpm: f64| {
+        noisy?.error([rpm], |model, cam| detachment_near(model, cam, rpm).map(|rpm| [rpm])).map(|[error]| error)
+    };
     let is_inside = |rpm: f64| range[0] <= rpm && rpm <= range[1];
     let attractor = |(index, row): (usize, &Row)| {
         let at = row.at.iter().filter_map(|(place, part)| {
@@ -217,6 +236,8 @@ pub fn speeds(
         step: resolution.step.rpm(),
         starts: resolution.starts,
         detachment,
+        detachment_error: detachment.and_then(first),
+        measured: likely.map(|likely| likely.measured),
         attractors: rows.iter().enumerate().map(attractor).collect(),
         coexistence: coexistence
             .iter()
@@ -235,6 +256,23 @@ pub fn speeds(
     })
 }
 
+/// How far a measured cam may have moved what an attractor begins or ends with, rpm.
+fn error(machine: &Machine, likely: &Likely, change: &Change) -> Option<f64> {
+    let rpm = change.rpm;
+    let [error] = match (change.cause, &change.point) {
+        (Cause::Detachment, _) => {
+            likely.error([rpm], |model, cam| detachment_near(model, cam, rpm).map(|rpm| [rpm]))?
+        }
+        (_, Some(point)) => {
+            let machine = machine.at_speed(angular_velocity(rpm));
+            let event = Event::of_point(&machine, point)?;
+            likely.error([rpm], |model, cam| event.moved(model, cam).map(|rpm| [rpm]))?
+        }
+        _ => return None,
+    };
+    Some(error)
+}
+
 fn name(index: usize) -> String {
     format!("A{}", index + 1)
 }
@@ -248,7 +286,7 @@ impl At {
 }
 
 /// Where the impacts of an attractor are, cam angles in rad: of a period, or of as many revolutions as a picture has room for.
-fn impact_angles(machine: &crate::simulate::Machine, part: &Part) -> Result<Vec<f64>, SimulateError> {
+fn impact_angles(machine: &Machine, part: &Part) -> Result<Vec<f64>, SimulateError> {
     /// Revolutions that a picture has room for.
     const SHOWN: u64 = 120;
     /// Impacts of them: before a rest there are any number.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::thread::JoinHandle;
 
-use nalgebra::{RowVector2, Vector2};
+use nalgebra::{Matrix2, RowVector2, Vector2};
 use serde::Serialize;
 
 use crate::agreement::{Agreement, NamedOrbit, Quantity, compare_orbits, fewest_shared_decimals};
@@ -13,13 +13,14 @@ use crate::border_collision::{
     Classification, Condition, Degenerate, LocalMap, LocalOutcome, NormalForm, Refusal, RoundedCorner, conditions,
     normal_form, rounded,
 };
-use crate::cam::{Cam, Side};
+use crate::cam::{Cam, Side, apart};
 use crate::corner::border::border;
 use crate::corner::external::{self, Outside, PROGRAMS, Program};
 use crate::corner::map::{RouteName, SideMap, Sides};
 use crate::corner::second_order::{CurvedMap, second_order};
 use crate::corner::{self, CornerImpact, CornerMap, LocateError, Route};
 use crate::corner::{closed_form, simulated_orbit};
+use crate::measured::{Likely, Measured};
 use crate::model::Model;
 use crate::progress::{Unwatched, Watch};
 use crate::published::{PrintedNumber, PublishedError, compare_published};
@@ -28,6 +29,7 @@ use crate::stop;
 use crate::study::ModelLabel;
 use crate::study::certify::{self, Certificate, Outcome};
 use crate::study::compared::{self, Log, Skipped, compare_borders};
+use crate::tolerance;
 
 /// What a verification found: the document `corner-impact/verify/1`.
 #[derive(Clone, Debug)]
@@ -40,6 +42,8 @@ pub struct Verification {
     pub others: Vec<CornerImpact>,
     /// The map by the closed form.
     pub map: CornerMap,
+    /// How far a measured cam leaves speed and map open, and how well it is known; none where the cam is not measured.
+    pub measured: Option<LeftOpen>,
     /// What of it is proved.
     pub certificate: Option<Certificate>,
     /// The map by each route that ran.
@@ -76,6 +80,7 @@ document!(Verification as found {
     corner_impact: Whole(&found.at),
     other_corner_impacts: found.others.iter().map(Place).collect::<Vec<_>>(),
     certificate if_any: found.certificate,
+    uncertainty if_any: found.measured,
     routes: found.routes.iter().map(|route| (route.name, route)).collect::<BTreeMap<_, _>>(),
     agreement: found.comparisons,
     eigenvalues: found.map.map(SideMap::eigenvalues),
@@ -91,6 +96,54 @@ document!(Verification as found {
     skipped: found.skipped,
     agrees: found.agrees,
 });
+
+/// What the accuracy of a measured cam leaves open.
+#[derive(Clone, Debug)]
+pub struct LeftOpen {
+    /// How well the cam is known.
+    pub cam: Measured,
+    /// How far speed, rpm, and each entry of the map may be off; none where too few of the cams that are as likely have the corner impact.
+    pub error: Option<(f64, CornerMap)>,
+}
+
+document!(LeftOpen as it {
+    speed_rpm: it.error.map(|(speed, _)| speed),
+    minus: it.error.map(|(_, map)| map.minus),
+    plus: it.error.map(|(_, map)| map.plus),
+    measured: it.cam,
+});
+
+impl LeftOpen {
+    /// Of a corner impact with its map.
+    fn new(likely: Likely, at: &CornerImpact, map: &CornerMap) -> Self {
+        let numbers = |speed: f64, map: &CornerMap| -> [f64; 13] {
+            let (minus, plus) = (map.minus.entries(), map.plus.entries());
+            std::array::from_fn(|index| match index {
+                0 => speed,
+                1..=6 => minus[index - 1],
+                _ => plus[index - 7],
+            })
+        };
+        let there = |model: &Model, cam: &Cam| {
+            let (first, others) = corner::locate(model, cam).ok()?;
+            // A corner that was found is found a little elsewhere in another table.
+            let is_it =
+                |found: &CornerImpact| apart(found.corner.angle, at.corner.angle) <= tolerance::NEIGHBOURING.value;
+            let found = std::iter::once(first).chain(others).find(is_it)?;
+            Some(numbers(found.speed_rpm(), &closed_form::route(model, &found).map))
+        };
+        let side = |error: &[f64]| SideMap {
+            a: Matrix2::new(error[0], error[1], error[2], error[3]),
+            b: Vector2::new(error[4], error[5]),
+        };
+        let error = likely.error(numbers(at.speed_rpm(), map), there);
+        let error = error.filter(|_| likely.best.is_some());
+        Self {
+            error: error.map(|error| (error[0], Sides { minus: side(&error[1..7]), plus: side(&error[7..]) })),
+            cam: likely.measured,
+        }
+    }
+}
 
 /// A corner impact with everything that is known of it.
 struct Whole<'a>(&'a CornerImpact);
@@ -219,6 +272,7 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
     let closed = closed_form::route(model, &at);
     let map = closed.map;
     let (mut routes, sticking) = compared::routes(model, &cam, &at, &mut log);
+    let measured = Likely::of(model)?.map(|likely| LeftOpen::new(likely, &at, &map));
 
     let mut orbits: Vec<NamedOrbit> = vec![(RouteName::Located, at.x_star(), at.period)];
     if model.follower.stiffness > 0.0 {
@@ -292,6 +346,7 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
         at,
         others,
         map,
+        measured,
         certificate,
         routes,
         comparisons,

@@ -47,7 +47,10 @@ fn a_document_is_a_file() {
     let rows = |rows: serde_json::Value| refused(&|cam| cam["rows"] = rows.clone());
     assert!(rows(json!([[0, 0.1], [120, 0.2]])).contains("cam.rows has 2 rows; 3 to 1000000 are allowed"));
     assert!(rows(json!([[0, 0], [1, 0], [1, 0]])).contains("must be above 1, row 2"));
-    assert!(rows(json!([[0, 0], [1, 0], [370, 0]])).contains("cam.rows = [370, 0]: must be an angle from 0 to 360"));
+    assert!(
+        rows(json!([[0, 0], [1, 0], [370, 0]]))
+            .contains("angle_deg = 370: must be within a turn of the first row, from 0 to 360")
+    );
     assert!(rows(json!([[0, 0], [1, 0, 2]])).contains("must be a list of rows"));
     assert!(refused(&|cam| cam["file"] = json!("lift.csv")).contains("the rows are here or in a file"));
     assert!(refused(&|cam| cam["a.b"] = json!(1)).contains("cam.a.b: a name has no dot"));

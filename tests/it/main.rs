@@ -36,6 +36,7 @@ mod layering;
 mod ledger;
 mod local_map;
 mod locate;
+mod measured;
 mod memory;
 mod model_file;
 mod orbit_closed_forms;

@@ -86,7 +86,11 @@ fn broken_tables_and_toml_are_shown() {
     let model = common::osorio_text(&[]).split("[cam]").next().unwrap().to_owned() + "[cam]\n" + cam;
     for (row, value, says) in [
         ("90,high", "high", "error: broken.csv:3: lift = high: must be a finite number"),
-        ("400,0.1", "400", "error: broken.csv:3: angle_deg = 400: must be a finite number from 0 to 360"),
+        (
+            "400,0.1",
+            "400",
+            "error: broken.csv:3: angle_deg = 400: must be within a turn of the first row, from 0 to 360",
+        ),
         ("90", "90", "error: broken.csv:3: row = 90: must be two numbers"),
     ] {
         std::fs::write(folder().join("broken.csv"), format!("\u{feff}angle_deg,lift\r\n0,0.4\r\n{row}\r\n180,0.5\r\n"))

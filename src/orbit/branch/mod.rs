@@ -13,6 +13,7 @@
 //! | `problem`, `held` | the equations, with numbers of the model free; what holds besides along a curve in two of them |
 //! | `cut`, `gap`, `halved` | what a step passes, and where: corners, folds, flips; grazes; the end of a doubled period |
 //! | `rest`, `contact` | curves of what becomes of a follower on the cam: where it leaves it, where it rests no more |
+//! | `moved` | the events of a machine that differs a little |
 //! | `switch` | the cycle beyond a corner or a graze, and which way leads there |
 //! | `special` | the points where something changes; which impact of an orbit is which of the next |
 
@@ -25,6 +26,7 @@ mod follow;
 mod gap;
 mod halved;
 mod held;
+mod moved;
 mod problem;
 mod rest;
 mod special;
@@ -37,6 +39,7 @@ use crate::model::Model;
 use crate::tolerance;
 pub(crate) use doubled::doubled;
 pub(crate) use find::{FoundBranches, GRID_RATIO, find_branches, special_points};
+pub(crate) use moved::Event;
 pub(crate) use special::Special;
 pub use special::{Bifurcation, Kind};
 

@@ -6,7 +6,7 @@ use crate::corner::map::{CornerMap, Route, Uncertainty};
 use crate::show::block::{Block, Column, Mark, Span, Table, Words, words};
 use crate::show::digits::Digits;
 use crate::show::words;
-use crate::study::verify::Verification;
+use crate::study::verify::{LeftOpen, Verification};
 
 /// The map by every route, side by side, and how well estimates know it.
 pub(crate) fn map(found: &Verification) -> Vec<Block> {
@@ -36,6 +36,7 @@ pub(crate) fn map(found: &Verification) -> Vec<Block> {
     let (c, ten) = (found.map.c(), Digits::Significant(10));
     let border = words!["C = (", (c[0], ten), ", ", (c[1], ten), "),  D = ", (found.map.d(), ten)];
     blocks.extend([Block::Entries(0, vec![("".into(), border)]), Block::Gap]);
+    blocks.extend(found.measured.iter().flat_map(measured));
     blocks.extend(found.routes_by_name().filter_map(known_to).flatten());
     blocks
 }
@@ -80,6 +81,13 @@ fn digits(entries: impl Iterator<Item = f64>) -> Digits {
         _ if (0.001..1e9).contains(&largest) => Digits::Fixed((9.0 - largest.log10().floor()) as usize),
         _ => Digits::Power(6),
     }
+}
+
+/// The entries with what a measured cam leaves open.
+fn measured(open: &LeftOpen) -> Vec<Block> {
+    let Some((_, map)) = &open.error else { return Vec::new() };
+    let text = format!("What the measured cam leaves open of each entry, {}:", words::accuracy(&open.cam));
+    vec![Block::paragraph(text), Block::Table(errors(map)), Block::Gap]
 }
 
 /// How well a route says that it knows the entries.

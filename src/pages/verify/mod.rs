@@ -7,6 +7,7 @@ use crate::border_collision::feigin::{Scenario, SideCounts};
 use crate::border_collision::{Classification, NormalForm, Refusal};
 use crate::cam::Side;
 use crate::pages::local_map;
+use crate::pages::speeds::measured_speed;
 use crate::show::Paged;
 use crate::show::block::{Block, Column, Mark, Span, Table, Words, words};
 use crate::show::digits::Digits;
@@ -68,6 +69,11 @@ pub(crate) fn orbit(found: &Verification) -> Vec<Block> {
         let (speed, angle) = (fixed(other.speed_rpm(), 6), degrees(other.corner.angle));
         ("also".into(), words![speed, " rpm at ", angle, " deg: narrow [study] to verify that one"])
     }));
+    if let Some(open) = found.measured.as_ref().filter(|open| open.cam.is_noisy) {
+        let speed =
+            measured_speed(at.speed_rpm(), Digits::Fixed(9), open.error.map(|(speed, _)| speed), Some(&open.cam));
+        entries.push(("cam".into(), speed));
+    }
     if let Some(certificate) = &found.certificate {
         let words = format!(
             "this orbit exists, and its speed, state, A and B are proved to {} digits: `certify` has them",

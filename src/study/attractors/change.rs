@@ -14,6 +14,10 @@ pub struct Change {
     pub bracket: [f64; 2],
     /// Why.
     pub cause: Cause,
+    /// The point of a branch that it is at, if it is.
+    pub point: Option<Box<BranchPoint>>,
+    /// How far a measured cam may have moved it, rpm; none where the cam is not measured or that is not known.
+    pub error: Option<f64>,
 }
 
 // Located is where the equations of the event were solved, and not a bracket of runs.
@@ -22,6 +26,7 @@ document!(Change as it {
     speed_rpm: it.rpm,
     located: it.is_located(),
     bracket_rpm: it.bracket,
+    error_rpm if_any: it.error,
     cam_angle_rad if_any: it.cause.corner().map(|(angle, _)| angle),
     jump_order if_any: it.cause.corner().map(|(_, order)| order),
 });
@@ -92,12 +97,12 @@ impl Change {
             // Of curves in two numbers.
             (Kind::Type { .. } | Kind::Cusp | Kind::DegenerateGraze | Kind::Place | Kind::Turn, _) => Cause::Runs,
         };
-        Self { rpm, bracket: special.bracket, cause }
+        Self { rpm, bracket: special.bracket, cause, point: Some(Box::new(point.clone())), error: None }
     }
 
     /// Somewhere between two speeds, rpm.
     pub fn by_runs([low, high]: [f64; 2]) -> Self {
-        Self { rpm: 0.5 * (low + high), bracket: [low, high], cause: Cause::Runs }
+        Self { rpm: 0.5 * (low + high), bracket: [low, high], cause: Cause::Runs, point: None, error: None }
     }
 
     /// Whether the event's own equations were solved.

@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use super::rows::Grid;
 use crate::bracket::{Width, halve};
+use crate::cam::Cam;
 use crate::model::Model;
 use crate::orbit::ending::Ending;
 use crate::simulate::{Event, Machine, SimulateError, angular_velocity};
@@ -26,6 +27,25 @@ pub fn detachment(model: &Model, [low, high]: [f64; 2]) -> Result<Option<f64>, S
         }
     }
     Ok(None)
+}
+
+/// Where the follower first leaves the cam near a speed, rpm; `None` where it does not.
+pub fn detachment_near(model: &Model, cam: &Cam, rpm: f64) -> Option<f64> {
+    /// How far it is looked for, of the speed: at first, and at most.
+    const FAR: [f64; 2] = [0.01, 0.9];
+    let machine = Machine::new(cam.clone(), &model.follower, angular_velocity(rpm));
+    let mut far = FAR[0];
+    while far < FAR[1] {
+        let [low, high] = [rpm * (1.0 - far), rpm * (1.0 + far)];
+        if stays(&machine, low).ok()? && !stays(&machine, high).ok()? {
+            let width = Width::Absolute(tolerance::SPEED_FOUND.value);
+            return halve([low, high], width, |rpm| stays(&machine, rpm).map(|stays| !stays))
+                .ok()
+                .map(|found| found[1]);
+        }
+        far *= 2.0;
+    }
+    None
 }
 
 /// The neighbouring speeds, rpm, of which the follower stays on the cam at the first only, between two of a grid.

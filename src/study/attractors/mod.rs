@@ -30,7 +30,8 @@ use crate::simulate::{Machine, SimulateError};
 use crate::stop;
 use crate::study::machine;
 pub use change::{Cause, Change};
-pub use detachment::detachment;
+pub use detachment::{detachment, detachment_near};
+
 pub use ensemble::{Ensemble, Part, Patience, Wandering};
 pub use here::Here;
 use rayon::prelude::*;

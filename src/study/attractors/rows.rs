@@ -304,7 +304,7 @@ impl Row {
                 && change.bracket[0] <= rpm
                 && bracket[0] <= change.bracket[1]
             {
-                *change = Change { rpm, bracket, cause: Cause::Detachment };
+                *change = Change { rpm, bracket, cause: Cause::Detachment, point: None, error: None };
                 *own = rpm;
             }
         }

@@ -159,6 +159,6 @@ fn walk<'a>(
     match (pending, end) {
         (Some(point), _) => Some(Change::of_point(point)),
         (None, End::Range | End::Closed | End::MostPoints) => None,
-        (None, _) => Some(Change { rpm: last, bracket: [last; 2], cause: Cause::Runs }),
+        (None, _) => Some(Change { rpm: last, bracket: [last; 2], cause: Cause::Runs, point: None, error: None }),
     }
 }

@@ -1,0 +1,213 @@
+//! How closely a smoothing spline follows the rows of a table, and what the rows say of their own noise.
+//!
+//! With a tolerance the weight is the one at which the largest distance from a row is the tolerance. Without one it is that of the
+//! least generalised cross-validation (Craven and Wahba 1978), what a row would be missed by if it were left out:
+//!
+//! ```text
+//! V = n sum of residuals^2 / (n - p)^2      p what the spline has taken from the n rows, noise^2 = sum of residuals^2 / (n - p)
+//! ```
+//!
+//! of the rows outside of dwells, but no closer than half of the step that the lifts are rounded to, since a true lift may be as far from its row.
+
+use std::f64::consts::TAU;
+
+use super::features::{self, Features};
+use super::smoothing::{Layout, Smoothed};
+use super::{Cam, Joint};
+use crate::bracket::{Width, halve};
+use crate::model::{Model, ModelError, Smoothing, TableProfile, Tolerance};
+
+/// A smoothing spline fitted to a table.
+#[derive(Clone, Debug)]
+pub(crate) struct Fit {
+    layout: Layout,
+    spline: Smoothed,
+    /// The weight of the rows, its logarithm.
+    pub weight: f64,
+    /// Corners and dwells, given or found.
+    features: Features,
+    /// The standard deviation of what the rows are off a smooth motion by, m; not a number where the spline goes through them.
+    pub noise: f64,
+}
+
+/// The logarithms of the weights that are tried: a curve with nothing but the first harmonics, and one through the rows.
+const WEIGHTS: [f64; 2] = [-9.0, 9.0];
+
+impl Fit {
+    /// The largest distance from a row, m.
+    pub fn distance(&self) -> f64 {
+        largest(&self.spline.residuals)
+    }
+
+    /// What it has at the rows, m.
+    pub fn lifts(&self, profile: &TableProfile) -> Vec<f64> {
+        profile.rows.iter().zip(&self.spline.residuals).map(|(row, residual)| row.lift - residual).collect()
+    }
+
+    /// Its corners, degrees.
+    pub fn corners_deg(&self) -> Vec<f64> {
+        self.features.corners.iter().map(|corner| corner.to_degrees()).collect()
+    }
+
+    /// Its dwells, from and to, degrees.
+    pub fn dwells_deg(&self) -> Vec<[f64; 2]> {
+        self.features.dwells.iter().map(|dwell| dwell.map(f64::to_degrees)).collect()
+    }
+
+    pub fn cam(&self) -> Cam {
+        let (laws, breaks) = self.layout.laws(&self.spline);
+        Cam::from_laws(laws, Joint::Spline { degree: 5, breaks: breaks.into() })
+    }
+}
+
+fn largest(residuals: &[f64]) -> f64 {
+    residuals.iter().fold(0.0, |largest, residual| largest.max(residual.abs()))
+}
+
+/// The spline of a profile, or the complaint that there is none.
+pub(crate) fn fit(model: &Model, profile: &TableProfile, smoothing: &Smoothing) -> Result<Fit, ModelError> {
+    let angles: Vec<f64> = profile.rows.iter().map(|row| row.angle_deg.to_radians()).collect();
+    let lifts: Vec<f64> = profile.rows.iter().map(|row| row.lift).collect();
+    let half_step = profile.reading.half_step();
+    let mut features = features::of(smoothing, &angles, &lifts, half_step);
+    let layout = |features: &Features| {
+        let too_few = || model.reject("cam.dwells_deg", "leaves fewer than three rows outside of the dwells");
+        Layout::new(&angles, features).ok_or_else(too_few)
+    };
+    let weighed = |layout: &Layout| {
+        weight(model, profile, smoothing.tolerance, &|weight| layout.smoothed(&lifts, 10.0_f64.powf(weight)))
+    };
+    let mut laid = layout(&features)?;
+    let mut weight = weighed(&laid)?;
+    if (smoothing.corners_deg.is_none() || smoothing.are_near) && !features.corners.is_empty() {
+        features = polished(features, TAU / angles.len() as f64, |features| {
+            layout(features).ok()?.smoothed(&lifts, 10.0_f64.powf(weight)).map(|spline| spline.least)
+        });
+        laid = layout(&features)?;
+        weight = weighed(&laid)?;
+    }
+    let spline = laid.smoothed(&lifts, 10.0_f64.powf(weight)).ok_or_else(|| overflow(model, profile))?;
+    let noise = (spline.squares / (spline.moving - spline.freedom)).sqrt();
+    Ok(Fit { layout: laid, weight, noise, spline, features })
+}
+
+fn overflow(model: &Model, profile: &TableProfile) -> ModelError {
+    model.reject(profile.place(), "has lifts too large, or angles too close, for a spline near them")
+}
+
+/// Corners that were found, one by one put where the spline has the least of what it is the least of, within a gap.
+fn polished(mut features: Features, gap: f64, least: impl Fn(&Features) -> Option<f64>) -> Features {
+    /// Parts of a gap that a corner is moved by, at first, and how often they are halved.
+    const PARTS: f64 = 0.25;
+    const ROUNDS: i32 = 7;
+    for corner in 0..features.corners.len() {
+        let mut best = least(&features).unwrap_or(f64::INFINITY);
+        let mut step = PARTS * gap;
+        for _ in 0..ROUNDS {
+            for sign in [-1.0, 1.0] {
+                let moved = features.moved(corner, sign * step);
+                if let Some(found) = least(&moved).filter(|found| *found < best) {
+                    (features, best) = (moved, found);
+                    break;
+                }
+            }
+            step *= 0.5;
+        }
+    }
+    features
+}
+
+/// The logarithm of the weight that a tolerance asks for.
+fn weight(
+    model: &Model,
+    profile: &TableProfile,
+    tolerance: Tolerance,
+    at: &impl Fn(f64) -> Option<Smoothed>,
+) -> Result<f64, ModelError> {
+    let overflow = || overflow(model, profile);
+    match tolerance {
+        Tolerance::Auto => {
+            let cross_validated = cross_validated(at).ok_or_else(overflow)?;
+            // The smoother of the two.
+            Ok(match within(at, profile.reading.half_step()) {
+                Some(Kept::At(weight)) => cross_validated.min(weight),
+                Some(Kept::Always) => WEIGHTS[0],
+                Some(Kept::Never(_)) | None => cross_validated,
+            })
+        }
+        Tolerance::Weighted(weight) => Ok(weight),
+        Tolerance::Within(limit) => match within(at, limit).ok_or_else(overflow)? {
+            Kept::At(weight) => Ok(weight),
+            Kept::Always => {
+                let words = "is so large that nothing of the lift would be left: every row is as near to a circle";
+                Err(model.reject("cam.tolerance", words))
+            }
+            Kept::Never(least) => {
+                let (least, unit) = (profile.reading.in_model.told(least), &profile.reading.unit);
+                let words = format!(
+                    "cannot be kept: with corners and dwells as they are a row is {least:.3e} {unit} off, however closely the spline \
+                     follows"
+                );
+                Err(model.reject("cam.tolerance", words))
+            }
+        },
+    }
+}
+
+/// Where a limit is kept.
+enum Kept {
+    /// From this weight on, its logarithm.
+    At(f64),
+    /// With every weight.
+    Always,
+    /// With none: what is left with the largest.
+    Never(f64),
+}
+
+/// The least weight with which no row is farther than `limit`.
+fn within(at: &impl Fn(f64) -> Option<Smoothed>, limit: f64) -> Option<Kept> {
+    /// Halvings of the logarithm: the distance is then the limit to ten digits.
+    const HALVINGS: u32 = 40;
+    let distance = |weight: f64| at(weight).map(|spline| largest(&spline.residuals));
+    let [low, high] = WEIGHTS;
+    let least = distance(high)?;
+    if least > limit {
+        return Some(Kept::Never(least));
+    }
+    if distance(low)? <= limit {
+        return Some(Kept::Always);
+    }
+    let kept = |weight: f64| distance(weight).map(|distance| distance > limit).ok_or(());
+    let [weight, _] = halve([high, low], Width::Halvings(HALVINGS), kept).ok()?;
+    Some(Kept::At(weight))
+}
+
+/// The weight, its logarithm, of the least generalised cross-validation.
+fn cross_validated(at: &impl Fn(f64) -> Option<Smoothed>) -> Option<f64> {
+    /// From one weight that is tried to the next.
+    const STEP: f64 = 0.75;
+    /// The most that is taken from the rows, of them.
+    const MOST: f64 = 0.75;
+    /// Parts of the golden section: the logarithm is known to a hundredth then.
+    const SECTIONS: u32 = 10;
+    let score = |weight: f64| {
+        let spline = at(weight)?;
+        // Of what goes through the rows nothing is left to tell by.
+        if spline.freedom > MOST * spline.moving {
+            return Some(f64::INFINITY);
+        }
+        Some(spline.moving * spline.squares / (spline.moving - spline.freedom).powi(2))
+    };
+    let [low, high] = WEIGHTS;
+    let tries = ((high - low) / STEP) as i32;
+    let tried = (0..=tries).map(|index| low + STEP * f64::from(index));
+    let scored = tried.filter_map(|weight| Some((score(weight)?, weight))).filter(|(score, _)| score.is_finite());
+    let (_, best) = scored.min_by(|one, two| one.0.total_cmp(&two.0))?;
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let (mut from, mut to) = ((best - STEP).max(low), (best + STEP).min(high));
+    for _ in 0..SECTIONS {
+        let [one, two] = [to - golden * (to - from), from + golden * (to - from)];
+        if score(one)? < score(two)? { to = two } else { from = one }
+    }
+    Some(0.5 * (from + to))
+}

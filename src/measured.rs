@@ -1,0 +1,185 @@
+//! What the rows of a table tell of their own accuracy, and the cams that they may as well be of.
+//!
+//! The best guess at the cam is the smoothing spline. Tables of its lifts with the noise that the rows have, smoothed alike, are as
+//! likely as the table that was measured: what they differ by is how well anything is known that depends on the cam, and what they
+//! are off on the whole is what smoothing itself does.
+
+use serde::Serialize;
+
+use crate::cam::{Cam, Fit, fit};
+use crate::model::{Model, ModelError, Reading, Smoothing};
+use crate::tolerance;
+
+/// How well a measured cam is known.
+#[derive(Clone, Debug, Serialize)]
+pub struct Measured {
+    /// How the rows were understood.
+    pub reading: Reading,
+    /// The step of the decimal grid that all lifts lie on, m; none where there is none above the rounding of a double.
+    pub step_m: Option<f64>,
+    /// The standard deviation of the rows about a smooth motion, m, by generalised cross-validation.
+    pub noise_m: f64,
+    /// How far the cam is from a row at most, m.
+    pub largest_distance_m: f64,
+    /// Whether the rows have noise that moves what depends on the second derivative.
+    pub is_noisy: bool,
+    /// Whether it is a smoothing spline.
+    pub is_smoothed: bool,
+    /// Where the second derivative jumps, of a smoothing spline, degrees.
+    pub corners_deg: Vec<f64>,
+    /// Whether the corners were found in the rows, not given.
+    pub corners_are_found: bool,
+    /// Where the lift stays, of a smoothing spline, from and to, degrees.
+    pub dwells_deg: Vec<[f64; 2]>,
+    /// Whether the dwells were found in the rows, not given.
+    pub dwells_are_found: bool,
+    /// Its largest second derivative, m/rad^2.
+    pub largest_curvature: f64,
+    /// How far that may be off, m/rad^2.
+    pub curvature_error: f64,
+}
+
+impl Measured {
+    /// Whether rounding is all the noise that there is.
+    pub fn is_rounded(&self) -> bool {
+        /// Beyond which the noise is more than that, in standard deviations of the rounding.
+        const MORE: f64 = 1.5;
+        self.step_m.is_some_and(|step| self.noise_m <= MORE * step / 12.0_f64.sqrt())
+    }
+}
+
+/// A model with its cam.
+pub type LikelyCam = (Model, Cam);
+
+/// The best guess at a measured cam, and others that are as likely, as models.
+#[derive(Clone, Debug)]
+pub struct Likely {
+    /// What is known of the model's cam.
+    pub measured: Measured,
+    /// The model with the smoothing spline; none where the rows have no noise that a spline through them would follow.
+    pub best: Option<LikelyCam>,
+    /// The same with ten times its weight on the rows, of a cam with corners.
+    pub closer: Option<LikelyCam>,
+    /// Models of tables that might have been measured.
+    pub others: Vec<LikelyCam>,
+}
+
+/// Tables that might have been measured: the largest of so many deviations is near two standard deviations.
+const TABLES: u64 = 16;
+
+impl Likely {
+    /// Of the cam of a model; none where it is not of a table.
+    pub fn of(model: &Model) -> Result<Option<Self>, ModelError> {
+        let Some(profile) = model.table() else { return Ok(None) };
+        let own = profile.spline.smoothing();
+        let fitted = fit(model, profile, own.unwrap_or(&Smoothing::default()))?;
+        let half_step = profile.reading.half_step();
+        let noise = if fitted.noise.is_finite() { fitted.noise } else { 0.0 };
+        let lifts = fitted.lifts(profile);
+        let size = lifts.iter().fold(0.0_f64, |size, lift| size.max((lift - lifts[0]).abs()));
+        // Evenly spread, as rounding is.
+        let spread = half_step.max(3.0_f64.sqrt() * noise);
+        let is_noisy = spread > tolerance::NOISE_SEEN.value * size;
+        let (corners, are_found) = (fitted.corners_deg(), own.is_none_or(|own| own.corners_deg.is_none()));
+        let smoothed = |lifts: &[f64], weight: f64| {
+            let model = model.with_lifts(lifts, (&corners, are_found), &fitted.dwells_deg(), weight)?;
+            Cam::new(&model).map(|cam| (model, cam))
+        };
+        let own_cam = Cam::new(model)?;
+        let table = |seed: u64| {
+            let noisy = lifts.iter().zip(0..).map(|(lift, row)| lift + spread * even(seed, row)).collect::<Vec<f64>>();
+            smoothed(&noisy, fitted.weight)
+        };
+        let rows: Vec<f64> = profile.rows.iter().map(|row| row.lift).collect();
+        let has_corners = is_noisy && !corners.is_empty();
+        let closer = has_corners.then(|| smoothed(&rows, fitted.weight + 1.0)).transpose()?;
+        let best = match own {
+            _ if !is_noisy => None,
+            Some(_) => Some((model.clone(), own_cam.clone())),
+            None => Some(smoothed(&rows, fitted.weight)?),
+        };
+        let count = if is_noisy { TABLES } else { 0 };
+        let others = (0..count).map(table).collect::<Result<Vec<_>, _>>()?;
+        let measured =
+            measured((Reading::clone(&profile.reading), &own_cam), &fitted, (own, noise), (best.as_ref(), &others));
+        Ok(Some(Self { measured, best, closer, others }))
+    }
+
+    /// How far numbers that depend on the cam may be off: by how far they are from those of the best guess, by twice what they differ
+    /// by, at most, among those that are as likely, and by what corners do to them. `of` tells the numbers of a model, none of one that has none; where
+    /// more than a few have none, nothing is known.
+    pub fn error<const N: usize>(
+        &self,
+        numbers: [f64; N],
+        of: impl Fn(&Model, &Cam) -> Option<[f64; N]>,
+    ) -> Option<[f64; N]> {
+        /// How many of the tables may do without.
+        const WITHOUT: usize = 2;
+        let Some((best, cam)) = &self.best else { return Some([0.0; N]) };
+        let centre = of(best, cam)?;
+        // The third derivative is bent to 0 over a stretch at each corner that shrinks with the sixth root of the weight: ten times the
+        // weight takes a third of what that does, and of what it does to where the corner is found.
+        let closer = match &self.closer {
+            Some((model, cam)) => of(model, cam)?,
+            None => centre,
+        };
+        let all: Vec<[f64; N]> = self.others.iter().filter_map(|(model, cam)| of(model, cam)).collect();
+        (all.len() + WITHOUT >= self.others.len()).then(|| {
+            std::array::from_fn(|index| {
+                let apart = all.iter().fold(0.0_f64, |most, one| most.max((one[index] - centre[index]).abs()));
+                (centre[index] - numbers[index]).abs() + 2.0 * apart + 6.0 * (closer[index] - centre[index]).abs()
+            })
+        })
+    }
+}
+
+/// A number of [-1, 1] for a table and a row: SplitMix64 (Steele, Lea and Flood 2014), the same on every machine.
+fn even(table: u64, row: u64) -> f64 {
+    let mut bits = ((table << 32) + row + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    bits ^= bits >> 31;
+    (bits >> 11) as f64 / 2.0_f64.powi(52) - 1.0
+}
+
+fn measured(
+    (reading, own_cam): (Reading, &Cam),
+    fitted: &Fit,
+    (own, noise_m): (Option<&Smoothing>, f64),
+    (best, others): (Option<&LikelyCam>, &[LikelyCam]),
+) -> Measured {
+    /// Angles at which second derivatives are compared: four to a degree, and none at a row of whole degrees.
+    const ANGLES: u32 = 1439;
+    let curvatures = |cam: &Cam| -> Vec<f64> {
+        let angle = |part: u32| std::f64::consts::TAU * (f64::from(part) + 0.5) / f64::from(ANGLES);
+        (0..ANGLES).map(|part| cam.lift(angle(part)).curvature).collect()
+    };
+    let own_curvatures = curvatures(own_cam);
+    let mut curvature_error = 0.0_f64;
+    if let Some((_, best)) = best {
+        let centre = curvatures(best);
+        let mut apart = vec![0.0_f64; centre.len()];
+        for (_, other) in others {
+            for (most, (one, middle)) in apart.iter_mut().zip(curvatures(other).iter().zip(&centre)) {
+                *most = most.max((one - middle).abs());
+            }
+        }
+        for (apart, (middle, own)) in apart.iter().zip(centre.iter().zip(&own_curvatures)) {
+            curvature_error = curvature_error.max((middle - own).abs() + 2.0 * apart);
+        }
+    }
+    Measured {
+        step_m: reading.step.map(|step| reading.in_model.inside(step)),
+        reading,
+        noise_m,
+        largest_distance_m: if own.is_some() { fitted.distance() } else { 0.0 },
+        is_noisy: best.is_some(),
+        is_smoothed: own.is_some(),
+        corners_deg: if own.is_some() { fitted.corners_deg() } else { Vec::new() },
+        corners_are_found: own.is_some_and(|own| own.corners_deg.is_none()),
+        dwells_deg: if own.is_some() { fitted.dwells_deg() } else { Vec::new() },
+        dwells_are_found: own.is_some_and(|own| own.dwells_deg.is_none()),
+        largest_curvature: own_curvatures.into_iter().fold(0.0, |most, one| most.max(one.abs())),
+        curvature_error,
+    }
+}

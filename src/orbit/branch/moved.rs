@@ -1,0 +1,105 @@
+//! Where an event is in a machine that differs a little: its equations solved there, with the speed free.
+
+use std::f64::consts::TAU;
+
+use super::held::{Held, Pinned};
+use super::problem::{Problem, Units};
+use super::{BranchPoint, switch};
+use crate::cam::{Cam, apart, within_a_turn};
+use crate::model::Model;
+use crate::orbit::curve::Equations;
+use crate::orbit::{Course, Cycle, Family, Parameter};
+use crate::simulate::{Machine, angular_velocity};
+use crate::tolerance;
+
+/// An event of a machine, to be looked for in others.
+pub(crate) struct Event<'a> {
+    machine: &'a Machine,
+    rpm: f64,
+    cycle: Cycle,
+    held: Held,
+}
+
+impl<'a> Event<'a> {
+    /// Of a special point of a branch, with its machine; none where it is no event with equations of its own.
+    pub fn of_point(machine: &'a Machine, point: &BranchPoint) -> Option<Self> {
+        let Course::Impacts(cycle) = &point.orbit.course else { return None };
+        let (cycle, held) = switch::held(point.special?.kind, cycle, machine)?;
+        Some(Self { machine, rpm: point.rpm, cycle, held })
+    }
+
+    /// Of an impact on a corner, at an end of its segment: the last, or the first.
+    pub fn of_corner(machine: &'a Machine, rpm: f64, cycle: &Cycle, impact: usize, at_end: bool) -> Self {
+        Self { machine, rpm, cycle: cycle.clone(), held: Held::Corner(Pinned { impact, at_end }) }
+    }
+
+    /// The speed, rpm, at which it is in another machine; none where Newton's method finds none nearby.
+    pub fn moved(&self, model: &Model, cam: &Cam) -> Option<f64> {
+        /// Times that an impact may turn out to be on another segment.
+        const SEGMENTS: usize = 6;
+        let there = Machine::new(cam.clone(), &model.follower, angular_velocity(self.rpm));
+        let family = Family::of(model, &there, self.rpm, vec![Parameter::Speed]);
+        let (mut cycle, held) = renamed(&self.cycle, self.held, self.machine, &there)?;
+        let mut rpm = self.rpm;
+        for _ in 0..SEGMENTS {
+            let (found, speed) = solved(&family, &cycle, held, rpm)?;
+            let (named, _) = renamed(&found, held, &there, &there)?;
+            let is_there = named.impacts.iter().zip(&cycle.impacts).all(|(one, two)| one.segment == two.segment);
+            (cycle, rpm) = (named, speed);
+            if is_there {
+                return Some(rpm);
+            }
+        }
+        None
+    }
+}
+
+/// The cycle with the segments that its impacts are on in another machine's cam, and what is held of it there.
+fn renamed(cycle: &Cycle, held: Held, here: &Machine, there: &Machine) -> Option<(Cycle, Held)> {
+    let from = here.cam().segments();
+    let mut renamed = cycle.clone();
+    let mut held = held;
+    for (index, impact) in renamed.impacts.iter_mut().enumerate() {
+        match held {
+            Held::Corner(Pinned { impact: pinned, at_end }) if pinned == index => {
+                // At the start of the segment behind the same corner.
+                let segment = &from[impact.segment];
+                let corner = within_a_turn(if at_end { segment.end } else { segment.start });
+                let order = here.cam().corners().into_iter().find(|other| other.angle == corner)?.jump_order;
+                let alike = there.cam().corners().into_iter().filter(|other| other.jump_order == order);
+                let nearest = alike.min_by(|one, two| apart(one.angle, corner).total_cmp(&apart(two.angle, corner)));
+                impact.segment =
+                    nearest.filter(|one| apart(one.angle, corner) <= tolerance::NEIGHBOURING.value)?.segment;
+                if at_end && corner < 0.5 * (segment.start + segment.end) {
+                    (impact.cam_angle, impact.revolution) = (impact.cam_angle - TAU, impact.revolution + 1);
+                }
+                held = Held::Corner(Pinned { impact: pinned, at_end: false });
+            }
+            _ => {
+                let turns = (impact.cam_angle / TAU).floor();
+                impact.cam_angle = (impact.cam_angle - TAU * turns).clamp(0.0, TAU);
+                impact.revolution += turns as i64;
+                impact.segment = there.cam().segment_at(impact.cam_angle);
+            }
+        }
+    }
+    Some((renamed, held))
+}
+
+/// The cycle and the speed at which everything holds, on these segments.
+fn solved(family: &Family, cycle: &Cycle, held: Held, rpm: f64) -> Option<(Cycle, f64)> {
+    /// Steps of Newton's method; where it needs more, the event is elsewhere or gone.
+    const STEPS: usize = 20;
+    let machine = family.machine(&[rpm]).ok()?.0;
+    let problem = Problem::new(family, cycle, Units::of(cycle, &machine), &[rpm], Some(held));
+    let mut unknowns = problem.unknowns(cycle, &machine, &[rpm]);
+    for _ in 0..STEPS {
+        let (residual, jacobian) = problem.linear(&unknowns).ok()?;
+        let correction = jacobian.lu().solve(&-residual)?;
+        unknowns += &correction;
+        if correction.norm() <= tolerance::CYCLE_CLOSED.value {
+            return problem.unpack(&unknowns).ok().map(|(cycle, _, rpm)| (cycle, rpm));
+        }
+    }
+    None
+}

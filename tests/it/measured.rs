@@ -1,0 +1,359 @@
+//! Is a measured cam smoothed as it should be, are its corners and dwells found, and does what is told of it hold of the true cam?
+
+use approx::assert_abs_diff_eq;
+use corner_impact::cam::{Cam, Law, Side};
+use corner_impact::measured::Likely;
+use corner_impact::model::{Model, Study};
+use corner_impact::study::attractors::detachment_near;
+use corner_impact::study::locate::locate;
+use corner_impact::study::verify::{External, verify};
+use serde_json::{Value, json};
+
+const SPLINES: &str = include_str!("../../golden/derived/smoothing_spline.json");
+
+fn numbers(list: &Value) -> Vec<f64> {
+    list.as_array().unwrap().iter().map(|text| text.as_str().unwrap().parse().unwrap()).collect()
+}
+
+/// A machine with 220 N of preload, 30 N/mm and 0.11 kg, and lifts in mm.
+fn machine(cam: Value) -> Result<Model, String> {
+    let follower = json!({ "mass": 0.11, "damping": 0, "stiffness": 30000, "gravity": 0, "rest_position": -220.0 / 30.0,
+        "restitution": 0.3 });
+    Model::of_document("a machine", &json!({ "follower": follower, "cam": cam })).map_err(|error| error.to_string())
+}
+
+fn smoothing(rows: &[(f64, f64)], more: &Value) -> Value {
+    let rows: Vec<[f64; 2]> = rows.iter().map(|(angle, lift)| [*angle, *lift]).collect();
+    let mut cam = json!({ "law": "table", "spline": "smoothing", "rows": rows });
+    cam.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
+    cam
+}
+
+/// The splines of `derivations/smoothing_spline.py`, by B-splines and one dense system to 40 digits, with the largest distance
+/// from a row that each of them has.
+#[test]
+fn smoothing_splines_are_those_of_another_way() {
+    let document: Value = serde_json::from_str(SPLINES).unwrap();
+    let (angles, places) = (numbers(&document["angles_deg"]), numbers(&document["places_deg"]));
+    let splines = document["splines"].as_array().unwrap();
+    assert_eq!(splines.len(), 5);
+    for spline in splines {
+        let rows: Vec<(f64, f64)> = angles.iter().copied().zip(numbers(&spline["lifts"])).collect();
+        let corners = spline["corner"].as_u64().map(|row| angles[row as usize]);
+        let dwells =
+            spline["dwell"].as_array().map(|ends| [0, 1].map(|end| angles[ends[end].as_u64().unwrap() as usize]));
+        let distance: f64 = spline["distance"].as_str().unwrap().parse().unwrap();
+        // A step of 0.01 in the lifts would forbid the closest of them.
+        let rows: Vec<(f64, f64)> = rows.into_iter().map(|(angle, lift)| (angle, lift + 1e-14 * angle)).collect();
+        let more = json!({ "tolerance": distance, "corners_deg": corners.as_slice(), "dwells_deg": dwells.as_slice() });
+        let cam = Cam::new(&machine(smoothing(&rows, &more)).unwrap()).unwrap();
+        for (place, at) in places.iter().zip(spline["at"].as_array().unwrap()) {
+            let (found, at) = (cam.lift(place.to_radians()), numbers(at));
+            assert_abs_diff_eq!(found.value, at[0], epsilon = 1e-9);
+            assert_abs_diff_eq!(found.slope, at[1], epsilon = 1e-8);
+            assert_abs_diff_eq!(found.curvature, at[2], epsilon = 1e-7);
+        }
+        let orders: Vec<usize> =
+            cam.corners().iter().map(|corner| corner.jump_order).filter(|order| *order < 5).collect();
+        assert_eq!(orders, [vec![2; corners.iter().count()], vec![3; 2 * dwells.iter().count()]].concat());
+        assert_eq!(
+            cam.segments().iter().filter(|segment| matches!(segment.law, Law::Dwell(_))).count(),
+            dwells.iter().count()
+        );
+    }
+}
+
+/// A rise of 10 mm and its return, at rest for `low` degrees before and for `top` in between.
+fn program(motion: &str, span: f64, low: f64, top: f64) -> Value {
+    let mut segments = vec![
+        json!({ "motion": "dwell", "span_deg": low }),
+        json!({ "motion": motion, "span_deg": span, "rise": 10 }),
+        json!({ "motion": "dwell", "span_deg": top }),
+        json!({ "motion": motion, "span_deg": span, "rise": -10 }),
+        json!({ "motion": "dwell", "span_deg": 360.0 - low - top - 2.0 * span }),
+    ];
+    segments.retain(|segment| segment["span_deg"] != json!(0.0));
+    json!({ "law": "program", "base": 0, "segment": segments })
+}
+
+/// 360 rows of a cam, rounded to so many places.
+fn rounded(cam: &Cam, places: i32) -> Vec<(f64, f64)> {
+    let power = 10.0_f64.powi(places);
+    let row = |angle: u32| (f64::from(angle), (cam.lift(f64::from(angle).to_radians()).value * power).round() / power);
+    (0..360).map(row).collect()
+}
+
+/// Where the follower first leaves the cam, and how far that may be off.
+fn separation(cam: Value) -> (f64, f64) {
+    let model = machine(cam).unwrap();
+    let found = detachment_near(&model, &Cam::new(&model).unwrap(), 3285.0).unwrap();
+    let likely = Likely::of(&model).unwrap().unwrap();
+    let [error] = likely.error([found], |model, cam| detachment_near(model, cam, found).map(|rpm| [rpm])).unwrap();
+    (found, error)
+}
+
+/// Cams that all leave at 3285.37 rpm, each in three roundings: the smoothed ones leave there within what they say, the cubic
+/// splines within what is said of them, and the roundest of these by less than half of that speed.
+#[test]
+fn separation_is_known_to_within_what_is_said() {
+    for (motion, span, top) in [
+        ("cycloidal", 74.0201, 0.0),
+        ("poly345", 70.399, 40.3),
+        ("modified-trapezoid", 69.0684, 0.0),
+        ("harmonic", 63.689, 40.3),
+    ] {
+        let truth = machine(program(motion, span, 13.71, top)).unwrap();
+        let cam = Cam::new(&truth).unwrap();
+        let leaves = detachment_near(&truth, &cam, 3000.0).unwrap();
+        assert_abs_diff_eq!(leaves, 3285.37, epsilon = 0.02);
+        // A corner that the rounding hides is rounded off.
+        let more = if motion == "harmonic" { 2.0 } else { 1.0 };
+        for (places, most) in [(4, 0.01 * more), (3, 0.03 * more), (2, 0.09 * more)] {
+            let (found, error) = separation(smoothing(&rounded(&cam, places), &json!({})));
+            assert!((found - leaves).abs() <= error, "{motion} to {places} places: {found} ± {error}");
+            assert!(error <= most * leaves, "{motion} to {places} places: ± {error}");
+        }
+        let mut through = smoothing(&rounded(&cam, 3), &json!({}));
+        through["spline"] = json!("cubic");
+        let (found, error) = separation(through.clone());
+        assert!(leaves - found > 0.01 * leaves && leaves - found <= error, "{motion}, cubic: {found} ± {error}");
+        through["rows"] = smoothing(&rounded(&cam, 2), &json!({}))["rows"].clone();
+        let model = machine(through).unwrap();
+        let found = detachment_near(&model, &Cam::new(&model).unwrap(), 3285.0).unwrap();
+        assert!(found < 0.6 * leaves, "{motion}, cubic: {found}");
+    }
+}
+
+#[test]
+fn corners_and_dwells_are_found() {
+    let measured = |motion: &str, span: f64, places: i32, more: &Value| {
+        let cam = Cam::new(&machine(program(motion, span, 13.71, 40.3)).unwrap()).unwrap();
+        let model = machine(smoothing(&rounded(&cam, places), more)).unwrap();
+        (Likely::of(&model).unwrap().unwrap().measured, Cam::new(&model).unwrap())
+    };
+    // Harmonic motion begins and ends with an acceleration.
+    let (told, cam) = measured("harmonic", 63.689, 6, &json!({}));
+    let corners = [13.71, 77.399, 117.699, 181.388];
+    assert_eq!(told.corners_deg.len(), 4);
+    for (found, corner) in told.corners_deg.iter().zip(corners) {
+        assert_abs_diff_eq!(*found, corner, epsilon = 0.01);
+    }
+    assert_eq!(told.dwells_deg.len(), 2);
+    assert!(told.corners_are_found && told.dwells_are_found && told.is_noisy && told.is_smoothed);
+    let orders = cam.corners();
+    let jumps: Vec<f64> = orders.iter().filter(|corner| corner.jump_order == 2).map(|corner| corner.jump).collect();
+    assert_eq!(jumps.len(), 4);
+    for (jump, sign) in jumps.iter().zip([1.0, 1.0, -1.0, -1.0]) {
+        // pi^2/2 of the rise over the span squared.
+        assert_abs_diff_eq!(*jump, sign * 39.94, epsilon = 0.2);
+    }
+    // Others do not, and their dwells end inside of where they do, the later the coarser the lifts.
+    for motion in ["cycloidal", "poly345", "modified-sine", "modified-trapezoid", "poly4567"] {
+        for places in [4, 3, 2] {
+            let (told, _) = measured(motion, 70.0, places, &json!({}));
+            assert!(told.corners_deg.is_empty(), "{motion}, {places}: {:?}", told.corners_deg);
+            let dwells = [[83.71, 124.01], [194.01, 373.71]];
+            assert_eq!(told.dwells_deg.len(), 2, "{motion}, {places}");
+            for (found, dwell) in told.dwells_deg.iter().zip(dwells) {
+                let late = [found[0] - dwell[0], dwell[1] - found[1]];
+                assert!(late.iter().all(|late| (-6.0..4.0).contains(late)), "{motion}, {places}: {found:?}");
+            }
+        }
+    }
+    // A slow cam's top is no dwell.
+    let rows: Vec<(f64, f64)> =
+        (0..360).map(|k| (f64::from(k), (500.0 * (1.0 - f64::from(k).to_radians().cos())).round() / 100.0)).collect();
+    let told = Likely::of(&machine(smoothing(&rows, &json!({}))).unwrap()).unwrap().unwrap().measured;
+    assert!(told.corners_deg.is_empty() && told.dwells_deg.is_empty(), "{told:?}");
+    assert_eq!((told.step_m, told.is_rounded()), (Some(0.01), true));
+    // What is given is taken, and nothing else.
+    let (told, cam) =
+        measured("harmonic", 63.689, 3, &json!({ "corners_deg": [77.4, -242.3], "dwells_deg": [[182, 13]] }));
+    assert!(!told.corners_are_found && !told.dwells_are_found);
+    assert_abs_diff_eq!(told.corners_deg.as_slice(), [77.4, 117.7].as_slice(), epsilon = 1e-9);
+    assert_abs_diff_eq!(told.dwells_deg[0].as_slice(), [182.0, 373.0].as_slice(), epsilon = 1e-9);
+    let orders: Vec<usize> = cam.corners().iter().map(|corner| corner.jump_order).filter(|order| *order < 5).collect();
+    assert_eq!(orders, [3, 2, 2, 3]);
+}
+
+/// The tolerance is the largest distance from a row, and what cannot be kept is told.
+#[test]
+fn tolerances() {
+    let cam = Cam::new(&machine(program("cycloidal", 74.0201, 100.0, 0.0)).unwrap()).unwrap();
+    let rows = rounded(&cam, 3);
+    let refused = |more: Value| {
+        let model = machine(smoothing(&rows, &more));
+        let refused = model.and_then(|model| Cam::new(&model).map_err(|error| error.to_string()).map(|_| ()));
+        refused.unwrap_err()
+    };
+    for tolerance in [0.0005, 0.002, 0.1] {
+        let model = machine(smoothing(&rows, &json!({ "tolerance": tolerance }))).unwrap();
+        let cam = Cam::new(&model).unwrap();
+        let distance = |(angle, lift): &(f64, f64)| (cam.lift(angle.to_radians()).value - lift).abs();
+        assert_abs_diff_eq!(rows.iter().map(distance).fold(0.0, f64::max), tolerance, epsilon = 1e-6 * tolerance);
+    }
+    for (more, says) in [
+        (json!({ "tolerance": 0.0004 }), "cam.tolerance = 0.0004: must be at least 0.0005, half of the step 0.001"),
+        (json!({ "tolerance": 0 }), "must be a finite number above 0"),
+        (json!({ "tolerance": "none" }), "must be one of: \"auto\""),
+        (json!({ "tolerance": 20 }), "is so large that nothing of the lift would be left"),
+        (
+            json!({ "tolerance": 0.001, "dwells_deg": [[60, 110]] }),
+            "cannot be kept: with corners and dwells as they are a row is",
+        ),
+        (json!({ "dwells_deg": [[60, 110], [100, 120]] }), "has dwells that meet"),
+        (json!({ "dwells_deg": [[60, 60]] }), "it must have an end"),
+        (json!({ "dwells_deg": [[1, 359]] }), "leaves fewer than three rows"),
+        (
+            json!({ "dwells_deg": [[10, 50]], "corners_deg": [20] }),
+            "cam.corners_deg has 20, which is inside of a dwell",
+        ),
+    ] {
+        let refused = refused(more.clone());
+        assert!(refused.contains(says), "{more}: {refused}");
+    }
+    let few = machine(smoothing(&rows[..360].iter().step_by(40).copied().collect::<Vec<_>>(), &json!({}))).unwrap_err();
+    assert!(few.contains("9 different angles; 12 to 1000000 are needed"), "{few}");
+}
+
+/// The same rows as gauges, spreadsheets and programs write them are the same cam, and how they were understood is told.
+#[test]
+fn real_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let lift =
+        |angle: f64| (1000.0 * (5.0 - 4.0 * angle.to_radians().cos() + angle.to_radians().sin())).round() / 1000.0;
+    let rows: Vec<(f64, f64)> = (0..72).map(|k| 5.0 * f64::from(k)).map(|angle| (angle, lift(angle))).collect();
+    let read = |text: &str, more: &str, length: &str| {
+        std::fs::write(folder.path().join("lift.csv"), text).unwrap();
+        let file = folder.path().join("model.toml");
+        let text = format!(
+            "[units]\nlength = \"{length}\"\n[follower]\nmass = 1\ndamping = 0\nstiffness = 1\ngravity = 0\nrest_position = 0\n\
+             restitution = 1\n[cam]\nlaw = \"table\"\nfile = \"lift.csv\"\nspline = \"cubic\"\n{more}"
+        );
+        std::fs::write(&file, text).unwrap();
+        let model = Model::read(&file).map_err(|error| error.to_string())?;
+        let reading = Likely::of(&model).unwrap().unwrap().measured.reading;
+        Ok::<_, String>((Cam::new(&model).unwrap(), serde_json::to_value(reading).unwrap()))
+    };
+    let table = |from: usize, header: &str, parted: &str, write: &dyn Fn(f64, f64) -> [String; 2]| {
+        let turned = rows.iter().cycle().skip(from).take(rows.len());
+        let lines: Vec<String> = turned.map(|(angle, lift)| write(*angle, *lift).join(parted) + "\n").collect();
+        format!("{header}{}", lines.concat())
+    };
+    let plain = |angle: f64, lift: f64| [format!("{angle}"), format!("{lift}")];
+    let comma = |angle: f64, lift: f64| plain(angle, lift).map(|number| number.replace('.', ","));
+    let back = |angle: f64, lift: f64| plain(if angle >= 180.0 { angle - 360.0 } else { angle }, lift);
+    let rad = |angle: f64, lift: f64| [format!("{:.6}", angle.to_radians()), format!("{lift}")];
+    let (cam, told) = read(&table(0, "angle_deg,lift\n", ",", &plain), "", "mm").unwrap();
+    let expected = json!({ "unit": "mm", "angle_unit": "deg", "separator": "comma", "decimal_comma": false, "comments": 0,
+        "header": "angle_deg,lift", "rows": 72, "first_deg": 0.0, "repeats_first": false, "step": 0.001 });
+    assert_eq!(told, expected);
+    let cases: [(&str, String, &str, &str, Value); 10] = [
+        ("headless", table(0, "", ",", &plain), "", "mm", json!({ "header": null })),
+        (
+            "semicolons",
+            table(0, "angle;lift\n", ";", &comma),
+            "",
+            "mm",
+            json!({ "separator": "semicolon", "decimal_comma": true }),
+        ),
+        ("tabs", table(0, "theta\tlift\n", "\t", &plain), "", "mm", json!({ "separator": "tab" })),
+        (
+            "blanks",
+            table(0, "phi [°]  hub [mm]\n", "  ", &comma),
+            "",
+            "mm",
+            json!({ "separator": "blanks", "decimal_comma": true }),
+        ),
+        ("comments", table(0, "# gauge\n% 2\n\nangle,lift // x\n", " , ", &plain), "", "mm", json!({ "comments": 3 })),
+        ("repeated", table(0, "angle,lift\n", ",", &plain) + "360,1.000\n", "", "mm", json!({ "repeats_first": true })),
+        ("from -180", table(36, "angle,lift\n", ",", &back), "", "mm", json!({ "first_deg": -180.0 })),
+        ("from 200", table(40, "angle,lift\n", ",", &plain), "", "mm", json!({ "first_deg": 200.0 })),
+        ("in metres", table(0, "angle,lift_mm\n", ",", &plain), "", "m", json!({ "unit": "mm" })),
+        ("as said", table(0, "angle,lift\n", ",", &plain), "unit = \"mm\"\n", "um", json!({ "unit": "mm" })),
+    ];
+    for (name, text, more, length, says) in cases {
+        let (found, told) = read(&text, more, length).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let size = match length {
+            "m" => 1e-3,
+            "um" => 1e3,
+            _ => 1.0,
+        };
+        for k in 0..100 {
+            let angle = 0.0628 * f64::from(k);
+            assert_abs_diff_eq!(found.lift(angle).value, size * cam.lift(angle).value, epsilon = 1e-12 * size);
+        }
+        for (field, value) in says.as_object().unwrap() {
+            assert_eq!(&told[field], value, "{name}: {field}");
+        }
+    }
+    // Radians to six digits, the last row a turn after the first but for what they leave out.
+    let radians = table(0, "theta [rad],lift\n", ",", &rad) + "6.283185,1.0\n";
+    let (found, told) = read(&radians, "angle_unit = \"rad\"\n", "mm").unwrap();
+    assert_eq!((&told["angle_unit"], &told["repeats_first"]), (&json!("rad"), &json!(true)));
+    assert_abs_diff_eq!(found.lift(1.0).value, cam.lift(1.0).value, epsilon = 1e-5);
+    for (text, more, says) in [
+        (
+            radians.clone(),
+            "angle_unit = \"deg\"\n",
+            "cam.angle_unit = \"deg\": is not what the header of the table says: rad",
+        ),
+        (table(0, "angle,lift in mm\n", ",", &plain), "unit = \"m\"\n", "is not what the header of the table says: mm"),
+        (table(0, "", ",", &rad), "", "did you mean angle_unit = \"rad\" in [cam]?"),
+        (
+            table(0, "", ",", &plain).lines().take(37).collect::<Vec<_>>().join("\n"),
+            "",
+            "the rows cover 180 degrees, and a whole turn",
+        ),
+        (table(0, "", ";", &comma) + "\n355.5;1.5", "", "must have one kind of decimals"),
+        (table(0, "", ",", &plain).replace("\n10,", "\n5,"), "", "repeats the angle of the row before"),
+        (table(0, "", ",", &plain).replace("\n10,", "\n1,"), "", "angles must rise"),
+        (table(0, "", ",", &plain).replace("\n10,", "\n10,nan,"), "", ":3: lift = nan"),
+        (table(0, "", ",", &plain) + "360,1.5\n", "", "must be 1, the lift at 0 on line 1"),
+    ] {
+        let refused = read(&text, more, "mm").unwrap_err();
+        assert!(refused.contains(says), "{says}: {refused}");
+    }
+}
+
+/// The paper's cam measured to a micrometre, its corners found: the corner impact and its map are the paper's to within what is said.
+#[test]
+fn a_measured_corner_impact() {
+    let paper = crate::common::osorio();
+    let row =
+        |k: u32| [f64::from(k), (crate::common::cam(&paper).lift(f64::from(k).to_radians()).value * 1e6).round() / 1e6];
+    let rows: Vec<[f64; 2]> = (0..360).map(row).collect();
+    let follower = serde_json::to_value(paper.follower).unwrap();
+    let cam = json!({ "law": "table", "spline": "smoothing", "rows": rows });
+    let document = json!({ "follower": follower, "cam": cam, "study": { "rpm_min": 600, "rpm_max": 760 } });
+    let model = Model::of_document("the paper's cam", &document).unwrap();
+    let found = verify(&model, External::LeftOut).unwrap();
+    assert!(found.agrees);
+    let truth = verify(&paper, External::LeftOut).unwrap();
+    let open = found.measured.as_ref().unwrap();
+    let (speed, map) = open.error.unwrap();
+    assert!(
+        (found.at.speed_rpm() - truth.at.speed_rpm()).abs() <= speed && speed < 3.0,
+        "{} ± {speed}",
+        found.at.speed_rpm()
+    );
+    for side in [Side::Minus, Side::Plus] {
+        let entries = found.map.of(side).entries().into_iter().zip(truth.map.of(side).entries());
+        for ((found, truth), error) in entries.zip(map.of(side).entries()) {
+            assert!(
+                (found - truth).abs() <= error && error <= 0.3 * truth.abs(),
+                "{side}: {found} ± {error}, not {truth}"
+            );
+        }
+    }
+    let document = serde_json::to_value(&found).unwrap();
+    assert_eq!(document["uncertainty"]["speed_rpm"], json!(speed));
+    assert!(
+        document["uncertainty"]["minus"]["A"][1][0].is_number()
+            && document["uncertainty"]["measured"]["step_m"] == json!(1e-6)
+    );
+    let located = locate(&model, Study { rpm_min: 600.0, rpm_max: 760.0 }, 1).unwrap();
+    let here = located.found.iter().find(|one| one.at.corner.angle == found.at.corner.angle).unwrap();
+    let error = here.speed_error.unwrap();
+    assert!((error - speed).abs() < 0.05 * speed, "{error}, not {speed}");
+}
