@@ -60,8 +60,10 @@ impl Law {
 
     /// The model file; `verify` has something to look for where the cam has corners of order 2.
     fn template(self) -> String {
+        // A measured cam comes with a follower of its size.
+        let follower = if self == Self::Table { "" } else { FOLLOWER };
         let study = if matches!(self, Self::Arcs | Self::Program | Self::Polynomial) { STUDY } else { "" };
-        let text = [FOLLOWER, self.cam(), study].concat();
+        let text = [follower, self.cam(), study].concat();
         text.trim_end().to_owned() + "\n"
     }
 }

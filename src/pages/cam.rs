@@ -48,9 +48,8 @@ pub(crate) fn lift(sheet: &CamSheet) -> Words {
 
 /// How the table was understood, how well the cam is known, and what a smoothing spline has.
 fn measured(measured: &Measured) -> Vec<Block> {
-    let told = |length: f64| {
-        words![(measured.reading.in_model.told(length), Digits::Significant(2)), " ", &measured.reading.unit]
-    };
+    let told =
+        |length: f64| words![(measured.reading.in_model.told(length), Digits::Aligned(2)), " ", &measured.reading.unit];
     let mut blocks = vec![Block::paragraph(format!("table: {}", words::reading(&measured.reading)))];
     let accuracy = match measured.step_m {
         Some(_) => words::accuracy(measured),

@@ -1,5 +1,6 @@
 //! The page of `design`: the answer in sentences first, then speeds, limits and what must be changed.
 
+use crate::pages::speeds::measured_speed;
 use crate::show::Paged;
 use crate::show::block::{Block, Column, Mark, Span, Table, Words, words};
 use crate::show::digits::Digits;
@@ -35,13 +36,22 @@ impl Paged for Design {
 pub(crate) fn separation(found: &Design) -> Words {
     let degrees = |angle: f64| (angle.to_degrees(), Digits::Fixed(3));
     match found.separation {
-        Separation::At { rpm, cam_angle, .. } => words![
-            "The follower leaves the cam first at ",
-            (rpm, Digits::Fixed(6)),
-            " rpm, at ",
-            degrees(cam_angle),
-            " deg (computed from the contact force)."
-        ],
+        Separation::At { rpm, error, cam_angle } => match found.measured.as_ref().filter(|cam| cam.is_noisy) {
+            None => words![
+                "The follower leaves the cam first at ",
+                (rpm, Digits::Fixed(6)),
+                " rpm, at ",
+                degrees(cam_angle),
+                " deg (computed from the contact force)."
+            ],
+            Some(cam) => words![
+                "The follower leaves the cam at ",
+                degrees(cam_angle),
+                " deg first (computed from the contact force), at ",
+                measured_speed(rpm, Digits::Fixed(6), error.is_finite().then_some(error), Some(cam)),
+                "."
+            ],
+        },
         Separation::NotPressed { cam_angle } => {
             words!["The follower leaves the cam at every speed: nothing presses it on at ", degrees(cam_angle), " deg."]
         }

@@ -295,7 +295,7 @@ pub(crate) fn accuracy(measured: &Measured) -> String {
     match reading.step.filter(|_| measured.is_rounded()) {
         Some(step) => format!("lift rounded to {step} {unit}"),
         None => {
-            format!("lift measured to {} {unit}", Digits::Significant(2).text(reading.in_model.told(measured.noise_m)))
+            format!("lift measured to {} {unit}", Digits::Aligned(2).text(reading.in_model.told(measured.noise_m)))
         }
     }
 }

@@ -41,7 +41,6 @@ mod memory;
 mod model_file;
 mod orbit_closed_forms;
 mod orbit_commands;
-mod outside;
 mod page;
 mod physics;
 mod planted;

@@ -4,8 +4,10 @@ use approx::assert_abs_diff_eq;
 use corner_impact::cam::{Cam, Law, Side};
 use corner_impact::measured::Likely;
 use corner_impact::model::{Model, Study};
-use corner_impact::study::attractors::detachment_near;
+use corner_impact::progress::Unwatched;
+use corner_impact::study::attractors::{Change, Resolution, Step, detachment_near};
 use corner_impact::study::locate::locate;
+use corner_impact::study::speeds::speeds;
 use corner_impact::study::verify::{External, verify};
 use serde_json::{Value, json};
 
@@ -355,5 +357,47 @@ fn a_measured_corner_impact() {
     let located = locate(&model, Study { rpm_min: 600.0, rpm_max: 760.0 }, 1).unwrap();
     let here = located.found.iter().find(|one| one.at.corner.angle == found.at.corner.angle).unwrap();
     let error = here.speed_error.unwrap();
+    // The events of the paper's machine, to within what is said.
+    let resolution = Resolution { step: Step::at_most(20.0), starts: 8 };
+    let survey = speeds(&model, [665.0, 755.0], resolution, &Unwatched).unwrap();
+    let ends: Vec<&Change> = survey.attractors.iter().flat_map(|one| one.birth.iter().chain(&one.death)).collect();
+    for (name, rpm) in [("corner-impact", 673.234_445), ("flip", 739.319_780)] {
+        let event = ends.iter().find(|end| end.cause.name() == name).unwrap();
+        let open = event.error.unwrap();
+        assert!((event.rpm - rpm).abs() <= open && open < 2.0, "{name}: {} ± {open}", event.rpm);
+    }
     assert!((error - speed).abs() < 0.05 * speed, "{error}, not {speed}");
+}
+
+/// The measured machine that `new` writes: what is told of its cam, and ± on what depends on it.
+#[test]
+fn a_new_measured_machine() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |words: &[&str]| {
+        let output = crate::common::program(words).current_dir(folder.path()).output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{words:?}: {}", String::from_utf8_lossy(&output.stderr));
+        crate::common::text(output.stdout).split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    run(&["new", "valve.toml", "--law", "table"]);
+    let page = run(&["cam", "valve.toml"]);
+    for says in [
+        "table: 180 rows, angles in deg and lifts in mm, columns parted by commas; the header is \"angle [deg],lift [mm]\"; 1 comment",
+        "accuracy: lift rounded to 0.001 mm; about a smooth motion the rows spread by 0.000",
+        "corners found: none; dwells found: 19",
+    ] {
+        assert!(page.contains(says), "no \"{says}\" in: {page}");
+    }
+    let page = run(&["design", "valve.toml", "--speeds", "3"]);
+    assert!(page.contains(" ± ") && page.contains(" rpm: lift rounded to 0.001 mm."), "{page}");
+    let speeds = ["speeds", "valve.toml", "--rpm", "2700:4500", "--speeds", "10", "--starts", "8"];
+    let page = run(&speeds);
+    assert!(page.contains("leaves the cam first at 29") && page.contains("rpm: lift rounded to 0.001 mm"), "{page}");
+    assert!(page.contains("± is what the cam leaves open, lift rounded to 0.001 mm"), "{page}");
+    let found: Value = serde_json::from_str(&run(&[&speeds[..], &["--json"]].concat())).unwrap();
+    let error = found["detachment_error_rpm"].as_f64().unwrap();
+    assert!(error > 1.0 && error < 0.03 * found["detachment_rpm"].as_f64().unwrap(), "{error}");
+    let ends = found["attractors"].as_array().unwrap().iter().flat_map(|one| [&one["birth"], &one["death"]]);
+    let located: Vec<&Value> = ends.filter(|end| end["located"] == json!(true)).collect();
+    let known = located.iter().filter(|end| end["error_rpm"].as_f64().is_some_and(|error| error > 0.0)).count();
+    assert!(known >= 2 && 3 * known >= 2 * located.len(), "{known} of {}", located.len());
 }

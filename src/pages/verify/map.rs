@@ -124,7 +124,7 @@ fn known_to(route: &Route) -> Option<[Block; 2]> {
 fn errors(error: &CornerMap) -> Table {
     const NAMES: [&str; 6] = ["A11", "A12", "A21", "A22", "B1", "B2"];
     let mut columns = vec![Column::left("side", 2, 0)];
-    columns.extend(NAMES.map(|name| Column::right(name, 0)));
+    columns.extend(NAMES.map(|name| Column::right(name, 10)));
     let mut table = Table::new("Errors of the entries", columns);
     for side in [Side::Minus, Side::Plus] {
         let sizes = error.of(side).entries().map(|value| words![(value, Digits::Size)]);

@@ -11,6 +11,7 @@ use serde::Serialize;
 use super::{ModelLabel, StudyError, machine};
 use crate::cam::{Cam, Least};
 use crate::known::Known;
+use crate::measured::{Likely, Measured};
 use crate::model::{CORNER_ROUNDING, Model, Units};
 use crate::progress::Watch;
 use contact::{Contact, Separation};
@@ -24,8 +25,10 @@ pub struct Design {
     pub model: ModelLabel,
     /// What its numbers are told in.
     pub units: Units,
-    /// Where the follower first leaves the cam.
+    /// Where the follower first leaves the cam; its error has what a measured cam leaves open.
     pub separation: Separation,
+    /// How well the cam is known, if it is measured.
+    pub measured: Option<Measured>,
     /// The least force at each speed, in the unit inside.
     pub forces: Vec<ForceAt>,
     /// The force round the cam at the one speed that is asked for.
@@ -88,6 +91,7 @@ document!(Design as it {
     model: it.model,
     separation: it.separated(),
     separates: it.separates(),
+    measured if_any: it.measured,
     contact_force: it.forces,
     force_round_the_cam: it.told_round(),
     loads: it.loads,
@@ -182,6 +186,17 @@ struct RoundEntry {
     force_n: f64,
 }
 
+/// A separation with what a measured cam leaves open of its speed; not a number where that is not known.
+fn known(separation: Separation, likely: Option<&Likely>) -> Separation {
+    let Some(likely) = likely.filter(|likely| likely.best.is_some()) else { return separation };
+    let Separation::At { rpm, error, cam_angle } = separation else { return separation };
+    let of = |model: &Model, cam: &Cam| match Contact::new(cam, model.follower).separation() {
+        Separation::At { rpm, .. } => Some([rpm]),
+        _ => None,
+    };
+    Separation::At { rpm, error: error + likely.error([rpm], of).map_or(f64::NAN, |[open]| open), cam_angle }
+}
+
 /// Answers what is asked of a model; `watch` is told how far the runs are.
 pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design, StudyError> {
     /// Moments of the force round the cam, beside the ends of segments.
@@ -190,7 +205,8 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
     const USUAL: [f64; 2] = [0.5, 1.5];
     let cam = Cam::new(model)?;
     let contact = Contact::new(&cam, model.follower);
-    let separation = contact.separation();
+    let likely = Likely::of(model)?;
+    let separation = known(contact.separation(), likely.as_ref());
     let range = asked.rpm.or(match separation {
         Separation::At { rpm, .. } => Some(USUAL.map(|part| part * rpm)),
         _ => model.study.map(|study| [study.rpm_min, study.rpm_max]),
@@ -257,6 +273,7 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
         model: label,
         units,
         separation,
+        measured: likely.map(|likely| likely.measured),
         forces,
         round,
         loads,
