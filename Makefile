@@ -21,9 +21,12 @@ help: ## list the targets
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 20
 	@echo "  MODEL=path.toml     the model that verify and report take (now $(MODEL))"
 
-verify: $(VENV) ## find the corner impact of MODEL, compute its map by every route, compare
+# Without damping and gravity a mistake in either would not show.
+SECOND_MODEL := models/damped-heavy.toml
+verify: $(VENV) ## find the corner impact of MODEL, compute its map by every route, compare; and of a damped, heavy follower
 	$(CARGO) build $(RELEASE) --quiet
 	@target/release/corner-impact verify $(MODEL)
+	@page=$$(target/release/corner-impact verify $(SECOND_MODEL)) || { echo "$$page"; exit 1; }; echo "$$page" | tail -4
 
 report: $(VENV) ## write all that is found about MODEL as one HTML page in this folder, NAME-report.html, and print its name
 	$(CARGO) build $(RELEASE) --quiet

@@ -18,6 +18,7 @@ from pathlib import Path
 
 from mpmath import mp, mpf
 
+import motions
 from arithmetic import evaluate, exact, flow, later, responses, text
 
 DERIVED = Path(__file__).resolve().parent.parent / "golden" / "derived" / "corner_map.json"
@@ -119,12 +120,34 @@ def arcs(cam):
     return laws + [(turn - end, falling[0]), (turn - meeting, falling[1]), (turn - start, Dwell(base))]
 
 
+def program(cam):
+    """Standard motions: [(angle where each piece starts, law)]."""
+    turn = mp.pi / 180
+    each = [(part.get("motion"), number(part, "cam.segment", "span_deg") * turn, number(part, "cam.segment", "rise"))
+            for part in cam.get("segment", [])]
+    return motions.program(number(cam, "cam", "base"), each)
+
+
+def polynomial(cam):
+    """Polynomials: [(angle where each starts, law)]."""
+    each = [(number(part, "cam.segment", "start_deg") * mp.pi / 180, [exact(power) for power in part["coefficients"]])
+            for part in cam.get("segment", [])]
+    return motions.polynomials(each)
+
+
+LAWS = {"arcs": arcs, "program": program, "polynomial": polynomial}
+# A model's numbers are doubles, which meet where two segments do but for their rounding.
+SAME = mpf(10) ** -9
+
+
 def corners(laws):
-    """Where c'' jumps: (angle, (c, c', c'') before, (c, c', c'') after), derivatives by angle."""
-    for (_, before), (angle, after) in zip(laws, laws[1:]):
-        left, right = before.lift(angle), after.lift(angle)
-        if abs(left[2] - right[2]) > mpf(10) ** -30 * (abs(left[2]) + abs(right[2]) + left[0]):
-            yield angle, left, right
+    """Where c'' jumps and c' does not: (angle, (c, c', c'') before, (c, c', c'') after), derivatives by angle."""
+    ends = [angle for angle, _ in laws[1:]] + [2 * mp.pi]
+    for (_, before), angle, (starts, after) in zip(laws, ends, laws[1:] + laws[:1]):
+        left, right = before.lift(angle), after.lift(starts)
+        size = abs(left[0]) + abs(left[1]) + abs(left[2]) + abs(right[2])
+        if abs(left[2] - right[2]) > SAME * size and abs(left[1] - right[1]) <= SAME * size:
+            yield starts, left, right
 
 
 class Follower:
@@ -239,11 +262,11 @@ def locate(document):
     """The slowest corner impact of the model."""
     follower = Follower(document)
     cam = section(document, "cam")
-    if cam.get("law") != "arcs":
-        raise Refused(f"cam.law: this route knows \"arcs\", not {cam.get('law')!r}")
+    if cam.get("law") not in LAWS:
+        raise Refused(f"cam.law: this route knows {', '.join(LAWS)}, not {cam.get('law')!r}")
     if cam.get("corner_rounding_deg", 0) != 0:
         raise Refused("cam.corner_rounding_deg: this route knows sharp corners only")
-    laws = arcs(cam)
+    laws = LAWS[cam["law"]](cam)
     slowest_rpm, fastest_rpm = numbers(document, "study", ("rpm_min", "rpm_max"))
     if not 0 < slowest_rpm < fastest_rpm:
         raise Refused("study: needs 0 < rpm_min < rpm_max")

@@ -17,7 +17,7 @@ use tempfile::TempDir;
 use crate::stop;
 
 /// The scripts, with the modules that they import and the file that they read, by their places in the project.
-const FILES: [(&str, &str); 21] = [
+const FILES: [(&str, &str); 22] = [
     ("derivations/arithmetic.py", include_str!("../derivations/arithmetic.py")),
     ("derivations/balls/__init__.py", include_str!("../derivations/balls/__init__.py")),
     ("derivations/balls/branches.py", include_str!("../derivations/balls/branches.py")),
@@ -37,6 +37,7 @@ const FILES: [(&str, &str); 21] = [
     ("derivations/balls/verdict.py", include_str!("../derivations/balls/verdict.py")),
     ("derivations/certify.py", include_str!("../derivations/certify.py")),
     ("derivations/evaluate.py", include_str!("../derivations/evaluate.py")),
+    ("derivations/motions.py", include_str!("../derivations/motions.py")),
     ("derivations/simulate_scipy.py", include_str!("../derivations/simulate_scipy.py")),
     ("golden/derived/corner_map.json", include_str!("../golden/derived/corner_map.json")),
 ];

@@ -32,9 +32,9 @@ pub struct Outside {
     pub period: f64,
 }
 
-/// Whether they know the cam's law: both are written for the paper's circles.
+/// Whether they know the cam's law: those that can have a corner of order 2, unless it is rounded.
 pub fn know(model: &Model) -> bool {
-    matches!(model.cam, CamProfile::Arcs(_))
+    matches!(model.cam, CamProfile::Arcs(_) | CamProfile::Program(_) | CamProfile::Polynomial(_))
 }
 
 /// Runs one of them on a model whose study range is `study`.

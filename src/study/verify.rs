@@ -288,7 +288,9 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
     for (program, answer) in outside {
         watch.at(&format!("the map by {}, in Python", program.name), 0, 0);
         match answer.map(JoinHandle::join) {
-            None if external == External::Run => log.leave_out(program.name, "knows cams of arcs only"),
+            None if external == External::Run => {
+                log.leave_out(program.name, "knows cams of arcs, programs and polynomials with sharp corners only")
+            }
             None => log.leave_out(program.name, "left out by --no-external"),
             Some(Ok(result)) => {
                 if let Some(Outside { route, x_star, period }) = log.keep(program.name, result) {

@@ -41,6 +41,7 @@ mod memory;
 mod model_file;
 mod orbit_closed_forms;
 mod orbit_commands;
+mod outside;
 mod page;
 mod physics;
 mod planted;

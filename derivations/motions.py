@@ -1,0 +1,115 @@
+"""Cams of standard motions and of polynomials for the symbolic route: each motion is its acceleration, integrated twice.
+
+What a motion is called after is the shape of its acceleration over a unit of time, from one end at rest to the other; its size is
+whatever makes the rise 1. So nothing but the shapes is written down here.
+"""
+
+from mpmath import mp, mpf
+
+
+def quarter(start, end, top, rising):
+    """A quarter of a sine between 0 and `top`: (start, end, powers, (amplitude, rate, phase))."""
+    rate = mp.pi / 2 / (end - start)
+    return start, end, [], (top, rate, mpf(0) if rising else mp.pi / 2)
+
+
+def trapezoid():
+    """Quarter sines for flanks, an eighth of the time each, and the mirror image."""
+    part = [mpf(k) / 8 for k in range(9)]
+    for side, first in ((1, 0), (-1, 4)):
+        yield quarter(part[first], part[first + 1], side, True)
+        yield part[first + 1], part[first + 3], [mpf(side)], None
+        yield quarter(part[first + 3], part[first + 4], side, False)
+
+
+def modified_sine():
+    """A sine whose first and last eighth, a quarter of a wave each, run three times as fast as the half wave in between."""
+    eighth = mpf(1) / 8
+    yield mpf(0), eighth, [], (mpf(1), 4 * mp.pi, mpf(0))
+    yield eighth, 1 - eighth, [], (mpf(1), 4 * mp.pi / 3, mp.pi / 2)
+    yield 1 - eighth, mpf(1), [], (mpf(1), 4 * mp.pi, 3 * mp.pi / 2)
+
+
+# Pieces of the acceleration: where each begins and ends, powers of the time since its beginning, and A sin(rate x + phase).
+MOTIONS = {
+    "parabolic": lambda: [(mpf(0), mpf(1) / 2, [mpf(1)], None), (mpf(1) / 2, mpf(1), [mpf(-1)], None)],
+    "harmonic": lambda: [(mpf(0), mpf(1), [], (mpf(1), mp.pi, mp.pi / 2))],
+    "cycloidal": lambda: [(mpf(0), mpf(1), [], (mpf(1), 2 * mp.pi, mpf(0)))],
+    "modified-trapezoid": trapezoid,
+    "modified-sine": modified_sine,
+    # u (1 - u)(1 - 2 u) and u^2 (1 - u)^2 (1 - 2 u): what vanishes so often at both ends and in the middle.
+    "poly345": lambda: [(mpf(0), mpf(1), [mpf(0), mpf(1), mpf(-3), mpf(2)], None)],
+    "poly4567": lambda: [(mpf(0), mpf(1), [mpf(0), mpf(0), mpf(1), mpf(-4), mpf(5), mpf(-2)], None)],
+}
+
+
+class Piece:
+    """Powers of the angle since its start, and amplitude sin(rate x + phase)."""
+
+    def __init__(self, start, powers, sine=None):
+        self.start, self.powers, self.sine = start, powers, sine
+
+    def lift(self, angle, library=mp):
+        x = angle - self.start
+        value = slope = curvature = 0 * x
+        for power in reversed(self.powers):
+            curvature = curvature * x + 2 * slope
+            slope = slope * x + value
+            value = value * x + power
+        if self.sine:
+            amplitude, rate, phase = self.sine
+            sine, cosine = library.sin(rate * x + phase), library.cos(rate * x + phase)
+            value, slope = value + amplitude * sine, slope + amplitude * rate * cosine
+            curvature = curvature - amplitude * rate * rate * sine
+        return value, slope, curvature
+
+    def rounded(self):
+        sine = self.sine and tuple(map(float, self.sine))
+        return Piece(float(self.start), [float(power) for power in self.powers], sine)
+
+
+def motion(shape, start, span, base, rise):
+    """The pieces of one motion from `start` on: [(angle where it starts, law)]."""
+    pieces, value, slope = [], mpf(0), mpf(0)
+    for begins, ends, powers, sine in shape:
+        # s'' is integrated twice from where the piece before has left s and s'.
+        twice = [value, slope] + [power / ((k + 1) * (k + 2)) for k, power in enumerate(powers)]
+        wave = None
+        if sine:
+            amplitude, rate, phase = sine
+            wave = (-amplitude / rate**2, rate, phase)
+            # The wave's own value and slope at the beginning are taken back.
+            twice[0] -= wave[0] * mp.sin(phase)
+            twice[1] -= wave[0] * rate * mp.cos(phase)
+        piece = Piece(mpf(0), twice, wave)
+        pieces.append((begins, piece))
+        value, slope, _ = piece.lift(ends - begins)
+    size = rise / value
+    for begins, piece in pieces:
+        powers = [power * size / span**k for k, power in enumerate(piece.powers)]
+        powers[0] += base
+        wave = piece.sine and (piece.sine[0] * size, piece.sine[1] / span, piece.sine[2])
+        yield start + span * begins, Piece(start + span * begins, powers, wave)
+
+
+def program(base, segments):
+    """Motions one after the other from angle 0 on, each (name, span, rise)."""
+    laws, start = [], mpf(0)
+    for name, span, rise in segments:
+        if name == "dwell":
+            laws.append((start, Piece(start, [base])))
+        elif name in MOTIONS:
+            laws.extend(motion(MOTIONS[name](), start, span, base, rise))
+        else:
+            raise ValueError(f"cam.segment.motion: this route knows no {name!r}")
+        start, base = start + span, base + rise
+    return laws
+
+
+def polynomials(segments):
+    """Polynomials from the angles on where they start, each (start, powers); the last one goes on through the end of the turn."""
+    laws = [(start, Piece(start, powers)) for start, powers in segments]
+    if laws[0][0] > 0:
+        start, last = laws[-1]
+        laws.insert(0, (mpf(0), Piece(start - 2 * mp.pi, last.powers)))
+    return laws
