@@ -424,7 +424,7 @@ impl Model {
         step: Option<f64>,
         #[pyo3(from_py_with = count)] starts: u64,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let rpm = rpm.map_or_else(|| Ok(usual_range(&self.model)), values::speed_range)?;
+        let rpm = rpm.map_or_else(|| usual_range(&self.model).or_raise(), values::speed_range)?;
         let step = match step {
             None => Step::for_speeds(rpm, within("speeds", speeds, [2, 100_000])? as u32),
             Some(step) if step > 0.0 && step.is_finite() => Step::at_most(step),

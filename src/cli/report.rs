@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::picture::ends_in;
 use super::progress::watched;
+use super::start::rpm_range;
 use super::{CommandError, Exit, ModelArgument, Session};
 use crate::file::Output;
 use crate::model::{Model, ModelError};
@@ -17,10 +18,10 @@ use crate::study::verify::External;
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact report\n\
-    \x20 corner-impact report models/ballistic.toml --out page.html\n\
+    \x20 corner-impact report models/ballistic.toml --rpm 100:400 --out page.html\n\
     \n\
-    The page needs no network and no other file; its name is printed. A model without a corner impact has\n\
-    a page, too, which says why there is none.\n\
+    The page needs no network and no other file; its name is printed. It opens with the answer: where the follower\n\
+    separates from the cam, how hard it hits, where motions coexist, what is proved.\n\
     Exit code: 0 everything checked agrees, 1 something disagrees, 2 bad model file, usage or file.")]
 pub(super) struct Arguments {
     #[command(flatten)]
@@ -31,6 +32,10 @@ pub(super) struct Arguments {
     /// Print one JSON document instead; the page only where --out names it.
     #[arg(long)]
     json: bool,
+    /// Lowest and highest speed that the answer is about [default: from below where the follower first leaves the cam up to the end of
+    /// the model's [study], or twice the speed of its spring].
+    #[arg(long, value_name = "LO:HI", value_parser = rpm_range, allow_hyphen_values = true)]
+    rpm: Option<[f64; 2]>,
     /// Leave out the routes that need Python (symbolic, scipy, certificate), and say so.
     #[arg(long)]
     no_external: bool,
@@ -59,7 +64,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         None => None,
     };
     let external = if arguments.no_external { External::LeftOut } else { External::Run };
-    let report = watched("", |watch| Report::of(&model, external, watch))?;
+    let report = watched("", |watch| Report::of(&model, external, arguments.rpm, watch))?;
     let write = |mut file: Output<'_>| {
         let page = html::render(&report)?;
         file.write_all(page.as_bytes())?;

@@ -22,7 +22,7 @@ use crate::study::speeds::{speeds, usual_range};
 pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
-    /// Lowest and highest speed [default: up to the end of the model's [study], or 1000 rpm, from a twentieth of that].
+    /// Lowest and highest speed [default: from below where the follower first leaves the cam up to the end of the model's [study], or twice the speed of its spring].
     #[arg(long, value_name = "LO:HI", value_parser = rpm_range, allow_hyphen_values = true)]
     rpm: Option<[f64; 2]>,
     /// The least number of speeds that are run.
@@ -47,7 +47,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let model = arguments.model.read(session)?;
     let corners = corner_marks(&Cam::new(&model)?);
-    let rpm = arguments.rpm.unwrap_or_else(|| usual_range(&model));
+    let rpm = arguments.rpm.map_or_else(|| usual_range(&model), Ok)?;
     let step = arguments.step.map_or_else(|| Step::for_speeds(rpm, arguments.speeds), Step::at_most);
     let resolution = Resolution { step, starts: arguments.starts as usize };
     let found = watched("", |watch| speeds(&model, rpm, resolution, watch))?;

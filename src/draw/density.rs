@@ -83,6 +83,18 @@ impl Density {
         [self.columns, self.rows]
     }
 
+    /// The middle of each cell that has a point, and how many it has.
+    pub(crate) fn counted(&self) -> impl Iterator<Item = ([f64; 2], u16)> {
+        let middle = |index: usize, count: usize, [low, high]: [f64; 2]| {
+            low + (high - low) * (index as f64 + 0.5) / count as f64
+        };
+        let counts = self.counts.iter().enumerate().filter(|(_, count)| **count > 0);
+        counts.map(move |(cell, count)| {
+            let [column, row] = [cell % self.columns, cell / self.columns];
+            ([middle(column, self.columns, self.x), middle(row, self.rows, self.y)], *count)
+        })
+    }
+
     /// How many cells have a point.
     pub fn occupied(&self) -> usize {
         self.counts.iter().filter(|count| **count > 0).count()

@@ -40,7 +40,7 @@ pub use impacts::{impact_diagram, strobe_diagram};
 pub use local_map::{NextToCorner, Ray};
 pub use phase_plane::phase_plane;
 pub use section::Crossings;
-pub use speeds::speeds_figure;
+pub use speeds::{impacts_by_speed, speeds_figure};
 pub use subject::{Effort, Fast, Shown, Slow, Subject};
 pub use through_corner::through_corner;
 pub use trace::{Run, time_trace, with_force};
@@ -63,6 +63,11 @@ pub(crate) const FIGURES: [Entry; 15] = [
     discontinuity_mapping::DISCONTINUITY_MAPPING,
     local_map::LOCAL_MAP,
 ];
+
+/// The name of the figure that shows proved chaos.
+pub(crate) fn chaotic_set() -> &'static str {
+    chaos::CHAOTIC_SET.id
+}
 
 /// A row of the table.
 pub(crate) struct Entry {

@@ -63,6 +63,13 @@ pub fn speeds_figure(found: &Speeds, corners: &[CornerMark]) -> Figure {
     figure
 }
 
+/// Its first panel alone: where impacts are on the cam.
+pub fn impacts_by_speed(found: &Speeds, corners: &[CornerMark]) -> Figure {
+    let mut figure = speeds_figure(found, corners);
+    figure.panels.truncate(1);
+    Figure { title: format!("{}: impacts from {} to {} rpm", found.model, found.rpm[0], found.rpm[1]), ..figure }
+}
+
 /// A colour for each attractor, other than those of what it coexists with or follows closely, as far as there are enough.
 fn colours(found: &Speeds) -> Vec<Colour> {
     /// Of the range.

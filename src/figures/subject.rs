@@ -131,16 +131,15 @@ impl Subject {
     pub(crate) fn with(model: &Model, findings: Result<Verification, String>) -> Result<Self, ModelError> {
         let cam = Cam::new(model)?;
         let paper = model.is_the_papers()?;
-        let [_, fastest] = usual_range(model);
+        let [slowest, fastest] = usual_range(model)?;
         let slow = if paper {
             Ok(Shown::PAPERS.0)
         } else {
-            match detachment(model, [0.01 * fastest, fastest]) {
+            match detachment(model, [slowest, fastest]) {
                 Ok(Some(rpm)) => Ok(Shown::slow(rpm)),
                 Ok(None) => Err(format!(
-                    "from {} to {fastest} rpm there is no speed at which the follower begins to leave the cam: it leaves it at each, \
-                     or at none",
-                    0.01 * fastest
+                    "from {slowest} to {fastest} rpm there is no speed at which the follower begins to leave the cam: it leaves it at \
+                     each, or at none"
                 )),
                 Err(error) => Err(error.to_string()),
             }

@@ -7,8 +7,8 @@ use serde::Serialize;
 
 use crate::agreement::by_quantity;
 use crate::cam::{Cam, Jet, Side};
-use crate::figures::{Drawn, Plate, Subject, corner_marks, plates, speeds_figure, through_corner};
-use crate::model::{Model, ModelError};
+use crate::figures::{Drawn, Plate, Subject, corner_marks, impacts_by_speed, plates, speeds_figure, through_corner};
+use crate::model::{Model, ModelError, Units};
 use crate::paper::{Claims, Context, LedgerError};
 use crate::progress::Watch;
 use crate::report::quantities::{Quantity, quantities};
@@ -17,6 +17,7 @@ use crate::show::command::command;
 use crate::show::words;
 use crate::study::attractors::{Resolution, Step};
 use crate::study::cam::CamSheet;
+use crate::study::design::contact::{Contact, Separation};
 use crate::study::speeds::{Speeds, speeds, usual_range};
 use crate::study::verify::{External, Tally, Verification, verify_watched};
 
@@ -35,14 +36,54 @@ pub struct Report {
     pub through: Result<ThroughCorner, String>,
     /// The paper's statements, where the model is the paper's.
     pub claims: Option<Claims>,
+    /// Where the follower first leaves the cam, by the force between them.
+    pub separation: Separation,
+    /// That force below there; nothing where the follower leaves the cam however slow, or never.
+    pub margin: Option<Margin>,
+    /// What the model's lengths are told in.
+    pub units: Units,
     /// What the follower does at other speeds, or why that is not known.
     pub speeds: Result<Speeds, String>,
-    /// The picture of that.
+    /// Where its impacts fall over these speeds: the picture of the answer.
+    pub overview: Option<Plate>,
+    /// The same with every attractor and its share of the starts.
     pub attractors: Option<Plate>,
     /// The figures, in the paper's order.
     pub plates: Vec<Plate>,
     /// Commands that do all this again, each with what it does.
     pub commands: Vec<(String, &'static str)>,
+}
+
+/// How much is left of the force between follower and cam below the speed at which it comes to nothing.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Margin {
+    /// The speed at which it does, rpm.
+    pub separation_rpm: f64,
+    /// Where on the cam, deg.
+    pub separation_deg: f64,
+    /// The speed that this is about, rpm.
+    pub speed_rpm: f64,
+    /// The least force round the cam at that speed, and as the cam stands still, in the unit.
+    pub least_force: [f64; 2],
+    /// Where on the cam the former is, deg.
+    pub cam_angle_deg: f64,
+    /// The unit of the force.
+    pub force_unit: String,
+}
+
+/// At four fifths of the speed of separation.
+fn margin(contact: &Contact<'_>, units: &Units) -> Option<Margin> {
+    const SHARE: f64 = 0.8;
+    let Separation::At { rpm, cam_angle, .. } = contact.separation() else { return None };
+    let [there, still] = [SHARE * rpm, 0.0].map(|rpm| contact.least(rpm));
+    Some(Margin {
+        separation_rpm: rpm,
+        separation_deg: cam_angle.to_degrees(),
+        speed_rpm: SHARE * rpm,
+        least_force: [there, still].map(|least| units.force.told(least.value)),
+        cam_angle_deg: there.angle.to_degrees(),
+        force_unit: units.force.name().to_owned(),
+    })
 }
 
 /// The version of this program.
@@ -67,6 +108,8 @@ document!(Report as it {
     through: it.through.as_ref().ok(),
     no_through: it.through.as_ref().err(),
     claims: it.claims,
+    separation_rpm: it.margin.as_ref().map(|margin| margin.separation_rpm),
+    margin: it.margin,
     speeds: it.speeds.as_ref().ok(),
     no_speeds: it.speeds.as_ref().err(),
     plates: it.plates,
@@ -128,10 +171,10 @@ pub enum ReportError {
     Ledger(#[from] LedgerError),
 }
 
-/// Speeds that are run for the section on other speeds.
-const SPEEDS: u32 = 100;
-/// Starts at each of them.
-const STARTS: usize = 32;
+/// Speeds that are run for the section on speeds, and starts at each of them.
+const SPEEDS: (u32, usize) = (30, 12);
+/// Of the paper's machine, whose chaos is quick to run.
+const PAPERS_SPEEDS: (u32, usize) = (100, 32);
 /// Parts of the work that are done when each stage is, of one.
 const VERIFIED: f64 = 0.1;
 const HELD: f64 = 0.25;
@@ -139,10 +182,15 @@ const SURVEYED: f64 = 0.55;
 const THROUGH: f64 = 0.6;
 
 impl Report {
-    /// Everything about a model.
+    /// Everything about a model, at speeds of this range, rpm, or of its own.
     ///
     /// A model without a corner impact to verify has a report that says so.
-    pub fn of(model: &Model, external: External, watch: &dyn Watch) -> Result<Self, ReportError> {
+    pub fn of(
+        model: &Model,
+        external: External,
+        rpm: Option<[f64; 2]>,
+        watch: &dyn Watch,
+    ) -> Result<Self, ReportError> {
         let part = |from, to| Part { watch, from, to };
         let cam = Cam::new(model)?;
         let is_paper = model.is_the_papers()?;
@@ -151,9 +199,11 @@ impl Report {
             Ok(found) if is_paper => Some(Claims::hold(&Context::new(model, &cam, found)?, &part(VERIFIED, HELD))?),
             _ => None,
         };
-        let range = usual_range(model);
-        let resolution = Resolution { step: Step::for_speeds(range, SPEEDS), starts: STARTS };
+        let range = rpm.map_or_else(|| usual_range(model), Ok)?;
+        let (count, starts) = if is_paper { PAPERS_SPEEDS } else { SPEEDS };
+        let resolution = Resolution { step: Step::for_speeds(range, count), starts };
         let speeds = speeds(model, range, resolution, &part(HELD, SURVEYED)).map_err(|error| error.to_string());
+        let overview = speeds.as_ref().ok().map(|found| overview(model, &cam, found));
         let attractors = speeds.as_ref().ok().map(|found| attractors(model, &cam, found));
         part(SURVEYED, THROUGH).at("the orbits on both sides of the corner impact", 0, 1);
         let through = verification.as_ref().map_err(String::clone).and_then(|found| through(model, &cam, found));
@@ -170,7 +220,24 @@ impl Report {
             cam: CamSheet::new(model, &cam, Jet::HIGHEST_JUMP)?,
         };
         let commands = commands(model, verification.is_ok());
-        Ok(Self { agrees, is_paper, model: sheet, verification, through, claims, speeds, attractors, plates, commands })
+        let contact = Contact::new(&cam, model.follower);
+        let (separation, margin, units) = (contact.separation(), margin(&contact, &model.units), model.units.clone());
+        Ok(Self {
+            agrees,
+            is_paper,
+            model: sheet,
+            verification,
+            through,
+            claims,
+            separation,
+            margin,
+            units,
+            speeds,
+            overview,
+            attractors,
+            plates,
+            commands,
+        })
     }
 
     /// Comparisons and printed numbers by what came of them; none without a corner impact.
@@ -188,6 +255,19 @@ impl Report {
     pub(crate) fn claims_otherwise(&self) -> usize {
         self.claims.iter().flat_map(|ledger| &ledger.claims).filter(|claim| !claim.as_found).count()
     }
+}
+
+/// Where runs hit the cam at which speed.
+fn overview(model: &Model, cam: &Cam, found: &Speeds) -> Plate {
+    let figure = impacts_by_speed(found, &corner_marks(cam));
+    let title = figure.title.clone();
+    let [low, high] = found.rpm;
+    let caption = format!(
+        "Where on the cam the follower of {} hits it, {low} to {high} rpm. Grey: speeds with several motions, each of which runs come to.",
+        model.name
+    );
+    let command = command("speeds", model, &format!("--rpm {low}:{high} --out impacts.svg"));
+    Plate { id: "overview", place: "", title, command, drawn: Ok(Drawn { figure, caption }) }
 }
 
 /// What runs end on, drawn.

@@ -6,6 +6,7 @@ use std::fmt::{Display, Write};
 
 use crate::border_collision::EventCurve;
 use crate::diagram::{Block, Row, Section, Seen, Speeds, Starts, Sweep};
+use crate::draw::{Data, Figure};
 use crate::estimate::Estimate;
 use crate::flight::State;
 use crate::model::Units;
@@ -13,6 +14,7 @@ use crate::orbit::Eigenvalue;
 use crate::orbit::branch::{Branch, Kind};
 use crate::orbit::ending::Ending;
 use crate::section::Sample;
+use crate::show::digits::Digits;
 use crate::simulate::{Event, Machine, Motion};
 use crate::study::basins::Basins;
 use crate::study::chart::{Chart, Charted, Point, class};
@@ -273,4 +275,37 @@ pub(crate) fn curves(parameter: &str, curves: &[EventCurve]) -> String {
         let _ = writeln!(lines, ",{special},{index},{event}");
     }
     lines
+}
+
+/// What a figure shows: a row for each point of its lines and marks, and for each cell of its clouds, with how many points that has.
+/// Six digits across, where speeds are that differ little, and five up; of a cell one less, as there are two thousand side by side.
+pub fn figure(figure: &Figure) -> String {
+    let mut rows = String::from("panel,series,kind,x,y,count\n");
+    let word = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
+    for panel in &figure.panels {
+        for series in &panel.series {
+            let across = [&figure.x, &panel.y].map(|axis| format!("{} ({})", axis.label, axis.unit).replace(" ()", ""));
+            let heads = format!("{},{}", word(&across.join(", ")), word(&series.label));
+            let mut row = |kind: &str, [x, y]: [f64; 2], count: u16| {
+                let [across, up] = if kind == "line" || kind == "point" { [6, 5] } else { [5, 4] };
+                let [x, y] = [shown(x, across), shown(y, up)];
+                rows.push_str(&format!("{heads},{kind},{x},{y},{count}\n"));
+            };
+            match &series.data {
+                Data::Line { points, .. } | Data::Area { points, .. } | Data::Arrow { points, .. } => {
+                    points.iter().for_each(|point| row("line", *point, 1));
+                }
+                Data::Points { points, .. } => points.iter().for_each(|point| row("point", *point, 1)),
+                Data::Density(cells) => cells.counted().for_each(|(at, count)| row("cell", at, count)),
+                Data::Region { cells, .. } => cells.counted().for_each(|(at, _)| row("region", at, 1)),
+                Data::Words(_) => {}
+            }
+        }
+    }
+    rows
+}
+
+/// Empty where a line is broken.
+fn shown(value: f64, digits: usize) -> String {
+    if value.is_nan() { String::new() } else { Digits::Significant(digits).typed(value) }
 }

@@ -38,6 +38,9 @@ pub(crate) fn wide(label: &str, body: &Markup) -> Markup {
 fn table(table: &Table) -> Markup {
     let number = |index: usize| table.columns.get(index).filter(|column| !column.left).map(|_| "n");
     let headed = table.columns.iter().any(|column| !column.head.is_empty());
+    // For where the cells of a row stand below each other.
+    let head_of =
+        |index: usize| table.columns.get(index).map(|column| plain(&column.head)).filter(|head| !head.is_empty());
     let head =
         |column: &Column| html! { th class=[(!column.left).then_some("n")] scope="col" { (words(&column.head)) } };
     wide(
@@ -50,8 +53,8 @@ fn table(table: &Table) -> Markup {
                     @for row in &table.rows {
                         tr.disagrees[row.is_bad] {
                             @for (index, cell) in row.cells.iter().enumerate() {
-                                @if index == 0 { th class=[number(0)] scope="row" { (words(cell)) } }
-                                @else { td class=[number(index)] { (words(cell)) } }
+                                @if index == 0 { th class=[number(0)] scope="row" data-head=[head_of(0)] { (words(cell)) } }
+                                @else { td class=[number(index)] data-head=[head_of(index)] { (words(cell)) } }
                             }
                         }
                     }
@@ -59,6 +62,17 @@ fn table(table: &Table) -> Markup {
             }
         },
     )
+}
+
+/// Words without what only a browser shows.
+fn plain(words: &Words) -> String {
+    let part = |span: &Span| match span {
+        Span::Text(text) | Span::Code(text) | Span::Marked(_, text) => text.clone(),
+        Span::Symbol(symbol) => symbol.plain.clone(),
+        Span::Unit(unit) => (*unit).to_owned(),
+        Span::Number(..) | Span::Complex(..) | Span::Against(..) | Span::Matrix(..) | Span::Break => String::new(),
+    };
+    words.0.iter().map(part).collect()
 }
 
 /// Words as a browser has them.

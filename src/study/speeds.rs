@@ -2,10 +2,11 @@
 
 use serde::Serialize;
 
+use crate::cam::Cam;
 use crate::estimate::Estimate;
 use crate::known::Known;
 use crate::measured::{Likely, Measured};
-use crate::model::Model;
+use crate::model::{Model, ModelError};
 use crate::orbit::branch::Event;
 use crate::orbit::ending::{Ending, Kind};
 use crate::progress::Watch;
@@ -13,6 +14,7 @@ use crate::simulate::{EventKind, Machine, SimulateError, angular_velocity};
 use crate::study::attractors::{
     Attractors, AttractorsError, Cause, Change, Here, Part, Resolution, Row, Wandering, attractors, detachment_near,
 };
+use crate::study::design::contact::Contact;
 use crate::study::machine;
 
 /// What a machine does over a range of speeds: the document of `speeds --json`.
@@ -104,6 +106,8 @@ pub struct At {
     pub wandering: Wandering,
     /// Cam angles of its impacts, rad.
     pub impact_angles: Vec<f64>,
+    /// The fastest of its impacts, relative to the cam, m/s; nothing where it has none.
+    pub impact_speed: Option<f64>,
 }
 
 document!(At as it {
@@ -114,6 +118,7 @@ document!(At as it {
     revolutions: it.ending.period().map(|(revolutions, _)| revolutions),
     impacts: it.ending.period().map(|(_, impacts)| impacts),
     revolutions_between_rests if_any: it.ending.between_rests(),
+    impact_speed_m_s if_any: it.impact_speed,
     growth if_any: it.ending.growth().map(|growth| growth.value),
     growth_error if_any: it.ending.growth().map(|growth| growth.error),
 });
@@ -162,6 +167,15 @@ impl Speeds {
     }
 }
 
+impl Speeds {
+    /// The fastest impact that was seen on an attractor, m/s relative to the cam, and at which speed, rpm.
+    pub fn hardest(&self) -> Option<[f64; 2]> {
+        let all = self.attractors.iter().flat_map(|attractor| &attractor.at);
+        let all = all.filter_map(|at| Some([at.impact_speed?, at.rpm]));
+        all.max_by(|one, other| one[0].total_cmp(&other[0]))
+    }
+}
+
 impl Attractor {
     /// How often it rests, if runs of it wandered for long enough to tell.
     pub fn rests(&self) -> Option<Rests> {
@@ -178,10 +192,31 @@ impl Attractor {
     }
 }
 
-/// The range of speeds to look at where none is named, rpm: up to the fastest of `[study]`, or 1000, from a twentieth of that.
-pub fn usual_range(model: &Model) -> [f64; 2] {
-    let fastest = model.study.map_or(1000.0, |study| study.rpm_max);
-    [0.05 * fastest, fastest]
+/// The range of speeds to look at where none is named, rpm: from below the speed at which the follower first leaves the cam up to
+/// the fastest of `[study]`, or twice the larger of that speed and the machine's own.
+pub fn usual_range(model: &Model) -> Result<[f64; 2], ModelError> {
+    let cam = Cam::new(model)?;
+    let follower = &model.follower;
+    let lift = [cam.lowest().value, cam.top()];
+    // omega^2 = k/m + (g + k (c_min - rest)/m) / (c_max - c_min): the spring's, with what presses at the lowest lift over the travel.
+    let spring = follower.stiffness / follower.mass;
+    let pressing = (follower.gravity + spring * (lift[0] - follower.rest_position)).max(0.0);
+    let own = (spring + pressing / (lift[1] - lift[0])).sqrt() * 60.0 / std::f64::consts::TAU;
+    let own = if own > 0.0 && own.is_finite() { own } else { FALLBACK };
+    let leaves = Contact::new(&cam, *follower).separation().speed();
+    let leaves = Some(leaves).filter(|rpm| *rpm > 0.0 && rpm.is_finite());
+    let low = two_digits(leaves.map_or(0.5 * own, |rpm| 0.8 * rpm), f64::floor);
+    let high = two_digits(2.0 * leaves.map_or(own, |rpm| rpm.max(own)), f64::ceil);
+    Ok(model.study.map_or([low, high], |study| [low.min(study.rpm_min), study.rpm_max]))
+}
+
+/// The own speed of a machine that has no scale of time, rpm: nothing presses its follower.
+const FALLBACK: f64 = 100.0;
+
+/// A speed as a person would choose it.
+fn two_digits(rpm: f64, towards: fn(f64) -> f64) -> f64 {
+    let scale = 10_f64.powf(1.0 - rpm.log10().floor());
+    towards(rpm * scale) / scale
 }
 
 /// What `model` does over a range of speeds, rpm; `watch` is told speed by speed.
@@ -210,7 +245,7 @@ pub fn speeds(
             let here = grid.get(*place)?.as_ref().ok().filter(|here| is_inside(here.rpm))?;
             let part = here.parts.get(*part)?;
             let machine = lowest.at_speed(angular_velocity(here.rpm));
-            Some(At::new(here, part, impact_angles(&machine, part).unwrap_or_default()))
+            Some(At::new(here, part, impacts(&machine, part).unwrap_or_default()))
         });
         let at: Vec<At> = at.collect();
         let only = |number: fn((u64, u64)) -> u64| {
@@ -278,28 +313,33 @@ fn name(index: usize) -> String {
 }
 
 impl At {
-    fn new(here: &Here, part: &Part, impact_angles: Vec<f64>) -> Self {
+    fn new(here: &Here, part: &Part, impacts: Vec<[f64; 2]>) -> Self {
+        let impact_speed = impacts.iter().map(|[_, speed]| *speed).reduce(f64::max);
+        let impact_angles = impacts.into_iter().map(|[angle, _]| angle).collect();
         let share = Estimate::share(here.count(part), here.sampled);
         let (rpm, ending, wandering) = (here.rpm, part.ending.clone(), here.wandering);
-        Self { rpm, share, ending, wandering, impact_angles }
+        Self { rpm, share, ending, wandering, impact_angles, impact_speed }
     }
 }
 
-/// Where the impacts of an attractor are, cam angles in rad: of a period, or of as many revolutions as a picture has room for.
-fn impact_angles(machine: &Machine, part: &Part) -> Result<Vec<f64>, SimulateError> {
+/// Where the impacts of an attractor are, cam angles in rad, and how fast relative to the cam, m/s: of a period, or of as many
+/// revolutions as a picture has room for.
+fn impacts(machine: &Machine, part: &Part) -> Result<Vec<[f64; 2]>, SimulateError> {
     /// Revolutions that a picture has room for.
     const SHOWN: u64 = 120;
     /// Impacts of them: before a rest there are any number.
     const MOST: usize = 600;
     if let Ending::Orbit(orbit) = &part.ending {
-        return Ok(orbit.impacts().map(|impact| impact.cam_angle).collect());
+        let of =
+            |impact: &crate::simulate::Event| [impact.cam_angle, (impact.velocity_before - impact.cam_velocity).abs()];
+        return Ok(orbit.impacts().map(of).collect());
     }
     let mut motion = machine.resume(&part.motion)?;
-    let mut angles = Vec::new();
+    let mut impacts = Vec::new();
     machine.watch(&mut motion, SHOWN, |event| {
-        if event.kind == EventKind::Impact && angles.len() < MOST {
-            angles.push(event.cam_angle);
+        if event.kind == EventKind::Impact && impacts.len() < MOST {
+            impacts.push([event.cam_angle, (event.velocity_before - event.cam_velocity).abs()]);
         }
     })?;
-    Ok(angles)
+    Ok(impacts)
 }

@@ -26,7 +26,7 @@ struct Written {
 fn written() -> &'static Written {
     static WRITTEN: OnceLock<Written> = OnceLock::new();
     WRITTEN.get_or_init(|| {
-        let dossier = Report::of(&Model::built_in().unwrap(), External::LeftOut, &Unwatched).unwrap();
+        let dossier = Report::of(&Model::built_in().unwrap(), External::LeftOut, None, &Unwatched).unwrap();
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("report.html");
         std::fs::write(&file, html::render(&dossier).unwrap()).unwrap();
@@ -272,7 +272,7 @@ fn the_ledger_is_filtered_by_verdict_and_words_and_linked_to() {
 #[test]
 fn a_narrow_screen_is_not_scrolled_sideways() {
     let Some(mut page) = open() else { return };
-    for (width, height) in [(360, 740), (320, 568), (768, 1024), (1600, 900)] {
+    for (width, height) in [(390, 844), (320, 568), (768, 1024), (1600, 900)] {
         page.window(width, height, width < 700);
         page.value("document.querySelectorAll('details').forEach((fold) => { fold.open = true; })");
         let widest = page.value("document.documentElement.scrollWidth").as_u64().unwrap();
@@ -280,7 +280,42 @@ fn a_narrow_screen_is_not_scrolled_sideways() {
         let shift =
             page.value("(() => { window.scrollTo({ left: 500, behavior: 'instant' }); return window.scrollX; })()");
         assert_eq!(shift, 0, "{width}");
+        // On a telephone nothing scrolls by itself either, and figures are drawn for it.
+        if width < 400 {
+            page.until("[...document.querySelectorAll('.narrow')].every((drawing) => drawing.querySelector('svg'))");
+            let scrolled = "[...document.querySelectorAll('main *')].filter((e) => e.scrollWidth > e.clientWidth + 1 && getComputedStyle(e).overflowX === 'auto').map((e) => e.outerHTML.slice(0, 300))";
+            assert_eq!(page.value(scrolled), serde_json::json!([]), "{width}");
+            assert_eq!(page.value("getComputedStyle(document.querySelector('.broad')).display"), "none");
+        }
     }
+    assert_quiet(&page);
+}
+
+/// The first screen is the answer, whose five sentences it holds; the contents stay in sight, and each figure can be saved.
+#[test]
+fn the_answer_is_the_first_screen() {
+    let Some(mut page) = open() else { return };
+    page.window(1280, 800, false);
+    let bottom = "document.querySelector('#answer > ul').getBoundingClientRect().bottom";
+    assert!(page.value(bottom).as_f64().unwrap() < 800.0);
+    assert_eq!(page.value("document.querySelectorAll('#answer > ul > li').length"), 5);
+    assert_eq!(page.value("document.querySelectorAll('#answer .broad > svg').length"), 1);
+    page.value("window.scrollTo({ top: 5000, behavior: 'instant' })");
+    let contents = page.value("(() => { const box = document.querySelector('nav').getBoundingClientRect(); return [box.top, box.bottom]; })()");
+    let contents = numbers(&contents);
+    assert!(contents[0] >= 0.0 && contents[1] <= 800.0, "{contents:?}");
+    assert_eq!(page.value("[...document.querySelectorAll('.save')].every((e) => e.children.length === 2)"), true);
+    page.value(
+        "window.saved = []; URL.createObjectURL = (blob) => { blob.text().then((text) => window.saved.push(text)); return 'data:,'; }; true",
+    );
+    page.click("#plate-overview .save button:first-child");
+    page.click("#plate-overview .save button:last-child");
+    page.until("window.saved.length === 2");
+    assert_eq!(
+        page.value("window.saved.map((text) => text.slice(0, 5)).sort()"),
+        serde_json::json!(["<svg ", "panel"])
+    );
+    assert_eq!(page.value("window.saved.find((text) => text.startsWith('panel')).includes('\"cam speed ω (rpm), cam angle at impact φ (deg)\",\"\",point,')"), true);
     assert_quiet(&page);
 }
 

@@ -22,7 +22,7 @@ use serde_json::Value;
 fn papers() -> &'static (Report, String) {
     static MADE: OnceLock<(Report, String)> = OnceLock::new();
     MADE.get_or_init(|| {
-        let dossier = Report::of(&Model::built_in().unwrap(), External::LeftOut, &Unwatched).unwrap();
+        let dossier = Report::of(&Model::built_in().unwrap(), External::LeftOut, None, &Unwatched).unwrap();
         let page = html::render(&dossier).unwrap();
         (dossier, page)
     })
@@ -173,7 +173,7 @@ fn a_models_name_is_text_whatever_it_holds() {
     let text = text.replacen("source = \"\"\"", &format!("source = \"\"\"{} ", evil.replace("\\\"", "'")), 1);
     let model = Model::parse("<b>evil</b>.toml", &text).unwrap();
     assert!(model.name.contains("<script>"));
-    let dossier = Report::of(&model, External::LeftOut, &Unwatched).unwrap();
+    let dossier = Report::of(&model, External::LeftOut, None, &Unwatched).unwrap();
     assert!(dossier.through.is_ok() && dossier.claims.is_some());
     let page = html::render(&dossier).unwrap();
     for raw in ["<script>alert", "<img src=x", "<b>evil"] {
@@ -228,6 +228,18 @@ fn a_model_without_a_corner_impact_has_a_page_that_says_why() {
     let page = std::fs::read_to_string(folder.path().join("harmonic-report.html")).unwrap();
     assert!(page.contains("There is no corner impact to verify"));
     assert!(page.contains("[study] says where to look for the corner impact"));
+    let sections: Vec<&str> = between(&page, "<section id=\"", "\"").into_iter().collect();
+    assert_eq!(sections, ["answer", "model", "speeds", "figures", "reproduce"]);
+    for said in ["Separation.", "Impacts.", "Coexistence.", "What is proved.", "id=\"plate-overview\""] {
+        let at = page.find(said).unwrap_or_else(|| panic!("{said}"));
+        assert!(at < page.find("<section id=\"model\"").unwrap(), "{said} is not in the answer");
+    }
+    // Its own speeds: it separates at 315.57 rpm, and its spring's own speed is 191.
+    assert!(
+        page.contains("impacts from 250 to 640 rpm") && !page.contains("Not drawn"),
+        "{:?}",
+        between(&page, "<figcaption>", "</figcaption>")
+    );
     assert!(!page.contains("id=\"through-data\"") && !page.contains("id=\"ledger-filter\""));
     assert!(page.contains("id=\"plate-cam\"") && page.contains("id=\"speeds\""));
 }

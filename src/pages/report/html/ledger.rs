@@ -6,6 +6,7 @@ use maud::html;
 
 use crate::report::Report;
 use crate::show::block::{Block, Section};
+use crate::show::formula::sentence;
 use crate::show::html::words;
 use crate::show::words::verdict;
 
@@ -51,9 +52,9 @@ pub(crate) fn section(report: &Report) -> Option<Section> {
             @for (claim, anchor) in ledger.claims.iter().zip(&anchors) {
                 li class={ "claim v-" (claim.verdict) } id=(anchor) data-verdict=(claim.verdict) {
                     p.head { (words(&verdict(claim.verdict))) " " a href={ "#" (anchor) } { (claim.id) } " " span.place { (claim.place) } }
-                    p { (claim.statement) }
-                    @if let Some(correct) = &claim.correct { p.correct { "Right: " (correct) } }
-                    p.evidence { "Evidence, " (claim.known) ": " (claim.evidence) }
+                    p { (sentence(&claim.statement)) }
+                    @if let Some(correct) = &claim.correct { p.correct { "Right: " (sentence(correct)) } }
+                    p.evidence { "Evidence, " (claim.known) ": " (sentence(&claim.evidence)) }
                     @if !claim.as_found { p.disagrees { "This is otherwise than the ledger says." } }
                 }
             }

@@ -1,9 +1,10 @@
 //! The report as one HTML page that needs nothing beside it: no network, no font, no other file.
 //!
-//! Sections stand in a referee's order of reading. Whatever is shown comes from the [`Report`]; chosen here are words,
+//! It opens with the answer; then sections stand in a referee's order of reading, as far as the machine has what they are about. Whatever is shown comes from the [`Report`]; chosen here are words,
 //! order and digits. A number that was computed stands in a `data` element whose value has all the digits that the document has;
 //! numbers in captions and sentences are the document's words.
 
+mod answer;
 mod ledger;
 mod model;
 mod plates;
@@ -17,12 +18,12 @@ use maud::{DOCTYPE, PreEscaped, html};
 use crate::draw::svg::SvgError;
 use crate::pages::{local_map, verify};
 use crate::report::{Report, VERSION};
-use crate::show::block::{Block, Section};
+use crate::show::block::{Block, Section, in_units};
 use crate::show::html::{blocks, words};
 use crate::study::verify::Verification;
 
 const STYLE: &str = include_str!("page.css");
-const SCRIPTS: [&str; 2] = [include_str!("ledger.js"), include_str!("slider.js")];
+const SCRIPTS: [&str; 3] = [include_str!("ledger.js"), include_str!("slider.js"), include_str!("save.js")];
 
 /// Why there is no page.
 #[derive(Debug, thiserror::Error)]
@@ -30,6 +31,9 @@ pub enum HtmlError {
     /// A figure could not be written.
     #[error("figure: {0}")]
     Figure(#[from] SvgError),
+    /// A figure's data could not be packed.
+    #[error("data of a figure: {0}")]
+    Packed(#[from] std::io::Error),
     /// The slider's data could not be written.
     #[error("data: {0}")]
     Data(#[from] serde_json::Error),
@@ -44,13 +48,14 @@ pub fn render(report: &Report) -> Result<String, HtmlError> {
         Some(Section { id, title: title.into(), blocks: blocks.into_iter().skip(1).collect() })
     };
     let sections: Vec<Section> = [
-        Some(verdict::section(report)),
+        Some(answer::section(report)?),
+        slider::section(report)?,
+        verdict::section(report),
         Some(model::section(report)?),
-        titled("corner-impact", "Where the corner impact is", verify::orbit).or_else(|| Some(nowhere())),
+        titled("corner-impact", "Where the corner impact is", verify::orbit),
         titled("maps", "The local map by every route", |found| [verify::map(found), verify::agreement(found)].concat()),
         titled("printed", "The paper's digits", verify::published),
         titled("bifurcation", "What happens there", verify::bifurcation),
-        Some(slider::section(report)?),
         titled("local-map", "What the local map does by itself", local_map::blocks),
         ledger::section(report),
         Some(speeds::section(report)?),
@@ -74,7 +79,7 @@ pub fn render(report: &Report) -> Result<String, HtmlError> {
                 style { (PreEscaped(STYLE)) }
             }
             body {
-                a.skip href="#main" { "Skip to the findings" }
+                a.skip href="#main" { "Skip to the answer" }
                 header {
                     p.kind { "Report of corner-impact " (VERSION) }
                     h1 { (title) }
@@ -88,7 +93,7 @@ pub fn render(report: &Report) -> Result<String, HtmlError> {
                     @for section in &sections {
                         section id=(section.id) aria-labelledby={ (section.id) "-title" } {
                             h2 id={ (section.id) "-title" } { (words(&section.title)) }
-                            (blocks(&section.blocks))
+                            (blocks(&in_units(section.blocks.clone(), &report.units)))
                         }
                     }
                 }
@@ -97,17 +102,6 @@ pub fn render(report: &Report) -> Result<String, HtmlError> {
         }
     };
     Ok(page.into_string())
-}
-
-/// In the place of a corner impact.
-fn nowhere() -> Section {
-    let words = html! {
-        p {
-            "There is none to verify; " a href="#findings" { "the findings" }
-            " say why. What follows is what cam and follower do without it."
-        }
-    };
-    Section { id: "corner-impact", title: "Where the corner impact is".into(), blocks: vec![Block::Markup(words)] }
 }
 
 /// Text that ends a `script` element neither by a tag nor by a comment.

@@ -1,5 +1,7 @@
 //! What the model is.
 
+use maud::{Markup, html};
+
 use crate::pages::cam;
 use crate::pages::report::html::{HtmlError, plates};
 use crate::report::Report;
@@ -12,10 +14,11 @@ const LONG: usize = 24;
 
 pub(crate) fn section(report: &Report) -> Result<Section, HtmlError> {
     let sheet = &report.model;
-    let motion = "A follower of mass _m_ on a spring falls on a cam of lift _c_(_θ_) and leaves it with _v^+_ = (1 + _r_) _c_′ − \
-                  _r_ _v^−_; between impacts _m q_″ + _b q_′ + _k_ (_q_ − slack) = −_m g_.";
+    let motion = "A follower of mass _m_ on a spring, slack at _q₀_, flies above a cam of lift _c_(_θ_), hits it with _v^−_ where the \
+                  cam has the velocity _c′_, and leaves it with _v^+_:";
     let numbers = Block::Table(numbers(report));
-    let mut blocks = vec![Block::paragraph(&sheet.source), Block::paragraph(Words::prose(motion, []))];
+    let mut blocks =
+        vec![Block::paragraph(&sheet.source), Block::paragraph(Words::prose(motion, [])), Block::Markup(formulas())];
     blocks.push(match sheet.quantities.len() {
         count if count > LONG => Block::Details(words![count, " numbers of the model"], vec![numbers]),
         _ => numbers,
@@ -26,6 +29,21 @@ pub(crate) fn section(report: &Report) -> Result<Section, HtmlError> {
         blocks.push(Block::Markup(plates::plate(plate, report)?));
     }
     Ok(Section { id: "model", title: "The model".into(), blocks })
+}
+
+/// The flight and the impact, typeset: `m q'' + b q' + k (q - q0) = -m g` and `v+ = (1 + r) c' - r v-`.
+fn formulas() -> Markup {
+    let above = |letter: &str, sign: &str| html! { msup { mi { (letter) } mo { (sign) } } };
+    html! {
+        math display="block" {
+            mi { "m" } (above("q", "″")) mo { "+" } mi { "b" } (above("q", "′")) mo { "+" } mi { "k" }
+            mo { "(" } mi { "q" } mo { "−" } msub { mi { "q" } mn { "0" } } mo { ")" } mo { "=" } mo { "−" } mi { "m" } mi { "g" }
+        }
+        math display="block" {
+            (above("v", "+")) mo { "=" } mo { "(" } mn { "1" } mo { "+" } mi { "r" } mo { ")" } (above("c", "′"))
+            mo { "−" } mi { "r" } (above("v", "−"))
+        }
+    }
 }
 
 fn numbers(report: &Report) -> Table {

@@ -1,5 +1,11 @@
 //! The figures, in the paper's order.
 
+use std::io::Write;
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
 use maud::{Markup, PreEscaped, html};
 
 use crate::draw::{Look, svg};
@@ -7,25 +13,22 @@ use crate::figures::{Drawn, Plate};
 use crate::pages::report::html::HtmlError;
 use crate::report::Report;
 use crate::show::block::{Block, Section};
+use crate::show::csv;
 
 /// The figure that stands with the model.
 pub(crate) const CAM: &str = "cam";
 
+/// Those that there are; nothing where there are none but the one that stands with the model.
 pub(crate) fn section(report: &Report) -> Result<Option<Section>, HtmlError> {
-    if report.plates.is_empty() {
+    let there: Vec<&Plate> = report.plates.iter().filter(|plate| plate.drawn.is_ok()).collect();
+    if there.iter().all(|plate| plate.id == CAM) {
         return Ok(None);
     }
-    let (mut drawn, mut before) = (Vec::new(), None);
-    for plate in &report.plates {
-        let absent = plate.drawn.as_ref().err();
-        let again = absent.is_some() && absent == before;
-        drawn.push(match plate.id {
-            CAM => elsewhere(plate, report),
-            _ if again => self::absent(plate, report),
-            _ => self::plate(plate, report)?,
-        });
-        before = absent;
-    }
+    let drawn = there.into_iter().map(|plate| match plate.id {
+        CAM => Ok(elsewhere(plate, report)),
+        _ => self::plate(plate, report),
+    });
+    let drawn = drawn.collect::<Result<Vec<_>, _>>()?;
     let body = html! { @for plate in &drawn { (plate) } };
     Ok(Some(Section { id: "figures", title: "Figures".into(), blocks: vec![Block::Markup(body)] }))
 }
@@ -34,13 +37,18 @@ fn elsewhere(plate: &Plate, report: &Report) -> Markup {
     html! { p.note { (place(plate, report)) a href={ "#plate-" (plate.id) } { (plate.title) } " stands with the model." } }
 }
 
-/// A figure that is missing for the reason of the one before it.
-fn absent(plate: &Plate, report: &Report) -> Markup {
-    html! {
-        figure id={ "plate-" (plate.id) } {
-            figcaption { (place(plate, report)) strong { (plate.title) } ". " span.absent { "Not drawn, for the same reason." } }
-        }
-    }
+/// Text packed as a browser unpacks it.
+fn packed(text: &str) -> Result<String, std::io::Error> {
+    let mut packer = ZlibEncoder::new(Vec::new(), Compression::best());
+    packer.write_all(text.as_bytes())?;
+    Ok(STANDARD.encode(packer.finish()?))
+}
+
+/// A figure on a telephone: as wide as that, and its letters as high as those around it.
+fn narrow() -> Look {
+    /// Points, of those that a page is wide.
+    const PHONE: f64 = 250.0;
+    Look { width: Some(PHONE), untitled: true, ..Look::default() }
 }
 
 /// The paper's figure, for the paper's model: those of another one are none of the paper's.
@@ -52,9 +60,13 @@ fn place(plate: &Plate, report: &Report) -> Markup {
 pub(crate) fn plate(plate: &Plate, report: &Report) -> Result<Markup, HtmlError> {
     let (drawing, caption) = match &plate.drawn {
         Ok(Drawn { figure, caption }) => {
-            let drawing = PreEscaped(svg::render(figure, &Look::default())?);
-            let region = html! { div.wide.drawing role="region" aria-label=(plate.title) tabindex="0" { (drawing) } };
-            (region, html! { (caption) code.command { (plate.command) } })
+            let [broad, narrow] = [Look::default(), narrow()].map(|look| svg::render(figure, &look));
+            let drawing = html! {
+                div.drawing.broad { (PreEscaped(broad?)) }
+                div.drawing.narrow data-packed=(packed(&narrow?)?) {}
+                div.save data-packed=(packed(&csv::figure(figure))?) {}
+            };
+            (drawing, html! { (caption) code.command { (plate.command) } })
         }
         Err(why) => (html! {}, html! { strong { (plate.title) } ". " span.absent { "Not drawn: " (why) "." } }),
     };

@@ -1,7 +1,7 @@
 //! How to do it again.
 
 use crate::report::{Report, VERSION};
-use crate::show::block::{Block, Section, Span, Words};
+use crate::show::block::{Block, Section, Span, Words, words};
 
 pub(crate) fn section(report: &Report) -> Section {
     let code = |text: &str| Words::from(Span::Code(text.into()));
@@ -10,10 +10,14 @@ pub(crate) fn section(report: &Report) -> Section {
                    prints with `--json`; the page only lays them out.";
     let sources =
         "With the sources, `make test` runs every check and `make derive-check` redoes the proofs by computer algebra.";
-    let blocks = vec![
+    let mut blocks = vec![
         Block::paragraph(Words::prose(written, [VERSION.into(), code(&report.model.file)])),
         Block::Entries(0, commands.collect()),
         Block::paragraph(Words::prose(sources, [])),
     ];
+    if let Err(why) = &report.verification {
+        let none = "There is no corner impact to verify, in the words of the search: ";
+        blocks.push(Block::Note(words![none, code(why)]));
+    }
     Section { id: "reproduce", title: "How to do it again".into(), blocks }
 }

@@ -149,6 +149,7 @@
   const cells = (row, values) => values.forEach(([text, number]) => {
     const cell = row.insertCell();
     cell.textContent = text;
+    cell.dataset.head = get("readout").tHead.rows[0].cells[cell.cellIndex].textContent;
     if (number) cell.className = "n";
   });
   const multiplier = ({ re, im }) => (im === 0 ? fixed(re, places.multiplier) : `${fixed(re, places.multiplier)} ${im < 0 ? "\u2212" : "+"} ${im.toFixed(places.multiplier).replace("-", "")}\u202fi`);

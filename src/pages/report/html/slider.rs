@@ -10,19 +10,15 @@ use crate::show::digits::Digits;
 use crate::show::html::wide;
 use crate::show::words;
 
-pub(crate) fn section(report: &Report) -> Result<Section, HtmlError> {
-    let blocks = match (&report.through, &report.verification) {
-        (Ok(through), _) => vec![
-            Block::Markup(player(through)),
-            Block::Details("The same as a table".into(), vec![Block::Table(table(through))]),
-            Block::Markup(data(through)?),
-        ],
-        (_, Err(_)) => vec![Block::paragraph("There is no corner impact to lead a motion through.")],
-        (Err(why), _) => {
-            vec![Block::paragraph(format!("There is no motion to lead through the corner impact: {why}."))]
-        }
-    };
-    Ok(Section { id: "through", title: "Through the corner impact".into(), blocks })
+/// Nothing where there is no motion to lead through a corner impact.
+pub(crate) fn section(report: &Report) -> Result<Option<Section>, HtmlError> {
+    let Ok(through) = &report.through else { return Ok(None) };
+    let blocks = vec![
+        Block::Markup(player(through)),
+        Block::Details("The same as a table".into(), vec![Block::Table(table(through))]),
+        Block::Markup(data(through)?),
+    ];
+    Ok(Some(Section { id: "through", title: "Through the corner impact".into(), blocks }))
 }
 
 /// What the script reads.

@@ -15,7 +15,7 @@ pub(crate) fn section(report: &Report) -> Result<Section, HtmlError> {
     if let Some(picture) = &report.attractors {
         blocks.push(Block::Markup(plate(picture, report)?));
     }
-    Ok(Section { id: "speeds", title: "At other speeds".into(), blocks })
+    Ok(Section { id: "speeds", title: "At each speed".into(), blocks })
 }
 
 fn attractors(found: &Speeds) -> Vec<Block> {

@@ -10,27 +10,20 @@ use crate::show::digits::Digits;
 use crate::show::words::{quantity, route, spoken};
 use crate::study::verify::Verification;
 
-pub(crate) fn section(report: &Report) -> Section {
-    let (class, verdict) = match (&report.verification, report.agrees) {
-        (Err(_), _) => {
-            ("verdict agrees", "There is no corner impact to verify: nothing was checked, and nothing disagrees.")
-        }
-        (Ok(_), true) => ("verdict agrees", "Everything that was checked agrees."),
-        (Ok(_), false) => ("verdict disagrees", "Something that was checked does not agree."),
+/// Nothing where there was nothing to verify.
+pub(crate) fn section(report: &Report) -> Option<Section> {
+    let found = report.verification.as_ref().ok()?;
+    let (class, verdict) = match report.agrees {
+        true => ("verdict agrees", "Everything that was checked agrees."),
+        false => ("verdict disagrees", "Something that was checked does not agree."),
     };
-    let mut blocks = vec![Block::Markup(html! { p class=(class) { (verdict) } })];
-    if let Ok(found) = &report.verification {
-        blocks.push(Block::List(findings(report, found)));
-        for (title, items) in [("What does not agree", disagreements(report, found)), ("Not run", not_run(found))] {
-            if !items.is_empty() {
-                blocks.extend([Block::Heading(title.into()), Block::List(items)]);
-            }
+    let mut blocks = vec![Block::Markup(html! { p class=(class) { (verdict) } }), Block::List(findings(report, found))];
+    for (title, items) in [("What does not agree", disagreements(report, found)), ("Not run", not_run(found))] {
+        if !items.is_empty() {
+            blocks.extend([Block::Heading(title.into()), Block::List(items)]);
         }
     }
-    if let Err(why) = &report.verification {
-        blocks.push(Block::Markup(html! { p { "In the words of the search: " } pre.why { (why) } }));
-    }
-    Section { id: "findings", title: "Findings".into(), blocks }
+    Some(Section { id: "findings", title: "Findings".into(), blocks })
 }
 
 /// Words that stand out in a sentence.

@@ -1,0 +1,157 @@
+//! Formulas that stand in sentences, from plain text to what a browser sets: `phi_{T/2} x*` with Greek, lowered and raised letters.
+
+use maud::{Markup, html};
+
+/// Names of letters, and the letters.
+const GREEK: [(&str, &str); 12] = [
+    ("alpha", "α"),
+    ("delta", "δ"),
+    ("omega", "ω"),
+    ("Omega", "Ω"),
+    ("kappa", "κ"),
+    ("theta", "θ"),
+    ("zeta", "ζ"),
+    ("phi", "φ"),
+    ("Phi", "Φ"),
+    ("rho", "ρ"),
+    ("tau", "τ"),
+    ("mu", "μ"),
+];
+/// Signs that are typed with more than one key.
+const SIGNS: [(&str, &str); 4] = [("+-", "±"), ("->", "→"), ("<=", "≤"), (">=", "≥")];
+
+/// A stretch of a formula.
+enum Part {
+    Plain(String),
+    Letter(String),
+    Below(String),
+    Above(String),
+}
+
+/// A sentence with its formulas set. What is no formula stays as it is: words, numbers, names with a colon or an underscore in words.
+pub(crate) fn sentence(text: &str) -> Markup {
+    let words = text.split_inclusive(' ').flat_map(|word| {
+        let bare = word.trim_end();
+        let sign = SIGNS.iter().find(|(typed, _)| *typed == bare);
+        match sign {
+            Some((_, sign)) => vec![Part::Plain(format!("{sign}{}", &word[bare.len()..]))],
+            None if is_formula(bare) => parts(word),
+            None => vec![Part::Plain(word.to_owned())],
+        }
+    });
+    html! {
+        @for part in words {
+            @match part {
+                Part::Plain(text) => (text),
+                Part::Letter(text) => i { (text) },
+                Part::Below(text) => sub { (text) },
+                Part::Above(text) => sup { (text) },
+            }
+        }
+    }
+}
+
+fn letter(name: &str) -> Option<&'static str> {
+    GREEK.iter().find(|(typed, _)| *typed == name).map(|(_, letter)| *letter)
+}
+
+/// The names in a word: runs of letters.
+fn names(word: &str) -> impl Iterator<Item = &str> {
+    word.split(|letter: char| !letter.is_ascii_alphabetic()).filter(|name| !name.is_empty())
+}
+
+/// Whether a word is a formula: its names are letters of one or two, or of Greek, and it has a sign of mathematics or is such a letter.
+fn is_formula(word: &str) -> bool {
+    let short = |name: &str| name.len() <= 2 || letter(name).is_some();
+    let is_named = word.contains(':') || word.contains(".toml") || word.starts_with('"');
+    let has_sign =
+        word.contains(['_', '^', '*', '\'', '~']) || word.trim_end_matches(['.', ',', ';', ')']).ends_with(['+', '-']);
+    let is_unit = word.contains('/') && !word.contains(['_', '*', '\'']);
+    let greek = names(word).any(|name| letter(name).is_some());
+    !is_named && !is_unit && names(word).next().is_some() && names(word).all(short) && (has_sign || greek)
+}
+
+/// A formula as its stretches: after `_` and `^` a letter, a number or what stands in braces; an asterisk, a prime or a side behind a name.
+fn parts(word: &str) -> Vec<Part> {
+    let mut parts = Vec::new();
+    let mut rest = word;
+    while let Some(first) = rest.chars().next() {
+        let taken = |from: &str, is: fn(char) -> bool| from.find(|letter| !is(letter)).unwrap_or(from.len());
+        if first.is_ascii_alphabetic() {
+            let (name, behind) = rest.split_at(taken(rest, |letter| letter.is_ascii_alphabetic()));
+            parts.push(Part::Letter(letter(name).unwrap_or(name).to_owned()));
+            let digits = taken(behind, |letter| letter.is_ascii_digit());
+            if digits > 0 {
+                parts.push(Part::Below(behind[..digits].to_owned()));
+            }
+            rest = &behind[digits..];
+            let primes = taken(rest, |letter| letter == '\'');
+            if primes > 0 {
+                parts.push(Part::Plain("′".repeat(primes)));
+                rest = &rest[primes..];
+            }
+            // A side or an asterisk ends the name; before a letter or a number it is an operator.
+            let next = rest.chars().nth(1);
+            let ends = next.is_none_or(|next| !next.is_alphanumeric() && next != '(');
+            if let Some(sign) = rest.chars().next().filter(|sign| "*+-~".contains(*sign) && ends) {
+                parts.push(match sign {
+                    '~' => Part::Plain("\u{303}".into()),
+                    '-' => Part::Above("−".into()),
+                    sign => Part::Above(sign.into()),
+                });
+                rest = &rest[1..];
+            }
+            continue;
+        }
+        if matches!(first, '_' | '^') && rest.len() > 1 {
+            let behind = &rest[1..];
+            let (inside, after) = match behind.strip_prefix('{').and_then(|inside| inside.split_once('}')) {
+                Some(found) => found,
+                None => {
+                    let sign = usize::from(behind.starts_with('-'));
+                    let run =
+                        taken(&behind[sign..], |letter| letter.is_ascii_alphanumeric()).max(usize::from(sign == 0));
+                    behind.split_at_checked(sign + run).unwrap_or((behind, ""))
+                }
+            };
+            let inside: String =
+                inside.split_inclusive(|letter: char| !letter.is_ascii_alphabetic()).map(set).collect();
+            parts.push(if first == '_' { Part::Below(inside) } else { Part::Above(inside) });
+            rest = after;
+            continue;
+        }
+        let mut end = first.len_utf8();
+        end += taken(&rest[end..], |letter| !letter.is_ascii_alphabetic() && letter != '_' && letter != '^');
+        parts.push(Part::Plain(rest[..end].replace('-', "−")));
+        rest = &rest[end..];
+    }
+    parts
+}
+
+/// A name with what ends it, the name as its letter.
+fn set(part: &str) -> String {
+    let end = part.find(|letter: char| !letter.is_ascii_alphabetic()).unwrap_or(part.len());
+    let (name, rest) = part.split_at(end);
+    format!("{}{}", letter(name).unwrap_or(name), rest.replace('-', "−"))
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn formulas_are_set_and_words_are_left() {
+        for (text, set) in [
+            (
+                "dP/dx at fixed t_i is phi_{T/2} x*.",
+                "dP/dx at fixed <i>t</i><sub>i</sub> is <i>φ</i><sub>T/2</sub> <i>x</i><sup>*</sup>.",
+            ),
+            ("A- and B- hold", "<i>A</i><sup>−</sup> and <i>B</i><sup>−</sup> hold"),
+            ("omega0^2 -> 0", "<i>ω</i><sub>0</sub><sup>2</sup> → 0"),
+            ("c'' is 5.1e-9 m/s^2", "<i>c</i>′′ is 5.1e-9 m/s^2"),
+            ("as printed, eq:PT in one-impact words", "as printed, eq:PT in one-impact words"),
+            ("W^{-1} x~", "<i>W</i><sup>−1</sup> <i>x</i>\u{303}"),
+            ("a < b & \"_", "a &lt; b &amp; &quot;_"),
+        ] {
+            assert_eq!(super::sentence(text).into_string(), set, "{text}");
+        }
+    }
+}
