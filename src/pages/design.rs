@@ -3,7 +3,7 @@
 use crate::pages::speeds::measured_speed;
 use crate::show::Paged;
 use crate::show::block::{Block, Column, Mark, Span, Table, Words, words};
-use crate::show::digits::Digits;
+use crate::show::digits::{Digits, with_error};
 use crate::study::design::contact::Separation;
 use crate::study::design::needs::Answer;
 use crate::study::design::{Design, Trade};
@@ -168,7 +168,7 @@ fn needs(found: &Design) -> Vec<Block> {
             Column::words(""),
         ];
         let mut table = Table::new(&of_need[0].need, columns);
-        for Answer { lever, now, value, unit, note, known, .. } in of_need {
+        for Answer { lever, now, value, error, unit, note, known, .. } in of_need {
             let digits =
                 if *known == crate::known::Known::Computed { Digits::Significant(9) } else { Digits::Significant(3) };
             let bound = if lever.is_upper_bound() { "at most" } else { "at least" };
@@ -176,7 +176,10 @@ fn needs(found: &Design) -> Vec<Block> {
                 lever.to_string().into(),
                 words![(*now, Digits::Short)],
                 if value.is_some() { bound.into() } else { Words::default() },
-                value.map_or("none".into(), |value| words![(value, digits)]),
+                value.map_or("none".into(), |value| match error.map(with_error) {
+                    Some((digits, error)) => words![(value, digits), " ± ", (error, digits)],
+                    None => words![(value, digits)],
+                }),
                 unit.into(),
                 known.to_string().into(),
                 note.into(),

@@ -188,3 +188,38 @@ fn loads_of_a_sweep_are_those_of_its_impacts() {
     let fastest = loads.iter().map(|row| number(&row[2])).fold(0.0, f64::max);
     assert!((fastest - hits.iter().copied().fold(0.0, f64::max)).abs() < 1e-9 * fastest);
 }
+
+/// The rows of a cam rounded to 0.001 mm: what has to be changed is that of the true cam within what is told to be open.
+#[test]
+fn needs_of_a_measured_cam_hold_those_of_the_true_one() {
+    let rise = "motion = \"modified-sine\"\nspan_deg = 110\nrise";
+    let dwell = |span: u32| format!("[[cam.segment]]\nmotion = \"dwell\"\nspan_deg = {span}\n");
+    let head = "name = \"feed\"\n[units]\nlength = \"mm\"\nstiffness = \"N/mm\"\n[follower]\nmass = 0.25\ndamping = 0\nstiffness = 12\n\
+                gravity = 9.81\npreload = 90\nrestitution = 0.4\n[cam]\n";
+    let exact = format!(
+        "{head}law = \"program\"\nbase = 0\n{}[[cam.segment]]\n{rise} = 10\n{}[[cam.segment]]\n{rise} = -10\n{}",
+        dwell(60),
+        dwell(20),
+        dwell(60)
+    );
+    let exact = Model::parse("exact.toml", &exact).unwrap();
+    let cam = Cam::new(&exact).unwrap();
+    let row = |index: u32| {
+        let lift = cam.lift(f64::from(2 * index).to_radians()).value;
+        format!("[{}.0, {:.3}]", 2 * index, lift + 0.0)
+    };
+    let rows: Vec<String> = (0..180).map(row).collect();
+    let table = format!("{head}law = \"table\"\nspline = \"smoothing\"\nrows = [{}]\n", rows.join(", "));
+    let table = Model::parse("table.toml", &table).unwrap();
+    let words = "no separation to 2600 rpm".to_owned();
+    let asked = Asked { speeds: 2, needs: vec![(words.clone(), words.parse().unwrap())], ..Asked::default() };
+    let [exact, found] = [&exact, &table].map(|model| design(model, &asked, &Unwatched).unwrap());
+    let mut held = 0;
+    for (truth, answer) in exact.needs.iter().zip(&found.needs) {
+        let (Some(truth), Some(value)) = (truth.value, answer.value) else { continue };
+        let error = answer.error.unwrap();
+        assert!((value - truth).abs() < error && error < 0.1 * truth, "{}: {value} ± {error}, {truth}", answer.lever);
+        held += 1;
+    }
+    assert_eq!(held, 3);
+}

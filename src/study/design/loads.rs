@@ -153,6 +153,8 @@ impl Loads {
             loads.impact_speed = loads.impact_speed.max(speed);
             loads.energy += joule * 0.5 * follower.mass * (1.0 - follower.restitution.powi(2)) * speed * speed;
         }
+        // The first revolution's samples may begin a rounding before it.
+        found.iter_mut().for_each(|loads| loads.off_cam = loads.off_cam.min(1.0));
         Ok(found)
     }
 }

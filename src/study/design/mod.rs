@@ -207,6 +207,11 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
     let contact = Contact::new(&cam, model.follower);
     let likely = Likely::of(model)?;
     let separation = known(contact.separation(), likely.as_ref());
+    // A need that is to be met for certain is one at a speed that is higher by as much as the separation is uncertain.
+    let uncertain = match separation {
+        Separation::At { rpm, error, .. } if likely.as_ref().is_some_and(|likely| likely.best.is_some()) => error / rpm,
+        _ => 0.0,
+    };
     let range = asked.rpm.or(match separation {
         Separation::At { rpm, .. } => Some(USUAL.map(|part| part * rpm)),
         _ => model.study.map(|study| [study.rpm_min, study.rpm_max]),
@@ -246,7 +251,7 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
     for (text, need) in &asked.needs {
         for lever in Lever::ALL {
             watch.at(&format!("the {lever} for \"{text}\""), needs.len() as u64, total);
-            needs.push(needs::answer(&changed, need, text, lever)?);
+            needs.push(needs::answer(&changed, (need, text), lever, uncertain)?);
         }
     }
     let mut trades = Vec::new();

@@ -193,6 +193,8 @@ pub struct Answer {
     pub now: f64,
     /// The least that will do, of a mass the most; none where no value does it.
     pub value: Option<f64>,
+    /// How far it may be off where the cam is measured.
+    pub error: Option<f64>,
     /// The unit.
     pub unit: String,
     /// Why there is no value, or what else there is to say.
@@ -206,19 +208,33 @@ document!(Answer as it {
     parameter: it.lever,
     now: it.now,
     value: it.value,
+    error if_any: it.error,
     unit: it.unit,
     is_upper_bound: it.lever.is_upper_bound(),
     note: it.note,
     known: it.known,
 });
 
-/// What a number has to be, the others kept.
-pub(super) fn answer(of: &Changed<'_>, need: &Need, text: &str, lever: Lever) -> Result<Answer, SimulateError> {
+/// What a number has to be, the others kept, of a machine whose separation is uncertain by this part of its speed.
+pub(super) fn answer(
+    of: &Changed<'_>,
+    (need, text): (&Need, &str),
+    lever: Lever,
+    uncertain: f64,
+) -> Result<Answer, SimulateError> {
     let known = if need.what == What::NoSeparation { Known::Computed } else { Known::Sampled };
     let (found, note) = find(of, need, lever)?;
     let value = found.map(|value| of.told(lever, value).0);
+    let error = match found {
+        // Of what is as little as there can be nothing is open.
+        Some(value) if uncertain > 0.0 && need.what == What::NoSeparation && note.is_empty() => {
+            let (certain, _) = find(of, &Need { rpm: need.rpm * (1.0 + uncertain), ..*need }, lever)?;
+            certain.map(|certain| of.told(lever, (certain - value).abs()).0)
+        }
+        _ => None,
+    };
     let (now, unit) = of.told(lever, of.value(lever));
-    Ok(Answer { need: text.into(), lever, now, value, unit, note, known })
+    Ok(Answer { need: text.into(), lever, now, value, error, unit, note, known })
 }
 
 /// The value of a number, or none, with a sentence.
