@@ -88,7 +88,7 @@ impl Model {
             format!("the lift rises by {rise:.4} m: did you mean mm?")
         } else if stiffness > 0.0 && (compressed > MOST_RISES * rise || slowest.is_some_and(too_soft)) {
             format!("stiffness {stiffness} with mass {mass}: did you mean N/mm?")
-        } else if weights > MOST_WEIGHTS {
+        } else if weights > MOST_WEIGHTS && weights.is_finite() {
             format!(
                 "the spring presses with {:.0} N, {weights:.0} times the weight of mass {mass}: is it in kg?",
                 stiffness * compressed

@@ -145,7 +145,7 @@ impl Canvas {
         let figure = figure.in_units(|unit| units.spelled(unit));
         let (look, figure) = (&self.look, self.look.framed(figure)?);
         let bytes = match self.kind {
-            Kind::Png => png::render(&figure, look, look.pixels())?,
+            Kind::Png => png::render(figure, look, look.pixels())?,
             Kind::Svg => svg::render(&figure, look)?.into_bytes(),
             Kind::Pdf => pdf::render(&figure, look)?,
         };

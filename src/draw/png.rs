@@ -50,19 +50,20 @@ impl Look {
     }
 }
 
-/// The figure on white paper, `width` pixels wide.
-pub fn render(figure: &Figure, look: &Look, width: u32) -> Result<Vec<u8>, PngError> {
+/// The figure on white paper, `width` pixels wide. It is taken: what it is drawn from is no longer needed once it is laid out.
+pub fn render(figure: Figure, look: &Look, width: u32) -> Result<Vec<u8>, PngError> {
     if !(1..=WIDEST).contains(&width) {
         return Err(PngError::Width(width));
     }
     let fonts = look.fonts.clone().unwrap_or_default();
-    let layers = svg::write(figure, look, "", true)?.into_iter().map(|layer| match layer {
+    let scale = f64::from(width) / look.across();
+    let height = (Layout::new(&figure, look.title(&figure), look.across()).height * scale).ceil() as u32;
+    let layers = svg::write(&figure, look, "", true)?.into_iter().map(|layer| match layer {
         Layer::Drawing(text) => fonts.tree(&text).map(|tree| Paint::Drawing(Box::new(tree))),
         Layer::Grid(grid, colour, frame) => Ok(Paint::Grid(grid, colour, frame)),
     });
+    drop(figure);
     let layers: Vec<Paint> = layers.collect::<Result<_, _>>()?;
-    let scale = f64::from(width) / look.across();
-    let height = (Layout::new(figure, look.title(figure), look.across()).height * scale).ceil() as u32;
     let pack = |error: png::EncodingError| PngError::Pack(error.to_string());
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);

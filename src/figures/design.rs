@@ -4,8 +4,8 @@ use crate::draw::{Axis, Colour, Figure, Mark, Marker, Panel, Series, Stroke, ext
 use crate::figures::SPEED;
 use crate::figures::impacts::WHOLE_CAM;
 use crate::model::Units;
-use crate::study::design::Design;
 use crate::study::design::loads::{Load, Loads};
+use crate::study::design::{Design, Trade};
 
 /// Trades where there are any, else the force round the cam at one speed, else forces and loads against the speed.
 pub fn design_figure(found: &Design) -> Figure {
@@ -79,8 +79,10 @@ pub fn loads_diagram(title: &str, sweep: &[Vec<Loads>], load: Load, units: &Unit
 }
 
 fn trades(found: &Design) -> Figure {
-    let panels = found.trades.iter().map(|trade| {
-        let points = trade.pairs.iter().map(|(given, found)| [*given, found.unwrap_or(f64::NAN)]);
+    // Nothing is drawn of what no value does, or 0 does.
+    let has_any = |trade: &&Trade| trade.pairs.iter().any(|pair| pair.found.is_some_and(|value| value > 0.0));
+    let panels = found.trades.iter().filter(has_any).map(|trade| {
+        let points = trade.pairs.iter().map(|pair| [pair.given, pair.found.unwrap_or(f64::NAN)]);
         let line = Series::line("", Colour::Blue, Stroke::Solid, points);
         let bound = if trade.parameter.is_upper_bound() { "most" } else { "least" };
         Panel::new(Axis::new(&format!("{bound} {}", trade.parameter), &trade.unit), 0.22, vec![line])
@@ -89,7 +91,7 @@ fn trades(found: &Design) -> Figure {
         .trades
         .first()
         .map_or((String::new(), ""), |trade| (trade.against.to_string(), trade.against_unit.as_str()));
-    let range = extent(found.trades.iter().flat_map(|trade| trade.pairs.iter().map(|(given, _)| *given)));
+    let range = extent(found.trades.iter().flat_map(|trade| trade.pairs.iter().map(|pair| pair.given)));
     let needs: Vec<&str> = found.trades.iter().map(|trade| trade.need.as_str()).collect();
     let title = format!("{}: {}", found.model.name, needs.first().unwrap_or(&""));
     Figure::new(&title, Axis::new(&against, unit).over(range), panels.collect())

@@ -126,7 +126,12 @@ impl Model {
         let rest_position = match preload {
             // The cam has the lowest lift, which says where the spring is slack.
             Some(_) => f64::NAN,
-            None => fields.number("follower.rest_position", Allowed::FINITE)?,
+            None => {
+                let meant = "; or give follower.preload, the force of the spring where the lift is lowest";
+                let is_there = fields.has("follower.rest_position");
+                let number = fields.number("follower.rest_position", Allowed::FINITE);
+                number.map_err(|error| if is_there { error } else { error.found(meant) })?
+            }
         };
         let restitution = fields.number("follower.restitution", Allowed::between(0.0, 1.0))?;
         let follower = Follower { mass, damping, stiffness, gravity, rest_position, restitution };

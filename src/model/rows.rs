@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use serde::Serialize;
 
 use super::ModelError;
-use super::units::LENGTHS;
+use super::units::{LENGTHS, Unit};
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Row {
@@ -121,6 +121,12 @@ fn header([angle, lift]: [&str; 2]) -> Option<(Option<bool>, Option<usize>)> {
     Some(((degrees || radians).then_some(radians), length))
 }
 
+/// What a header's cell has between brackets, in small letters.
+fn bracketed(cell: &str) -> Option<String> {
+    let (_, inside) = cell.split_once(['[', '('])?;
+    Some(inside.split([']', ')']).next().unwrap_or_default().trim().to_lowercase())
+}
+
 /// A line without its comment, and whether it had one.
 fn without_comment(line: &str) -> (&str, bool) {
     let at = ["#", "%", "//"].iter().filter_map(|mark| line.find(mark)).min();
@@ -128,6 +134,25 @@ fn without_comment(line: &str) -> (&str, bool) {
 }
 
 impl Table<'_> {
+    /// Refuses a unit in brackets that is none: it would be taken for another one.
+    fn known_unit(&self, line: usize, cell: &str, column: &str) -> Result<(), ModelError> {
+        let lengths: Vec<&str> = LENGTHS.iter().map(Unit::name).collect();
+        let units = if column == "angle" { vec!["deg", "rad"] } else { lengths };
+        let is_known = |unit: &str| match column {
+            "angle" => DEGREES.contains(&unit) || RADIANS.contains(&unit),
+            _ => units.contains(&unit) || unit == "µm",
+        };
+        match bracketed(cell) {
+            Some(unit) if !is_known(&unit) => Err(self.reject(
+                line,
+                "header",
+                cell,
+                format!("the unit of the {column} must be one of: {}", units.join(", ")),
+            )),
+            _ => Ok(()),
+        }
+    }
+
     pub(super) fn reject(&self, line: usize, column: &str, value: &str, allowed: String) -> ModelError {
         let shown: String = value.chars().take(60).collect();
         let (field, shown) = (Some(column.into()), Some(shown));
@@ -160,6 +185,11 @@ impl Table<'_> {
         if has_header && named.is_none() {
             let allowed = format!("must name the angle, then the lift, as {HEADER} does, with their units or without");
             return Err(self.reject(first_line, "header", first, allowed));
+        }
+        for (cell, column) in
+            separator.columns(first).filter(|_| has_header).into_iter().flatten().zip(["angle", "lift"])
+        {
+            self.known_unit(first_line, cell, column)?;
         }
         let mut layout = Layout {
             separator,

@@ -48,7 +48,7 @@ impl Unit {
 }
 
 /// Units by name, as parts of the SI's; the first is the SI's own.
-pub(super) const LENGTHS: [Unit; 6] = [
+pub(super) static LENGTHS: [Unit; 6] = [
     Unit::new("m", 1.0, 1.0),
     Unit::new("cm", 1.0, 100.0),
     Unit::new("mm", 1.0, 1000.0),

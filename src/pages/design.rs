@@ -6,7 +6,7 @@ use crate::show::block::{Block, Column, Mark, Span, Table, Words, words};
 use crate::show::digits::{Digits, with_error};
 use crate::study::design::contact::Separation;
 use crate::study::design::needs::Answer;
-use crate::study::design::{Design, Trade};
+use crate::study::design::{Design, Pair, Trade};
 
 /// A column of numbers, apart from the one before.
 fn number(head: impl Into<Words>) -> Column {
@@ -72,7 +72,7 @@ pub(crate) fn margin(found: &Design) -> Option<Words> {
     const BELOW: f64 = 0.999;
     let below = BELOW * found.separation.speed();
     let last = found.forces.iter().rfind(|at| at.rpm < below)?;
-    let force = (found.force(last.least.value), SIX);
+    let force = with_open(found.force(last.least.value), last.error.map(|error| found.force(error)), SIX);
     let (rpm, angle) = ((last.rpm, SIX), (last.least.angle.to_degrees(), Digits::Fixed(3)));
     let unit = found.units.force.name();
     Some(words!["At ", rpm, " rpm the cam presses with ", force, format!(" {unit} at least, at "), angle, " deg."])
@@ -106,7 +106,7 @@ fn speeds(found: &Design) -> Vec<Block> {
             None => cells.extend([Words::default(), Words::default()]),
         }
         if !found.loads.is_empty() {
-            let three = |value: f64| words![(value, Digits::Significant(3))];
+            let three = |value: f64| words![(value, Digits::Aligned(3))];
             match found.loads.iter().find(|loads| loads.rpm == rpm) {
                 Some(loads) => cells.extend([
                     three(loads.impact_speed),
@@ -115,7 +115,11 @@ fn speeds(found: &Design) -> Vec<Block> {
                     three(loads.energy),
                     three(found.force(loads.force)),
                 ]),
-                None => cells.extend((0..5).map(|_| "".into())),
+                None => {
+                    cells.extend((0..4).map(|_| "".into()));
+                    let on_cam = found.forces.iter().find(|at| at.rpm == rpm);
+                    cells.push(on_cam.map_or("".into(), |at| three(found.force(at.largest))));
+                }
             }
         }
         table.row(cells);
@@ -176,10 +180,7 @@ fn needs(found: &Design) -> Vec<Block> {
                 lever.to_string().into(),
                 words![(*now, Digits::Short)],
                 if value.is_some() { bound.into() } else { Words::default() },
-                value.map_or("none".into(), |value| match error.map(with_error) {
-                    Some((digits, error)) => words![(value, digits), " ± ", (error, digits)],
-                    None => words![(value, digits)],
-                }),
+                value.map_or("none".into(), |value| with_open(value, *error, digits)),
                 unit.into(),
                 known.to_string().into(),
                 note.into(),
@@ -210,12 +211,20 @@ fn rounded(found: &Design) -> Vec<Block> {
     vec![Block::Heading("Jumps of the acceleration".into()), Block::paragraph(words), Block::Table(table)]
 }
 
+/// A value, with what the cam leaves open of it.
+fn with_open(value: f64, error: Option<f64>, digits: Digits) -> Words {
+    match error.map(with_error) {
+        Some((digits, error)) => words![(value, digits), " ± ", (error, digits)],
+        None => words![(value, digits)],
+    }
+}
+
 fn trade(trade: &Trade) -> [Block; 2] {
     let Trade { need, parameter, unit, against, against_unit, pairs } = trade;
     let columns = [number(format!("{against} {against_unit}")), number(format!("{parameter} {unit}"))];
     let mut table = Table::new(need, columns);
-    for (given, found) in pairs {
-        table.row([words![(*given, SIX)], found.map_or("none".into(), |value| words![(value, SIX)])]);
+    for Pair { given, found, error } in pairs {
+        table.row([words![(*given, SIX)], found.map_or("none".into(), |value| with_open(value, *error, SIX))]);
     }
     let bound = if parameter.is_upper_bound() { "most" } else { "least" };
     [Block::Heading(format!("{need}: the {bound} {parameter} for each {against}").into()), Block::Table(table)]

@@ -8,6 +8,7 @@ use serde::Serialize;
 use crate::agreement::by_quantity;
 use crate::cam::{Cam, Jet, Side};
 use crate::figures::{Drawn, Plate, Subject, corner_marks, impacts_by_speed, plates, speeds_figure, through_corner};
+use crate::measured::{Likely, Measured};
 use crate::model::{Model, ModelError, Units};
 use crate::paper::{Claims, Context, LedgerError};
 use crate::progress::Watch;
@@ -18,6 +19,7 @@ use crate::show::words;
 use crate::study::attractors::{Resolution, Step};
 use crate::study::cam::CamSheet;
 use crate::study::design::contact::{Contact, Separation};
+use crate::study::design::known;
 use crate::study::speeds::{Speeds, speeds, usual_range};
 use crate::study::verify::{External, Tally, Verification, verify_watched};
 
@@ -38,6 +40,8 @@ pub struct Report {
     pub claims: Option<Claims>,
     /// Where the follower first leaves the cam, by the force between them.
     pub separation: Separation,
+    /// How well the cam is known, if it is measured.
+    pub measured: Option<Measured>,
     /// That force below there; nothing where the follower leaves the cam however slow, or never.
     pub margin: Option<Margin>,
     /// What the model's lengths are told in.
@@ -221,7 +225,9 @@ impl Report {
         };
         let commands = commands(model, verification.is_ok());
         let contact = Contact::new(&cam, model.follower);
-        let (separation, margin, units) = (contact.separation(), margin(&contact, &model.units), model.units.clone());
+        let likely = Likely::of(model)?;
+        let separation = known(contact.separation(), likely.as_ref());
+        let (margin, units) = (margin(&contact, &model.units), model.units.clone());
         Ok(Self {
             agrees,
             is_paper,
@@ -230,6 +236,7 @@ impl Report {
             through,
             claims,
             separation,
+            measured: likely.map(|likely| likely.measured),
             margin,
             units,
             speeds,
@@ -285,7 +292,9 @@ fn attractors(model: &Model, cam: &Cam, found: &Speeds) -> Plate {
 fn through(model: &Model, cam: &Cam, found: &Verification) -> Result<ThroughCorner, String> {
     match through_corner(model, cam, &found.at) {
         Ok(Some(found_there)) => {
-            ThroughCorner::new(found_there, cam, found.at.corner.angle).map_err(|error| error.to_string())
+            let through =
+                ThroughCorner::new(found_there, cam, found.at.corner.angle).map_err(|error| error.to_string());
+            through.map(|through| through.in_units(&model.units))
         }
         Ok(None) => Err("the corner impact is not one of an orbit with one impact a revolution".to_owned()),
         Err(error) => Err(format!("a run cannot go on: {error}")),

@@ -8,6 +8,7 @@ use crate::draw::ticks::{ticks, unit};
 use crate::draw::{Spacing, extent};
 use crate::figures::through_corner::{Moment, Place, Shown, profile};
 use crate::figures::{CornerMark, Outline, corner_marks};
+use crate::model::Units;
 
 /// Why there is nothing to show.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -203,6 +204,20 @@ impl ThroughCorner {
             cam,
             frames,
         })
+    }
+}
+
+impl ThroughCorner {
+    /// With the lengths on its axes told in the length of a model.
+    pub(crate) fn in_units(mut self, units: &Units) -> Self {
+        if units.are_given {
+            for axis in [&mut self.axes.position, &mut self.axes.acceleration] {
+                // Behind a power of ten, if there is one.
+                let (power, unit) = axis.unit.rsplit_once(' ').unwrap_or(("", &axis.unit));
+                axis.unit = format!("{power} {}", units.spelled(unit)).trim().to_owned();
+            }
+        }
+        self
     }
 }
 

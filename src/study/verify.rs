@@ -263,7 +263,8 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
     let mut log = Log::default();
     // The programs outside take seconds and this one's routes a few hundredths: they run beside each other.
     let outside = start_outside(model, external)?;
-    let proving = (external == External::Run).then(|| {
+    let is_smoothed = model.table().is_some_and(|table| table.spline.smoothing().is_some());
+    let proving = (external == External::Run && !is_smoothed).then(|| {
         let (model, place) = (model.clone(), certify::candidate(model, &cam, &at));
         std::thread::spawn(stop::carried(move || certify::prove(&model, vec![place], certify::BITS)))
     });
@@ -304,7 +305,7 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
     let border = border(model, &cam, &at);
     let classification = compared::classified(&map, border, sticking);
     watch.at("the proof, in Python", 0, 0);
-    let certificate = certificate(proving, classification.is_err(), &mut log);
+    let certificate = certificate(proving, (classification.is_err(), is_smoothed), &mut log);
     if let Some(certificate) = &certificate {
         let (name, x_star) = (RouteName::Certificate, Vector2::from_fn(|row, _| certificate.state[row].value()));
         routes.push(Route { name, map: certificate.map(), uncertainty: None });
@@ -369,10 +370,15 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
 type Proving = JoinHandle<Result<Vec<Outcome>, PythonError>>;
 
 /// The certificate that was waited for; where what happens is not classified either, there need be none.
-fn certificate(proving: Option<Proving>, is_unclassified: bool, log: &mut Log) -> Option<Certificate> {
+fn certificate(
+    proving: Option<Proving>,
+    (is_unclassified, is_smoothed): (bool, bool),
+    log: &mut Log,
+) -> Option<Certificate> {
     let name = RouteName::Certificate;
     let Some(proving) = proving else {
-        log.leave_out(name, "left out by --no-external");
+        let smoothed = "knows splines through the rows of a table, not near them";
+        log.leave_out(name, if is_smoothed { smoothed } else { "left out by --no-external" });
         return None;
     };
     let outcome = proving.join().map(|proved| proved.map(|mut outcomes| outcomes.pop()));

@@ -171,9 +171,15 @@ fn tables_that_are_refused() {
         let kept = (0..360).filter(move |k| !skip.contains(k));
         csv(&kept.map(|k| (f64::from(k), smooth(f64::from(k)))).collect::<Vec<_>>())
     };
-    let cases: [(&str, String, &[&str]); 18] = [
+    let cases: [(&str, String, &[&str]); 20] = [
         ("empty", String::new(), &[".csv: is empty", "angle_deg,lift"]),
         ("header", "place,height\n0,1\n".into(), &[".csv:1: header = place,height", "as angle_deg,lift does"]),
+        (
+            "inches",
+            "angle [deg],lift [inch]\n0,1\n".into(),
+            &[".csv:1: header = lift [inch]", "the unit of the lift must be one of: m, cm, mm"],
+        ),
+        ("gradians", "angle (gon),lift\n0,1\n".into(), &["the unit of the angle must be one of: deg, rad"]),
         ("swapped", "lift,angle\n1,0\n".into(), &[".csv:1: header = lift,angle", "must name the angle, then the lift"]),
         ("text", "angle_deg,lift\n0,1\n120,high\n".into(), &[".csv:3: lift = high: must be a finite number"]),
         ("nan", "angle_deg,lift\n0,1\n120,nan\n".into(), &[".csv:3: lift = nan"]),

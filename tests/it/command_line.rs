@@ -80,8 +80,15 @@ fn examples_work_as_written() {
         "a command without a test: {first}"
     );
     let wrong = |line: &String| {
-        let words: Vec<&str> = line.split_whitespace().skip(1).collect();
-        let output = program(words).current_dir(folder.path()).output().unwrap();
+        // What stands between quotes is one word, with its blanks.
+        let quoted = line.split('"').enumerate();
+        let words =
+            quoted.flat_map(
+                |(place, part)| {
+                    if place % 2 == 1 { vec![part] } else { part.split_whitespace().collect::<Vec<_>>() }
+                },
+            );
+        let output = program(words.skip(1)).current_dir(folder.path()).output().unwrap();
         let (out, err) = (text(output.stdout), text(output.stderr));
         // Python need not be here.
         let without_python = output.status.code() == Some(1) && err.contains("did not run");

@@ -121,6 +121,20 @@ fn the_document_has_the_fields_of_the_contract() {
     assert!(needs[..4].iter().all(|need| need["known"] == "computed"));
     assert!(needs[4..].iter().all(|need| need["known"] == "sampled"));
     assert!(found["limits"][0]["speed_rpm"].is_f64(), "{}", found["limits"]);
+    // What the cam presses with below the separation counts as well.
+    let pressed = document(&[
+        "design",
+        "models/preloaded.toml",
+        "--rpm",
+        "50:100",
+        "--speeds",
+        "3",
+        "--limit",
+        "force=100",
+        "--json",
+    ]);
+    assert_eq!((&pressed["limits"][0]["speed_rpm"], &pressed["loads"]), (&50.0.into(), &serde_json::json!([])));
+    assert!(pressed["contact_force"][0]["largest_n"].as_f64().unwrap() > 100.0);
 }
 
 /// Beyond the separation the machine that is changed as asked keeps the limit, by runs of its own.
@@ -152,6 +166,7 @@ fn what_cannot_be_answered_is_told() {
     for (words, says) in [
         (vec!["--need", "no separation"], "must be like"),
         (vec!["--need", "impact speed below 3 kg to 200 rpm"], "\"kg\": impact speed is in one of: m/s"),
+        (vec!["--need", "force below 3 N to 200 rpm"], "a force is no need"),
         (vec!["--need", "no separation to -3 rpm"], "is not a number above 0"),
         (vec!["--limit", "noise=3"], "must be one of: impact-speed, gap, energy, force"),
         (vec!["--against", "length=1:2:3", "--need", "no separation to 200 rpm"], "must be one of: preload"),

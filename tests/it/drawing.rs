@@ -305,12 +305,12 @@ fn nothing_to_draw_is_said() {
         let svg = drawn(&figure);
         assert!(svg.contains(">no data<"), "{svg}");
         assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
-        assert!(png::render(&figure, &Look::default(), 300).is_ok());
+        assert!(png::render(figure.clone(), &Look::default(), 300).is_ok());
     }
     let empty = Run { rpm: 60.0, samples: vec![], events: vec![] };
     assert_eq!(drawn(&time_trace("", &empty)).matches(">no data<").count(), 2);
     let none = Figure { panels: vec![], ..parabola() };
-    assert!(drawn(&none).contains("<svg") && png::render(&none, &Look::default(), 100).is_ok());
+    assert!(drawn(&none).contains("<svg") && png::render(none.clone(), &Look::default(), 100).is_ok());
     assert!(!drawn(&parabola()).contains("no data"));
 }
 
@@ -400,7 +400,7 @@ fn points_are_drawn_where_they_are() {
         figure.x.range = Some([0.0, 1.0]);
         figure.panels[0].y.range = Some([0.0, 1.0]);
         let frame = Layout::new(&figure, &figure.title, WIDTH).panels[0].frame;
-        let image = Pixmap::decode_png(&png::render(&figure, &Look::default(), 2880).unwrap()).unwrap();
+        let image = Pixmap::decode_png(&png::render(figure.clone(), &Look::default(), 2880).unwrap()).unwrap();
         move |x: f64, y: f64| {
             let at = [frame.left + frame.width * x, frame.bottom() - frame.height * y].map(|part| (4.0 * part) as u32);
             image.pixel(at[0], at[1]).unwrap().red()
@@ -436,7 +436,7 @@ fn a_grid_lies_between_what_is_below_and_above_it() {
         figure.panels[0].series.insert(0, below);
         figure.panels[0].series.push(above);
         let frame = Layout::new(&figure, &figure.title, WIDTH).panels[0].frame;
-        let image = Pixmap::decode_png(&png::render(&figure, &Look::default(), 2880).unwrap()).unwrap();
+        let image = Pixmap::decode_png(&png::render(figure.clone(), &Look::default(), 2880).unwrap()).unwrap();
         let pixel = |x: f64, y: f64| {
             let at = [frame.left + frame.width * x, frame.bottom() - frame.height * y].map(|part| (4.0 * part) as u32);
             let pixel = image.pixel(at[0], at[1]).unwrap();
@@ -560,14 +560,15 @@ fn light_on_paper_and_dark_on_a_dark_screen() {
         ["fill", "stroke"].iter().any(|name| node.attribute(*name).is_some_and(|value| value != "none"))
     });
     assert!(painted.clone().count() > 3 && painted.clone().all(|node| node.attribute("class").is_some()));
-    let image = Pixmap::decode_png(&png::render(&parabola(), &Look::default(), 400).unwrap()).unwrap();
+    let image = Pixmap::decode_png(&png::render(parabola(), &Look::default(), 400).unwrap()).unwrap();
     let corner = image.pixel(0, 0).unwrap();
     assert_eq!((corner.red(), corner.green(), corner.blue(), corner.alpha()), (255, 255, 255, 255));
 }
 
 #[test]
 fn a_png_has_its_size_and_letters() {
-    let image = |figure: &Figure| Pixmap::decode_png(&png::render(figure, &Look::default(), 900).unwrap()).unwrap();
+    let image =
+        |figure: &Figure| Pixmap::decode_png(&png::render(figure.clone(), &Look::default(), 900).unwrap()).unwrap();
     let (plain, mut other) = (image(&parabola()), parabola());
     let layout = Layout::new(&other, &other.title, WIDTH);
     assert_eq!(plain.width(), 900);
@@ -586,9 +587,7 @@ fn a_png_has_its_size_and_letters() {
     unknown.panels[0].y.unit = "10\u{e123}".into();
     assert_ne!(image(&other), image(&unknown), "both are drawn as the box of a missing letter");
     for width in [0, 10_001, u32::MAX] {
-        assert!(
-            png::render(&parabola(), &Look::default(), width).unwrap_err().to_string().contains(&width.to_string())
-        );
+        assert!(png::render(parabola(), &Look::default(), width).unwrap_err().to_string().contains(&width.to_string()));
     }
 }
 
@@ -601,8 +600,8 @@ fn the_same_figure_is_the_same_bytes() {
     };
     assert_eq!(svg::render(&build(), &Look::default()).unwrap(), svg::render(&build(), &Look::default()).unwrap());
     assert_eq!(
-        png::render(&build(), &Look::default(), 500).unwrap(),
-        png::render(&build(), &Look::default(), 500).unwrap()
+        png::render(build(), &Look::default(), 500).unwrap(),
+        png::render(build(), &Look::default(), 500).unwrap()
     );
     let json = serde_json::to_string(&build()).unwrap();
     assert!(

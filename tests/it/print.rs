@@ -144,7 +144,7 @@ fn a_figure_is_as_wide_and_its_letters_as_high_as_asked() {
             "{letters:?}"
         );
     }
-    let image = png::render(&figure, &column(), column().pixels()).unwrap();
+    let image = png::render(figure.clone(), &column(), column().pixels()).unwrap();
     let decoder = ::png::Decoder::new(std::io::Cursor::new(&image));
     let reader = decoder.read_info().unwrap();
     let (dots, across) = (reader.info().pixel_dims.unwrap(), reader.info().width);

@@ -94,6 +94,11 @@ impl<'a> Contact<'a> {
         Least { value: least.value + self.constant(), ..least }
     }
 
+    /// The largest N at a speed, rpm.
+    pub fn largest(&self, rpm: f64) -> f64 {
+        self.constant() - self.cam.least(self.weights(angular_velocity(rpm)).map(|weight| -weight)).value
+    }
+
     /// The least angular velocity at which N is 0 where the cam's lift is this: the smaller positive root of
     /// `m c'' w^2 + b c' w + (k (c - rest) + m g) = 0`, infinite where there is none.
     fn root(&self, lift: &Lift) -> f64 {

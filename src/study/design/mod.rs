@@ -14,6 +14,7 @@ use crate::known::Known;
 use crate::measured::{Likely, Measured};
 use crate::model::{CORNER_ROUNDING, Model, Units};
 use crate::progress::Watch;
+use crate::simulate::angular_velocity;
 use contact::{Contact, Separation};
 use loads::{Load, Loads};
 use needs::{Answer, Changed, Lever, Need};
@@ -52,9 +53,19 @@ pub struct ForceAt {
     pub rpm: f64,
     /// Where it is, and how large.
     pub least: Least,
+    /// How far a measured cam may have moved that, by what is open of its second derivative.
+    pub error: Option<f64>,
+    /// The largest force round the cam.
+    pub largest: f64,
 }
 
-document!(ForceAt as it { speed_rpm: it.rpm, least_n: it.least.value, cam_angle_rad: it.least.angle });
+document!(ForceAt as it {
+    speed_rpm: it.rpm,
+    least_n: it.least.value,
+    cam_angle_rad: it.least.angle,
+    error_n if_any: it.error,
+    largest_n: it.largest,
+});
 
 /// A limit that the user sets, and the first speed of those looked at that is past it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -67,6 +78,18 @@ pub struct Passed {
     pub unit: String,
     /// The first of the speeds at which it is passed, rpm; none where it is not.
     pub speed_rpm: Option<f64>,
+}
+
+/// What one number has to be at one value of another.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Pair {
+    /// The value that is given.
+    pub given: f64,
+    /// What is found.
+    pub found: Option<f64>,
+    /// How far it may be off where the cam is measured.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error: Option<f64>,
 }
 
 /// What one number has to be for each value of another.
@@ -83,7 +106,7 @@ pub struct Trade {
     /// Its unit.
     pub against_unit: String,
     /// Pairs of what is given and what is found; nothing where no value does it.
-    pub pairs: Vec<(f64, Option<f64>)>,
+    pub pairs: Vec<Pair>,
 }
 
 document!(Design as it {
@@ -187,7 +210,7 @@ struct RoundEntry {
 }
 
 /// A separation with what a measured cam leaves open of its speed; not a number where that is not known.
-fn known(separation: Separation, likely: Option<&Likely>) -> Separation {
+pub fn known(separation: Separation, likely: Option<&Likely>) -> Separation {
     let Some(likely) = likely.filter(|likely| likely.best.is_some()) else { return separation };
     let Separation::At { rpm, error, cam_angle } = separation else { return separation };
     let of = |model: &Model, cam: &Cam| match Contact::new(cam, model.follower).separation() {
@@ -222,8 +245,14 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
         |index: u32| if count == 1 { low } else { low + (high - low) * f64::from(index) / f64::from(count - 1) };
     let speeds: Vec<f64> = (0..count).map(speed).collect();
     let has_force = !matches!(separation, Separation::Kink { .. });
-    let force_at = |rpm: &f64| ForceAt { rpm: *rpm, least: contact.least(*rpm) };
-    let forces = if has_force { speeds.iter().map(force_at).collect() } else { Vec::new() };
+    let open = likely.as_ref().map(|likely| &likely.measured).filter(|measured| measured.is_noisy);
+    let force_at = |rpm: &f64| {
+        // m w^2 times what is open of c''
+        let inertia = model.follower.mass * angular_velocity(*rpm).powi(2);
+        let error = open.map(|measured| inertia * measured.curvature_error);
+        ForceAt { rpm: *rpm, least: contact.least(*rpm), error, largest: contact.largest(*rpm) }
+    };
+    let forces: Vec<ForceAt> = if has_force { speeds.iter().map(force_at).collect() } else { Vec::new() };
     let round = if count == 1 && has_force { round(&contact, low, MOMENTS) } else { Vec::new() };
     let parted: Vec<f64> = speeds.iter().copied().filter(|rpm| *rpm > separation.speed()).collect();
     let done = std::sync::atomic::AtomicU64::new(0);
@@ -239,10 +268,14 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
         limit: *limit,
         value: *value,
         unit: limit.unit(&model.units),
-        speed_rpm: loads
-            .iter()
-            .find(|loads| loads.of(*limit) > limit.inside(&model.units, *value))
-            .map(|loads| loads.rpm),
+        speed_rpm: {
+            let most = limit.inside(&model.units, *value);
+            // Up to the separation the follower bears what the cam presses with.
+            let on_cam = forces.iter().filter(|at| *limit == Load::Force && at.rpm <= separation.speed());
+            let on_cam = on_cam.map(|at| (at.rpm, at.largest));
+            let all = on_cam.chain(loads.iter().map(|loads| (loads.rpm, loads.of(*limit))));
+            all.filter(|(_, load)| *load > most).map(|(rpm, _)| rpm).next()
+        },
     };
     let limits = asked.limits.iter().map(passed).collect();
     let changed = Changed::new(model, &contact);
@@ -263,9 +296,10 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
             for parameter in Lever::ALL.into_iter().filter(|lever| *lever != against) {
                 watch.at(&format!("the {parameter} against the {against} for \"{text}\""), 0, 0);
                 let value = |index: u32| from + (to - from) * f64::from(index) / f64::from(count.max(2) - 1);
-                let pair = |index: u32| -> Result<(f64, Option<f64>), StudyError> {
-                    let (found, _) = needs::find(&changed.with(against, inside(value(index))), need, parameter)?;
-                    Ok((value(index), found.map(|found| changed.told(parameter, found).0)))
+                let pair = |index: u32| -> Result<Pair, StudyError> {
+                    let changed = changed.with(against, inside(value(index)));
+                    let found = needs::answer(&changed, (need, text), parameter, uncertain)?;
+                    Ok(Pair { given: value(index), found: found.value, error: found.error })
                 };
                 let pairs = (0..count).into_par_iter().map(pair).collect::<Result<_, _>>()?;
                 let (unit, against_unit) = (changed.told(parameter, 0.0).1, against_unit.clone());
@@ -291,7 +325,7 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
 
 /// Cam angle, rad, and force, at moments evenly spaced and at both sides of every corner.
 fn round(contact: &Contact<'_>, rpm: f64, moments: usize) -> Vec<[f64; 2]> {
-    let omega = crate::simulate::angular_velocity(rpm);
+    let omega = angular_velocity(rpm);
     let mut points = Vec::new();
     for segment in contact.cam.segments() {
         let part = (segment.end - segment.start) / std::f64::consts::TAU;

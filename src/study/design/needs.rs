@@ -32,7 +32,7 @@ pub enum What {
 }
 
 /// Units that loads are told in, each with what it is of the SI's.
-const UNITS: [(Load, &str, f64); 11] = [
+const UNITS: [(Load, &str, f64); 9] = [
     (Load::ImpactSpeed, "m/s", 1.0),
     (Load::ImpactSpeed, "mm/s", 1e-3),
     (Load::ImpactSpeed, "in/s", 0.0254),
@@ -42,8 +42,6 @@ const UNITS: [(Load, &str, f64); 11] = [
     (Load::Gap, "in", 0.0254),
     (Load::Energy, "J", 1.0),
     (Load::Energy, "mJ", 1e-3),
-    (Load::Force, "N", 1.0),
-    (Load::Force, "kN", 1e3),
 ];
 
 /// `no separation to 4500 rpm`, `impact speed below 0.5 m/s to 6000 rpm`.
@@ -51,7 +49,7 @@ impl FromStr for Need {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let like = "must be like \"no separation to 4500 rpm\" or \"impact speed below 0.5 m/s to 6000 rpm\" (also gap, energy, force)";
+        let like = "must be like \"no separation to 4500 rpm\" or \"impact speed below 0.5 m/s to 6000 rpm\" (also gap, energy)";
         let number = |word: &str| {
             let number = word.parse().ok().filter(|number: &f64| number.is_finite() && *number > 0.0);
             number.ok_or_else(|| format!("\"{word}\" is not a number above 0; {like}"))
@@ -62,6 +60,9 @@ impl FromStr for Need {
             [name @ .., "below", value, unit, "to", rpm, "rpm"] => {
                 let name = name.join("-");
                 let load = Load::ALL.into_iter().find(|load| load.to_string() == name).ok_or(like)?;
+                if load == Load::Force {
+                    return Err("a force is no need: what keeps the follower on the cam presses harder; --limit tells where it is".into());
+                }
                 let of_load = || UNITS.iter().filter(|(of, ..)| *of == load);
                 let Some((_, _, one)) = of_load().find(|(_, name, _)| name == unit) else {
                     let names: Vec<&str> = of_load().map(|(_, name, _)| *name).collect();
@@ -164,8 +165,7 @@ impl<'a> Changed<'a> {
         let units = &self.model.units;
         let limit = match load {
             Load::ImpactSpeed | Load::Gap => units.length.told(limit),
-            Load::Energy => limit,
-            Load::Force => limit / units.length.inside(1.0),
+            Load::Energy | Load::Force => limit,
         };
         let mut model = self.model.clone();
         model.follower = self.contact.follower;
@@ -227,7 +227,7 @@ pub(super) fn answer(
     let value = found.map(|value| of.told(lever, value).0);
     let error = match found {
         // Of what is as little as there can be nothing is open.
-        Some(value) if uncertain > 0.0 && need.what == What::NoSeparation && note.is_empty() => {
+        Some(value) if uncertain > 0.0 && note.is_empty() => {
             let (certain, _) = find(of, &Need { rpm: need.rpm * (1.0 + uncertain), ..*need }, lever)?;
             certain.map(|certain| of.told(lever, (certain - value).abs()).0)
         }

@@ -3,7 +3,7 @@
 
 use crate::figures::chaotic_set;
 use crate::pages::report::html::{HtmlError, plates};
-use crate::pages::speeds::together;
+use crate::pages::speeds::{measured_speed, together};
 use crate::report::Report;
 use crate::show::block::{Block, Mark, Section, Span, Words, words};
 use crate::show::digits::Digits;
@@ -23,12 +23,12 @@ fn headed(head: &str, sentence: Words) -> Words {
 
 fn separates(report: &Report) -> Words {
     let sentence = match (&report.separation, &report.margin) {
-        (Separation::At { .. }, Some(margin)) => words![
-            "The follower leaves the cam for the first time at ",
-            (margin.separation_rpm, Digits::Fixed(3)),
-            " rpm, where the cam has turned by ",
+        (Separation::At { rpm, error, .. }, Some(margin)) => words![
+            "The follower leaves the cam for the first time where that has turned by ",
             (margin.separation_deg, Digits::Fixed(2)),
-            "°."
+            "°, at ",
+            measured_speed(*rpm, Digits::Fixed(3), error.is_finite().then_some(*error), report.measured.as_ref()),
+            "."
         ],
         (Separation::Never, _) => {
             "The follower stays on the cam at every speed: nowhere does the cam fall away from it.".into()

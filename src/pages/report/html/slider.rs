@@ -14,7 +14,7 @@ use crate::show::words;
 pub(crate) fn section(report: &Report) -> Result<Option<Section>, HtmlError> {
     let Ok(through) = &report.through else { return Ok(None) };
     let blocks = vec![
-        Block::Markup(player(through)),
+        Block::Markup(player(through, &report.units.spelled("m/s"))),
         Block::Details("The same as a table".into(), vec![Block::Table(table(through))]),
         Block::Markup(data(through)?),
     ];
@@ -27,7 +27,7 @@ fn data(through: &ThroughCorner) -> Result<Markup, HtmlError> {
     Ok(html! { script type="application/json" id="through-data" { (json(&data)) } })
 }
 
-fn player(through: &ThroughCorner) -> Markup {
+fn player(through: &ThroughCorner, velocity: &str) -> Markup {
     let last = through.frames.len().saturating_sub(1);
     let panel = |id: &str, title: &str, what: Markup| {
         html! {
@@ -69,7 +69,7 @@ fn player(through: &ThroughCorner) -> Markup {
                 table id="readout" {
                     thead { tr {
                         th scope="col" { "orbit" } th scope="col" { "impact" } th.n scope="col" { "at, deg" } th.n scope="col" { "from the corner, deg" }
-                        th.n scope="col" { "velocity before, m/s" } th.n scope="col" { "after, m/s" } th.n scope="col" { "multipliers" } th.n scope="col" { "larger modulus" }
+                        th.n scope="col" { "velocity before, " (velocity) } th.n scope="col" { "after, " (velocity) } th.n scope="col" { "multipliers" } th.n scope="col" { "larger modulus" }
                     } }
                     tbody {}
                 }
@@ -80,7 +80,8 @@ fn player(through: &ThroughCorner) -> Markup {
 
 fn table(through: &ThroughCorner) -> Table {
     let [orbit, impact, multipliers] = ["orbit", "impact", "multipliers"].map(Column::words);
-    let [rpm, angle, velocity] = ["rpm", "at, deg", "velocity before, m/s"].map(Column::number);
+    let velocity = words!["velocity before, ", Span::Unit("m/s")];
+    let [rpm, angle, velocity] = ["rpm".into(), "at, deg".into(), velocity].map(Column::number);
     let columns = [rpm, orbit, impact, angle, velocity, multipliers];
     let mut table = Table::new("Orbits by speed", columns);
     let seven = Digits::Significant(7);
