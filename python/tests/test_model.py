@@ -59,7 +59,7 @@ def test_rows_of_a_table_stand_in_a_dict() -> None:
         (rows[:, 0], "must be a list of rows, each of two finite numbers"),
         (np.delete(rows, slice(40, 80), axis=0), "rows are missing"),
         (np.vstack([rows[:9], rows[8:]]), "repeats the angle of the row before: must be above 8, row 9"),
-        (rows - [[1.0, 0.0]], "must be an angle from 0 to 360"),
+        (rows * [[2.0, 1.0]], "must be within a turn of the first row"),
     ]:
         with pytest.raises(ModelError, match="dict: ") as raised:
             Model.from_dict(table(wrong))

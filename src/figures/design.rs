@@ -4,8 +4,10 @@ use crate::draw::{Axis, Colour, Figure, Mark, Marker, Panel, Series, Stroke, ext
 use crate::figures::SPEED;
 use crate::figures::impacts::WHOLE_CAM;
 use crate::model::Units;
+use crate::show::digits::with_error;
+use crate::study::design::contact::Separation;
 use crate::study::design::loads::{Load, Loads};
-use crate::study::design::{Design, Trade};
+use crate::study::design::{Design, Pair, Trade};
 
 /// Trades where there are any, else the force round the cam at one speed, else forces and loads against the speed.
 pub fn design_figure(found: &Design) -> Figure {
@@ -25,7 +27,13 @@ fn round(found: &Design) -> Figure {
     let panel = Panel::new(force_axis(found, "contact force"), 0.5, vec![line]).with_zero();
     let rpm = found.forces.first().map_or(f64::NAN, |at| at.rpm);
     let title = format!("{} at {rpm} rpm: contact force round the cam", found.model.name);
-    Figure::new(&title, Axis::degrees("cam angle").over(WHOLE_CAM), vec![panel])
+    let figure = Figure::new(&title, Axis::degrees("cam angle").over(WHOLE_CAM), vec![panel]);
+    // A force that would pull is none.
+    let pulls = found.round.iter().any(|[_, force]| *force < 0.0);
+    Figure {
+        note: if pulls { "below 0 the cam would have to pull: they part".into() } else { String::new() },
+        ..figure
+    }
 }
 
 fn speeds(found: &Design) -> Figure {
@@ -52,7 +60,14 @@ fn speeds(found: &Design) -> Figure {
         }));
     }
     let at = found.separation.speed();
-    let marks = (range[0] <= at && at <= range[1]).then(|| Mark { at, label: format!("separation, {at:.1} rpm") });
+    let label = || match found.separation {
+        Separation::At { rpm, error, .. } if found.measured.as_ref().is_some_and(|cam| cam.is_noisy) => {
+            let (digits, error) = with_error(error);
+            format!("separation, {} ± {} rpm", digits.text(rpm), digits.text(error))
+        }
+        _ => format!("separation, {at:.1} rpm"),
+    };
+    let marks = (range[0] <= at && at <= range[1]).then(|| Mark { at, label: label() });
     let title = format!("{}: contact force and loads", found.model.name);
     let axis = Axis::new(SPEED[0], SPEED[1]).over(range);
     Figure { marks: marks.into_iter().collect(), ..Figure::new(&title, axis, panels) }
@@ -79,9 +94,14 @@ pub fn loads_diagram(title: &str, sweep: &[Vec<Loads>], load: Load, units: &Unit
 }
 
 fn trades(found: &Design) -> Figure {
-    // Nothing is drawn of what no value does, or 0 does.
-    let has_any = |trade: &&Trade| trade.pairs.iter().any(|pair| pair.found.is_some_and(|value| value > 0.0));
-    let panels = found.trades.iter().filter(has_any).map(|trade| {
+    // Of what no value does, or 0 does, there is no line.
+    let does = |pair: &Pair| pair.found.is_some_and(|value| value > 0.0);
+    let has_line = |trade: &&Trade| trade.pairs.windows(2).any(|pairs| pairs.iter().all(does));
+    let mut shown: Vec<&Trade> = found.trades.iter().filter(has_line).collect();
+    if shown.is_empty() {
+        shown = found.trades.iter().collect();
+    }
+    let panels = shown.into_iter().map(|trade| {
         let points = trade.pairs.iter().map(|pair| [pair.given, pair.found.unwrap_or(f64::NAN)]);
         let line = Series::line("", Colour::Blue, Stroke::Solid, points);
         let bound = if trade.parameter.is_upper_bound() { "most" } else { "least" };
