@@ -326,6 +326,15 @@ def route(document):
         value = {name: text(evaluate(source, names), DIGITS) for name, source in entries.items()}
         return {"A": [[value["A11"], value["A12"]], [value["A21"], value["A22"]]], "B": [value["B1"], value["B2"]]}
 
+    sides = {"minus": side(corner.left), "plus": side(corner.right)}
+    # What follows from A and B, by means that do not: proved in normal_form.py and corner_map.py.
+    # h F = (1 - w0^2 p, s); the gap when the corner passes is h F dx + v dT/2
+    e, f = (1 - follower.omega0_squared * p, s), orbit["arriving"] / 2
+    # C dx + D dT = (1 + r) phi12 (c''+ - c''-) tau, tau = (e dx + f dT)/(c' - v)
+    jump = (2 * mp.pi / period) ** 2 * (corner.right[2] - corner.left[2])
+    jump *= (1 + follower.r) * s / (orbit["cam"] - orbit["arriving"])
+    # det A = r^2 e^{-2 zeta T}, by Liouville's formula
+    determinant = follower.r**2 * mp.exp(-2 * follower.zeta * period)
     # What is 0 but for the root's width is written as 0.
     size = abs(orbit["state"][0]) + period * abs(orbit["arriving"])
     state = [0 if abs(value) <= CLOSED * 10**9 * size / period else value for value in orbit["state"]]
@@ -334,10 +343,20 @@ def route(document):
         "speed_rpm": text(60 / period, DIGITS),
         "cam_angle_rad": text(corner.angle, DIGITS),
         "x_star": [text(value, DIGITS) for value in state],
-        "minus": side(corner.left),
-        "plus": side(corner.right),
+        **sides,
+        "C": [text(jump * entry, DIGITS) for entry in e],
+        "D": text(jump * f, DIGITS),
+        "border": [text(entry, DIGITS) for entry in (*e, f)],
+        "eigenvalues": {name: eigenvalues(one["A"], determinant) for name, one in sides.items()},
         "digits": DIGITS,
     }
+
+
+def eigenvalues(matrix, determinant):
+    """The roots of x^2 - trace x + determinant, the larger real part first, of a pair the one above the axis."""
+    half = (exact(matrix[0][0]) + exact(matrix[1][1])) / 2
+    root = mp.sqrt(mp.mpc(half * half - determinant))
+    return [{"re": text(value.real, DIGITS), "im": text(value.imag, DIGITS)} for value in (half + root, half - root)]
 
 
 def main():

@@ -412,10 +412,11 @@ class OneSidedMap:
         if departure.status == 1:
             raise CannotCheck("a perturbed revolution hits the cam twice")
         survives = np.array([*(start - impact.start), period - impact.period])
-        return survives, departure.y[:, -1] - impact.start
+        # How far the follower was above the corner when it passed, at t = 0: it closes in by closing_speed in each second to t.
+        return survives, np.array([*(departure.y[:, -1] - impact.start), t * impact.closing_speed])
 
     def fit(self, width):
-        """The 2 x 3 matrix [A | B], its standard errors from the residual, and the condition number of the design."""
+        """The 2 x 3 matrix [A | B] above the row (e, f), its standard errors from the residual, and the condition number of the design."""
         scales = width * self.scales
         # One Chebyshev node more than the degree, in each direction, determines the polynomial.
         nodes = np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
@@ -453,11 +454,11 @@ def number(table, key, least=None):
 
 
 def entries(matrix):
-    return {"A": matrix[:, :2].tolist(), "B": matrix[:, 2].tolist()}
+    return {"A": matrix[:2, :2].tolist(), "B": matrix[:2, 2].tolist()}
 
 
 def eigenvalues(matrix):
-    values = sorted(linalg.eig(matrix[:, :2], right=False), key=lambda value: (-value.real, -value.imag))
+    values = sorted(linalg.eig(matrix[:2, :2], right=False), key=lambda value: (-value.real, -value.imag))
     return [{"re": float(value.real), "im": float(value.imag)} for value in values]
 
 
@@ -479,6 +480,8 @@ def check(model):
         "standard_error": {side: entries(errors) for side, (_, errors, _) in maps.items()},
         "condition_number": max(condition for _, _, condition in maps.values()),
         "eigenvalues": {side: eigenvalues(values) for side, (values, _, _) in maps.items()},
+        # Both fits have it; c'' does not enter.
+        "border": ((maps["minus"][0][2] + maps["plus"][0][2]) / 2).tolist(),
         "tolerances": {"rtol": RTOL, "atol": ATOL, "method": METHOD},
         "limits": LIMITS,
     }

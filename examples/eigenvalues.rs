@@ -24,6 +24,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         Ok(verdict) => println!("  {}", verdict.scenario),
         Err(refusal) => println!("  not classified: {refusal}"),
     }
-    println!("  {} comparisons of routes, all agree: {}", found.comparisons.len(), found.agrees);
+    println!("  {} comparisons of routes, all agree: {}", found.tally().comparisons, found.agrees);
     Ok(())
 }

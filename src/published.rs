@@ -9,7 +9,7 @@ use crate::agreement::{Agreement, Quantity, compare, quantities};
 use crate::border_collision::NormalForm;
 use crate::cam::Side::{Minus, Plus};
 use crate::corner::map::RouteName;
-use crate::corner::{CornerImpact, CornerMap};
+use crate::corner::{CornerImpact, Route};
 use crate::model::{Model, ModelError};
 use crate::tolerance::Comparison;
 
@@ -130,7 +130,7 @@ pub enum PublishedError {
 pub fn compare_published(
     model: &Model,
     at: &CornerImpact,
-    map: &CornerMap,
+    route: &Route,
     normal_form: Option<&NormalForm>,
 ) -> Result<Vec<PrintedNumber>, PublishedError> {
     if !model.is_the_papers()? {
@@ -141,7 +141,7 @@ pub fn compare_published(
     if let Some((quantity, ..)) = WRONG.iter().find(|(quantity, ..)| !is_printed(quantity)) {
         return Err(PublishedError::Unmatched(quantity.to_string()));
     }
-    let computed = computed(at, map, normal_form);
+    let computed = computed(at, route, normal_form);
     numbers.numbers.into_iter().map(|number| hold_against(number, &computed)).collect()
 }
 
@@ -182,8 +182,8 @@ fn read_digits(text: &str) -> Result<(f64, u32), PublishedError> {
 }
 
 /// Every quantity that the paper prints, as computed here.
-fn computed(at: &CornerImpact, map: &CornerMap, normal_form: Option<&NormalForm>) -> Vec<(Quantity, Vec<f64>)> {
-    let mut all = quantities(map);
+fn computed(at: &CornerImpact, route: &Route, normal_form: Option<&NormalForm>) -> Vec<(Quantity, Vec<f64>)> {
+    let mut all: Vec<_> = quantities(route).into_iter().map(|found| (found.quantity, found.entries)).collect();
     // An estimate is printed for a quantity of the map, under a hat.
     let estimates = all.clone().into_iter().filter_map(|(name, entries)| match name {
         Quantity::A(side) => Some((Quantity::AHat(side), entries)),

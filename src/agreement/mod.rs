@@ -8,7 +8,7 @@ use std::fmt;
 use serde::{Serialize, Serializer};
 
 use crate::cam::Side;
-use crate::corner::map::{CornerMap, Eigenvalue, Route, RouteName};
+use crate::corner::map::{Eigenvalue, Route, RouteName};
 use crate::tolerance::{Bound, Comparison, agreement_bound};
 
 /// What is compared. The letters are the paper's, and a hat is its own estimate.
@@ -82,6 +82,8 @@ pub struct Agreement {
     pub routes: [RouteName; 2],
     /// What was compared.
     pub quantity: Quantity,
+    /// Whether both routes take it from their A and B by one function, so that it agrees where these do and tests nothing more.
+    pub follows: bool,
     /// Largest absolute difference of any entry.
     pub max_abs_diff: f64,
     /// Largest difference of any entry, over that entry.
@@ -128,6 +130,7 @@ fn compare_on_scale(
     Agreement {
         routes,
         quantity,
+        follows: false,
         max_abs_diff,
         max_rel_diff,
         agrees: max_abs_diff < bound.value || max_abs_diff == 0.0,
@@ -135,27 +138,43 @@ fn compare_on_scale(
     }
 }
 
-/// The quantities of a map that routes are compared in: name and entries, rows first.
-pub fn quantities(map: &CornerMap) -> Vec<(Quantity, Vec<f64>)> {
+/// What a route finds of a quantity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Found {
+    /// The quantity.
+    pub quantity: Quantity,
+    /// Its entries, rows first.
+    pub entries: Vec<f64>,
+    /// Whether the route finds it by means of its own, and does not take it from its A and B as others do.
+    pub is_own: bool,
+}
+
+/// The quantities that routes are compared in, as one of them finds them.
+pub fn quantities(route: &Route) -> Vec<Found> {
+    let (map, own) = (&route.map, &route.own);
     let rows = |matrix: nalgebra::Matrix2<f64>| matrix.transpose().as_slice().to_vec();
     let flat = |pair: [Eigenvalue; 2]| pair.iter().flat_map(|value| [value.re, value.im]).collect();
-    vec![
-        (Quantity::A(Side::Minus), rows(map.minus.a)),
-        (Quantity::A(Side::Plus), rows(map.plus.a)),
-        (Quantity::B(Side::Minus), map.minus.b.as_slice().to_vec()),
-        (Quantity::B(Side::Plus), map.plus.b.as_slice().to_vec()),
-        (Quantity::C, map.c().as_slice().to_vec()),
-        (Quantity::D, vec![map.d()]),
-        (Quantity::Eigenvalues(Side::Minus), flat(map.minus.eigenvalues())),
-        (Quantity::Eigenvalues(Side::Plus), flat(map.plus.eigenvalues())),
-    ]
+    let (derived, both) = (own.eigenvalues.is_some(), route.eigenvalues());
+    let found = |quantity, entries, is_own| Found { quantity, entries, is_own };
+    let border = own.border.map(|(e, f)| found(Quantity::Border, vec![e[0], e[1], f], true));
+    let all = [
+        found(Quantity::A(Side::Minus), rows(map.minus.a), true),
+        found(Quantity::A(Side::Plus), rows(map.plus.a), true),
+        found(Quantity::B(Side::Minus), map.minus.b.as_slice().to_vec(), true),
+        found(Quantity::B(Side::Plus), map.plus.b.as_slice().to_vec(), true),
+        found(Quantity::C, route.c().as_slice().to_vec(), own.jump.is_some()),
+        found(Quantity::D, vec![route.d()], own.jump.is_some()),
+        found(Quantity::Eigenvalues(Side::Minus), flat(both.minus), derived),
+        found(Quantity::Eigenvalues(Side::Plus), flat(both.plus), derived),
+    ];
+    all.into_iter().chain(border).collect()
 }
 
 /// Every pair of routes to the map, in every quantity.
 pub fn compare_routes(routes: &[Route]) -> Vec<Agreement> {
     pairs(routes)
         .flat_map(|(left, right)| {
-            let (these, those) = (quantities(&left.map), quantities(&right.map));
+            let (these, those) = (quantities(left), quantities(right));
             // C and D are differences of A's and B's entries, and known no better than those.
             let integrated = is_integrated(left.name) || is_integrated(right.name);
             let of = |route: &Route| {
@@ -165,19 +184,22 @@ pub fn compare_routes(routes: &[Route]) -> Vec<Agreement> {
             };
             let ((a, b), (other_a, other_b)) = (of(left), of(right));
             let (a, b) = (a.max(other_a), b.max(other_b));
-            let compare = move |((quantity, x), (_, y)): ((Quantity, Vec<f64>), (_, Vec<f64>))| {
-                let comparison = match quantity {
+            let compare = move |(x, y): (Found, Found)| {
+                let comparison = match x.quantity {
                     Quantity::Eigenvalues(_) => Comparison::Eigenvalues,
                     _ if integrated => Comparison::Integrated,
                     _ => Comparison::Routes,
                 };
-                let scale = match quantity {
+                let scale = match x.quantity {
                     Quantity::C => a,
                     Quantity::D => b,
-                    _ => size(&x).max(size(&y)),
+                    _ => size(&x.entries).max(size(&y.entries)),
                 };
-                compare_on_scale([left.name, right.name], quantity, [&x, &y], comparison, scale)
+                let entries = [&*x.entries, &*y.entries];
+                let compared = compare_on_scale([left.name, right.name], x.quantity, entries, comparison, scale);
+                Agreement { follows: !(x.is_own || y.is_own), ..compared }
             };
+            // A border, which comes last, is compared where both know it.
             these.into_iter().zip(those).map(compare).collect::<Vec<_>>()
         })
         .collect()
@@ -221,10 +243,18 @@ pub(crate) struct Pairs<'a> {
 document!(Pairs<'_> as pairs {
     quantity: pairs.quantity,
     pairs: pairs.all.len(),
+    following: pairs.following(),
     agreeing: pairs.all.iter().filter(|pair| pair.agrees).count(),
     closest: pairs.closest,
     shared_decimals: shared_decimals(pairs.closest.max_abs_diff),
 });
+
+impl Pairs<'_> {
+    /// How many of them follow from A and B.
+    pub(crate) fn following(&self) -> usize {
+        self.all.iter().filter(|pair| pair.follows).count()
+    }
+}
 
 /// Comparisons by quantity, in the order in which quantities come first.
 pub(crate) fn by_quantity(comparisons: &[Agreement]) -> Vec<Pairs<'_>> {

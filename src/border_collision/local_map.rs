@@ -57,7 +57,7 @@ impl PeriodicOrbit {
 }
 
 impl LocalMap {
-    /// The local map of a corner impact, with dT for mu; `border` is `(e, f)` of [`crate::corner::border`].
+    /// The local map of a corner impact, with dT for mu; `border` is `(e, f)` of [`crate::corner::variational::border`].
     pub fn new(map: &CornerMap, border: (RowVector2<f64>, f64)) -> Self {
         Self { minus: map.minus, plus: map.plus, border }
     }

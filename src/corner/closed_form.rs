@@ -6,10 +6,10 @@
 
 use std::f64::consts::TAU;
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::{Matrix2, RowVector2, Vector2};
 
 use super::corner_impact::CornerImpact;
-use super::map::{CornerMap, Route, RouteName, SideMap};
+use super::map::{CornerMap, Line, Own, Route, RouteName, SideMap};
 use crate::bracket::secants;
 use crate::cam::Lift;
 use crate::model::{Follower, Model};
@@ -27,7 +27,17 @@ pub struct NoFixedPoint {
 pub fn route(model: &Model, at: &CornerImpact) -> Route {
     let side = |side| side_map(&model.follower, at.period, at.velocity_before, &at.corner.lift(side));
     let map = CornerMap::of_each(side);
-    Route { name: RouteName::ClosedForm, map, uncertainty: None }
+    let own = Own::border(border(&model.follower, at.period, at.velocity_before));
+    Route { name: RouteName::ClosedForm, map, own, uncertainty: None }
+}
+
+/// `(e, f)`, the derivatives of eq:H: how far the flight is from the cam when the corner passes, to first order; `v` is the
+/// velocity before the impact, m/s, and `period` T*, s.
+fn border(follower: &Follower, period: f64, v: f64) -> Line {
+    let f = propagator(follower.damping / (2.0 * follower.mass), follower.stiffness / follower.mass, 0.5 * period);
+    // Eq:dti_dxn   e = dH/dx = h phi_{T/2}
+    // Eq:dti_dT    f = dH/dT = h phi_{T/2}' x/2 = v/2, both at t_i = 0; the cam at the corner does not depend on T
+    (RowVector2::new(f[(0, 0)], f[(0, 1)]), 0.5 * v)
 }
 
 /// `A` and `B` for one side's lift at the corner; `v` is the velocity before the impact, m/s, and `period` T*, s.

@@ -1,11 +1,11 @@
 //! The orbit and its map by programs outside this one: `symbolic` (the derived expressions, to 30 digits) and `scipy` (an
 //! integration of its own). Both get the numbers of the model file and nothing else, and find the corner impact themselves.
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::{Matrix2, RowVector2, Vector2};
 use serde::Deserialize;
 use serde_json::json;
 
-use super::map::{Route, RouteName, SideMap, Sides, Uncertainty};
+use super::map::{Eigenvalue, Own, Route, RouteName, SideMap, Sides, Uncertainty};
 use crate::model::{CamProfile, Model, Study};
 use crate::python::{self, PythonError};
 
@@ -41,14 +41,14 @@ pub fn know(model: &Model) -> bool {
 pub fn run(program: Program, model: &Model, study: Study) -> Result<Outside, PythonError> {
     let numbers = json!({ "follower": model.follower, "cam": model.cam, "study": study });
     let answer: Answer = python::run(program.script, &numbers)?;
-    let map = answer.map.map(Matrices::map);
+    let (map, own) = (answer.map.map(Matrices::map), answer.own());
     let uncertainty = answer.standard_error.map(|error| Uncertainty::Fit {
         standard: error.map(Matrices::map),
         systematic: None,
         condition_number: answer.condition_number.unwrap_or(f64::NAN),
     });
     Ok(Outside {
-        route: Route { name: program.name, map, uncertainty },
+        route: Route { name: program.name, map, own, uncertainty },
         x_star: Vector2::new(answer.x_star[0].value(), answer.x_star[1].value()),
         period: answer.period_s.value(),
     })
@@ -80,6 +80,39 @@ struct Answer {
     map: Sides<Matrices>,
     standard_error: Option<Sides<Matrices>>,
     condition_number: Option<f64>,
+    eigenvalues: Sides<[Parts; 2]>,
+    border: [Number; 3],
+    #[serde(rename = "C")]
+    c: Option<[Number; 2]>,
+    #[serde(rename = "D")]
+    d: Option<Number>,
+}
+
+impl Answer {
+    fn own(&self) -> Own {
+        let line = |[first, second]: &[Number; 2], last: &Number| {
+            (RowVector2::new(first.value(), second.value()), last.value())
+        };
+        let [e1, e2, f] = &self.border;
+        Own {
+            jump: self.c.as_ref().zip(self.d.as_ref()).map(|(c, d)| line(c, d)),
+            eigenvalues: Some(self.eigenvalues.map(|pair| pair.each_ref().map(Parts::eigenvalue))),
+            ..Own::border((RowVector2::new(e1.value(), e2.value()), f.value()))
+        }
+    }
+}
+
+/// An eigenvalue, in two parts.
+#[derive(Deserialize)]
+struct Parts {
+    re: Number,
+    im: Number,
+}
+
+impl Parts {
+    fn eigenvalue(&self) -> Eigenvalue {
+        Eigenvalue { re: self.re.value(), im: self.im.value() }
+    }
 }
 
 #[derive(Deserialize)]

@@ -4,7 +4,7 @@
 //! until rounding, which grows as the step shrinks, takes over. The error of a table entry is estimated by the last
 //! correction that was made to it plus its rounding. The entry with the smallest estimate is the limit.
 
-use nalgebra::Vector2;
+use nalgebra::SVector;
 
 /// Halvings of the step: enough to bring a cam with sharp arcs to rounding.
 const HALVINGS: usize = 7;
@@ -20,19 +20,19 @@ pub(super) enum Powers {
 
 /// The limit of `quantity(step)` for step to 0 from `step` down, and the size of its error; `rounding(step)` is that of the
 /// quantity itself.
-pub(super) fn extrapolate<E>(
+pub(super) fn extrapolate<E, const N: usize>(
     step: f64,
     powers: Powers,
-    rounding: impl Fn(f64) -> Vector2<f64>,
-    quantity: impl Fn(f64) -> Result<Vector2<f64>, E>,
-) -> Result<(Vector2<f64>, Vector2<f64>), E> {
+    rounding: impl Fn(f64) -> SVector<f64, N>,
+    quantity: impl Fn(f64) -> Result<SVector<f64, N>, E>,
+) -> Result<(SVector<f64, N>, SVector<f64, N>), E> {
     // What the error of the lowest power shrinks by when the step is halved.
     let shrinks = match powers {
         Powers::Even => 4_u32,
         Powers::Every => 2,
     };
     let mut row = vec![quantity(step)?];
-    let mut best = (row[0], Vector2::repeat(f64::INFINITY));
+    let mut best = (row[0], SVector::repeat(f64::INFINITY));
     for halving in 1..=HALVINGS {
         let step = step / f64::from(1_u32 << halving);
         let mut next = vec![quantity(step)?];
@@ -41,7 +41,7 @@ pub(super) fn extrapolate<E>(
             let fine = next[order];
             let better = fine + (fine - coarse) / (gain - 1.0);
             let error = (better - coarse).abs() + rounding(step);
-            for component in 0..2 {
+            for component in 0..N {
                 if error[component] < best.1[component] {
                     best.0[component] = better[component];
                     best.1[component] = error[component];
@@ -56,6 +56,8 @@ pub(super) fn extrapolate<E>(
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Vector2;
+
     use super::*;
 
     #[test]

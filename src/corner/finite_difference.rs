@@ -8,11 +8,11 @@
 //! Near a graze an impact amplifies rounding by the inverse of its relative velocity. The error estimate counts this at
 //! every impact, and the first steps are as wide as they can be without changing which impacts there are.
 
-use nalgebra::{Matrix2, Vector2, Vector3};
+use nalgebra::{Matrix2, RowVector2, RowVector3, Vector2, Vector3};
 
 use super::corner_impact::CornerImpact;
 use super::extrapolation::{Powers, extrapolate};
-use super::map::{Route, RouteName, SideMap, Sides, Uncertainty};
+use super::map::{Own, Route, RouteName, SideMap, Sides, Uncertainty};
 use super::one_sided::{OneSidedMap, SampleError};
 use super::varied::Varied;
 use crate::cam::{Cam, Side};
@@ -26,8 +26,9 @@ pub fn route(model: &Model, cam: &Cam, at: &CornerImpact) -> Result<Route, Sampl
 /// The same with B by any number of the model.
 pub fn route_by(model: &Model, cam: &Cam, at: &CornerImpact, varied: &Varied) -> Result<Route, SampleError> {
     let found = Sides::try_of_each(|side| side_map(model, cam, at, side, varied))?;
-    let uncertainty = Some(Uncertainty::Extrapolation(found.map(|(_, error)| *error)));
-    Ok(Route { name: RouteName::FiniteDifference, map: found.map(|(map, _)| *map), uncertainty })
+    let uncertainty = Some(Uncertainty::Extrapolation(found.map(|(_, error)| error.map)));
+    let (map, own) = (found.map(|(known, _)| known.map), own(found.of(at.side)));
+    Ok(Route { name: RouteName::FiniteDifference, map, own, uncertainty })
 }
 
 /// One side's map, and the error of each entry: of several impacts over the whole period and impact by impact, each entry
@@ -54,16 +55,9 @@ pub fn side_map(
     Ok(match (whole, parts.map(|parts| parts.product())) {
         (Ok(whole), Ok(parts)) => {
             let (mut best, mut error) = whole;
-            for entry in 0..4 {
-                if parts.1.a[entry] < error.a[entry] {
-                    (best.a[entry], error.a[entry]) = (parts.0.a[entry], parts.1.a[entry]);
-                }
-            }
-            for row in 0..2 {
-                if parts.1.b[row] < error.b[row] {
-                    (best.b[row], error.b[row]) = (parts.0.b[row], parts.1.b[row]);
-                }
-            }
+            better(best.map.a.as_mut_slice(), error.map.a.as_mut_slice(), &parts.0.map.a, &parts.1.map.a);
+            better(best.map.b.as_mut_slice(), error.map.b.as_mut_slice(), &parts.0.map.b, &parts.1.map.b);
+            better(best.gap.as_mut_slice(), error.gap.as_mut_slice(), &parts.0.gap, &parts.1.gap);
             (best, error)
         }
         (Ok(found), Err(_)) | (Err(_), Ok(found)) => found,
@@ -71,8 +65,23 @@ pub fn side_map(
     })
 }
 
-/// Both of a map: the value and the error of each entry.
-type Known = (SideMap, SideMap);
+/// What is differenced, or the error of it: the map, and the gap when the corner passes by the start's deviation and the period's.
+#[derive(Clone, Copy)]
+pub struct Differenced {
+    /// The map.
+    pub map: SideMap,
+    /// `(e1, e2, f)`.
+    pub gap: RowVector3<f64>,
+}
+
+/// The value and the error of each entry.
+type Known = (Differenced, Differenced);
+
+/// The border, which the gap vanishes on.
+pub(crate) fn own((found, error): &Known) -> Own {
+    let border = (RowVector2::new(found.gap[0], found.gap[1]), found.gap[2]);
+    Own { border_error: Some(error.gap.max()), ..Own::border(border) }
+}
 
 /// A period as the product of its parts, each with one impact.
 struct Parts {
@@ -87,7 +96,7 @@ fn by_impacts(model: &Model, cam: &Cam, at: &CornerImpact, side: Side, varied: &
     let parts = pieces.iter().map(known).collect::<Result<Vec<_>, _>>()?;
     let mut after = vec![Matrix2::identity(); parts.len()];
     for index in (1..parts.len()).rev() {
-        after[index - 1] = after[index] * parts[index].0.a;
+        after[index - 1] = after[index] * parts[index].0.map.a;
     }
     Ok(Parts { parts, after })
 }
@@ -96,18 +105,44 @@ impl Parts {
     /// The map of the period, and what the errors of the parts make of it to first order.
     fn product(&self) -> Known {
         let (mut all, mut off) = (SideMap::IDENTITY, SideMap::ZERO);
+        let (mut gap, mut gap_off) = (RowVector3::zeros(), RowVector3::zeros());
         for ((next, error), after) in self.parts.iter().zip(&self.after) {
-            off.a += after.abs() * error.a * all.a.abs();
-            off.b += after.abs() * (error.a * all.b.abs() + error.b);
-            all = next.after(&all);
+            // The corner is in one part alone: in others there is no gap, nor an error of it.
+            gap += by_start(&next.gap, &all);
+            gap_off += by_start(&error.gap, &SideMap { a: all.a.abs(), b: all.b.abs() });
+            off.a += after.abs() * error.map.a * all.a.abs();
+            off.b += after.abs() * (error.map.a * all.b.abs() + error.map.b);
+            all = next.map.after(&all);
         }
-        (all, off)
+        (Differenced { map: all, gap }, Differenced { map: off, gap: gap_off })
     }
 
     /// How far a rounding in every flight moves the end of the period.
     fn amplify(&self, rounding: Vector2<f64>) -> Vector2<f64> {
-        let first = self.after.first().zip(self.parts.first()).map(|(after, (part, _))| after * part.a);
+        let first = self.after.first().zip(self.parts.first()).map(|(after, (part, _))| after * part.map.a);
         first.iter().chain(&self.after).map(|matrix| matrix.abs() * rounding).sum()
+    }
+}
+
+/// A gap by the deviations at the start of its part, as one by those at the start of all parts, which `before` maps to it.
+fn by_start(gap: &RowVector3<f64>, before: &SideMap) -> RowVector3<f64> {
+    let (e, f) = (RowVector2::new(gap[0], gap[1]), gap[2]);
+    let state = e * before.a;
+    RowVector3::new(state[0], state[1], (e * before.b)[0] + f)
+}
+
+/// Takes what is known better.
+fn better<'a>(
+    best: &mut [f64],
+    error: &mut [f64],
+    other: impl IntoIterator<Item = &'a f64>,
+    other_error: impl IntoIterator<Item = &'a f64>,
+) {
+    let others = other.into_iter().zip(other_error);
+    for ((best, error), (other, other_error)) in best.iter_mut().zip(error).zip(others) {
+        if other_error < error {
+            (*best, *error) = (*other, *other_error);
+        }
     }
 }
 
@@ -115,21 +150,23 @@ impl Parts {
 fn amplified_once(map: &OneSidedMap<'_>) -> Result<Vector2<f64>, SampleError> {
     let (scales, rounding) = (map.scales(), map.rounding());
     (0..2).try_fold(rounding, |sum, direction| {
-        Ok(sum + difference(map, direction, scales[direction])?.abs() * rounding[direction])
+        Ok(sum + difference(map, direction, scales[direction])?.xy().abs() * rounding[direction])
     })
 }
 
 /// The map, with ends of stretches known to `rounding`.
 fn differences(map: &OneSidedMap<'_>, rounding: Vector2<f64>) -> Result<Known, SampleError> {
-    let mut columns = [(Vector2::zeros(), Vector2::zeros()); 3];
+    let rounding = Vector3::new(rounding[0], rounding[1], map.gap_rounding());
+    let mut columns = [(Vector3::zeros(), Vector3::zeros()); 3];
     for (direction, column) in columns.iter_mut().enumerate() {
         let step = widest(map, direction);
         *column = extrapolate(step, Powers::Even, |step| rounding / step, |step| difference(map, direction, step))?;
     }
-    let [first, second, period] = columns;
-    let value = SideMap { a: Matrix2::from_columns(&[first.0, second.0]), b: period.0 };
-    let error = SideMap { a: Matrix2::from_columns(&[first.1, second.1]), b: period.1 };
-    Ok((value, error))
+    let differenced = |[first, second, period]: [Vector3<f64>; 3]| Differenced {
+        map: SideMap { a: Matrix2::from_columns(&[first.xy(), second.xy()]), b: period.xy() },
+        gap: RowVector3::new(first[2], second[2], period[2]),
+    };
+    Ok((differenced(columns.map(|(value, _)| value)), differenced(columns.map(|(_, error)| error))))
 }
 
 /// The impacts' own scale in one direction, doubled while they remain the orbit's.
@@ -141,9 +178,11 @@ fn widest(map: &OneSidedMap<'_>, direction: usize) -> f64 {
     inside.last().unwrap_or(map.scales()[direction])
 }
 
-fn difference(map: &OneSidedMap<'_>, direction: usize, step: f64) -> Result<Vector2<f64>, SampleError> {
+/// Of the end and of the gap when the corner passes.
+fn difference(map: &OneSidedMap<'_>, direction: usize, step: f64) -> Result<Vector3<f64>, SampleError> {
     let mut perturbation = Vector3::zeros();
     perturbation[direction] = step;
     let (ahead, behind) = (map.sample(perturbation)?, map.sample(-perturbation)?);
-    Ok((ahead.end - behind.end) / (ahead.perturbation - behind.perturbation)[direction])
+    let change = (ahead.end - behind.end).push(map.gap(&ahead) - map.gap(&behind));
+    Ok(change / (ahead.perturbation - behind.perturbation)[direction])
 }

@@ -8,10 +8,10 @@
 
 use faer::linalg::solvers::{Qr, SolveLstsqCore};
 use faer::{Conj, Mat};
-use nalgebra::{Matrix2, Vector2, Vector3};
+use nalgebra::{Matrix2, RowVector2, Vector2, Vector3};
 
 use super::corner_impact::CornerImpact;
-use super::map::{Route, RouteName, SideMap, Sides, Uncertainty};
+use super::map::{Own, Route, RouteName, SideMap, Sides, Uncertainty};
 use super::one_sided::{OneSidedMap, SampleError};
 use super::varied::Varied;
 use crate::cam::Cam;
@@ -41,13 +41,16 @@ pub fn route_by(model: &Model, cam: &Cam, at: &CornerImpact, varied: &Varied) ->
         systematic: Some(fits.map(|fit| fit.systematic_error)),
         condition_number: fits.minus.condition_number.max(fits.plus.condition_number),
     };
-    Ok(Route { name: RouteName::LeastSquares, map: fits.map(|fit| fit.value), uncertainty: Some(uncertainty) })
+    let (map, own) = (fits.map(|fit| fit.value), fits.of(at.side).own);
+    Ok(Route { name: RouteName::LeastSquares, map, own, uncertainty: Some(uncertainty) })
 }
 
 struct SideFit {
     value: SideMap,
     standard_error: SideMap,
     systematic_error: SideMap,
+    /// The border alone.
+    own: Own,
     condition_number: f64,
 }
 
@@ -72,7 +75,11 @@ fn side_map(map: &OneSidedMap<'_>) -> Result<SideFit, SampleError> {
         let design = Mat::from_fn(points.len(), monomials.len(), |row, column| {
             power(samples[row].perturbation.component_div(&width), monomials[column])
         });
-        let response = Mat::from_fn(points.len(), 2, |row, component| samples[row].end[component]);
+        // Where the revolution ends, and the gap when the corner passes, which tells on which side the impact falls.
+        let response = Mat::from_fn(points.len(), 3, |row, component| match component {
+            2 => map.gap(&samples[row]),
+            _ => samples[row].end[component],
+        });
         let solver = Solver::new(&design)?;
         let fit = solver.fit(&response);
         // The linear monomials follow the constant, in the order of the directions.
@@ -89,10 +96,13 @@ fn side_map(map: &OneSidedMap<'_>) -> Result<SideFit, SampleError> {
             let systematic_error = SideMap { a: wider.a.zip_map(&value.a, bias), b: wider.b.zip_map(&value.b, bias) };
             let size = in_scales(&standard_error, &scales) + in_scales(&systematic_error, &scales);
             if best.as_ref().is_none_or(|(least, _)| size < *least) {
-                best = Some((
-                    size,
-                    SideFit { value, standard_error, systematic_error, condition_number: solver.condition_number },
-                ));
+                let gap = |of: &Mat<f64>| [0, 1, 2].map(|direction| entry(of, 2, direction));
+                let (gap, error) = (gap(&fit.coefficients), gap(&fit.standard_errors));
+                let border = (RowVector2::new(gap[0], gap[1]), gap[2]);
+                let own =
+                    Own { border_error: Some(3.0 * error.into_iter().fold(0.0, f64::max)), ..Own::border(border) };
+                let condition_number = solver.condition_number;
+                best = Some((size, SideFit { value, standard_error, systematic_error, own, condition_number }));
             }
         }
         wider = Some(value);

@@ -107,10 +107,6 @@ pub enum RouteName {
     ClosedForm,
     /// Differences of simulated periods.
     FiniteDifference,
-    /// The free flight to the corner through what comes before it.
-    Flight,
-    /// The free flight from the section to the corner.
-    FreeFlight,
     /// A polynomial fitted to simulated periods.
     LeastSquares,
     /// The equation for the period.
@@ -136,8 +132,33 @@ pub struct Route {
     pub name: RouteName,
     /// The map.
     pub map: CornerMap,
+    /// What it says besides by means of its own.
+    pub own: Own,
     /// How well each entry is known, in the map's own shape: a standard error or an error estimate.
     pub uncertainty: Option<Uncertainty>,
+}
+
+/// A line in the space of deviations of state and period: what multiplies (dx1, dx2), and what multiplies dT.
+pub type Line = (RowVector2<f64>, f64);
+
+/// What a route says besides A and B that it does not take from these by the one function that all share.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Own {
+    /// `(C, D)`, by another way than the difference of the two sides.
+    pub jump: Option<Line>,
+    /// The eigenvalues of both sides, by another way than [`SideMap::eigenvalues`].
+    pub eigenvalues: Option<Sides<[Eigenvalue; 2]>>,
+    /// `(e, f)`: the impact comes before the corner where `e dx + f dT < 0`.
+    pub border: Option<Line>,
+    /// How far an entry of the border may be off, where an estimate says so.
+    pub border_error: Option<f64>,
+}
+
+impl Own {
+    /// A border alone.
+    pub(crate) fn border(border: Line) -> Self {
+        Self { border: Some(border), ..Self::default() }
+    }
 }
 
 /// How well a numerical route knows its entries.
@@ -159,8 +180,10 @@ pub enum Uncertainty {
 document!(Route as route {
     minus: route.map.minus,
     plus: route.map.plus,
-    C: route.map.c().as_slice(),
-    D: route.map.d(),
+    C: route.c().as_slice(),
+    D: route.d(),
+    eigenvalues if_any: route.own.eigenvalues,
+    border if_any: route.own.border.map(|(e, f)| [e[0], e[1], f]),
     standard_error if_any: route.fit().map(|(standard, ..)| standard),
     systematic_error if_any: route.fit().and_then(|(_, systematic, _)| systematic),
     condition_number if_any: route.fit().map(|(.., condition_number)| condition_number),
@@ -171,6 +194,21 @@ document!(Route as route {
 });
 
 impl Route {
+    /// C, by its own way where it has one.
+    pub fn c(&self) -> RowVector2<f64> {
+        self.own.jump.map_or_else(|| self.map.c(), |(c, _)| c)
+    }
+
+    /// D, m/s, likewise.
+    pub fn d(&self) -> f64 {
+        self.own.jump.map_or_else(|| self.map.d(), |(_, d)| d)
+    }
+
+    /// The eigenvalues of both sides, likewise.
+    pub fn eigenvalues(&self) -> Sides<[Eigenvalue; 2]> {
+        self.own.eigenvalues.unwrap_or_else(|| self.map.map(SideMap::eigenvalues))
+    }
+
     /// Standard errors, bias and condition number, where it is a fit.
     fn fit(&self) -> Option<(CornerMap, Option<CornerMap>, f64)> {
         match self.uncertainty {

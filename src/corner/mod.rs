@@ -27,7 +27,6 @@
 //!
 //! States here are the paper's x: position from the spring's equilibrium, and velocity.
 
-pub mod border;
 pub(crate) mod candidates;
 pub mod closed_form;
 pub(crate) mod confirm;

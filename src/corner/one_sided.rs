@@ -244,6 +244,22 @@ impl<'a> OneSidedMap<'a> {
         Vector3::new(approach * period / TAU, approach, third) * (Self::PERTURBATION * self.reach * self.shrunk)
     }
 
+    /// How far the follower was from the cam when the corner passed, to first order: it comes down by `c' - v-` in each unit of the
+    /// time that passes from the corner to the impact.
+    pub fn gap(&self, sample: &Sample) -> f64 {
+        sample.past_corner * self.per_angle()
+    }
+
+    /// What the gap closes by as the cam turns by a radian, m.
+    fn per_angle(&self) -> f64 {
+        (self.at.cam_velocity - self.at.velocity_before) / self.at.angular_velocity()
+    }
+
+    /// How far rounding may move that gap, m: of a position, and of the angle in a full turn.
+    pub fn gap_rounding(&self) -> f64 {
+        self.rounding()[0] + tolerance::RUN_ROUNDING.value * TAU * self.per_angle()
+    }
+
     /// How far rounding may move the end of a stretch: a few ulps of the largest position and velocity on the way.
     pub fn rounding(&self) -> Vector2<f64> {
         let CornerImpact { state, velocity_before, velocity_after, .. } = *self.at;

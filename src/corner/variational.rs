@@ -14,7 +14,7 @@
 use nalgebra::{Matrix2, Matrix2x3, RowVector2, SMatrix, Vector2};
 
 use super::corner_impact::CornerImpact;
-use super::map::{CornerMap, Route, RouteName, SideMap, Sides, Uncertainty};
+use super::map::{CornerMap, Line, Own, Route, RouteName, SideMap, Sides, Uncertainty};
 use super::varied::{Change, LiftChange, NoChange, Varied};
 use crate::cam::{Cam, Side};
 use crate::flight::State;
@@ -26,7 +26,8 @@ use crate::simulate::Machine;
 pub fn route(model: &Model, cam: &Cam, at: &CornerImpact) -> Route {
     let around = Around::new(model, cam, at);
     let map = CornerMap::of_each(|side| around.side_map(side, &Change::of_period(at.cycle.impacts.len())));
-    Route { name: RouteName::Variational, map, uncertainty: None }
+    let own = Own::border(around.border());
+    Route { name: RouteName::Variational, map, own, uncertainty: None }
 }
 
 /// The map with B by any number; where the cam's shape depends on it, with the error of the differences that its lift was
@@ -49,15 +50,13 @@ pub fn route_by(model: &Model, cam: &Cam, at: &CornerImpact, varied: &Varied) ->
     })?;
     let (map, error) = (found.map(|(map, _)| *map), found.map(|(_, off)| *off));
     let uncertainty = matches!(varied, Varied::Number(_)).then_some(Uncertainty::Extrapolation(error));
-    Ok(Route { name: RouteName::Variational, map, uncertainty })
+    Ok(Route { name: RouteName::Variational, map, own: Own::default(), uncertainty })
 }
 
-/// How far the flight at the corner is from the cam when the corner passes, to first order: `e dx + f dp`, from the section
-/// on; and so, where it is negative, that the impact has been before.
-pub fn gap_at_corner(model: &Model, cam: &Cam, at: &CornerImpact) -> (RowVector2<f64>, f64) {
-    let around = Around::new(model, cam, at);
-    let gap = around.go(at.side, &Change::of_period(at.cycle.impacts.len()), true);
-    (RowVector2::new(gap[(0, 0)], gap[(0, 1)]), gap[(0, 2)])
+/// `(e, f)`: `e dx + f dT` is, to first order, how far the follower is from the cam when the corner passes, without the impact on
+/// it; where it is negative, the impact has been before.
+pub fn border(model: &Model, cam: &Cam, at: &CornerImpact) -> Line {
+    Around::new(model, cam, at).border()
 }
 
 /// The orbit and what turns along it.
@@ -76,6 +75,11 @@ impl<'a> Around<'a> {
     fn side_map(&self, side: Side, change: &Change) -> SideMap {
         let around = self.go(side, change, false);
         SideMap { a: around.fixed_view::<2, 2>(0, 0).into(), b: around.column(2).into() }
+    }
+
+    fn border(&self) -> Line {
+        let gap = self.go(self.at.side, &Change::of_period(self.at.cycle.impacts.len()), true);
+        (RowVector2::new(gap[(0, 0)], gap[(0, 1)]), gap[(0, 2)])
     }
 
     /// The deviation by both components of the start and by the number varied: once around, or up to before the corner.

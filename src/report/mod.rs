@@ -126,6 +126,8 @@ struct Headline<'a>(&'a Report);
 document!(Headline<'_> as it {
     comparisons: it.0.tally().comparisons,
     agreeing: it.0.tally().agreeing,
+    following: it.0.tally().following,
+    following_agreeing: it.0.tally().following_agreeing,
     shared_decimals: it.0.tally().shared_decimals,
     routes: it.0.verification.iter().flat_map(names).collect::<Vec<_>>(),
     failed: it.0.failed(),

@@ -2,19 +2,17 @@
 
 use std::fmt::Display;
 
-use nalgebra::RowVector2;
 use serde::Serialize;
 
-use crate::agreement::{Agreement, Quantity, compare, compare_routes, worse};
+use crate::agreement::{Agreement, Quantity, compare_routes, worse};
 use crate::border_collision::{Classification, Refusal, classify};
 use crate::cam::{Cam, Side};
-use crate::corner::map::{RouteName, Uncertainty};
+use crate::corner::map::{Line, RouteName, Uncertainty};
 use crate::corner::one_sided::SampleError;
 use crate::corner::varied::Varied;
 use crate::corner::{CornerImpact, CornerMap, Route, SideMap};
 use crate::corner::{closed_form, finite_difference, least_squares, variational};
 use crate::model::Model;
-use crate::tolerance::Comparison;
 
 /// Something that did not run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -84,11 +82,7 @@ pub(super) fn routes(model: &Model, cam: &Cam, at: &CornerImpact, log: &mut Log)
 }
 
 /// What happens at a corner impact whose map is `map`, if next to it the follower flies off the cam on both sides.
-pub(super) fn classified(
-    map: &CornerMap,
-    border: (RowVector2<f64>, f64),
-    sticking: Option<Side>,
-) -> Result<Classification, Refusal> {
+pub(super) fn classified(map: &CornerMap, border: Line, sticking: Option<Side>) -> Result<Classification, Refusal> {
     match sticking {
         Some(side) => Err(Refusal::Sticking { side }),
         None => Ok(classify(map, border)?),
@@ -97,24 +91,18 @@ pub(super) fn classified(
 
 /// The estimate of the side that the impact is on, in the place of both.
 fn one_side(model: &Model, cam: &Cam, at: &CornerImpact) -> Result<Route, SampleError> {
-    let (side, _) = finite_difference::side_map(model, cam, at, at.side, &Varied::Period)?;
-    Ok(Route { name: RouteName::FiniteDifference, map: CornerMap { minus: side, plus: side }, uncertainty: None })
+    let found = finite_difference::side_map(model, cam, at, at.side, &Varied::Period)?;
+    let (side, own) = (found.0.map, finite_difference::own(&found));
+    Ok(Route { name: RouteName::FiniteDifference, map: CornerMap { minus: side, plus: side }, own, uncertainty: None })
 }
 
 /// Every pair of routes in every quantity that both know; where the velocity jumps, of the side alone that the impact is on.
 pub(super) fn comparisons(at: &CornerImpact, routes: &[Route], log: &mut Log) -> Vec<Agreement> {
     let mut all = compare_routes(routes);
     if at.corner.jump_order == 1 {
-        all.retain(|item| [Quantity::A(at.side), Quantity::B(at.side)].contains(&item.quantity));
+        all.retain(|item| [Quantity::A(at.side), Quantity::B(at.side), Quantity::Border].contains(&item.quantity));
     }
     split_by_knowledge(all, routes, log)
-}
-
-/// The border of a route's map, `C dx + D dT = 0`, against that of the flight, `e x + f dT = 0`: one line, so `f C = D e`.
-pub(super) fn compare_borders(route: &Route, flight: RouteName, (e, f): (RowVector2<f64>, f64)) -> Agreement {
-    let (c, d) = (route.map.c(), route.map.d());
-    let entries = [c * f, e * d];
-    compare([route.name, flight], Quantity::Border, [entries[0].as_slice(), entries[1].as_slice()], Comparison::Routes)
 }
 
 /// The comparisons but for those with an estimate that says itself that it knows the quantity less closely than is asked,
@@ -126,7 +114,7 @@ fn split_by_knowledge(mut comparisons: Vec<Agreement>, routes: &[Route], log: &m
     for route in routes {
         let Some(uncertainty) = &route.uncertainty else { continue };
         let is_unknown = |item: &Agreement| {
-            let known_to = known_to(uncertainty, item.quantity);
+            let known_to = known_to(route, uncertainty, item.quantity);
             let misses = match uncertainty {
                 Uncertainty::Fit { .. } => true,
                 Uncertainty::Extrapolation(_) => !item.agrees && item.max_abs_diff <= known_to,
@@ -136,7 +124,8 @@ fn split_by_knowledge(mut comparisons: Vec<Agreement>, routes: &[Route], log: &m
         let (unknown, known): (Vec<Agreement>, Vec<Agreement>) = comparisons.into_iter().partition(is_unknown);
         comparisons = known;
         if let Some(item) = unknown.first() {
-            let (quantity, known_to, asked) = (item.quantity, known_to(uncertainty, item.quantity), item.bound.value);
+            let (quantity, known_to, asked) =
+                (item.quantity, known_to(route, uncertainty, item.quantity), item.bound.value);
             let why = format!("knows {quantity} to {known_to:.1e} by its own errors, and {asked:.1e} is asked for");
             log.leave_out(route.name, why);
         }
@@ -146,7 +135,10 @@ fn split_by_knowledge(mut comparisons: Vec<Agreement>, routes: &[Route], log: &m
 
 /// Three standard errors and the bias of a fit's worst entry of a quantity, or the error of an extrapolation's; of what
 /// derives from A and B, of both sides.
-fn known_to(uncertainty: &Uncertainty, quantity: Quantity) -> f64 {
+fn known_to(route: &Route, uncertainty: &Uncertainty, quantity: Quantity) -> f64 {
+    if quantity == Quantity::Border {
+        return route.own.border_error.unwrap_or(0.0);
+    }
     let worst = |entries: &[f64]| entries.iter().fold(0.0, |size, entry| worse(size, entry.abs()));
     let a = |side: &SideMap| worst(side.a.as_slice());
     let b = |side: &SideMap| worst(side.b.as_slice());
@@ -165,6 +157,7 @@ fn known_to(uncertainty: &Uncertainty, quantity: Quantity) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::corner::map::Own;
 
     fn sides(a: f64) -> CornerMap {
         let side = SideMap { a: nalgebra::Matrix2::repeat(a), b: nalgebra::Vector2::repeat(1.0) };
@@ -173,10 +166,11 @@ mod tests {
 
     #[test]
     fn an_estimate_that_misses_by_more_than_it_says_disagrees() {
-        let exact = Route { name: RouteName::Variational, map: sides(1.0), uncertainty: None };
+        let exact = Route { name: RouteName::Variational, map: sides(1.0), own: Own::default(), uncertainty: None };
         for (off, said, is_kept) in [(1e-4, 2e-4, false), (2e-4, 1e-4, true), (1e-12, 2e-4, true)] {
             let uncertainty = Some(Uncertainty::Extrapolation(sides(said)));
-            let estimate = Route { name: RouteName::FiniteDifference, map: sides(1.0 + off), uncertainty };
+            let estimate =
+                Route { name: RouteName::FiniteDifference, map: sides(1.0 + off), own: Own::default(), uncertainty };
             let routes = [exact.clone(), estimate];
             let mut log = Log::default();
             let kept = split_by_knowledge(compare_routes(&routes), &routes, &mut log);

@@ -12,7 +12,6 @@ use serde::{Serialize, Serializer};
 use crate::agreement::Agreement;
 use crate::border_collision::{Classification, Refusal};
 use crate::cam::{Cam, Side};
-use crate::corner::border::border;
 use crate::corner::map::RouteName;
 use crate::corner::range::{FoundCornerImpacts, RangeError, find_corner_impacts};
 use crate::corner::{CornerImpact, CornerMap, variational};
@@ -22,7 +21,7 @@ use crate::model::{Model, ModelError, Study};
 use crate::orbit::branch::{Event, GRID_RATIO};
 use crate::simulate::Machine;
 use crate::study::ModelLabel;
-use crate::study::compared::{self, Log, Skipped, compare_borders};
+use crate::study::compared::{self, Log, Skipped};
 
 /// The corner impacts of a range of speeds: the document `corner-impact/locate/1`.
 #[derive(Clone, Debug)]
@@ -223,15 +222,11 @@ fn located(model: &Model, cam: &Cam, at: &CornerImpact) -> LocatedImpact {
     let (mut routes, sticking) = compared::routes(model, cam, at, &mut log);
     // The route that knows every kind of orbit comes first: its map is told.
     routes.sort_by_key(|route| route.name != RouteName::Variational);
-    let mut comparisons = compared::comparisons(at, &routes, &mut log);
-    let (map, border) = (variational::route(model, cam, at).map, border(model, cam, at));
+    let comparisons = compared::comparisons(at, &routes, &mut log);
+    let (map, border) = (variational::route(model, cam, at).map, variational::border(model, cam, at));
     let local = match at.corner.jump_order {
         1 => Happens::Gap,
-        2 => {
-            let differences = routes.iter().find(|route| route.name == RouteName::FiniteDifference);
-            comparisons.extend(differences.map(|route| compare_borders(route, RouteName::Flight, border)));
-            Happens::BorderCollision(compared::classified(&map, border, sticking))
-        }
+        2 => Happens::BorderCollision(compared::classified(&map, border, sticking)),
         _ => Happens::Smooth,
     };
     let agrees = log.is_complete() && comparisons.iter().all(|item| item.agrees);

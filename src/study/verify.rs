@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::thread::JoinHandle;
 
-use nalgebra::{Matrix2, RowVector2, Vector2};
+use nalgebra::{Matrix2, Vector2};
 use serde::Serialize;
 
 use crate::agreement::{Agreement, NamedOrbit, Quantity, compare_orbits, fewest_shared_decimals};
@@ -14,12 +14,11 @@ use crate::border_collision::{
     normal_form, rounded,
 };
 use crate::cam::{Cam, Side, apart};
-use crate::corner::border::border;
 use crate::corner::external::{self, Outside, PROGRAMS, Program};
-use crate::corner::map::{RouteName, SideMap, Sides};
+use crate::corner::map::{Line, RouteName, SideMap, Sides};
 use crate::corner::second_order::{CurvedMap, second_order};
 use crate::corner::{self, CornerImpact, CornerMap, LocateError, Route};
-use crate::corner::{closed_form, simulated_orbit};
+use crate::corner::{closed_form, simulated_orbit, variational};
 use crate::measured::{Likely, Measured};
 use crate::model::Model;
 use crate::progress::{Unwatched, Watch};
@@ -28,7 +27,7 @@ use crate::python::PythonError;
 use crate::stop;
 use crate::study::ModelLabel;
 use crate::study::certify::{self, Certificate, Outcome};
-use crate::study::compared::{self, Log, Skipped, compare_borders};
+use crate::study::compared::{self, Log, Skipped};
 use crate::tolerance;
 
 /// What a verification found: the document `corner-impact/verify/1`.
@@ -51,7 +50,7 @@ pub struct Verification {
     /// Every comparison of two routes.
     pub comparisons: Vec<Agreement>,
     /// `(e, f)`: the impact comes before the corner where `e dx + f dT < 0`.
-    pub border: (RowVector2<f64>, f64),
+    pub border: Line,
     /// The map with its parameter out of the border.
     pub normal_form: Result<NormalForm, Degenerate>,
     /// What happens at the corner impact.
@@ -192,13 +191,16 @@ impl Verification {
 
     /// Comparisons and printed numbers by what came of them.
     pub fn tally(&self) -> Tally {
-        let (pairs, numbers) = (&self.comparisons, &self.published);
+        let numbers = &self.published;
+        let (following, pairs): (Vec<_>, Vec<_>) = self.comparisons.iter().partition(|pair| pair.follows);
         let right = numbers.iter().filter(|number| number.as_found && number.agreement.agrees).count();
         let otherwise = numbers.iter().filter(|number| !number.as_found).count();
         Tally {
             comparisons: pairs.len(),
             agreeing: pairs.iter().filter(|pair| pair.agrees).count(),
-            shared_decimals: fewest_shared_decimals(pairs),
+            following: following.len(),
+            following_agreeing: following.iter().filter(|pair| pair.agrees).count(),
+            shared_decimals: fewest_shared_decimals(&self.comparisons),
             printed: numbers.len(),
             printed_right: right,
             printed_wrong: numbers.len() - right - otherwise,
@@ -210,10 +212,14 @@ impl Verification {
 /// How many comparisons and printed numbers there are of each kind.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Tally {
-    /// Comparisons of two routes.
+    /// Comparisons of two routes, but for those that follow from A and B.
     pub comparisons: usize,
     /// Those that agree.
     pub agreeing: usize,
+    /// Those that follow from A and B, and test nothing more.
+    pub following: usize,
+    /// Those of these that agree.
+    pub following_agreeing: usize,
     /// Decimals that every entry of A and B shares between any two routes; none where they are the same in all digits.
     pub shared_decimals: Option<u32>,
     /// The paper's printed numbers that were looked at.
@@ -302,18 +308,17 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
             Some(Err(_)) => log.fail(program.name, "its thread ended without an answer"),
         }
     }
-    let border = border(model, &cam, &at);
+    let border = variational::border(model, &cam, &at);
     let classification = compared::classified(&map, border, sticking);
     watch.at("the proof, in Python", 0, 0);
     let certificate = certificate(proving, (classification.is_err(), is_smoothed), &mut log);
     if let Some(certificate) = &certificate {
         let (name, x_star) = (RouteName::Certificate, Vector2::from_fn(|row, _| certificate.state[row].value()));
-        routes.push(Route { name, map: certificate.map(), uncertainty: None });
+        routes.push(Route { name, map: certificate.map(), own: certificate.own(), uncertainty: None });
         orbits.push((name, x_star, certificate.period_s.value()));
     }
     let mut comparisons = compared::comparisons(&at, &routes, &mut log);
     comparisons.extend(compare_orbits(&orbits));
-    comparisons.push(compare_borders(&closed, RouteName::FreeFlight, border));
     let normal_form = normal_form(&map);
     log.refused("normal_form", &normal_form);
     log.refused("classification", &classification);
@@ -333,7 +338,7 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
         }
         ranges = validity::ranges(model, &cam, &at, &local, curved);
     }
-    let published = match compare_published(model, &at, &map, normal_form.as_ref().ok()) {
+    let published = match compare_published(model, &at, &closed, normal_form.as_ref().ok()) {
         Err(error @ PublishedError::OtherModel) => {
             log.leave_out("published", error);
             Vec::new()

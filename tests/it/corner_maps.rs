@@ -4,9 +4,8 @@ use std::path::Path;
 use std::sync::OnceLock;
 
 use crate::common;
-use corner_impact::agreement::compare_routes;
+use corner_impact::agreement::{Quantity, compare_routes};
 use corner_impact::cam::{Cam, Side};
-use corner_impact::corner::border::border;
 use corner_impact::corner::map::RouteName;
 use corner_impact::corner::map::Uncertainty;
 use corner_impact::corner::one_sided::{OneSidedMap, SampleError};
@@ -168,7 +167,7 @@ fn the_jump_has_rank_one_in_states_and_numbers_together() {
 #[ignore = "slow"]
 fn the_border_says_on_which_side_the_impact_falls() {
     for Case { model, cam, at } in cases() {
-        let (e, f) = border(model, cam, at);
+        let (e, f) = variational::border(model, cam, at);
         for side in [Side::Minus, Side::Plus] {
             let map = OneSidedMap::new(model, cam, at, side).unwrap();
             for direction in [[1.0, 0.3, 0.2], [-1.0, 0.2, -0.4], [0.1, -1.0, 0.3], [0.2, 0.1, -1.0], [0.0, 0.0, 1.0]] {
@@ -182,18 +181,23 @@ fn the_border_says_on_which_side_the_impact_falls() {
     }
 }
 
-/// The free flight's formula for one impact, and the product around: one line.
+/// A border is compared with its sign: with -(e, f) both fixed points would turn from faster to slower.
 #[test]
-fn the_border_of_the_product_is_that_of_the_free_flight() {
-    for file in common::model_files() {
-        let model = common::read(&file);
-        let cam = common::cam(&model);
-        let at = corner_impact::corner::locate(&model, &cam).unwrap().0;
-        let ((e, f), (gap_e, gap_f)) = (border(&model, &cam, &at), variational::gap_at_corner(&model, &cam, &at));
-        assert!(
-            (e - gap_e).norm() <= 1e-13 * e.norm() && (f - gap_f).abs() <= 1e-12 * f.abs(),
-            "{file:?}: {f} {gap_f}"
-        );
+fn a_border_whose_sign_is_turned_disagrees() {
+    for Case { model, cam, at } in cases().iter().take(3) {
+        let mut product = variational::route(model, cam, at);
+        let simulated = finite_difference::route(model, cam, at).unwrap();
+        let agrees = |product: &Route| {
+            let routes = [product.clone(), simulated.clone()];
+            let borders: Vec<_> =
+                compare_routes(&routes).into_iter().filter(|item| item.quantity == Quantity::Border).collect();
+            assert_eq!(borders.len(), 1);
+            borders[0].agrees && !borders[0].follows
+        };
+        assert!(agrees(&product));
+        let (e, f) = product.own.border.unwrap();
+        product.own.border = Some((-e, -f));
+        assert!(!agrees(&product));
     }
 }
 

@@ -3,7 +3,7 @@
 
 use crate::common;
 use corner_impact::border_collision::{LocalMap, passage};
-use corner_impact::corner::border::border as border_of_the_map;
+use corner_impact::corner::variational::border as border_of_the_map;
 use corner_impact::corner::{range, variational};
 use corner_impact::diagram::{exponent, growth};
 use corner_impact::flight::State;

@@ -64,7 +64,7 @@ fn another_model_is_not_held_against_the_paper() {
     let found = verify(&model, External::LeftOut).unwrap();
     assert!(found.published.is_empty());
     assert!(found.skipped.iter().any(|skipped| skipped.route == "published"));
-    let result = compare_published(&model, &found.at, &found.map, None);
+    let result = compare_published(&model, &found.at, &found.routes[0], None);
     assert_eq!(result.unwrap_err(), PublishedError::OtherModel);
 }
 

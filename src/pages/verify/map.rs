@@ -35,7 +35,10 @@ pub(crate) fn map(found: &Verification) -> Vec<Block> {
     }
     let (c, ten) = (found.map.c(), Digits::Significant(10));
     let border = words!["C = (", (c[0], ten), ", ", (c[1], ten), "),  D = ", (found.map.d(), ten)];
-    blocks.extend([Block::Entries(0, vec![("".into(), border)]), Block::Gap]);
+    blocks.push(Block::Entries(0, vec![("".into(), border)]));
+    let (e, f) = found.border;
+    let side = words!["minus where e dx + f dT < 0:  e = (", (e[0], ten), ", ", (e[1], ten), "),  f = ", (f, ten)];
+    blocks.extend([Block::Entries(0, vec![("".into(), side)]), Block::Gap]);
     blocks.extend(found.measured.iter().flat_map(measured));
     blocks.extend(found.routes_by_name().filter_map(known_to).flatten());
     blocks
@@ -144,8 +147,8 @@ fn largest(error: &CornerMap) -> (f64, f64) {
 pub(crate) fn agreement(found: &Verification) -> Vec<Block> {
     let columns = [
         Column::left("quantity", 2, 19),
-        Column::right("pairs", 5),
-        Column::right("differ by", 12),
+        Column::right("pairs", 7),
+        Column::right("differ by", 11),
         Column::right("allowed", 10),
         Column::left("share", 2, 14),
         Column::left("between", 0, 0),
@@ -156,7 +159,11 @@ pub(crate) fn agreement(found: &Verification) -> Vec<Block> {
         let shown = [pairs.closest].into_iter().filter(|entry| entry.agrees).chain(disagreeing);
         for (index, Agreement { routes, max_abs_diff, bound, agrees, .. }) in shown.enumerate() {
             let between = routes.map(words::route).join(" - ");
-            let head = (index == 0).then(|| (words::quantity(pairs.quantity), Words::from(pairs.all.len())));
+            let count = match (pairs.all.len(), pairs.following()) {
+                (all, 0) => all.to_string(),
+                (all, following) => format!("{} + {following}", all - following),
+            };
+            let head = (index == 0).then(|| (words::quantity(pairs.quantity), Words::from(count)));
             let (name, count) = head.unwrap_or_default();
             let [differ, allowed] = [*max_abs_diff, bound.value].map(|value| Words::from((value, Digits::Size)));
             let between = match agrees {
@@ -168,9 +175,13 @@ pub(crate) fn agreement(found: &Verification) -> Vec<Block> {
         }
     }
     let title = "Do the routes agree? Every pair, in every quantity; shown is the pair closest to its bound";
+    let follow = found.comparisons.iter().any(|pair| pair.follows).then(|| {
+        let note = "After a +: pairs that follow, both routes taking the quantity from their A and B by one function.";
+        Block::Note(note.into())
+    });
     let all = format!("All {} comparisons, with the reason of each bound", found.comparisons.len());
     let all = Block::Details(all.into(), vec![Block::Table(comparisons(found))]);
-    vec![Block::Heading(title.into()), Block::Table(table), all]
+    [Block::Heading(title.into()), Block::Table(table)].into_iter().chain(follow).chain([all]).collect()
 }
 
 fn comparisons(found: &Verification) -> Table {
@@ -181,7 +192,11 @@ fn comparisons(found: &Verification) -> Table {
     for pair in &found.comparisons {
         let [differ, parts, allowed] =
             [pair.max_abs_diff, pair.max_rel_diff, pair.bound.value].map(|value| words![(value, Digits::Size)]);
-        let verdict = Words::from(if pair.agrees { "agrees" } else { "disagrees" });
+        let verdict = Words::from(match (pair.agrees, pair.follows) {
+            (true, false) => "agrees",
+            (true, true) => "agrees, which follows",
+            (false, _) => "disagrees",
+        });
         let (name, between) = (words::quantity(pair.quantity), pair.routes.map(words::route).join(" - ").into());
         table.row_bad_where(!pair.agrees, [name, between, differ, parts, allowed, verdict, pair.bound.reason.into()]);
     }

@@ -240,8 +240,7 @@ pub(crate) fn verdict(found: &Verification) -> Vec<Block> {
     blocks.extend(tally(found).into_iter().map(Block::paragraph));
     let missing: Vec<&str> =
         found.skipped.iter().filter(|skipped| skipped.failed).map(|skipped| skipped.route.as_str()).collect();
-    let Tally { comparisons, agreeing, printed_otherwise, .. } = found.tally();
-    let all_agree = agreeing == comparisons && printed_otherwise == 0;
+    let all_agree = found.comparisons.iter().all(|pair| pair.agrees) && found.tally().printed_otherwise == 0;
     let (mark, word, reason) = match missing.as_slice() {
         _ if found.agrees => (Mark::Good, "AGREES", String::new()),
         [] => (Mark::Bad, "DISAGREES", ": a comparison above".to_owned()),
@@ -258,12 +257,17 @@ pub(crate) fn verdict(found: &Verification) -> Vec<Block> {
 
 /// How many comparisons agree and how many printed numbers hold.
 pub(crate) fn tally(found: &Verification) -> Vec<Words> {
-    let Tally { comparisons, agreeing, shared_decimals, printed, printed_right, printed_wrong, printed_otherwise } =
-        found.tally();
+    let tally = found.tally();
+    let Tally { comparisons, agreeing, following, following_agreeing, shared_decimals, .. } = tally;
+    let Tally { printed, printed_right, printed_wrong, printed_otherwise, .. } = tally;
     let more = if shared_decimals.is_some() { " or more" } else { "" };
     let shares = words::shared(shared_decimals);
+    let follow = match following {
+        0 => String::new(),
+        _ => format!(", and {following_agreeing} of {following} that follow from them"),
+    };
     let compared =
-        format!("{agreeing} of {comparisons} comparisons agree; every entry of A and B shares {shares}{more}.");
+        format!("{agreeing} of {comparisons} comparisons agree{follow}; every entry of A and B shares {shares}{more}.");
     let numbers = format!(
         "Of the paper's {printed} printed numbers {printed_right} hold, {printed_wrong} are wrong as listed, \
          {printed_otherwise} came out otherwise than found."

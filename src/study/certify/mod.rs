@@ -6,7 +6,7 @@
 mod orbits;
 mod resting;
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::{Matrix2, RowVector2, Vector2};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
@@ -15,7 +15,7 @@ use crate::ball::Ball;
 use crate::border_collision::RobustChaos;
 use crate::border_collision::feigin::{Scenario, Speeds};
 use crate::cam::{Cam, Side};
-use crate::corner::map::Sides;
+use crate::corner::map::{Eigenvalue, Own, Sides};
 use crate::corner::range::{RangeError, Rejected, find_corner_impacts};
 use crate::corner::{CornerImpact, CornerMap, SideMap};
 use crate::known::Known;
@@ -185,6 +185,18 @@ impl Certificate {
             a: Matrix2::from_fn(|row, column| side.a[row][column].value()),
             b: Vector2::from_fn(|row, _| side.b[row].value()),
         })
+    }
+
+    /// What is proved besides A and B, by the middles.
+    pub(crate) fn own(&self) -> Own {
+        let line = |[first, second, last]: [&Ball; 3]| (RowVector2::new(first.value(), second.value()), last.value());
+        let eigenvalue = |it: &ProvedEigenvalue| Eigenvalue { re: it.re.value(), im: it.im.value() };
+        let ([c1, c2], border) = (&self.c, self.border.each_ref());
+        Own {
+            jump: Some(line([c1, c2, &self.d])),
+            eigenvalues: Some(self.sides.map(|side| side.eigenvalues.each_ref().map(eigenvalue))),
+            ..Own::border(line(border))
+        }
     }
 
     /// Holds the theorem of robust chaos at these speeds against the proved matrices, and says so where its hypotheses follow.
