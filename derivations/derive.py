@@ -26,7 +26,7 @@ import points
 import printed_equations
 import recover
 import smoothing_spline
-from proof import Proof, show
+from proof import PLANTED, Measurement, refuses, show
 
 GOLDEN = Path(__file__).resolve().parent.parent / "golden" / "derived"
 # Doubles meet the derived values to this at every point, which is what Rust is asked for.
@@ -45,14 +45,18 @@ def pretty(document):
 
 
 def run():
-    """Prove each stage; the files, and whether all proofs hold."""
-    complete, stated = True, []
+    """Prove each stage; the files, and whether all proofs hold and what is false is refused."""
+    complete, stated = refuses(), []
+    print(f"refused       {len(PLANTED)} planted identities that are false" if complete else "NOT REFUSED: what `vanishes` passes is no proof")
 
     def stage(title, proofs):
         nonlocal complete
         proofs = list(proofs)
         complete = show(title, proofs) and complete
-        stated.append({"stage": title, "proved": [proof.statement for proof in proofs]})
+        kinds = {"proved": [], "measured": []}
+        for proof in proofs:
+            kinds["measured" if isinstance(proof, Measurement) else "proved"].append(proof.statement)
+        stated.append({"stage": title} | {kind: statements for kind, statements in kinds.items() if statements})
 
     stage("flight", flight.proofs())
     stage("impact", impact.proofs())
@@ -69,14 +73,13 @@ def run():
     rows = points.points(expressions)
     apart, rounding = points.disagreement(rows), points.in_doubles(rows)
     stage("points", [
-        Proof(f"{len(rows)} points: the derived expressions and closed_forms.py give the same 60 digits",
-              0 if apart < mpf(10) ** -60 else 1),
-        Proof(f"closed_forms.py in double precision meets them to {DOUBLE}", 0 if rounding < DOUBLE else 1),
+        Measurement(f"{len(rows)} points: the derived expressions and closed_forms.py give the same 60 digits", apart < mpf(10) ** -60),
+        Measurement(f"closed_forms.py in double precision meets them to {DOUBLE}", rounding < DOUBLE),
     ])  # fmt: skip
 
     apart = smoothing_spline.scipys()
     stage("smoothing spline", [
-        Proof(f"the B-splines of smoothing_spline.py meet scipy's to {DOUBLE}", 0 if apart < DOUBLE else 1),
+        Measurement(f"the B-splines of smoothing_spline.py meet scipy's to {DOUBLE}", apart < DOUBLE),
     ])  # fmt: skip
 
     note = "written by derivations/derive.py; do not edit"
@@ -92,7 +95,7 @@ def run():
         "printed_equations.json": pretty({"note": note, "equations": verdicts}),
         "recovery.json": pretty({"note": note, **recover.document()}),
         "smoothing_spline.json": pretty({"note": note, **smoothing_spline.document()}),
-        "proofs.json": pretty({"note": note, "stages": stated}),
+        "proofs.json": pretty({"note": note, "refused": [planted.statement for planted in PLANTED], "stages": stated}),
     }  # fmt: skip
     return files, complete
 

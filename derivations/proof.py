@@ -1,7 +1,11 @@
 """What a proof is here: a statement and a residual that computer algebra reduces to exactly 0.
 
 No tolerance enters. A residual is first cleared of denominators and expanded; what that leaves is handed to sympy's
-simplifiers. A residual that still does not reduce counts as not proved, even if it were 0.
+simplifiers. A residual that still does not reduce counts as not proved, even if it were 0. What is compared by its digits is a
+measurement, and is told apart.
+
+A judge that lets everything pass would prove everything: five false identities are planted, each for another way through
+`vanishes`, and no stage is complete unless all five are refused.
 """
 
 import sys
@@ -21,6 +25,17 @@ class Proof:
         return vanishes(self.residual)
 
 
+@dataclass(frozen=True)
+class Measurement:
+    """A statement that numbers bear out, each to so many digits; no proof."""
+
+    statement: str
+    within: bool
+
+    def holds(self):
+        return bool(self.within)
+
+
 def vanishes(residual):
     """Whether an expression, or each entry of a matrix or list, is exactly 0."""
     if isinstance(residual, (list, tuple)):
@@ -36,16 +51,38 @@ def vanishes(residual):
     return sp.simplify(sp.expand(numerator.rewrite(sp.exp), power_exp=True)) == 0
 
 
+_a, _b, _t = sp.symbols("a b t", real=True)
+# False, and each nearly true: a residual of one kind for each step of `vanishes`.
+PLANTED = (
+    Proof("(a + b)^2 = a^2 + b^2: a polynomial", (_a + _b) ** 2 - _a**2 - _b**2),
+    Proof("1/(a - b) - 1/(a + b) = 2 a/(a^2 - b^2): denominators to be cleared", 1 / (_a - _b) - 1 / (_a + _b) - 2 * _a / (_a**2 - _b**2)),
+    Proof("sin(a + b) = sin a cos b - cos a sin b: left to the simplifiers", sp.sin(_a + _b) - sp.sin(_a) * sp.cos(_b) + sp.cos(_a) * sp.sin(_b)),
+    Proof("sqrt(a^2) = a: true of half of all numbers", sp.sqrt(_a**2) - _a),
+    Proof("the flow of [[0, 1], [-1, 0]] is [[cos t, sin t], [sin t, cos t]]: one entry of four",
+          [sp.Matrix([[sp.cos(_t), sp.sin(_t)], [sp.sin(_t), sp.cos(_t)]]) - sp.Matrix([[sp.cos(_t), sp.sin(_t)], [-sp.sin(_t), sp.cos(_t)]]), 0]),
+)  # fmt: skip
+
+
+def refuses():
+    """Whether each planted identity is refused; those that are not are printed."""
+    passed = [planted for planted in PLANTED if planted.holds()]
+    for planted in passed:
+        print(f"PASSED, though it is false: {planted.statement}", flush=True)
+    return not passed
+
+
 def show(title, proofs):
-    """Print each proof on one line; True if all hold."""
+    """Print each proof and each measurement on one line; True if all hold."""
     complete = True
     for proof in proofs:
         good = proof.holds()
         complete = complete and good
-        print(f"{'proved    ' if good else 'NOT PROVED'}  {title}: {proof.statement}", flush=True)
+        word = "measured" if isinstance(proof, Measurement) else "proved"
+        print(f"{word if good else 'NOT ' + word.upper():<12}  {title}: {proof.statement}", flush=True)
     return complete
 
 
 def main(title, proofs):
     """A stage run by itself."""
-    sys.exit(0 if show(title, proofs()) else 1)
+    complete = refuses()
+    sys.exit(0 if show(title, proofs()) and complete else 1)

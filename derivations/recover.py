@@ -29,7 +29,7 @@ from mpmath import findroot, matrix, mp, mpf
 
 import arithmetic
 import evaluate
-from proof import Proof, main
+from proof import Measurement, main
 
 PUBLISHED = Path(__file__).resolve().parent.parent / "golden" / "published" / "osorio-2008.json"
 ROUND_OFF = mpf(10) ** -13
@@ -265,7 +265,7 @@ def proofs():
     """Not identities but measurements: each recovered constant is within its uncertainty of the authors'."""
     for row in recovery():
         words = f"{row['constant']} = {row['recovered']} +- {row['uncertainty']} is the authors' {row['authors']}"
-        yield Proof(words, 0 if row["agrees"] else 1)
+        yield Measurement(words, row["agrees"])
 
 
 if __name__ == "__main__":
