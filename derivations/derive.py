@@ -67,6 +67,7 @@ def run():
     stage("border collision", border_collision.proofs())
     verdicts, results = printed_equations.examined()
     stage("printed", results)
+    stage("one slip", printed_equations.slips())
     stage("recovered", recover.proofs())
 
     expressions = corner_map.expressions()

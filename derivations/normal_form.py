@@ -72,6 +72,7 @@ def corner_proofs():
     A_minus, B_minus, A_plus, B_plus, C, D = sides()
     yield Proof("A+ - A- = kappa F e2 (h F), of rank one", A_plus - A_minus - kappa * F * e2 * h * F)
     yield Proof("B+ - B- = kappa F e2 v/2", B_plus - B_minus - kappa * F * e2 * v / 2)
+    yield Proof("A11 - A22 = 2 zeta A12, on either side", A_minus[0, 0] - A_minus[1, 1] - 2 * zeta * A_minus[0, 1])
 
     # tau = dtau . (dx, dT), the same for both sides
     dtau = derived()["dtau"]
@@ -104,6 +105,7 @@ def change_proofs():
     W = companion_coordinates(A_minus, C)
     yield Proof("W A- = (companion of A-) W", W * A_minus - companion(A_minus) * W)
     yield Proof("W A+ = (companion of A+) W", W * A_plus - companion(A_plus) * W)
+    yield Proof("W built on -C is -W", companion_coordinates(A_minus, -C) + W)
     yield Proof("C = (1, 0) W, so C bar = C W^-1 = (1, 0)", C - sp.Matrix([[1, 0]]) * W)
     lam = sp.Symbol("lambda")
     yield Proof("d1 = -trace A- and d2 = det A- are the coefficients of the characteristic polynomial",

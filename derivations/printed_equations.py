@@ -154,11 +154,6 @@ def gap_meaning(repairs):
     return (q + shift) - (c + shift if "shift" in repairs else c) - (q - c)
 
 
-def impact_time(repairs):
-    """phi_{-t_i} flies from t = 0 to the impact: it is at -t_i. As the text has it, at t_i."""
-    return (-t_i if "sign" in repairs else t_i) - (-t_i)
-
-
 def restitution_law(repairs):
     state, surface = sp.Matrix([q, v]), sp.Matrix([q, c1])
     return state + R * (state - surface) - sp.Matrix([q, (1 + r) * c1 - r * v])
@@ -173,6 +168,12 @@ def zero_time_map(repairs):
 def composition(repairs):
     flown = phi(half + t_i) * restitution(phi(half - t_i) * x, y(-t_i))
     return letters(map_printed(x) - flown)
+
+
+def implicit_condition(repairs):
+    """H below eq:lmap is the gap of eq:H at -t_i, of the flight that comes to t = 0 as if there were no impact."""
+    arrived = phi(half) * x
+    return letters(gap_printed(x) - (h * (phi(-t_i) * arrived - y(-t_i)))[0])
 
 
 def fixed_point(repairs):
@@ -318,20 +319,7 @@ def continuity(repairs):
     return ((A_plus - A_minus) * dx + (B_plus - B_minus) * normal_form.dT).subs(on_border)
 
 
-def estimate_sign(repairs):
-    A, _ = derived()
-    return (A if "sign" in repairs else -A) - A
-
-
-# ---- limits and region: statements about order rather than equality -----------------------------------------------------
-
-before, after = sp.symbols("c''(0-) c''(0+)", real=True)
-
-
-def limits(repairs):
-    """The two limits that are said to differ should be those of the two sides."""
-    second = after if "0+" in repairs else before
-    return [before - before, second - after]
+# ---- the region: a statement about order rather than equality -----------------------------------------------------------
 
 
 def region(repairs):
@@ -418,7 +406,11 @@ def cam_laws(repairs):
 
 
 def tangency(repairs):
-    """At R and Q: value and slope. At P: a slope fixed by the normal alone, and one normal for both circles."""
+    """The printed c_1 and c_2 at R, P and Q, each lift less the neighbour's and each slope.
+
+    At P both circles have one outward normal n: O1 = P - rho1 n and O2 = P - rho2 n. With a = n . e_r > 0, b = n . e_theta and
+    l = |P| that is O1 . e_r = l - rho1 a, O1 . e_theta = -rho1 b, and likewise O2, which say what sine and cosine are there.
+    """
     R_, Q_ = {theta: sp.pi / 2 - theta1}, {theta: sp.pi / 2 - theta3}
     ends = [
         FLANK.subs(R_).subs(rho1, rho0 + kappa1) - rho0,
@@ -426,15 +418,18 @@ def tangency(repairs):
         NOSE.subs(Q_) - (kappa2 + rho2),
         NOSE.diff(theta).subs(Q_),
     ]
-    # on a circle c' (n . e_r) + c (n . e_theta) = 0, n the outward normal: from c^2 - 2 c k cos + k^2 = rho^2
-    distance, offset, radius = sp.symbols("k phi rho", positive=True)
-    lift = sp.Function("c")(offset)
-    circle = (lift**2 - 2 * lift * distance * sp.cos(offset) + distance**2 - radius**2).diff(offset) / 2
-    slope = lift.diff(offset) * (lift - distance * sp.cos(offset)) + lift * distance * sp.sin(offset)
-    # O1 = P - rho1 n and O2 = P - rho2 n just where O2 - O1 = (rho1 - rho2) n
-    normal, point = sp.Matrix(sp.symbols("n1 n2")), sp.Matrix(sp.symbols("P1 P2"))
-    centres = (point - rho2 * normal) - (point - rho1 * normal) - (rho1 - rho2) * normal
-    return [*ends, sp.expand(circle - slope), centres]
+    a, lift = sp.symbols("a l", positive=True)
+    b = sp.Symbol("b", real=True)
+    flank = {sp.sin(theta + theta1): -(lift - rho1 * a) / kappa1, sp.cos(theta + theta1): rho1 * b / kappa1}
+    nose = {sp.sin(theta + theta3): (lift - rho2 * a) / kappa2, sp.cos(theta + theta3): -rho2 * b / kappa2}
+
+    def at_P(law, table):
+        # a^2 + b^2 = 1 makes each root rho a
+        roots = {sp.sqrt(rho1**2 - rho1**2 * b**2): rho1 * a, sp.sqrt(rho2**2 - rho2**2 * b**2): rho2 * a}
+        return law.subs(table).subs(roots)
+
+    meet = [at_P(law(NOSE), nose) - at_P(law(FLANK), flank) for law in (lambda law: law, lambda law: law.diff(theta))]
+    return [*ends, *meet, at_P(FLANK, flank) - lift]
 
 
 EQUATIONS = (
@@ -442,11 +437,10 @@ EQUATIONS = (
     Equation("x_t", "x = (q + g/omega0^2, q') turns the equation of motion into x' = G x", gravity_shift),
     Equation("y_t", "h (x - y) = q - c with y = (c, c')", gap_meaning, "misprint", "y = (c + g/omega0^2, c'): both from the same equilibrium",
              ("shift",), "true as printed for g = 0"),
-    Equation("eq:H", "the impact is left of t = 0 where t_i < 0 (text and figure)", impact_time, "misprint",
-             "the impact is at -t_i, so left of t = 0 where t_i > 0", ("sign",)),
     Equation("eq:impactdynamics_2", "x+ = x + R (x - y) is the law of restitution at contact", restitution_law),
     Equation("eq:lmapd", "P_D = (I + phi_ti R phi_-ti) x - phi_ti R y_-ti is back, impact, forward", zero_time_map),
     Equation("eq:lmap", "P as printed is flight to the impact, impact, flight to the section", composition),
+    Equation("implicit condition", "H(x_n, t_i) = h (phi_{T/2 - t_i} x_n - y_-ti), below eq:lmap, is eq:H after the flight to t = 0", implicit_condition),
     Equation("eq:fixedp", "x* = -[I - phi_T + F R F]^-1 F R y0 is the fixed point with t_i = 0", fixed_point, "misprint",
              "-[I - phi_T - F R F]^-1 F R y0; h (F x* - y0) = 0 then fixes T*", ("sign",)),
     Equation("eq:dPdx", "dP/dx by the chain rule through t_i(x)", chain(x[0])),
@@ -466,15 +460,12 @@ EQUATIONS = (
              "phi' in the first term, phi in the second, a minus before the third",
              ("phi' in the first term", "phi in the second term", "minus before the third term")),
     Equation("eq:linearmap", "A and B follow from eq:lmap and H by implicit differentiation at the corner", taylor_closed_form),
-    Equation("limits", "c''- and c''+ are the two one-sided limits", limits, "misprint", "the second limit is t -> 0+", ("0+",),
-             values={before: sp.Rational(3, 2), after: sp.Rational(-8, 3)}),
     Equation("eq:pwlf, region", "C dx + D dT is positive just where the impact comes after the corner (A+, B+ hold)", region, "refuted",
              "divide by (1+r) phi12(T/2) (c''+ - c''-): as printed it is right just where phi12(T/2) (c''+ - c''-) > 0; "
              "where that is negative, as at the paper's corner, A+, B+ hold on C dx + D dT < 0",
              ("factor",), values={normal_form.plus: sp.Rational(-8, 3), normal_form.minus: sp.Rational(3, 2)}),
     Equation("eq:pwlf, acceleration", "P does not contain the cam's acceleration", no_acceleration),
     Equation("eq:pwlf, continuity", "A- dx + B- dT = A+ dx + B+ dT where C dx + D dT = 0, C = h (A+ - A-), D = h (B+ - B-)", continuity),
-    Equation("delta x", "dx_{n+1} = x* - x_{n+1} is fitted by A", estimate_sign, "misprint", "x_{n+1} - x*", ("sign",)),
     Equation("B tilde", "B~ = B - A e1 D/C1 after the shift of coordinates", b_tilde, "refuted", "B - (A - I) e1 D/C1: the image moves too",
              ("image",), values=GENERAL),
     Equation("B tilde, sides", "the printed B~ is the same on both sides", b_tilde_sides),
@@ -485,8 +476,27 @@ EQUATIONS = (
              ("image", "sign"), values=GENERAL),
     Equation("appendix A, laws", "c_1 and c_2 are the flank and nose circles, angles signed", cam_laws),
     Equation("appendix A, tangency",
-             "the cam has no kink if rho1 = rho0 + kappa1, rho3 = kappa2 + rho2 and |O1 O2| = rho1 - rho2", tangency),
+             "c_0 to c_3 meet with one lift and one slope if O, O1, R and O, O2, Q and O1, O2, P lie on lines, as drawn", tangency),
 )  # fmt: skip
+
+
+# ---- one slip, several equations ----------------------------------------------------------------------------------------
+
+
+def slips():
+    """Which printed equations are wrong in one way: the later ones have the earlier one's slip, and no other."""
+    # The map and the gap of an impact at t_i, which the sentence after eq:H speaks of, in place of one at -t_i.
+    opposite = phi(half) * ((I + phi(-t_i) * R * phi(t_i)) * phi(half) * x - phi(-t_i) * R * y(t_i))
+    fixed = opposite.jacobian(x) - phi(half) * (I + phi(-t_i) * R * phi(t_i)) * phi(half)
+    yield Proof("Eq:dP_dxn as printed is that of an impact at t_i", letters(fixed))
+    bracket, rate = corner_terms()
+    yield Proof("the bracket that eq:ftaylormapcornerX and T have is dP/dt_i of an impact at t_i",
+                at_corner(opposite.diff(t_i) - phi(half) * bracket))
+    start = dict(zip(x, F.inv() * sp.Matrix([q, v])))
+    corner = {l0: q, l1: c1 * T / (2 * sp.pi), l2: c2 * (T / (2 * sp.pi)) ** 2}
+    last = at_corner(phi(half) * bracket * (h * (dphi(half) * x / 2 - dy_dT(0)))[0] / rate).subs(start).subs(corner)
+    third = F * (1 + r) * v / (v - c1) * sp.Matrix([v - c1, STIFFENING]) / 2
+    yield Proof("the third term of eq:PT is the last of eq:ftaylormapcornerT, with its sign", last - third)
 
 
 # ---- verdicts -----------------------------------------------------------------------------------------------------------

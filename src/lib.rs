@@ -29,7 +29,7 @@
 //!    ▼
 //!  study                 one module per question that a user can ask: verify, locate, speeds, ...; its result is the document
 //!    ▼
-//!  paper                 the paper's statements, one by one: holds, misprint, refuted, open; and how that is known
+//!  paper                 the paper's statements, one by one, each with a verdict and how that is known
 //!    ▼
 //!  show                  blocks on a terminal, in a browser and as Markdown; JSON, CSV; words and digits, each written once
 //!    ▼

@@ -18,10 +18,14 @@ const PRINTED: &str = include_str!("../golden/published/osorio-2008.json");
 
 /// What was found about a printed number or a statement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
-#[serde(rename_all = "lowercase")]
+#[serde(rename_all = "kebab-case")]
 pub enum Verdict {
     /// It is right.
     Holds,
+    /// It says what is meant by something: there is nothing to check.
+    Definition,
+    /// Right in part, or roughly: what is not is told.
+    InPart,
     /// A slip of the pen: digits, a sign, brackets; what was built on the right form stands.
     Misprint,
     /// What it says is wrong.
@@ -34,7 +38,18 @@ named!(Verdict);
 
 impl Verdict {
     /// All of them, the ones to read first in front.
-    pub(crate) const WORST_FIRST: [Self; 4] = [Self::Refuted, Self::Misprint, Self::Open, Self::Holds];
+    pub(crate) const WORST_FIRST: [Self; 6] =
+        [Self::Refuted, Self::Misprint, Self::InPart, Self::Open, Self::Definition, Self::Holds];
+
+    /// Whether something else is right instead.
+    pub(crate) fn has_correction(self) -> bool {
+        matches!(self, Self::Refuted | Self::Misprint | Self::InPart)
+    }
+
+    /// Whether what is said is wrong: by a slip of its own, or by one that was made before.
+    pub(crate) fn is_wrong(self) -> bool {
+        matches!(self, Self::Refuted | Self::Misprint)
+    }
 }
 
 /// A printed number beside the computed one.
@@ -71,17 +86,7 @@ document!(PrintedNumber as number {
 });
 
 /// What is printed wrong: the quantity, what was found, and what is wrong with it. All else holds.
-static WRONG: [(Quantity, Verdict, &str); 6] = [
-    (
-        Quantity::BHat(Minus),
-        Verdict::Refuted,
-        "said to agree with the analytic B- to at least 5 decimals; the entries differ by more, the second by several units in the fourth",
-    ),
-    (
-        Quantity::BHat(Plus),
-        Verdict::Refuted,
-        "said to agree with the analytic B+ to at least 5 decimals; the entries differ by more, the second by several units in the fourth",
-    ),
+static WRONG: [(Quantity, Verdict, &str); 4] = [
     (
         Quantity::BTilde,
         Verdict::Refuted,
@@ -90,7 +95,7 @@ static WRONG: [(Quantity, Verdict, &str); 6] = [
     (
         Quantity::BBar,
         Verdict::Refuted,
-        "it is -W times the wrong B tilde, so the sign went too; the right second entry is 0 because the paper's follower is undamped",
+        "it is the wrong B tilde in the W that is built on -C, so the sign went too; the right second entry is 0 because the paper's follower is undamped",
     ),
     (Quantity::Eigenvalues(Minus), Verdict::Misprint, "1.005147 rounds to 1.0051, printed 1.0052"),
     (Quantity::Eigenvalues(Plus), Verdict::Misprint, "0.41207 rounds to 0.4121, printed 0.4120"),

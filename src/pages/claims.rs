@@ -1,19 +1,20 @@
 //! The pages of `claims`: for a terminal, and the one under `docs/`.
 
-use crate::paper::Claims;
+use crate::paper::{Claims, Held};
+use crate::published::Verdict;
 use crate::show::block::{Block, Column, Mark, Section, Span, Table, Words, words};
-use crate::show::words::mark;
+use crate::show::words::{self, mark, verdict_word};
 
 /// The page for a terminal.
 pub(crate) fn terminal(found: &Claims) -> Vec<Block> {
     let title = format!("What the paper states, held against {}", found.model);
-    let mut blocks = vec![Block::Paragraph(0, (Mark::Heading, title.as_str()).into())];
+    let about = format!("All of it is about {}.", found.source);
+    let mut blocks =
+        vec![Block::Paragraph(0, (Mark::Heading, title.as_str()).into()), Block::Paragraph(0, about.into())];
     for (verdict, held) in found.groups() {
-        let name = verdict.to_string().to_uppercase();
-        blocks.extend([
-            Block::Gap,
-            Block::Paragraph(0, words![(mark(verdict), name.as_str()), format!(" ({})", held.len())]),
-        ]);
+        let name = verdict_word(verdict).to_uppercase();
+        let count = format!(" ({})", count(found, verdict, held.len()));
+        blocks.extend([Block::Gap, Block::Paragraph(0, words![(mark(verdict), name.as_str()), count])]);
         for claim in held {
             let otherwise = (Mark::Bad, "OTHERWISE THAN THE LEDGER SAYS");
             let mut head = words![format!("{} [{}]", claim.id, claim.place)];
@@ -22,6 +23,7 @@ pub(crate) fn terminal(found: &Claims) -> Vec<Block> {
             }
             blocks.extend([Block::Gap, Block::Paragraph(2, head), Block::Paragraph(4, (&claim.statement).into())]);
             blocks.extend(claim.correct.iter().map(|correct| Block::Paragraph(4, words!["Right: ", correct])));
+            blocks.extend(by_slip(claim).map(|slip| Block::Paragraph(4, slip.into())));
             blocks.push(Block::Paragraph(4, words![format!("Evidence, {}: ", claim.known), &claim.evidence]));
         }
     }
@@ -34,17 +36,36 @@ pub(crate) fn terminal(found: &Claims) -> Vec<Block> {
     blocks
 }
 
+/// How many statements have a verdict, and of wrong ones how many make a slip.
+fn count(found: &Claims, verdict: Verdict, all: usize) -> String {
+    if !verdict.is_wrong() {
+        return all.to_string();
+    }
+    format!("{all}: {}", words::slips(found.slips_and_consequences(verdict)))
+}
+
+/// Which slips made elsewhere make a statement wrong.
+fn by_slip(claim: &Held) -> Option<String> {
+    let others: Vec<&str> = claim.slips.iter().filter(|slip| **slip != claim.id).map(String::as_str).collect();
+    (!others.is_empty()).then(|| format!("By the slip of: {}", others.join("; ")))
+}
+
 /// The page under `docs/`: what stands before its sections, and these.
 pub fn document(found: &Claims) -> (Vec<Block>, Vec<Section>) {
     let term = |name| (Mark::Strong, name);
     let about = words![
         "Written by ",
         Span::Code("make claims".into()),
-        "; a test keeps it fresh. Statements are in words of this project. ",
+        format!("; a test keeps it fresh. All of it is about {}; the printed article was not at hand. ", found.source),
+        "Statements are in words of this project. ",
         term("Misprint"),
         ": a slip that nothing was built on; ",
         term("refuted"),
         ": what is said is wrong; ",
+        term("in part"),
+        ": right in part or roughly, and the row says what is not; ",
+        term("definition"),
+        ": there is nothing to check; ",
         term("open"),
         ": not decided here yet. How a verdict is known: ",
         term("proved"),
@@ -56,8 +77,17 @@ pub fn document(found: &Claims) -> (Vec<Block>, Vec<Section>) {
         term("read"),
         "."
     ];
-    let counts: Vec<String> = found.groups().map(|(verdict, held)| format!("{} {verdict}", held.len())).collect();
-    let counts = format!("{} statements: {}.", found.claims.len(), counts.join(", "));
+    let counts: Vec<String> =
+        found.groups().map(|(verdict, held)| format!("{} {}", held.len(), verdict_word(verdict))).collect();
+    let of = |verdict| words::slips(found.slips_and_consequences(verdict));
+    let counts = format!(
+        "{} statements: {}. What is refuted is {}, what is misprinted {}: a consequence has the slip of a statement before it, and none of \
+         its own.",
+        found.claims.len(),
+        counts.join(", "),
+        of(Verdict::Refuted),
+        of(Verdict::Misprint)
+    );
     let title = Block::Title("What the paper states, and what was found".into());
     let sections = found.groups().map(|(verdict, held)| {
         let columns =
@@ -68,10 +98,26 @@ pub fn document(found: &Claims) -> (Vec<Block>, Vec<Section>) {
             let known = claim.known.to_string();
             table.row([&claim.id, &claim.place, &claim.statement, correct, &known, &claim.evidence].map(Words::from));
         }
-        let title = words![capitalized(&verdict.to_string()), format!(" ({})", held.len())];
+        let title = words![capitalized(verdict_word(verdict)), format!(" ({})", count(found, verdict, held.len()))];
         Section { id: "", title, blocks: vec![Block::Table(table)] }
     });
-    (vec![title, Block::paragraph(about), Block::paragraph(counts)], sections.collect())
+    let lead = vec![title, Block::paragraph(about), Block::paragraph(counts)];
+    (lead, std::iter::once(slips(found)).chain(sections).collect())
+}
+
+/// Each slip and what is wrong by it.
+fn slips(found: &Claims) -> Section {
+    let heads = ["made in", "verdict", "where", "right instead", "wrong by it as well"];
+    let mut table = Table::new("", heads.map(|head| Column::left(head, 0, 0)));
+    for (maker, others) in found.slips() {
+        let correct = maker.correct.as_deref().unwrap_or_default();
+        let others: Vec<String> =
+            others.iter().map(|held| format!("{} ({})", held.id, verdict_word(held.verdict))).collect();
+        let row = [&maker.id, verdict_word(maker.verdict), &maker.place, correct, &others.join("; ")];
+        table.row(row.map(Words::from));
+    }
+    let title = format!("Slips ({})", found.slips().count());
+    Section { id: "", title: title.into(), blocks: vec![Block::Table(table)] }
 }
 
 fn capitalized(word: &str) -> String {

@@ -1,6 +1,6 @@
 //! What a check may look at, and what it gives back.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::error::Error;
 
 use serde::Deserialize;
@@ -8,11 +8,14 @@ use serde::Deserialize;
 use crate::cam::Cam;
 use crate::known::Known;
 use crate::model::Model;
-use crate::published::Verdict;
+use crate::published::{PrintedNumber, Verdict};
 use crate::study::verify::Verification;
 
 /// What computer algebra found about the printed equations; `make derive` writes it, `make derive-check` redoes it.
 const EQUATIONS: &str = include_str!("../../golden/derived/printed_equations.json");
+
+/// Every statement that computer algebra proves, written and redone with them.
+const PROOFS: &str = include_str!("../../golden/derived/proofs.json");
 
 /// What checks may look at.
 pub struct Context<'a> {
@@ -22,6 +25,8 @@ pub struct Context<'a> {
     /// Whether follower and cam are the paper's.
     pub(super) is_paper: bool,
     pub(super) equations: BTreeMap<String, Equation>,
+    /// The statements that are proved; what was measured is not among them.
+    pub(super) proved: BTreeSet<String>,
 }
 
 /// A printed equation, as the derivations judged it.
@@ -44,14 +49,51 @@ struct Equations {
     equations: Vec<Equation>,
 }
 
+#[derive(Deserialize)]
+struct Proofs {
+    stages: Vec<Stage>,
+}
+
+#[derive(Deserialize)]
+struct Stage {
+    #[serde(default)]
+    proved: Vec<String>,
+}
+
 impl<'a> Context<'a> {
     /// The context of a verified model.
     pub fn new(model: &'a Model, cam: &'a Cam, findings: &'a Verification) -> Result<Self, LedgerError> {
-        let derived = |error: String| LedgerError::Derived(format!("golden/derived/printed_equations.json: {error}"));
-        let read: Equations = serde_json::from_str(EQUATIONS).map_err(|error| derived(error.to_string()))?;
+        let derived =
+            |file: &str, error: serde_json::Error| LedgerError::Derived(format!("golden/derived/{file}: {error}"));
+        let read: Equations =
+            serde_json::from_str(EQUATIONS).map_err(|error| derived("printed_equations.json", error))?;
+        let proofs: Proofs = serde_json::from_str(PROOFS).map_err(|error| derived("proofs.json", error))?;
         let is_paper = model.is_the_papers().map_err(|error| LedgerError::Derived(error.to_string()))?;
         let equations = read.equations.into_iter().map(|equation| (equation.label.clone(), equation)).collect();
-        Ok(Self { model, cam, findings, is_paper, equations })
+        let proved = proofs.stages.into_iter().flat_map(|stage| stage.proved).collect();
+        Ok(Self { model, cam, findings, is_paper, equations, proved })
+    }
+
+    /// What the paper prints for a quantity, as it was compared.
+    pub(super) fn printed(&self, quantity: &str) -> Result<&'a PrintedNumber, String> {
+        let mut numbers = self.findings.published.iter();
+        let found = numbers.find(|number| number.agreement.quantity.to_string() == quantity);
+        found.ok_or_else(|| format!("{quantity} was not compared with the print"))
+    }
+
+    /// An entry of it.
+    pub(super) fn printed_entry(&self, quantity: &str, index: usize) -> Result<f64, Box<dyn Error>> {
+        let entry =
+            self.printed(quantity)?.printed.get(index).ok_or_else(|| format!("{quantity}: no entry {index}"))?;
+        Ok(entry.parse()?)
+    }
+
+    /// Whether computer algebra proves each of these statements; which one it does not, otherwise.
+    pub(super) fn proves(&self, statements: &[&str]) -> Result<(), String> {
+        match statements.iter().find(|statement| !self.proved.contains(**statement)) {
+            Some(missing) => Err(format!("not among the derivations: {missing}")),
+            None => Ok(()),
+        }
     }
 }
 

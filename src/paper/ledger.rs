@@ -26,8 +26,11 @@ pub struct Claim {
     pub statement: String,
     /// What was found.
     pub verdict: Verdict,
-    /// What is right instead; with every misprint and refutation.
+    /// What is right instead; with every misprint, refutation and what holds in part.
     pub correct: Option<String>,
+    /// Of what is wrong, the statements whose slips it has, by id: its own where nothing is listed.
+    #[serde(default)]
+    pub slips: Vec<String>,
 }
 
 /// A statement with what its check found.
@@ -52,14 +55,29 @@ pub struct Held {
     /// What is right instead, where the check finds it wrong.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub correct: Option<String>,
+    /// The statements whose slips make it wrong, by id: it makes one itself where its own is among them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub slips: Vec<String>,
     /// Whether that is the ledger's verdict, or the statement is not about this model.
     pub as_found: bool,
 }
+
+impl Held {
+    /// Whether it is wrong by a slip that is made here, and not only by one that was made before.
+    pub fn makes_a_slip(&self) -> bool {
+        self.slips.contains(&self.id)
+    }
+}
+
+/// What the statements were taken from.
+pub(crate) const SOURCE: &str = "the paper's source on arXiv (0711.1008)";
 
 /// Every statement held against its check: what `claims` finds; serializes to `corner-impact/claims/1`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Claims {
     schema: &'static str,
+    /// What all of it is about.
+    pub source: &'static str,
     /// Name of the model.
     pub model: String,
     /// Every statement.
@@ -93,14 +111,36 @@ impl Claims {
             let Found { verdict, known, evidence } = check.run(context);
             let elsewhere = !context.is_paper && check.is_about_the_papers_model() && verdict == Verdict::Open;
             let as_found = verdict == claim.verdict || elsewhere;
-            let correct = claim.correct.filter(|_| matches!(verdict, Verdict::Misprint | Verdict::Refuted));
+            let correct = claim.correct.filter(|_| verdict.has_correction());
+            let slips = match claim.slips {
+                _ if !verdict.is_wrong() => Vec::new(),
+                own if own.is_empty() => vec![claim.id.clone()],
+                listed => listed,
+            };
             *counts.entry(verdict).or_default() += 1;
             let Claim { id, place, statement, verdict: listed, .. } = claim;
-            Ok(Held { id, place, statement, verdict, listed, known, evidence, correct, as_found })
+            Ok(Held { id, place, statement, verdict, listed, known, evidence, correct, slips, as_found })
         };
         let claims = claims.into_iter().enumerate().map(one).collect::<Result<Vec<_>, LedgerError>>()?;
         let agrees = claims.iter().all(|held| held.as_found);
-        Ok(Self { schema: "corner-impact/claims/1", model: context.model.name.clone(), claims, counts, agrees })
+        let (schema, model) = ("corner-impact/claims/1", context.model.name.clone());
+        Ok(Self { schema, source: SOURCE, model, claims, counts, agrees })
+    }
+
+    /// The statements that make a slip, each with those that are wrong by it, itself in front.
+    pub(crate) fn slips(&self) -> impl Iterator<Item = (&Held, Vec<&Held>)> {
+        let makers = self.claims.iter().filter(|held| held.makes_a_slip());
+        makers.map(|maker| {
+            let others = self.claims.iter().filter(|held| held.id != maker.id && held.slips.contains(&maker.id));
+            (maker, others.collect())
+        })
+    }
+
+    /// How many of the statements with a verdict make a slip, and how many are only consequences of one.
+    pub(crate) fn slips_and_consequences(&self, verdict: Verdict) -> (usize, usize) {
+        let with = self.claims.iter().filter(|held| held.verdict == verdict);
+        let (makers, followers): (Vec<_>, Vec<_>) = with.partition(|held| held.makes_a_slip());
+        (makers.len(), followers.len())
     }
 
     /// The verdicts, the ones to read first in front, each with its statements.

@@ -6,6 +6,7 @@
 
 pub mod checks;
 mod context;
+mod drawings;
 mod dynamics;
 pub mod jump_order;
 pub mod ledger;

@@ -92,16 +92,34 @@ pub(crate) fn spoken(name: &str) -> String {
     name.replace(['_', '-'], " ")
 }
 
+/// A verdict of the ledger in words.
+pub(crate) fn verdict_word(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Holds => "holds",
+        Verdict::Definition => "definition",
+        Verdict::InPart => "in part",
+        Verdict::Misprint => "misprint",
+        Verdict::Refuted => "refuted",
+        Verdict::Open => "open",
+    }
+}
+
+/// How many statements make a slip, and how many are wrong by one made before.
+pub(crate) fn slips((slips, consequences): (usize, usize)) -> String {
+    let counted = |count: usize, word: &str| format!("{count} {word}{}", if count == 1 { "" } else { "s" });
+    format!("{} and {}", counted(slips, "slip"), counted(consequences, "consequence"))
+}
+
 /// A verdict of the ledger, standing out as what it is.
 pub(crate) fn verdict(verdict: Verdict) -> Words {
-    (mark(verdict), verdict.to_string().as_str()).into()
+    (mark(verdict), verdict_word(verdict)).into()
 }
 
 /// What a verdict of the ledger is.
 pub(crate) fn mark(verdict: Verdict) -> Mark {
     match verdict {
-        Verdict::Holds => Mark::Good,
-        Verdict::Misprint => Mark::Doubtful,
+        Verdict::Holds | Verdict::Definition => Mark::Good,
+        Verdict::Misprint | Verdict::InPart => Mark::Doubtful,
         Verdict::Refuted => Mark::Bad,
         Verdict::Open => Mark::Open,
     }

@@ -236,7 +236,7 @@ fn the_ledger_is_filtered_by_verdict_and_words_and_linked_to() {
     let Some(mut page) = open() else { return };
     let ledger = ledger();
     assert_eq!(visible(&mut page), ledger.claims.len());
-    for verdict in ["holds", "misprint", "refuted", "open"] {
+    for verdict in ["holds", "definition", "in-part", "misprint", "refuted", "open"] {
         page.click(&format!("#verdict-{verdict}"));
         let expected = ledger.claims.iter().filter(|claim| claim.verdict.to_string() == verdict).count();
         assert_eq!(visible(&mut page), expected, "{verdict}");

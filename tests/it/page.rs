@@ -143,7 +143,7 @@ fn claims_routes_and_figures_are_all_there() {
     let (dossier, page) = papers();
     let ledger = dossier.claims.as_ref().unwrap();
     assert_eq!(between(page, "<li class=\"claim ", ">").len(), ledger.claims.len());
-    for verdict in ["holds", "misprint", "refuted", "open"] {
+    for verdict in ["holds", "definition", "in-part", "misprint", "refuted", "open"] {
         let expected = ledger.claims.iter().filter(|claim| claim.verdict.to_string() == verdict).count();
         assert_eq!(between(page, &format!("data-verdict=\"{verdict}\""), ">").len(), expected, "{verdict}");
     }

@@ -269,8 +269,8 @@ pub(crate) fn tally(found: &Verification) -> Vec<Words> {
     let compared =
         format!("{agreeing} of {comparisons} comparisons agree{follow}; every entry of A and B shares {shares}{more}.");
     let numbers = format!(
-        "Of the paper's {printed} printed numbers {printed_right} hold, {printed_wrong} are wrong as listed, \
-         {printed_otherwise} came out otherwise than found."
+        "Of the {printed} numbers printed in the paper's source on arXiv {printed_right} hold, {printed_wrong} are wrong as \
+         listed, {printed_otherwise} came out otherwise than found."
     );
     [Some(compared), (printed > 0).then_some(numbers)].into_iter().flatten().map(Words::from).collect()
 }

@@ -4,11 +4,12 @@ use std::collections::BTreeMap;
 
 use maud::html;
 
+use crate::published::Verdict;
 use crate::report::Report;
 use crate::show::block::{Block, Section};
 use crate::show::formula::sentence;
 use crate::show::html::words;
-use crate::show::words::verdict;
+use crate::show::words::{slips, verdict, verdict_word};
 
 /// The fragment that leads to a claim: letters and digits of its id.
 fn anchors<'a>(ids: impl Iterator<Item = &'a str>) -> Vec<String> {
@@ -27,11 +28,17 @@ fn anchors<'a>(ids: impl Iterator<Item = &'a str>) -> Vec<String> {
 pub(crate) fn section(report: &Report) -> Option<Section> {
     let ledger = report.claims.as_ref()?;
     let anchors = anchors(ledger.claims.iter().map(|claim| claim.id.as_str()));
+    let anchor_of = |id: &str| {
+        let found = ledger.claims.iter().position(|claim| claim.id == id);
+        found.map_or("claims", |index| anchors[index].as_str())
+    };
     let body = html! {
         p {
             "Every displayed equation, number, statement and figure of the paper, in words of this project, with a verdict and the "
-            "evidence for it. A " em { "misprint" } " is a slip that nothing was built on; what is " em { "refuted" } " is wrong; "
-            em { "open" } " is not decided here."
+            "evidence for it. All of it is about " (ledger.source) ". A " em { "misprint" } " is a slip that nothing was built on; what "
+            "is " em { "refuted" } " is wrong; what holds " em { "in part" } " says what does not; a " em { "definition" } " is nothing to "
+            "check; " em { "open" } " is not decided here. What is refuted is " (slips(ledger.slips_and_consequences(Verdict::Refuted)))
+            " of them, what is misprinted " (slips(ledger.slips_and_consequences(Verdict::Misprint))) "."
         }
         div.ledger-page {
         form.filter id="ledger-filter" {
@@ -41,7 +48,7 @@ pub(crate) fn section(report: &Report) -> Option<Section> {
                 @for (verdict, held) in ledger.groups() {
                     label {
                         input type="radio" name="verdict" value=(verdict) id={ "verdict-" (verdict) };
-                        " " (verdict) " (" (held.len()) ")"
+                        " " (verdict_word(verdict)) " (" (held.len()) ")"
                     }
                 }
             }
@@ -54,6 +61,9 @@ pub(crate) fn section(report: &Report) -> Option<Section> {
                     p.head { (words(&verdict(claim.verdict))) " " a href={ "#" (anchor) } { (claim.id) } " " span.place { (claim.place) } }
                     p { (sentence(&claim.statement)) }
                     @if let Some(correct) = &claim.correct { p.correct { "Right: " (sentence(correct)) } }
+                    @for slip in claim.slips.iter().filter(|slip| **slip != claim.id) {
+                        p { "By the slip of " a href={ "#" (anchor_of(slip)) } { (slip) } "." }
+                    }
                     p.evidence { "Evidence, " (claim.known) ": " (sentence(&claim.evidence)) }
                     @if !claim.as_found { p.disagrees { "This is otherwise than the ledger says." } }
                 }

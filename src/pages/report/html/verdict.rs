@@ -7,7 +7,7 @@ use crate::published::Verdict;
 use crate::report::Report;
 use crate::show::block::{Block, Mark, Section, Words, words};
 use crate::show::digits::Digits;
-use crate::show::words::{quantity, route, spoken};
+use crate::show::words::{quantity, route, slips, spoken};
 use crate::study::verify::Verification;
 
 /// Nothing where there was nothing to verify.
@@ -43,16 +43,28 @@ fn findings(report: &Report, found: &Verification) -> Vec<Words> {
     findings.insert(1, Words::prose(place, [speed, angle, kind]));
     if let Some(ledger) = &report.claims {
         let count = |verdict| ledger.counts.get(&verdict).copied().unwrap_or_default();
-        let [misprint, refuted, open] =
-            [Verdict::Misprint, Verdict::Refuted, Verdict::Open].map(|verdict| Words::from(count(verdict)));
+        let [part, misprint, refuted, open, definitions] =
+            [Verdict::InPart, Verdict::Misprint, Verdict::Refuted, Verdict::Open, Verdict::Definition]
+                .map(|verdict| Words::from(count(verdict)));
         let hold = strong(&format!("{} hold", count(Verdict::Holds)));
         let checks = match report.claims_otherwise() {
             0 => "every check comes to the ledger's verdict".into(),
             some => words![some, " came out otherwise than the ledger says"],
         };
         findings.push(Words::prose(
-            "Of the paper's {} statements {}, {} are misprints, {} are refuted and {} open; {}.",
-            [ledger.claims.len().into(), hold, misprint, refuted, open, checks],
+            "Of the {} statements in {} {}, {} in part, {} are misprints, {} refuted ({}), {} open and {} definitions; {}.",
+            [
+                ledger.claims.len().into(),
+                ledger.source.into(),
+                hold,
+                part,
+                misprint,
+                refuted,
+                slips(ledger.slips_and_consequences(Verdict::Refuted)).into(),
+                open,
+                definitions,
+                checks,
+            ],
         ));
     }
     findings
