@@ -113,23 +113,27 @@ impl Likely {
         numbers: [f64; N],
         of: impl Fn(&Model, &Cam) -> Option<[f64; N]>,
     ) -> Option<[f64; N]> {
+        self.errors(&numbers, |model, cam| of(model, cam).map(Vec::from))?.try_into().ok()
+    }
+
+    /// The same of as many numbers as there are.
+    pub fn errors(&self, numbers: &[f64], of: impl Fn(&Model, &Cam) -> Option<Vec<f64>>) -> Option<Vec<f64>> {
         /// How many of the tables may do without.
         const WITHOUT: usize = 2;
-        let Some((best, cam)) = &self.best else { return Some([0.0; N]) };
+        let Some((best, cam)) = &self.best else { return Some(vec![0.0; numbers.len()]) };
         let centre = of(best, cam)?;
         // The third derivative is bent to 0 over a stretch at each corner that shrinks with the sixth root of the weight: ten times the
         // weight takes a third of what that does, and of what it does to where the corner is found.
         let closer = match &self.closer {
             Some((model, cam)) => of(model, cam)?,
-            None => centre,
+            None => centre.clone(),
         };
-        let all: Vec<[f64; N]> = self.others.iter().filter_map(|(model, cam)| of(model, cam)).collect();
-        (all.len() + WITHOUT >= self.others.len()).then(|| {
-            std::array::from_fn(|index| {
-                let apart = all.iter().fold(0.0_f64, |most, one| most.max((one[index] - centre[index]).abs()));
-                (centre[index] - numbers[index]).abs() + 2.0 * apart + 6.0 * (closer[index] - centre[index]).abs()
-            })
-        })
+        let all: Vec<Vec<f64>> = self.others.iter().filter_map(|(model, cam)| of(model, cam)).collect();
+        let error = |(index, number): (usize, &f64)| {
+            let apart = all.iter().fold(0.0_f64, |most, one| most.max((one[index] - centre[index]).abs()));
+            (centre[index] - number).abs() + 2.0 * apart + 6.0 * (closer[index] - centre[index]).abs()
+        };
+        (all.len() + WITHOUT >= self.others.len()).then(|| numbers.iter().enumerate().map(error).collect())
     }
 }
 

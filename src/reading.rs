@@ -99,6 +99,13 @@ impl Model {
         Ok(Some(format!("{meant} [units] says what numbers are in")))
     }
 
+    /// The follower of this model, with its spring, on the cam of another one.
+    pub(crate) fn on_cam_of(&self, other: &Self) -> Result<Self, ModelError> {
+        let mut model = other.clone();
+        (model.follower, model.preload, model.study) = (self.follower, self.preload, self.study);
+        model.sprung()
+    }
+
     /// The model with the spring slack where its preload says: `k (c_min - rest_position) = preload`.
     fn sprung(mut self) -> Result<Self, ModelError> {
         if let Some(preload) = self.preload {

@@ -16,6 +16,7 @@ use corner_impact::study::StudyError;
 use corner_impact::study::attractors::{Resolution, Step};
 use corner_impact::study::certify::{certify, proved_counts, proved_orbits};
 use corner_impact::study::chart::growth;
+use corner_impact::study::compare::compare;
 use corner_impact::study::design::{Asked, design};
 use corner_impact::study::locate::locate;
 use corner_impact::study::orbit::{Wanted, orbits};
@@ -480,6 +481,21 @@ impl Model {
     fn verify<'py>(&self, py: Python<'py>, external: bool) -> PyResult<Bound<'py, PyDict>> {
         let external = if external { External::Run } else { External::LeftOut };
         document(py, &spread(py, || verify(&self.model, external))?.or_raise()?, &self.model.units)
+    }
+
+    /// What moved from this model to `other`: the verdicts, the fields that differ, and each number that changed with how far the difference
+    /// may be off: the document of `corner-impact compare --json`, in this model's units. With `external`, by the routes in Python, too.
+    ///
+    /// >>> found = Model.paper().compare(Model.paper().with_number("restitution", 0.7))
+    /// >>> found["verdict"]
+    /// {'a': 'nonsmooth-fold', 'b': 'nonsmooth-fold'}
+    /// >>> {change["quantity"]: round(change["difference"], 6) for change in found["changes"]}["speed_rpm"]
+    /// 11.412107
+    #[pyo3(signature = (other, *, external=false))]
+    fn compare<'py>(&self, py: Python<'py>, other: &Self, external: bool) -> PyResult<Bound<'py, PyDict>> {
+        let external = if external { External::Run } else { External::LeftOut };
+        let (a, b) = (&self.model, &other.model);
+        document(py, &spread(py, || compare(a, b, external, &Unwatched))?.or_raise()?, &a.units)
     }
 
     /// What is proved in ball arithmetic of the corner impacts over a range of speeds, (lowest, highest) rpm, without it the model's

@@ -27,6 +27,7 @@ from corner_impact import Model
             lambda it: it.design((100, 130), speeds=3, needs=["no separation to 130 rpm"]),
             ["design", "--rpm", "100:130", "--speeds", "3", "--need", "no separation to 130 rpm"],
         ),
+        (lambda it: it.compare(it.with_number("restitution", 0.7)), ["compare", "--set", "restitution=0.7"]),
         (lambda it: it.certify((670, 680)), ["certify", "--rpm", "670:680"]),
         (lambda it: it.certify((690, 700), orbits=True), ["certify", "--rpm", "690:700", "--orbits"]),
     ],

@@ -37,6 +37,8 @@ pub enum Compared {
     FixedPointPlus,
 }
 
+named!(Compared);
+
 /// What ends the range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]

@@ -6,6 +6,7 @@ mod certify;
 mod chaos;
 mod chart;
 mod claims;
+mod compare;
 mod complaint;
 mod completions;
 mod continuation;
@@ -91,6 +92,7 @@ subcommands! {
         Claims = claims,
         Locate = locate,
         Certify = certify,
+        Compare = compare,
     "What a machine does":
         Cam = cam,
         Simulate = simulate,

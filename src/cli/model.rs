@@ -16,11 +16,11 @@ pub(super) struct ModelArgument {
 }
 
 /// Which numbers of the model are others than in its file.
-#[derive(clap::Args, Clone)]
+#[derive(clap::Args, Clone, Default)]
 pub(super) struct Changes {
     /// Take VALUE for a number of the model: restitution=0.7, or a whole path, follower.mass=2 (may be repeated).
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = change)]
-    numbers: Vec<(String, f64)>,
+    pub(super) numbers: Vec<(String, f64)>,
 }
 
 /// `NAME=VALUE`.

@@ -5,11 +5,12 @@ use std::f64::consts::TAU;
 use nalgebra::Vector2;
 
 use super::map::Sides;
-use crate::cam::{Corner, Lift, Side};
+use crate::cam::{Corner, Lift, Side, apart};
 use crate::flight::State;
 use crate::model::Follower;
 use crate::orbit::{Cycle, Impact};
 use crate::simulate::Machine;
+use crate::tolerance;
 
 /// A periodic orbit with an impact on a corner of the cam.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,6 +59,12 @@ impl CornerImpact {
     /// c'' before and after the corner, m/s^2.
     pub fn cam_acceleration(&self) -> Sides<f64> {
         Sides::of_each(|side| self.corner.lift(side).curvature * self.angular_velocity().powi(2))
+    }
+
+    /// Whether it is at the same corner as one of a cam that may as well be meant: a corner that is found in the rows of a table is
+    /// found a little elsewhere in those of another.
+    pub(crate) fn is_near(&self, other: &Self) -> bool {
+        apart(self.corner.angle, other.corner.angle) <= tolerance::NEIGHBOURING.value
     }
 
     /// Whether it is the paper's: one impact in one revolution, at a corner of acceleration or a smoother one.

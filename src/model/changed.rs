@@ -1,6 +1,8 @@
 //! A model with other numbers than its file has, each under the name that a user calls it by.
 
-use super::fields::Value;
+use std::collections::BTreeMap;
+
+use super::fields::{Field, Value};
 use super::{CamProfile, Model, ModelError, Spline, TableProfile, Tolerance, nearest};
 
 impl Model {
@@ -85,6 +87,17 @@ impl Model {
             (smoothing.tolerance, smoothing.are_near) = (Tolerance::Weighted(weight), are_near);
         }
         Ok(model)
+    }
+
+    /// The fields of follower, cam, study and units that hold a number or a text, as documents have them, by dotted path.
+    pub(crate) fn values(&self) -> BTreeMap<&str, serde_json::Value> {
+        let of = |(path, field): (&'_ String, &Field)| match &field.value {
+            _ if !path.contains('.') => None,
+            Value::Number(number) => Some((*number).into()),
+            Value::Text(text) => Some(text.as_str().into()),
+            _ => None,
+        };
+        self.fields.fields.iter().filter_map(|entry| Some((entry.0.as_str(), of(entry)?))).collect()
     }
 
     /// The numbers that are not those of the file, by dotted path.

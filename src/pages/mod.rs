@@ -7,6 +7,7 @@ mod certify;
 mod chaos;
 mod chart;
 pub mod claims;
+mod compare;
 pub(crate) mod design;
 mod local_map;
 mod locate;

@@ -45,7 +45,8 @@ pub struct Largest {
 }
 
 impl Largest {
-    fn of(cam: &Cam, order: usize) -> Self {
+    /// Of a cam.
+    pub(super) fn of(cam: &Cam, order: usize) -> Self {
         let least = |sign: f64| {
             let mut weights = [0.0; 4];
             weights[order] = sign;

@@ -6,6 +6,7 @@ pub mod cam;
 pub mod certify;
 pub mod chaos;
 pub mod chart;
+pub mod compare;
 pub mod compared;
 pub mod continuation;
 pub mod curve;
@@ -59,6 +60,9 @@ pub enum StudyError {
     /// Corner impacts cannot be looked for.
     #[error(transparent)]
     Locate(#[from] locate::LocateError),
+    /// Matrices in two units of length.
+    #[error("lengths are in {a} in the one and in {b} in the other model: state both in one unit ([units], length)")]
+    Lengths { a: String, b: String },
     /// What changes is not within its range where a search begins.
     #[error("{file}: {name} = {value}, where orbits are looked for, is outside of {}:{}", range[0], range[1])]
     Outside { file: String, name: String, value: f64, range: [f64; 2] },

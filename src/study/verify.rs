@@ -13,7 +13,7 @@ use crate::border_collision::{
     Classification, Condition, Degenerate, LocalMap, LocalOutcome, NormalForm, Refusal, RoundedCorner, conditions,
     normal_form, rounded,
 };
-use crate::cam::{Cam, Side, apart};
+use crate::cam::{Cam, Side};
 use crate::corner::external::{self, Outside, PROGRAMS, Program};
 use crate::corner::map::{Line, RouteName, SideMap, Sides};
 use crate::corner::second_order::{CurvedMap, second_order};
@@ -28,7 +28,6 @@ use crate::stop;
 use crate::study::ModelLabel;
 use crate::study::certify::{self, Certificate, Outcome};
 use crate::study::compared::{self, Log, Skipped};
-use crate::tolerance;
 
 /// What a verification found: the document `corner-impact/verify/1`.
 #[derive(Clone, Debug)]
@@ -125,10 +124,7 @@ impl LeftOpen {
         };
         let there = |model: &Model, cam: &Cam| {
             let (first, others) = corner::locate(model, cam).ok()?;
-            // A corner that was found is found a little elsewhere in another table.
-            let is_it =
-                |found: &CornerImpact| apart(found.corner.angle, at.corner.angle) <= tolerance::NEIGHBOURING.value;
-            let found = std::iter::once(first).chain(others).find(is_it)?;
+            let found = std::iter::once(first).chain(others).find(|found| at.is_near(found))?;
             Some(numbers(found.speed_rpm(), &closed_form::route(model, &found).map))
         };
         let side = |error: &[f64]| SideMap {
@@ -145,7 +141,7 @@ impl LeftOpen {
 }
 
 /// A corner impact with everything that is known of it.
-struct Whole<'a>(&'a CornerImpact);
+pub(super) struct Whole<'a>(pub(super) &'a CornerImpact);
 
 document!(Whole<'_> as it {
     period_s: it.0.period,

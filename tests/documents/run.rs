@@ -22,6 +22,7 @@ pub const ELSEWHERE: &[(&str, &str, Held)] = &[
     ("cargo install --path .", "compiles the program once more", Held::Landing),
     ("make properties", "takes an hour", Held::Target),
     ("make check", "compiles everything once more", Held::Landing),
+    ("make review", "asks a person about each snapshot; tests/it/snapshots.rs holds them", Held::Target),
     ("make quick", "runs a part of what `make test` does", Held::Target),
     ("make test", "is what runs this test", Held::Landing),
     ("make python", "builds, installs and tests the package", Held::Landing),

@@ -8,12 +8,13 @@ use crate::common::{PROGRAM, ROOT, corner_impact, program, text};
 use rayon::prelude::*;
 use tempfile::TempDir;
 
-pub const COMMANDS: [&str; 20] = [
+pub const COMMANDS: [&str; 21] = [
     "verify",
     "report",
     "claims",
     "locate",
     "certify",
+    "compare",
     "cam",
     "simulate",
     "speeds",

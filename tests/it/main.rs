@@ -18,6 +18,7 @@ mod chart;
 mod command_line;
 mod commands;
 mod common;
+mod compare;
 mod complete;
 mod corner_maps;
 mod curves;

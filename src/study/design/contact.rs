@@ -53,6 +53,15 @@ pub enum Separation {
 }
 
 impl Separation {
+    /// Its name in documents.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::At { .. } => "at-a-speed",
+            Self::NotPressed { .. } | Self::Kink { .. } => "at-every-speed",
+            Self::Never => "never",
+        }
+    }
+
     /// The speed up to which the follower stays on the cam, rpm.
     pub fn speed(&self) -> f64 {
         match self {

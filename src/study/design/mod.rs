@@ -113,7 +113,7 @@ document!(Design as it {
     schema: "corner-impact/design/1",
     model: it.model,
     separation: it.separated(),
-    separates: it.separates(),
+    separates: it.separation.name(),
     measured if_any: it.measured,
     contact_force: it.forces,
     force_round_the_cam: it.told_round(),
@@ -182,14 +182,6 @@ impl Design {
                 Some(Separated { speed_rpm: rpm, error_rpm: error, cam_angle_rad: cam_angle, located: true })
             }
             _ => None,
-        }
-    }
-
-    fn separates(&self) -> &'static str {
-        match self.separation {
-            Separation::At { .. } => "at-a-speed",
-            Separation::NotPressed { .. } | Separation::Kink { .. } => "at-every-speed",
-            Separation::Never => "never",
         }
     }
 

@@ -1,0 +1,279 @@
+//! What is found of one model, number by number, each by a name, and how far it may be off.
+
+use std::array;
+use std::collections::BTreeMap;
+
+use nalgebra::Matrix3;
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use super::{NoVerdict, Verdict};
+use crate::agreement::{Quantity, worse};
+use crate::border_collision::feigin::speeds_at;
+use crate::border_collision::validity::Range;
+use crate::border_collision::{LocalMap, LocalOutcome, classify, conditions, normal_form};
+use crate::cam::Cam;
+use crate::corner::map::{Line, RouteName, rows};
+use crate::corner::{self, CornerImpact, LocateError, Route, closed_form, variational};
+use crate::measured::Likely;
+use crate::model::{Converted, Model, Units};
+use crate::progress::Watch;
+use crate::study::StudyError;
+use crate::study::cam::Largest;
+use crate::study::design::contact::{Contact, Separation};
+use crate::study::verify::{External, Verification, Whole, verify_watched};
+
+/// Numbers by their names.
+pub(super) type Numbers = BTreeMap<String, f64>;
+
+/// Numbers and words by their names.
+pub(super) type Values = BTreeMap<String, Value>;
+
+/// As documents have it. What is flattened here has names for its fields, so that it can be one.
+fn document(found: &impl Serialize) -> Value {
+    serde_json::to_value(found).unwrap_or_default()
+}
+
+/// Puts numbers and words of a document beside others, in the units of a model: their names are made of those of fields and of
+/// indices, `A_minus_21`.
+fn flatten(before: &str, value: &Value, told: Option<Converted>, units: &Units, all: &mut Values) {
+    let name = || before.trim_end_matches('_').to_owned();
+    match value {
+        Value::Object(fields) => {
+            let between = if before.is_empty() || before.ends_with('_') { "" } else { "_" };
+            for (field, value) in fields {
+                let told = units.converted(field).or(told);
+                flatten(&format!("{before}{between}{}_", units.field(field)), value, told, units, all);
+            }
+        }
+        Value::Array(entries) => {
+            for (index, entry) in (1..).zip(entries) {
+                flatten(&format!("{before}{index}"), entry, told, units, all);
+            }
+        }
+        Value::Number(number) => {
+            let number = number.as_f64().unwrap_or(f64::NAN);
+            all.insert(name(), told.map_or(number, |told| told(units, number)).into());
+        }
+        Value::Null => {}
+        word => {
+            all.insert(name(), word.clone());
+        }
+    }
+}
+
+/// The numbers and words of documents, the first that has one of that name.
+fn flattened(documents: &[Value], units: &Units) -> Values {
+    let mut all = Values::new();
+    documents.iter().rev().for_each(|document| flatten("", document, None, units, &mut all));
+    all
+}
+
+/// What follows from a map and its border.
+fn follows(route: &Route, border: Line, is_classified: bool) -> Vec<Value> {
+    let (map, c, (e, f)) = (&route.map, route.c(), route.own.border.unwrap_or(border));
+    let entries = json!({
+        "A": map.map(|side| rows(&side.a)),
+        "B": map.map(|side| <[f64; 2]>::from(side.b)),
+        "C": [c[0], c[1]],
+        "D": route.d(),
+        "border": [e[0], e[1], f],
+        "eigenvalues": route.eigenvalues(),
+    });
+    let kind = classify(map, (e, f)).ok().filter(|_| is_classified).map_or(Value::Null, |kind| {
+        // The border stands above, the determinants are among the conditions.
+        let mut kind = document(&kind);
+        kind["border"].take();
+        kind["determinant_of_identity_minus_a"].take();
+        kind
+    });
+    let conditions = conditions(&LocalMap::new(map, (e, f)));
+    let conditions = conditions.iter().flat_map(|condition| {
+        let holds = (format!("{} holds", condition.name), condition.holds().into());
+        [(condition.name.to_owned(), Value::from(condition.value)), holds]
+    });
+    let form = normal_form(map).map_or(Value::Null, |form| document(&form));
+    vec![entries, form, kind, Value::Object(conditions.collect())]
+}
+
+/// What depends on the cam and, where there is one, on the corner impact, as the closed form has it.
+fn computed(model: &Model, cam: &Cam, at: Option<(&CornerImpact, bool)>, units: &Units) -> Values {
+    const NAMES: [&str; 3] = ["largest_velocity_m", "largest_acceleration_m", "largest_jerk_m"];
+    // Both flanks of a cam may have it, one upwards and one downwards: which of them is rounding.
+    let largest =
+        NAMES.iter().zip(1..).map(|(name, order)| ((*name).to_owned(), json!(Largest::of(cam, order).value_m.abs())));
+    let follower = &model.follower;
+    let separation = Contact::new(cam, *follower).separation();
+    let place = match separation {
+        Separation::At { rpm, cam_angle, .. } => json!({ "speed_rpm": rpm, "cam_angle_rad": cam_angle }),
+        _ => Value::Null,
+    };
+    let (lowest, highest) = (cam.lowest().value, -cam.least([-1.0, 0.0, 0.0, 0.0]).value);
+    let of_cam = json!({
+        "lowest_lift_m": lowest,
+        "highest_lift_m": highest,
+        // k (c_min - rest_position)
+        "preload_n": follower.stiffness * (lowest - follower.rest_position),
+        "separates": separation.name(),
+        "separation": place,
+    });
+    let mut all = vec![Value::Object(largest.collect()), of_cam];
+    if let Some((at, is_classified)) = at {
+        let mut orbit = document(&Whole(at));
+        // How well the period is known, and not what it is.
+        for field in ["period_bracket_s", "period_residual", "closure"] {
+            orbit[field].take();
+        }
+        all.push(json!({ "T_star": orbit["period_s"].take(), "x_star": orbit["state"].take() }));
+        all.push(orbit);
+        all.extend(follows(&closed_form::route(model, at), variational::border(model, cam, at), is_classified));
+    }
+    flattened(&all, units)
+}
+
+/// What a verification finds beside the map, which it knows by one route alone.
+fn besides(found: &Verification) -> Vec<Value> {
+    /// Of the many orbits of some maps.
+    const MOST_WORDS: usize = 8;
+    let curved = found.second_order.as_ref().map(|curved| {
+        // Each matrix is symmetric, and the fixed points to first order are those of the map.
+        let half = |second: Matrix3<f64>| -> [[Option<f64>; 3]; 3] {
+            array::from_fn(|row| array::from_fn(|column| (column >= row).then(|| second[(row, column)])))
+        };
+        json!({
+            "second_derivatives": curved.map(|side| side.second.map(half)),
+            "fixed_point_per_unit_period_squared": curved.map(|side| side.fixed_point().map(|[_, it]| [it[0], it[1]])),
+        })
+    });
+    let range = |range: &Range| {
+        let Range { compared, order, within, sign, speed_rpm, ends, .. } = range;
+        let name = format!("linear_range_{compared}_{order}_{}_{within}", speeds_at(*sign));
+        [(name.clone(), json!(speed_rpm)), (name + "_ends", document(ends))]
+    };
+    let local = |outcome: &LocalOutcome| {
+        let outcome = document(outcome);
+        let words = |list: &str, of: &dyn Fn(&Value) -> String| {
+            let mut words = outcome[list].as_array().into_iter().flatten().map(of).collect::<Vec<_>>();
+            let more = words.len().saturating_sub(MOST_WORDS);
+            words.truncate(MOST_WORDS);
+            words.extend((more > 0).then(|| format!("{more} more")));
+            if words.is_empty() { "none".to_owned() } else { words.join(", ") }
+        };
+        let word = |value: &Value| value.as_str().unwrap_or_default().to_owned();
+        let end = |end: &Value| format!("{} {}", word(&end["end"]), word(&end["word"])).trim_end().to_owned();
+        let speeds = word(&outcome["speeds"]);
+        let (ends, orbits) = (words("ends", &end), words("periodic_orbits", &|orbit| word(&orbit["word"])));
+        [(format!("local_map_{speeds}"), ends.into()), (format!("local_map_{speeds}_orbits"), orbits.into())]
+    };
+    let rounded = found.rounded_corner.map(|corner| corner.rpm_per_degree);
+    vec![
+        curved.unwrap_or_default(),
+        Value::Object(found.ranges.iter().flat_map(range).collect()),
+        Value::Object(found.outcomes.iter().flat_map(local).collect()),
+        json!({ "rounded_corner": { "fold_moves_rpm_per_degree": rounded } }),
+    ]
+}
+
+/// How far the routes differ in each number that follows from the map and its border, and in the orbit.
+fn spreads(found: &Verification, units: &Units) -> Numbers {
+    let mut ranges: BTreeMap<String, (usize, [f64; 2])> = BTreeMap::new();
+    // Where the velocity jumps, the differences have one side only.
+    let has_both = |route: &&Route| found.at.corner.jump_order != 1 || route.name != RouteName::FiniteDifference;
+    for route in found.routes.iter().filter(has_both) {
+        for (name, value) in flattened(&follows(route, found.border, true), units) {
+            let Some(number) = value.as_f64() else { continue };
+            let (count, [least, most]) = ranges.entry(name).or_insert((0, [number; 2]));
+            (*count, *least, *most) = (*count + 1, least.min(number), most.max(number));
+        }
+    }
+    let spread = ranges.into_iter().filter(|(_, (count, _))| *count > 1);
+    let mut spreads: Numbers = spread.map(|(name, (_, [least, most]))| (name, most - least)).collect();
+    let orbit = |quantity| {
+        let pairs = found.comparisons.iter().filter(|pair| pair.quantity == quantity);
+        pairs.map(|pair| pair.max_abs_diff).reduce(worse)
+    };
+    let period = orbit(Quantity::Period);
+    let speed = period.map(|error| error * found.at.speed_rpm() / found.at.period);
+    let state = orbit(Quantity::State);
+    let of_orbit = [("T_star", period), ("speed_rpm", speed), ("x_star_1", state), ("x_star_2", state)];
+    spreads.extend(of_orbit.into_iter().filter_map(|(name, error)| Some((name.to_owned(), error?))));
+    spreads
+}
+
+/// What is found of a model.
+pub(super) struct Findings {
+    pub verdict: Verdict,
+    /// Where its corner impact is, and whether it is classified.
+    at: Option<(CornerImpact, bool)>,
+    /// What the closed form and the cam tell, and what is known beside that.
+    pub computed: Values,
+    besides: Values,
+    /// How far numbers may be off but for what a measured cam leaves open; not of those of one route alone.
+    pub errors: Numbers,
+}
+
+impl Findings {
+    pub fn new(model: &Model, units: &Units, external: External, watch: &dyn Watch) -> Result<Self, StudyError> {
+        let cam = Cam::new(model)?;
+        let mut errors = Numbers::new();
+        if let Separation::At { error, .. } = Contact::new(&cam, model.follower).separation() {
+            errors.insert("separation_speed_rpm".into(), error);
+        }
+        let (verdict, at, besides) = match verify_watched(model, external, watch) {
+            Ok(found) => {
+                errors.extend(spreads(&found, units));
+                let besides = flattened(&besides(&found), units);
+                let kind = found.classification.map(|kind| kind.scenario).map_err(NoVerdict::Refused);
+                let at = (found.at, kind.is_ok());
+                (Verdict { found: kind, agrees: found.agrees }, Some(at), besides)
+            }
+            Err(why) => {
+                let why = match why {
+                    LocateError::Model(why) => NoVerdict::NotLookedFor(why),
+                    why => NoVerdict::NotThere(why),
+                };
+                (Verdict { found: Err(why), agrees: true }, None, Values::new())
+            }
+        };
+        let computed = computed(model, &cam, at.as_ref().map(|(at, is_classified)| (at, *is_classified)), units);
+        Ok(Self { verdict, at, computed, besides, errors })
+    }
+
+    /// What the closed form and the cam tell of a model that may as well be meant; nothing where that has not this corner impact.
+    pub fn like(&self, model: &Model, cam: &Cam, units: &Units) -> Option<Values> {
+        let Some((at, is_classified)) = &self.at else { return Some(computed(model, cam, None, units)) };
+        let (first, others) = corner::locate(model, cam).ok()?;
+        let found = std::iter::once(first).chain(others).find(|found| at.is_near(found))?;
+        Some(computed(model, cam, Some((&found, *is_classified)), units))
+    }
+
+    pub fn value(&self, name: &str) -> Option<&Value> {
+        self.computed.get(name).or_else(|| self.besides.get(name))
+    }
+
+    pub fn names(&self) -> impl Iterator<Item = &String> {
+        self.computed.keys().chain(self.besides.keys())
+    }
+}
+
+/// The numbers among values.
+pub(super) fn numbers(values: &Values) -> Numbers {
+    values.iter().filter_map(|(name, value)| Some((name.clone(), value.as_f64()?))).collect()
+}
+
+/// Numbers less others of the same names.
+pub(super) fn differences(b: &Values, a: &Values) -> Numbers {
+    let a = numbers(a);
+    numbers(b).into_iter().filter_map(|(name, number)| Some((name.clone(), number - a.get(&name)?))).collect()
+}
+
+/// How far a measured cam leaves numbers open; not a number where that is not known.
+pub(super) fn open(likely: &Likely, numbers: &Numbers, of: impl Fn(&Model, &Cam) -> Option<Numbers>) -> Numbers {
+    let of = |model: &Model, cam: &Cam| {
+        let found = of(model, cam)?;
+        Some(numbers.keys().map(|name| found.get(name).copied().unwrap_or(f64::NAN)).collect())
+    };
+    let values: Vec<f64> = numbers.values().copied().collect();
+    let open = likely.errors(&values, of).unwrap_or_else(|| vec![f64::NAN; values.len()]);
+    numbers.keys().cloned().zip(open).collect()
+}

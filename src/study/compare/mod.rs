@@ -1,0 +1,273 @@
+//! What moved between two models? Every number that `verify`, `cam` and `design` find of both, by one name, with how far it may be off.
+//!
+//! A number that follows from A and B is taken from these by each route: how far routes differ in it is how well it is known. What
+//! a measured cam leaves open is looked at on the cams that are as likely, and comes on top.
+
+mod findings;
+
+use std::cmp::Ordering;
+use std::collections::BTreeSet;
+use std::fmt;
+
+use serde::{Serialize, Serializer};
+use serde_json::Value;
+
+use super::verify::External;
+use super::{ModelLabel, StudyError};
+use crate::border_collision::Refusal;
+use crate::border_collision::feigin::Scenario;
+use crate::cam::Cam;
+use crate::corner::LocateError;
+use crate::known::Known;
+use crate::measured::Likely;
+use crate::model::{Model, ModelError};
+use crate::progress::Watch;
+use crate::tolerance;
+use findings::{Findings, differences, numbers, open};
+
+/// Something of each of the two models.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Pair<T> {
+    /// Of the first.
+    pub a: T,
+    /// Of the second.
+    pub b: T,
+}
+
+/// What moved: the document `corner-impact/compare/1`, in the units of the first model.
+#[derive(Clone, Debug)]
+pub struct Comparison {
+    /// Which models.
+    pub models: Pair<ModelLabel>,
+    /// What happens at the corner impact of either.
+    pub verdict: Pair<Verdict>,
+    /// The fields of the model files that differ.
+    pub fields: Vec<FieldChange>,
+    /// What differs by more than its error: words, then numbers, those that moved most in parts of their size first, and those without an
+    /// error after those with one, then what one model has alone.
+    pub changes: Vec<Change>,
+    /// What does not, in the order of the names.
+    pub unchanged: Vec<Change>,
+}
+
+document!(Comparison as it {
+    schema: "corner-impact/compare/1",
+    known: Known::Computed,
+    models: it.models,
+    verdict: it.verdict,
+    fields: it.fields,
+    changes: it.changes,
+    unchanged: it.unchanged,
+});
+
+impl Comparison {
+    /// Whether the routes that ran agree about both.
+    pub fn agrees(&self) -> bool {
+        self.verdict.a.agrees && self.verdict.b.agrees
+    }
+}
+
+/// What happens at a corner impact, and whether its verification agrees.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verdict {
+    /// What happens, or why that is not known.
+    pub found: Result<Scenario, NoVerdict>,
+    /// Whether the routes that ran agree; they do where none had to run.
+    pub agrees: bool,
+}
+
+/// Why it is not told what happens.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum NoVerdict {
+    /// There is no corner impact to verify.
+    #[error("no corner impact: {0}")]
+    NotThere(LocateError),
+    /// It is not said where to look for one.
+    #[error("no corner impact is looked for: {0}")]
+    NotLookedFor(ModelError),
+    /// Its map is refused.
+    #[error("{0}")]
+    Refused(Refusal),
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.found {
+            Ok(scenario) => write!(f, "{scenario}")?,
+            Err(why) => write!(f, "{why}")?,
+        }
+        f.write_str(if self.agrees { "" } else { "; not verified: routes disagree or did not run" })
+    }
+}
+
+impl Serialize for Verdict {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        to.collect_str(self)
+    }
+}
+
+/// A field of the model files.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FieldChange {
+    /// Its path.
+    pub field: String,
+    /// What the first model has there, in its units, if anything.
+    pub a: Option<Value>,
+    /// What the second one has.
+    pub b: Option<Value>,
+}
+
+/// One quantity of both models.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Change {
+    /// Its name in the documents of `verify`, `cam` and `design`, with its side and its indices, counted from 1.
+    pub quantity: String,
+    /// A number, a word, or nothing where the first model has no such quantity.
+    pub a: Option<Value>,
+    /// Of the second.
+    pub b: Option<Value>,
+    /// Number b less number a.
+    pub difference: Option<f64>,
+    /// How far the difference may be off; nothing where that is not known.
+    pub error: Option<f64>,
+    /// The size of the difference, over its error.
+    pub times_error: Option<f64>,
+    /// What of the difference is more than its error, over the larger of both numbers.
+    pub relative: Option<f64>,
+}
+
+impl Change {
+    /// Of what is found of both models, with how far the numbers may be off, and the difference by what a measured cam leaves open besides.
+    fn new(quantity: &str, [a, b]: [Option<&Value>; 2], errors: [Option<f64>; 2], open: f64) -> Self {
+        let numbers = a.and_then(Value::as_f64).zip(b.and_then(Value::as_f64));
+        let difference = numbers.map(|(a, b)| b - a);
+        let size = numbers.map_or(0.0, |(a, b)| a.abs().max(b.abs()));
+        let rounding = tolerance::ULP.value * size;
+        let both = errors[0].zip(errors[1]).filter(|_| difference.is_some());
+        let error = both.map(|(a, b)| a + b + open + rounding).filter(|error| !error.is_nan());
+        let relative = difference.map(|difference| {
+            let beyond = difference.abs() - error.unwrap_or(rounding);
+            if beyond > 0.0 { beyond / size } else { 0.0 }
+        });
+        let times_error = difference.zip(error).filter(|(_, error)| *error > 0.0);
+        Self {
+            quantity: quantity.to_owned(),
+            a: a.cloned(),
+            b: b.cloned(),
+            difference,
+            error,
+            times_error: times_error.map(|(difference, error)| difference.abs() / error),
+            relative,
+        }
+    }
+
+    /// Whether the two differ by more than their error.
+    pub fn is_one(&self) -> bool {
+        self.relative.map_or(self.a != self.b, |relative| relative > 0.0)
+    }
+
+    /// Words first, then numbers with an error, then those without, then what one model has alone; what moved most before what moved less.
+    fn rank(&self) -> (bool, bool, f64) {
+        let is_alone = self.a.is_none() || self.b.is_none();
+        let relative = self.relative.unwrap_or(f64::INFINITY);
+        (is_alone, self.difference.is_some() && self.error.is_none(), -relative)
+    }
+}
+
+/// The fields in which two model files differ, in the units of the first.
+fn fields(a: &Model, b: &Model) -> Vec<FieldChange> {
+    let told = |path: &str, value: &Value| {
+        let units = path.strip_prefix("follower.").map(|name| (a.units.of_follower(name), b.units.of_follower(name)));
+        match (units, value.as_f64()) {
+            (Some((Some(of_a), Some(of_b))), Some(number)) if of_a != of_b => of_a.told(of_b.inside(number)).into(),
+            _ => value.clone(),
+        }
+    };
+    let (of_a, of_b) = (a.values(), b.values());
+    let paths: BTreeSet<&str> = of_a.keys().chain(of_b.keys()).copied().collect();
+    let field = |path: &str| {
+        let (a, b) = (of_a.get(path).cloned(), of_b.get(path).map(|value| told(path, value)));
+        (a != b).then(|| FieldChange { field: path.to_owned(), a, b })
+    };
+    let mut fields: Vec<FieldChange> = paths.into_iter().filter_map(field).collect();
+    if let (Some(one), Some(other)) = (a.table(), b.table())
+        && one.rows != other.rows
+    {
+        let changed = one.rows.iter().zip(&other.rows[..]).filter(|(one, other)| one != other).count();
+        let (a, b) = (format!("{} rows", one.rows.len()), format!("{} rows, {changed} others", other.rows.len()));
+        fields.push(FieldChange { field: "rows of the table".into(), a: Some(a.into()), b: Some(b.into()) });
+    }
+    fields
+}
+
+/// What moved from one model to another; without `external`, by the routes of this program alone.
+pub fn compare(a: &Model, b: &Model, external: External, watch: &dyn Watch) -> Result<Comparison, StudyError> {
+    let lengths = [a, b].map(|model| model.units.length.name().to_owned());
+    if lengths[0] != lengths[1] {
+        let [a, b] = lengths;
+        return Err(StudyError::Lengths { a, b });
+    }
+    let (models, fields) = (Pair { a: ModelLabel::of(a), b: ModelLabel::of(b) }, fields(a, b));
+    let units = &a.units;
+    let (of_a, of_b) = (Findings::new(a, units, external, watch)?, Findings::new(b, units, external, watch)?);
+    watch.at("what a measured cam leaves open", 0, 0);
+    let noisy = |model| Likely::of(model).map(|likely| likely.filter(|likely| likely.best.is_some()));
+    let opens = match (noisy(a)?, noisy(b)?) {
+        // Of one cam under both followers it leaves open what the difference is, and less than of two.
+        (Some(likely), Some(_)) if a.cam == b.cam => {
+            let of = |model: &Model, cam: &Cam| {
+                let other = b.on_cam_of(model).ok()?;
+                Some(differences(&of_b.like(&other, cam, units)?, &of_a.like(model, cam, units)?))
+            };
+            vec![open(&likely, &differences(&of_b.computed, &of_a.computed), of)]
+        }
+        (one, other) => {
+            let of = |(likely, found): (Option<Likely>, &Findings)| {
+                let of = |model: &Model, cam: &Cam| found.like(model, cam, units).as_ref().map(numbers);
+                likely.map(|likely| open(&likely, &numbers(&found.computed), of))
+            };
+            [(one, &of_a), (other, &of_b)].into_iter().filter_map(of).collect()
+        }
+    };
+    let names: BTreeSet<&String> = of_a.names().chain(of_b.names()).collect();
+    let all = names.into_iter().map(|name| {
+        // What only a measured cam leaves open has no other error.
+        let is_open = opens.iter().any(|open| open.contains_key(name));
+        let error = |found: &Findings| found.errors.get(name).copied().or(is_open.then_some(0.0));
+        let open = opens.iter().filter_map(|open| open.get(name)).sum();
+        Change::new(name, [of_a.value(name), of_b.value(name)], [error(&of_a), error(&of_b)], open)
+    });
+    let (mut changes, unchanged): (Vec<Change>, Vec<Change>) = all.partition(Change::is_one);
+    changes.sort_by(|one, other| one.rank().partial_cmp(&other.rank()).unwrap_or(Ordering::Equal));
+    let verdict = Pair { a: of_a.verdict, b: of_b.verdict };
+    Ok(Comparison { models, verdict, fields, changes, unchanged })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn change([a, b]: [f64; 2], errors: [Option<f64>; 2]) -> Change {
+        let found = [a, b].map(Value::from);
+        Change::new("number", found.each_ref().map(Some), errors, 0.0)
+    }
+
+    #[test]
+    fn a_difference_within_the_errors_of_both_is_none() {
+        assert!(!change([1.0, 1.3], [Some(0.1), Some(0.2)]).is_one());
+        let moved = change([1.0, 1.5], [Some(0.1), Some(0.2)]);
+        assert!(moved.is_one() && (moved.times_error.unwrap() - 5.0 / 3.0).abs() < 1e-12);
+        assert!((moved.relative.unwrap() - 0.2 / 1.5).abs() < 1e-12);
+        // Without an error every difference but rounding is told.
+        assert!(change([1.0, 1.3], [Some(10.0), None]).is_one());
+        assert!(!change([1.0, 1.0 + f64::EPSILON], [None; 2]).is_one());
+        assert!(!change([0.0, 0.0], [Some(0.0); 2]).is_one());
+    }
+
+    #[test]
+    fn a_verdict_says_that_it_is_not_verified() {
+        let verdict = |agrees| Verdict { found: Ok(Scenario::Persistence), agrees }.to_string();
+        assert_eq!(verdict(true), "persistence");
+        assert!(verdict(false).contains("not verified"));
+    }
+}

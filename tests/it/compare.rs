@@ -1,0 +1,188 @@
+//! Does `compare` tell what moved, as `verify` and `design` have it of either model, and by how much more than it may be off?
+
+use std::fs;
+
+use serde_json::{Value, json};
+use tempfile::TempDir;
+
+use crate::common;
+use corner_impact::model::Model;
+use corner_impact::progress::Unwatched;
+use corner_impact::study::compare::{Comparison, compare};
+use corner_impact::study::verify::External;
+
+const PAPER: &str = "models/osorio-2008.toml";
+
+#[track_caller]
+fn document(arguments: &[&str]) -> Value {
+    let output = common::corner_impact(arguments.iter().copied().chain(["--json"]));
+    let complaints = common::text(output.stderr);
+    assert_eq!((output.status.code(), complaints.as_str()), (Some(0), ""), "{arguments:?}");
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// What is told of a quantity, and whether as a change.
+#[track_caller]
+fn told<'a>(found: &'a Value, quantity: &str) -> (&'a Value, bool) {
+    let of = |list: &str| found[list].as_array().unwrap().iter().find(|change| change["quantity"] == quantity);
+    match (of("changes"), of("unchanged")) {
+        (Some(change), None) => (change, true),
+        (None, Some(change)) => (change, false),
+        _ => panic!("{quantity} is not told once"),
+    }
+}
+
+/// Every entry of the map, the orbit, the eigenvalues, the normal form and the separation, as the other commands have it.
+#[test]
+fn numbers_are_those_of_both_models() {
+    let (a, b) = ([PAPER].as_slice(), [PAPER, "--set", "restitution=0.7"].as_slice());
+    let found = document(&[&["compare"], b].concat());
+    assert_eq!(found["schema"], "corner-impact/compare/1");
+    assert_eq!(found["verdict"], json!({ "a": "nonsmooth-fold", "b": "nonsmooth-fold" }));
+    assert_eq!(found["fields"], json!([{ "field": "follower.restitution", "a": 0.8, "b": 0.7 }]));
+    let of = |command: &[&str]| [a, b].map(|model| document(&[command, model].concat()));
+    let (verified, designed) = (of(&["verify", "--no-external"]), of(&["design", "--rpm", "90:100"]));
+    let mut names = vec![
+        ("T_star".to_owned(), "/corner_impact/period_s".to_owned()),
+        ("speed_rpm".into(), "/corner_impact/speed_rpm".into()),
+        ("x_star_1".into(), "/corner_impact/state/0".into()),
+        ("D".into(), "/routes/closed_form/D".into()),
+        ("B_tilde_2".into(), "/normal_form/B_tilde/1".into()),
+        ("eigenvalues_plus_1_im".into(), "/eigenvalues/plus/0/im".into()),
+        ("det(I - A-)".into(), "/conditions/2/value".into()),
+        ("second_derivatives_minus_213".into(), "/second_order/minus/second_derivatives/1/0/2".into()),
+        ("linear_range_fixed-point-plus_1_faster_0.1".into(), "/linear_range/2/speed_rpm".into()),
+    ];
+    for side in ["minus", "plus"] {
+        for (row, column) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+            let place = format!("/routes/closed_form/{side}/A/{row}/{column}");
+            names.push((format!("A_{side}_{}{}", row + 1, column + 1), place));
+        }
+        names
+            .extend([0, 1].map(|row| (format!("B_{side}_{}", row + 1), format!("/routes/closed_form/{side}/B/{row}"))));
+    }
+    for (name, place) in names {
+        let (change, is_one) = told(&found, &name);
+        let [x, y] = verified.each_ref().map(|document| document.pointer(&place).unwrap().as_f64().unwrap());
+        assert_eq!(
+            [&change["a"], &change["b"], &change["difference"]],
+            [&json!(x), &json!(y), &json!(y - x)],
+            "{name}"
+        );
+        assert!(is_one, "{name}");
+        // As far as its routes agree, a number of the map is known.
+        let is_of_one_route = name.contains("second") || name.contains("range");
+        assert_eq!(change["error"].is_null(), is_of_one_route, "{name}");
+        if let Some(error) = change["error"].as_f64() {
+            assert!(error > 0.0 && error < 1e-6 * x.abs().max(y.abs()), "{name}: {error}");
+            assert!((change["times_error"].as_f64().unwrap() * error - (y - x).abs()).abs() < 1e-9 * error.max(1.0));
+        }
+    }
+    // The error of A21 is what its routes differ by, of both models.
+    let spread = |document: &Value| {
+        let routes =
+            document["routes"].as_object().unwrap().values().map(|it| it["minus"]["A"][1][0].as_f64().unwrap());
+        let (least, most) = routes.fold((f64::MAX, f64::MIN), |(least, most), it| (least.min(it), most.max(it)));
+        most - least
+    };
+    let error = told(&found, "A_minus_21").0["error"].as_f64().unwrap();
+    approx::assert_relative_eq!(error, verified.iter().map(spread).sum::<f64>(), max_relative = 1e-3);
+    // The spring and the cam press as before, whatever the follower does when it comes back.
+    for (name, place) in [("separation_speed_rpm", "speed_rpm"), ("separation_cam_angle_rad", "cam_angle_rad")] {
+        let (change, is_one) = told(&found, name);
+        assert_eq!((&change["b"], is_one), (&designed[1]["separation"][place], false), "{name}");
+    }
+    // A product of roundings, and what is 1 by definition, have not moved.
+    assert!(["B_bar_2", "C_bar_1", "x_star_2", "A_bar_plus_22"].iter().all(|name| !told(&found, name).1));
+    // What moved most comes first, of those whose error is known and of the others.
+    let parts: Vec<(bool, f64)> = found["changes"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter_map(|change| Some((change["error"].is_null(), -change["relative"].as_f64()?)))
+        .collect();
+    assert!(parts.len() > 80 && parts.is_sorted_by(|one, two| one <= two), "{parts:?}");
+}
+
+#[test]
+fn a_model_is_no_other_than_itself() {
+    let found = document(&["compare", PAPER, PAPER]);
+    assert_eq!((&found["changes"], &found["fields"]), (&json!([]), &json!([])));
+    assert!(found["unchanged"].as_array().unwrap().len() > 120);
+}
+
+/// Another verdict, and none, are answers.
+#[test]
+fn what_happens_comes_first() {
+    let found = document(&["compare", PAPER, "models/persistence.toml"]);
+    assert_eq!(found["verdict"], json!({ "a": "nonsmooth-fold", "b": "persistence" }));
+    assert_eq!(told(&found, "fixed_points_exist_for_minus").0["b"], "slower");
+    assert!(found["changes"][0]["difference"].is_null(), "words come first: {}", found["changes"][0]);
+    for (model, says) in [
+        (["compare", PAPER, "models/laws/harmonic.toml"].as_slice(), "no corner impact is looked for: "),
+        (&["compare", PAPER, "--set", "rpm_max=610"], "no corner impact: "),
+    ] {
+        let found = document(model);
+        assert!(found["verdict"]["b"].as_str().unwrap().starts_with(says), "{}", found["verdict"]);
+        let (change, is_one) = told(&found, "A_minus_21");
+        assert!(is_one && change["b"].is_null() && change["difference"].is_null(), "{change}");
+        // The cam and the force on it are known all the same.
+        assert!(told(&found, "separation_speed_rpm").0["b"].is_number());
+    }
+}
+
+#[test]
+fn answers_are_in_the_units_of_the_first() {
+    let folder = TempDir::new().unwrap();
+    let write = |name: &str, units: &str, changes: &[(&str, &str)]| {
+        let file = folder.path().join(name);
+        fs::write(&file, format!("{}\n[units]\n{units}", common::osorio_text(changes))).unwrap();
+        file.to_str().unwrap().to_owned()
+    };
+    let metres = write("m.toml", "length = \"m\"\nangle = \"deg\"\nforce = \"kN\"\n", &[]);
+    let grams = write("g.toml", "mass = \"g\"\n", &[("mass", "1221.0")]);
+    let inches = write("in.toml", "length = \"in\"\n", &[]);
+    let found = document(&["compare", &metres, &grams]);
+    let words: Vec<&str> = found["fields"].as_array().unwrap().iter().map(|it| it["field"].as_str().unwrap()).collect();
+    assert!(!words.contains(&"follower.mass") && words.contains(&"units.mass"), "{words:?}");
+    assert_eq!(found["changes"], json!([]), "one machine in other units");
+    assert!((told(&found, "cam_angle_deg").0["b"].as_f64().unwrap() - 150.179371).abs() < 1e-6);
+    let preload = told(&found, "preload_kn").0;
+    assert!((preload["b"].as_f64().unwrap() - 0.14308).abs() < 1e-9, "{preload}");
+    let refused = common::corner_impact(["compare", &metres, &inches]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(common::text(refused.stderr).contains("lengths are in m in the one and in in in the other"));
+    let alone = common::corner_impact(["compare", PAPER]);
+    assert_eq!(alone.status.code(), Some(2));
+}
+
+/// A cam and what is measured of it differ by no more than the measurement leaves open; another spring differs by more.
+#[test]
+fn what_a_measured_cam_leaves_open_is_no_change() {
+    let cam = corner_impact::cam::Cam::new(&common::osorio()).unwrap();
+    let rows = |places: i32| -> Vec<[f64; 2]> {
+        let rounded = |lift: f64| (lift * 10f64.powi(places)).round() / 10f64.powi(places);
+        (0..360).map(f64::from).map(|angle| [angle, rounded(cam.lift(angle.to_radians()).value)]).collect()
+    };
+    let machine = |places, stiffness: f64| {
+        let follower = json!({ "mass": 1.221, "damping": 0, "stiffness": stiffness, "gravity": 0, "rest_position": 0.3, "restitution": 0.8 });
+        let cam = json!({ "law": "table", "spline": "smoothing", "rows": rows(places) });
+        Model::of_document("measured", &json!({ "follower": follower, "cam": cam })).unwrap()
+    };
+    let compared =
+        |b: &Model| -> Comparison { compare(&machine(5, 1430.8), b, External::LeftOut, &Unwatched).unwrap() };
+    let speed = |found: &Comparison| {
+        let of =
+            |name: &str| found.changes.iter().chain(&found.unchanged).find(|it| it.quantity == name).unwrap().clone();
+        of("separation_speed_rpm")
+    };
+    let same = compared(&machine(4, 1430.8));
+    let change = speed(&same);
+    assert!(change.difference.unwrap() != 0.0 && !change.is_one(), "{change:?}");
+    assert!(change.error.unwrap() > 1e-3, "{change:?}");
+    assert!(same.fields.iter().any(|field| field.field == "rows of the table"), "{:?}", same.fields);
+    // The same rows leave another spring less open than other rows do: both followers are on one cam, whichever it is.
+    let [one_cam, two_cams] = [5, 4].map(|places| speed(&compared(&machine(places, 1500.0))));
+    assert!(one_cam.is_one() && one_cam.times_error.unwrap() > 3.0, "{one_cam:?}");
+    assert!(two_cams.error.unwrap() > 5.0 * one_cam.error.unwrap(), "{one_cam:?} {two_cams:?}");
+}
