@@ -7,7 +7,7 @@ use crate::paper::{Claims, Context};
 use crate::show::{Page, json, markdown};
 use crate::study::verify::{External, verify_watched};
 
-/// Prints what the paper states, statement by statement, with a verdict and its evidence.
+/// Prints what the paper's source on arXiv states, statement by statement, with a verdict and its evidence.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact claims\n\

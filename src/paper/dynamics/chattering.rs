@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
 use super::{Round, corners, listed, machine};
+use crate::agreement::worse;
 use crate::bracket::{Width, halve};
 use crate::diagram::growth;
 use crate::flight::Flight;
@@ -144,6 +145,7 @@ pub(in crate::paper) fn resonant_peaks(context: &Context<'_>) -> Decision {
         })
     };
     let (mut found, mut jumps) = (Vec::<(usize, Turn)>::new(), Vec::new());
+    let mut slowest = 0.0_f64;
     let mut below = (RANGE[0], round(RANGE[0])?);
     while below.0 < RANGE[1] {
         let above = (below.0 + STEP, round(below.0 + STEP)?);
@@ -151,12 +153,17 @@ pub(in crate::paper) fn resonant_peaks(context: &Context<'_>) -> Decision {
             let sides = past(&below.1, index, corner).zip(past(&above.1, index, corner));
             let Some((_, side)) = sides.filter(|(one, other)| one != other) else { continue };
             let is_beyond = |rpm: f64| Ok::<_, SimulateError>(past(&round(rpm)?, index, corner) == Some(side));
-            let [_, rpm] = halve([below.0, above.0], Width::Absolute(tolerance::SPEED_FOUND.value), is_beyond)?;
-            // A line that jumps over the corner, where an impact before it grazes, does not cross it.
-            let reached =
-                round(rpm)?.impacts.get(index).map_or(f64::NAN, |[turned, _]| (p + turned - angles[corner]).abs());
-            let crosses = reached.to_degrees() <= tolerance::DRAWN_DEGREES.value;
-            if crosses { &mut found } else { &mut jumps }.push((corner, turn(rpm)?));
+            let [before, rpm] = halve([below.0, above.0], Width::Absolute(tolerance::SPEED_FOUND.value), is_beyond)?;
+            let (before, here) = (round(before)?, round(rpm)?);
+            let reached = here.impacts.get(index).map_or(f64::NAN, |[turned, _]| (p + turned - angles[corner]).abs());
+            if reached.to_degrees() <= tolerance::DRAWN_DEGREES.value {
+                found.push((corner, turn(rpm)?));
+            } else {
+                // A line that jumps over the corner, where an impact up to it becomes a graze, does not cross it.
+                let up_to_it = before.impacts.iter().take(index + 1).chain(here.impacts.iter().take(index + 1));
+                slowest = worse(slowest, up_to_it.fold(f64::INFINITY, |least, [_, velocity]| least.min(*velocity)));
+                jumps.push((corner, turn(rpm)?));
+            }
         }
         below = above;
     }
@@ -175,7 +182,7 @@ pub(in crate::paper) fn resonant_peaks(context: &Context<'_>) -> Decision {
     let evidence = format!(
         "of {} crossings of a corner by the lines of the first {FOLLOWED} impacts after the release, at {} to {} rpm, the angle where \
          impacts accumulate has a peak at {peaks}, a dip at {dips}, and no extremum at {neither}; by corner {}. Lines that jump over a \
-         corner, where an impact before it becomes a graze, do not cross it: {}",
+         corner do not cross it: {}; at each of these an impact of the line, or one before it, becomes a graze, at {slowest:.0e} m/s or less",
         found.len(),
         RANGE[0],
         RANGE[1],
