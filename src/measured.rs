@@ -68,9 +68,9 @@ pub struct Likely {
 const TABLES: u64 = 16;
 
 impl Likely {
-    /// Of the cam of a model; none where it is not of a table.
+    /// Of the cam of a model; none where it is not of a table, or of one with too few rows to tell.
     pub fn of(model: &Model) -> Result<Option<Self>, ModelError> {
-        let Some(profile) = model.table() else { return Ok(None) };
+        let Some(profile) = model.table().filter(|table| table.may_be_smoothed()) else { return Ok(None) };
         let own = profile.spline.smoothing();
         let fitted = fit(model, profile, own.unwrap_or(&Smoothing::default()))?;
         let half_step = profile.reading.half_step();

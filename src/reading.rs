@@ -4,14 +4,15 @@ use std::f64::consts::TAU;
 use std::path::Path;
 
 use crate::cam::Cam;
+use crate::file;
 use crate::model::{Follower, Model, ModelError, OSORIO_2008};
+use crate::tolerance;
 
 impl Model {
     /// Reads and checks a model file.
     pub fn read(path: &Path) -> Result<Self, ModelError> {
         let file = path.display().to_string();
-        let text = std::fs::read_to_string(path)
-            .map_err(|error| ModelError::file(&file, format!("cannot be read: {error}")))?;
+        let text = file::text(path).map_err(|error| ModelError::file(&file, format!("cannot be read: {error}")))?;
         Self::parse(&file, &text)
     }
 
@@ -115,6 +116,34 @@ impl Model {
                 return Err(self.reject("follower.preload", "is too large for this stiffness"));
             }
         }
+        self.sized()?;
         Ok(self)
+    }
+
+    /// Refuses numbers that what is made of them leaves the range of a double with.
+    fn sized(&self) -> Result<(), ModelError> {
+        let (most, least) = (tolerance::LARGEST_SIZE.value, tolerance::LARGEST_SIZE.value.recip());
+        let Follower { mass, damping, stiffness, gravity, rest_position, .. } = self.follower;
+        let products = [
+            ("follower.mass", "mass", mass),
+            ("follower.damping", "damping / mass", damping / mass),
+            ("follower.stiffness", "stiffness / mass", stiffness / mass),
+        ];
+        let sums = [
+            ("follower.gravity", "gravity", gravity),
+            ("follower.rest_position", "rest_position", rest_position),
+            ("follower.rest_position", "stiffness * rest_position / mass", stiffness / mass * rest_position),
+        ];
+        let is_small = |size: f64| size > 0.0 && size < least;
+        let odd = products.iter().find(|(.., size)| is_small(*size) || !(*size <= most));
+        match odd.or_else(|| sums.iter().find(|(.., size)| !(size.abs() <= most))) {
+            Some((field, what, size)) => {
+                let bound =
+                    if is_small(*size) { format!("below {least:.0e}") } else { format!("above {most:e} in size") };
+                let words = format!("makes {what} {size:e}, {bound}: use other units");
+                Err(self.reject(field, words))
+            }
+            None => Ok(()),
+        }
     }
 }

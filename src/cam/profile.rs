@@ -6,18 +6,22 @@ use super::harmonics::Harmonics;
 use super::law::Law;
 use super::polynomial::Polynomial;
 use super::sinusoid::Sinusoid;
-use super::{Cam, Joint, Segment, arcs, program, table};
+use super::{Cam, Joint, Segment, arcs, program, table, tolerance};
 use crate::model::{CamProfile, HarmonicProfile, Model, ModelError, PolynomialSegment, RectifiedSineProfile};
 
 impl Cam {
     /// The cam of a model, or the complaint about the field that makes it impossible.
     pub fn new(model: &Model) -> Result<Self, ModelError> {
         let cam = Self::of(model, &model.cam)?;
-        let is_finite = |segment: &Segment| segment.bounds.third.is_finite() && segment.bounds.lift[1].is_finite();
-        if cam.segments.iter().all(is_finite) {
+        let sizes =
+            |segment: &Segment| [segment.bounds.third, segment.bounds.lift[0].abs(), segment.bounds.lift[1].abs()];
+        let is_sized = |size: f64| size <= tolerance::LARGEST_SIZE.value;
+        if cam.segments.iter().flat_map(sizes).all(is_sized) {
             Ok(cam)
         } else {
-            Err(model.reject("cam.law", "gives lifts or derivatives too large for a double: use other units"))
+            let most = tolerance::LARGEST_SIZE.value;
+            Err(model
+                .reject("cam.law", format!("gives lifts or derivatives too large, above {most:e}: use other units")))
         }
     }
 

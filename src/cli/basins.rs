@@ -4,9 +4,11 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use super::start::{finite, range, rpm};
+use super::threads::threads;
 use super::{CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::watched};
 use crate::cam::within_a_turn;
 use crate::figures::basins_figure;
+use crate::foreign;
 use crate::orbit::Search;
 use crate::show::csv;
 use crate::study::attractors::Patience;
@@ -43,8 +45,8 @@ pub(super) struct Arguments {
     /// The longest period of an orbit, revolutions.
     #[arg(long, value_name = "N", default_value_t = Patience::default().longest, value_parser = clap::value_parser!(u64).range(1..=Search::MOST_REVOLUTIONS))]
     longest: u64,
-    /// Threads [default: one for each core].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    /// Threads [default: RAYON_NUM_THREADS, or one for each core].
+    #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
     threads: Option<u16>,
     /// A table (.csv, or - for standard output) or a picture (.svg, .png, .pdf).
     #[arg(long, value_name = "FILE", value_parser = picture::picture_or_table, group = "picture")]
@@ -58,7 +60,9 @@ pub(super) struct Arguments {
 
 /// `NxM`.
 fn cells(text: &str) -> Result<[usize; 2], String> {
-    let count = |part: &str| part.trim().parse::<usize>().map_err(|_| format!("\"{part}\" is not a number of cells"));
+    let count = |part: &str| {
+        part.trim().parse::<usize>().map_err(|_| format!("\"{}\" is not a number of cells", foreign::value(part)))
+    };
     let Some((columns, rows)) = text.split_once('x') else {
         return Err("must be NxM: cells along the positions and along the velocities".into());
     };

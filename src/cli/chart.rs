@@ -6,6 +6,7 @@ use clap::ValueEnum;
 
 use super::curve::{LONGEST_STEP, MOST_POINTS};
 use super::start::{StartArguments, axis, count, rpm};
+use super::threads::threads;
 use super::{CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::watched};
 use crate::diagram::Speeds;
 use crate::figures::{Coloured, chart_figure};
@@ -53,8 +54,8 @@ pub(super) struct Arguments {
     /// that repeat after one revolution, as `curve` follows them; one axis must be rpm.
     #[arg(long, requires = "out", conflicts_with = "status")]
     with_curves: bool,
-    /// Threads [default: one for each core].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    /// Threads [default: RAYON_NUM_THREADS, or one for each core].
+    #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
     threads: Option<u16>,
     /// A table (.csv, or - for standard output), a picture (.svg, .png, .pdf), or a zarr store (.zarr): a folder of blocks of 100 x 100
     /// points, of which those that are there already are not run again.

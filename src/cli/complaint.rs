@@ -5,6 +5,7 @@ use std::fmt;
 
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, NamedSource, SourceCode};
 
+use crate::foreign;
 use crate::model::ModelError;
 
 /// A complaint as miette sees one.
@@ -26,6 +27,9 @@ impl Error for Pointed<'_> {}
 
 /// The longest words that stand under a line.
 const LONGEST_LABEL: usize = 72;
+
+/// The longest line of a file that is drawn, bytes.
+const LONGEST_LINE: usize = 2000;
 
 impl Diagnostic for Pointed<'_> {
     fn source_code(&self) -> Option<&dyn SourceCode> {
@@ -56,6 +60,11 @@ pub(super) fn word(coloured: bool) -> &'static str {
 /// nobody looks at a terminal.
 pub(super) fn shown(words: &str, at: &ModelError, coloured: bool, is_terminal: bool, width: usize) -> String {
     let (Some(text), Some(_)) = (&at.pointer.text, &at.pointer.span) else { return String::new() };
+    let lines = || text.lines().filter(|line| line.len() > LONGEST_LINE);
+    // What a person did not write is not read by one either.
+    if lines().next().is_some() {
+        return String::new();
+    }
     let theme = match (is_terminal, coloured) {
         (true, true) => GraphicalTheme::unicode(),
         (true, false) => GraphicalTheme::unicode_nocolor(),
@@ -63,7 +72,8 @@ pub(super) fn shown(words: &str, at: &ModelError, coloured: bool, is_terminal: b
         (false, false) => GraphicalTheme::none(),
     };
     let is_of_the_file = words == at.to_string();
-    let pointed = Pointed { at, is_of_the_file, source: NamedSource::new(&at.file, text.to_string()) };
+    let pointed =
+        Pointed { at, is_of_the_file, source: NamedSource::new(foreign::visible(&at.file), foreign::in_place(text)) };
     let handler = GraphicalReportHandler::new_themed(theme).with_links(false).with_width(width);
     let mut drawn = String::new();
     if handler.render_report(&mut drawn, &pointed).is_err() {

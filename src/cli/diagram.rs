@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use clap::ValueEnum;
 
 use super::start::{StartArguments, count, finite, speeds};
+use super::threads::threads;
 use super::{
     CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::Progress, progress::watched,
 };
@@ -52,8 +53,8 @@ pub(super) struct Arguments {
     attractors: bool,
     #[command(flatten)]
     start: StartArguments,
-    /// Threads [default: one for each core]; up and down go from speed to speed on one.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    /// Threads [default: RAYON_NUM_THREADS, or one for each core]; up and down go from speed to speed on one.
+    #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
     threads: Option<u16>,
     /// A table (.csv, or - for standard output) or a picture (.svg, .png, .pdf).
     #[arg(long, value_name = "FILE", value_parser = picture::picture_or_table, group = "picture")]

@@ -9,6 +9,7 @@ use super::model::Changes;
 use super::progress::{Progress, watched};
 use super::{CommandError, Exit, ModelArgument, Session, picture};
 use crate::figures::{FIGURES, Listed, Plate, Subject, listed};
+use crate::foreign;
 use crate::model::Model;
 use crate::show::json;
 
@@ -77,6 +78,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         Some(id) => {
             let Some(entry) = FIGURES.iter().find(|entry| entry.id == id) else {
                 let there = FIGURES.map(|entry| entry.id).join(", ");
+                let id = foreign::value(id);
                 return Err(CommandError::Words(format!("no figure called \"{id}\"; there are: {there}")));
             };
             // Opened before the work: a name that cannot be is told at once.

@@ -26,7 +26,9 @@ mod report;
 mod session;
 mod simulate;
 mod speeds;
+mod standard;
 mod start;
+mod threads;
 mod verify;
 
 use std::error::Error;
@@ -41,6 +43,7 @@ pub use session::Terminal;
 
 use crate::file::{self, FileError, Output};
 use crate::model::{ModelError, Units};
+use crate::stop;
 
 /// How a command ended; the process's exit code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -158,6 +161,22 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
     run_at(Terminal::default(), arguments, out, err)
 }
 
+/// Runs a command, as long as somebody reads it, where its results are nowhere else.
+fn begun(arguments: &Arguments, only_prints: bool, session: &mut Session<'_>) -> Result<Exit, CommandError> {
+    session.color = arguments.color;
+    let is_watched = session.terminal.is_process && only_prints;
+    file::clear_on_signals().map_err(|error| CommandError::Words(format!("signals: {error}")))?;
+    let mut work = || {
+        threads::start()?;
+        arguments.command.run(session)
+    };
+    if !is_watched {
+        return work();
+    }
+    standard::takes_more()?;
+    stop::unless(standard::is_unread(), work).unwrap_or(Err(CommandError::Unread))
+}
+
 /// Runs one command line, program name first, with streams that `terminal` describes.
 pub fn run_at(
     terminal: Terminal,
@@ -168,18 +187,15 @@ pub fn run_at(
     let words: Vec<OsString> = arguments.into_iter().collect();
     // What is wrong with a command line is coloured as it says itself.
     let mut session = Session { out, err, terminal, color: session::said(&words), rpm: None, units: Units::default() };
-    let matches = help::command(session.width()).try_get_matches_from(words);
+    let mut command = help::command(session.width());
+    let matches = command.try_get_matches_from_mut(words);
     session.rpm = matches.as_ref().ok().and_then(session::speeds);
-    let arguments = match matches.and_then(|matches| Arguments::from_arg_matches(&matches)) {
-        Ok(arguments) => arguments,
-        Err(error) => return session.refuse(&error),
+    let only_prints = matches.as_ref().is_ok_and(|matches| session::only_prints(&command, matches));
+    let run = match matches.and_then(|matches| Arguments::from_arg_matches(&matches)) {
+        Ok(arguments) => begun(&arguments, only_prints, &mut session),
+        Err(error) => session.refuse(error),
     };
-    session.color = arguments.color;
-    if let Err(error) = file::clear_on_signals() {
-        session.complain(&format!("signals: {error}"));
-        return Exit::BadInput;
-    }
-    arguments.command.run(&mut session).unwrap_or_else(|error| {
+    run.unwrap_or_else(|error| {
         // Whoever closes a pipe early, as `head` does, wants no more, nor a complaint.
         match &error {
             CommandError::Unread => {}

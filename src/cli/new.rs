@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::ValueEnum;
 
 use super::{CommandError, Exit, Session};
-use crate::file::Output;
+use crate::file::{self, Output};
 
 /// Writes a commented model file to start from: every field with its unit and what it may be.
 #[derive(clap::Args)]
@@ -91,6 +91,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         let words = format!("{}: is there already; --force writes over it", there.display());
         return Err(CommandError::Words(words));
     }
+    file::distinct(["the model", "its table"].into_iter().zip(files.iter().map(|(path, _)| *path)))?;
     let mut outputs = Vec::new();
     for (path, text) in &files {
         let mut output = Output::file(path)?;

@@ -3,10 +3,13 @@
 use std::ffi::OsString;
 use std::io::{ErrorKind, IsTerminal, Write};
 
+use clap::builder::Str;
+use clap::error::{ContextKind, ContextValue};
 use clap::{ColorChoice, ValueEnum};
 use serde::Serialize;
 
 use super::{CommandError, Exit, complaint};
+use crate::foreign;
 use crate::model::{ModelError, Units};
 use crate::show::block::in_units;
 use crate::show::{Page, Paged, json};
@@ -31,6 +34,28 @@ pub(super) fn speeds(matches: &clap::ArgMatches) -> Option<[f64; 2]> {
     Some([low, parts.next().flatten().unwrap_or(low)])
 }
 
+/// Words of a command line as a complaint shows them.
+fn shown(value: &ContextValue) -> ContextValue {
+    match value {
+        ContextValue::String(text) => ContextValue::String(foreign::value(text).into_owned()),
+        ContextValue::Strings(texts) => {
+            ContextValue::Strings(texts.iter().map(|text| foreign::value(text).into_owned()).collect())
+        }
+        other => other.clone(),
+    }
+}
+
+/// Whether nothing that a command line asks for goes to a file.
+pub(super) fn only_prints(command: &clap::Command, matches: &clap::ArgMatches) -> bool {
+    let Some((name, given)) = matches.subcommand() else { return false };
+    let arguments = command.find_subcommand(name).map(clap::Command::get_arguments).into_iter().flatten();
+    // A report has a file if none is named.
+    let of_files = |names: &[Str]| names.iter().any(|name| ["FILE", "DIR"].contains(&name.as_str()));
+    let mut files = arguments.filter(|argument| argument.get_value_names().is_some_and(of_files));
+    name != "report"
+        && files.all(|file| given.get_raw(file.get_id().as_str()).is_none_or(|mut names| names.all(|name| name == "-")))
+}
+
 /// What the streams of a process are connected to, and what its environment wants.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Terminal {
@@ -46,6 +71,8 @@ pub struct Terminal {
     pub forced: bool,
     /// The terminal has none, or is not to be asked for it: TERM=dumb, CLICOLOR=0.
     pub dumb: bool,
+    /// Results go to standard output of this process, and not into the hands of a program that calls the library.
+    pub is_process: bool,
 }
 
 impl Terminal {
@@ -66,6 +93,7 @@ impl Terminal {
             plain: set("NO_COLOR").is_some(),
             forced: set("CLICOLOR_FORCE").is_some_and(|value| value != "0"),
             dumb: is("TERM", "dumb") || is("CLICOLOR", "0"),
+            is_process: true,
         }
     }
 
@@ -120,13 +148,13 @@ impl Session<'_> {
     /// Says something on standard error.
     pub(super) fn note(&mut self, words: &str) {
         // A closed pipe leaves nobody to tell.
-        let _ = writeln!(self.err, "note: {words}");
+        let _ = writeln!(self.err, "note: {}", foreign::sentence(words));
     }
 
     /// Complains on standard error, in the words that every complaint begins with.
     pub(super) fn complain(&mut self, words: &str) {
         // A closed pipe leaves nobody to tell.
-        let _ = writeln!(self.err, "{} {words}", complaint::word(self.colours_err()));
+        let _ = writeln!(self.err, "{} {}", complaint::word(self.colours_err()), foreign::sentence(words));
     }
 
     /// The same, with the line of the model file that it is about.
@@ -137,18 +165,28 @@ impl Session<'_> {
     }
 
     /// Says what is wrong with a command line, or what help was asked for.
-    pub(super) fn refuse(&mut self, error: &clap::Error) -> Exit {
+    pub(super) fn refuse(&mut self, mut error: clap::Error) -> Result<Exit, CommandError> {
+        // Advice that repeats what nobody can read is none.
+        let is_odd =
+            |value: &ContextValue| matches!(value, ContextValue::String(text) if foreign::value(text) != *text);
+        if error.context().any(|(_, value)| is_odd(value)) {
+            error.remove(ContextKind::Suggested);
+        }
+        let foreign: Vec<_> = error.context().map(|(kind, value)| (kind, shown(value))).collect();
+        for (kind, value) in foreign {
+            error.insert(kind, value);
+        }
         let text = error.render();
         let shown = |colours: bool| if colours { text.ansi().to_string() } else { text.to_string() };
-        // A closed pipe leaves nobody to tell.
         if error.use_stderr() {
             let text = shown(self.colours_err());
+            // A closed pipe leaves nobody to tell.
             let _ = self.err.write_all(text.as_bytes());
-            Exit::BadInput
+            Ok(Exit::BadInput)
         } else {
             let text = shown(self.colours_out());
-            let _ = self.out.write_all(text.as_bytes());
-            Exit::Agrees
+            self.print(&text)?;
+            Ok(Exit::Agrees)
         }
     }
 

@@ -1,8 +1,7 @@
 //! `corner-impact simulate [MODEL] --rpm R`.
 
-use std::collections::BTreeMap;
 use std::io::Write;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
 use clap::ArgGroup;
 
@@ -11,7 +10,7 @@ use super::start::{StartArguments, count, finite, rpm};
 use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::cam::within_a_turn;
 use crate::figures::{self, phase_plane as phase_plane_figure, time_trace, with_force};
-use crate::file::Output;
+use crate::file::{self, Output};
 use crate::show::csv;
 use crate::study::simulate::{Sight, Simulation, Until, Wanted};
 
@@ -82,12 +81,10 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         return Err(CommandError::Words(words.into()));
     }
     let Arguments { events, strobe_out, trace, phase_plane, .. } = arguments;
-    distinct(&[
-        ("--events", events),
-        ("--strobe-out", strobe_out),
-        ("--trace", trace),
-        ("--phase-plane", phase_plane),
-    ])?;
+    let results =
+        [("--events", events), ("--strobe-out", strobe_out), ("--trace", trace), ("--phase-plane", phase_plane)];
+    let files = results.iter().filter_map(|(option, path)| Some((*option, path.as_deref()?)));
+    file::distinct(files.filter(|(_, path)| path.as_os_str() != "-"))?;
     if arguments.drawn.is_some() && trace.is_none() && phase_plane.is_none() {
         return Err(CommandError::Words(
             "--drawn says how much --trace and --phase-plane draw: neither is there".into(),
@@ -167,18 +164,4 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         session.answer(&run, arguments.summary)?;
     }
     Ok(Exit::Agrees)
-}
-
-/// Refuses two files of one name: the second would be all that is left.
-fn distinct(files: &[(&str, &Option<PathBuf>)]) -> Result<(), CommandError> {
-    // As far as names tell: ./x is x.
-    let parts = |path: &Path| path.components().filter(|part| *part != Component::CurDir).collect::<PathBuf>();
-    let mut names = BTreeMap::new();
-    let given = files.iter().filter_map(|(option, path)| Some((*option, path.as_deref()?)));
-    for (option, path) in given.filter(|(_, path)| path.as_os_str() != "-") {
-        if let Some(before) = names.insert(parts(path), option) {
-            return Err(CommandError::Words(format!("{before} and {option} are both {}", path.display())));
-        }
-    }
-    Ok(())
 }

@@ -3,6 +3,7 @@
 use crate::cam::within_a_turn;
 use crate::diagram::{Placed, Speeds, Start};
 use crate::flight::State;
+use crate::foreign;
 
 /// Where the run starts.
 #[derive(clap::Args)]
@@ -26,7 +27,7 @@ impl StartArguments {
 }
 
 pub(super) fn finite(text: &str) -> Result<f64, String> {
-    let number: f64 = text.trim().parse().map_err(|_| format!("\"{text}\" is not a number"))?;
+    let number: f64 = text.trim().parse().map_err(|_| format!("\"{}\" is not a number", foreign::value(text)))?;
     if number.is_finite() { Ok(number) } else { Err("must be a finite number".into()) }
 }
 
@@ -103,7 +104,8 @@ fn spaced(text: &str, number: fn(&str) -> Result<f64, String>, what: &str) -> Re
         return Err(format!("must be LO:HI:N: lowest {what}, highest {what}, how many"));
     };
     let (low, high) = (number(low)?, number(high)?);
-    let count: usize = count.trim().parse().map_err(|_| format!("\"{count}\" is not a number of {what}s"))?;
+    let count: usize =
+        count.trim().parse().map_err(|_| format!("\"{}\" is not a number of {what}s", foreign::value(count)))?;
     match (high >= low && (high - low).is_finite(), count) {
         (false, _) => Err(format!("the highest {what}, {high}, is below the lowest, {low}")),
         (_, 0) => Err(format!("must be 1 {what} or more")),

@@ -189,7 +189,7 @@ pub enum SweepError {
     #[error("at {rpm} rpm: {error}")]
     Simulate { rpm: f64, error: SimulateError },
     /// The threads could not be started.
-    #[error("threads: {0}")]
+    #[error("threads cannot be started: {0}")]
     Threads(String),
 }
 

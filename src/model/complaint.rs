@@ -4,6 +4,8 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
+use crate::foreign;
+
 /// A complaint about a model file: where, what was found, what would be allowed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub struct ModelError {
@@ -74,14 +76,16 @@ impl ModelError {
 
 impl fmt::Display for ModelError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.file)?;
+        write!(f, "{}", foreign::visible(&self.file))?;
         if let Some(line) = self.line {
             write!(f, ":{line}")?;
         }
-        match (&self.field, &self.value) {
-            (Some(field), Some(value)) => write!(f, ": {field} = {value}: {}", self.allowed)?,
-            (Some(field), None) => write!(f, ": {field} {}", self.allowed)?,
-            _ => write!(f, ": {}", self.allowed)?,
+        let [field, value] = [&self.field, &self.value].map(|part| part.as_deref().map(foreign::value));
+        let allowed = foreign::sentence(&self.allowed);
+        match (field, value) {
+            (Some(field), Some(value)) => write!(f, ": {field} = {value}: {allowed}")?,
+            (Some(field), None) => write!(f, ": {field} {allowed}")?,
+            _ => write!(f, ": {allowed}")?,
         }
         self.pointer.meant.as_ref().map_or(Ok(()), |meant| write!(f, "; {meant}"))
     }

@@ -18,7 +18,7 @@ impl Fields {
 
     fn add_object(&mut self, prefix: &str, table: &Map<String, Item>) -> Result<(), ModelError> {
         for (key, value) in table {
-            if key.contains(['.', '[']) {
+            if key.contains(Self::PARTS) {
                 return Err(ModelError::file(self.file(), format!("{prefix}{key}: a name has no dot or bracket")));
             }
             self.add_item(&format!("{prefix}{key}"), value)?;

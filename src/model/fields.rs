@@ -6,6 +6,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::{ModelError, nearest};
+use crate::foreign;
 
 /// A range of finite numbers.
 #[derive(Clone, Copy)]
@@ -82,16 +83,11 @@ impl Field {
         Self { line: None, is_there: true, key: 0..0, span: 0..0, written, value }
     }
 
-    /// Longest value that a message repeats, in characters.
-    const MOST_SHOWN: usize = 60;
-
-    /// The value as written, cut where it is long; a list of tables is not shown.
+    /// The value as written; a list of tables is not shown.
     fn shown(&self) -> Option<String> {
-        let is_long = self.written.chars().count() > Self::MOST_SHOWN;
         match self.value {
             Value::Table => None,
             Value::Array(_) | Value::Rows(_) if self.written.starts_with("[[") || self.written.is_empty() => None,
-            _ if is_long => Some(self.written.chars().take(Self::MOST_SHOWN).chain("...".chars()).collect()),
             _ => Some(self.written.clone()),
         }
     }
@@ -114,6 +110,9 @@ pub(super) struct Fields {
 }
 
 impl Fields {
+    /// What parts the names of a path.
+    pub(super) const PARTS: [char; 2] = ['.', '['];
+
     /// No fields yet, of a file with a text, or of what is not a file.
     pub(super) fn none(file: &str, text: Option<&str>) -> Self {
         Self { file: file.into(), text: text.map(Arc::from), fields: BTreeMap::new(), known: BTreeSet::new() }
@@ -148,7 +147,9 @@ impl Fields {
         match fields.fields.get_mut(path) {
             Some(field @ Field { value: Value::Number(_), .. }) => {
                 field.value = Value::Number(number);
-                field.written = number.to_string();
+                // In digits, but for what nobody would count.
+                let digits = number.to_string();
+                field.written = if digits.len() > 24 { format!("{number:e}") } else { digits };
                 field.line = None;
                 fields.text = None;
                 Ok(fields)
@@ -251,7 +252,8 @@ impl Fields {
                 is_there && name.rsplit_once('.').map_or("", |(table, _)| table) == table
             };
             let fields = self.fields.iter().filter(inside);
-            let present: Vec<&str> = fields.map(|(name, _)| name.rsplit('.').next().unwrap_or(name)).collect();
+            let present: Vec<_> =
+                fields.map(|(name, _)| foreign::value(name.rsplit('.').next().unwrap_or(name))).collect();
             let found =
                 if present.is_empty() { String::new() } else { format!("; found there: {}", present.join(", ")) };
             self.mistyped(path).unwrap_or_else(|| self.reject(path, "is missing")).found(&found)
@@ -275,8 +277,8 @@ impl Fields {
         let stray = stray.iter().map(String::as_str).filter(|name| !name.contains(['.', '[']) && !is_name(name));
         let written = stray.filter(|word| nearest(word, [meant]).is_some()).min()?;
         let field = self.fields.get(&in_table(at, written))?;
-        let is_table = shown.starts_with('[');
-        let written = if is_table { format!("[{written}]") } else { written.to_owned() };
+        let (is_table, written) = (shown.starts_with('['), foreign::value(written));
+        let written = if is_table { format!("[{written}]") } else { written.into_owned() };
         let place = field.line.map_or_else(|| "it".into(), |line| format!("line {line}"));
         Some(ModelError {
             line: field.line,

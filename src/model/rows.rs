@@ -154,9 +154,8 @@ impl Table<'_> {
     }
 
     pub(super) fn reject(&self, line: usize, column: &str, value: &str, allowed: String) -> ModelError {
-        let shown: String = value.chars().take(60).collect();
-        let (field, shown) = (Some(column.into()), Some(shown));
-        let complaint = ModelError { field, value: shown, ..self.complain(Some(line), allowed) };
+        let (field, written) = (Some(column.into()), Some(value.into()));
+        let complaint = ModelError { field, value: written, ..self.complain(Some(line), allowed) };
         complaint.in_line(self.text, Some(value))
     }
 

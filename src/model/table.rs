@@ -9,6 +9,7 @@ use super::ModelError;
 use super::fields::{Allowed, Fields, Pair, Value};
 use super::rows::{Layout, MOST_ROWS, Row, Table};
 use super::units::{LENGTHS, Unit, Units};
+use crate::file;
 use crate::tolerance;
 
 /// A spline through the rows of a file, or near them.
@@ -34,6 +35,11 @@ document!(TableProfile as it {
 });
 
 impl TableProfile {
+    /// Whether it has rows enough for what is measured to be told from the motion.
+    pub(crate) fn may_be_smoothed(&self) -> bool {
+        self.rows.len() >= FEWEST_SMOOTHED
+    }
+
     /// The field that says where its rows are.
     pub fn place(&self) -> &'static str {
         if self.file.is_some() { "cam.file" } else { "cam.rows" }
@@ -170,8 +176,8 @@ pub(super) fn read(fields: &mut Fields) -> Result<TableProfile, ModelError> {
     let spline = fields.choice("cam.spline", &SPLINES)?;
     let path = Path::new(fields.file()).parent().unwrap_or(Path::new("")).join(&file);
     let shown = path.display().to_string();
-    let text = std::fs::read_to_string(&path)
-        .map_err(|error| fields.reject("cam.file", format!("cannot be read at {shown}: {error}")))?;
+    let text =
+        file::text(&path).map_err(|error| fields.reject("cam.file", format!("cannot be read at {shown}: {error}")))?;
     // Spreadsheets begin UTF-8 with a mark.
     let table = Table { file: shown, text: text.strip_prefix('\u{feff}').unwrap_or(&text), has_lines: true };
     let (rows, layout) = table.rows()?;
@@ -412,6 +418,8 @@ impl Table<'_> {
 
     /// Refuses a gap where rows are missing.
     fn even(&self, rows: &[Row], are_degrees: bool) -> Result<(), ModelError> {
+        /// A gap that no table has, however few its rows are.
+        const HALF: f64 = 180.0;
         /// From how much of a turn without a row on the rows are those of another part of it.
         const PART: f64 = 90.0;
         let next = |index: usize| match rows.get(index + 1) {
@@ -422,7 +430,9 @@ impl Table<'_> {
         let mut sorted = gaps.clone();
         let (_, median, _) = sorted.select_nth_unstable_by(gaps.len() / 2, f64::total_cmp);
         let widest = *median / tolerance::TABLE_GAP.value;
-        let Some(index) = gaps.iter().position(|gap| *gap > widest) else {
+        // To as many digits as a turn is written to.
+        let half = HALF - tolerance::TURN_CLOSED.value * 360.0 / rows.len() as f64;
+        let Some(index) = gaps.iter().position(|gap| *gap > widest || *gap > half) else {
             return Ok(());
         };
         let covered = 360.0 - gaps[index];

@@ -42,17 +42,32 @@ impl Fields {
         })?;
         let mut fields = Self::none(file, Some(text));
         let place = |span: Range<usize>| (line_of(span.start), text.get(span).unwrap_or_default().to_owned());
-        fields.add_table("", root.get_ref(), &place);
+        fields.add_table("", root.get_ref(), &place)?;
         Ok(fields)
     }
 
-    fn add_table(&mut self, prefix: &str, table: &DeTable<'_>, place: &dyn Fn(Range<usize>) -> (usize, String)) {
+    fn add_table(
+        &mut self,
+        prefix: &str,
+        table: &DeTable<'_>,
+        place: &dyn Fn(Range<usize>) -> (usize, String),
+    ) -> Result<(), ModelError> {
         for (key, value) in table {
             let path = format!("{prefix}{}", key.get_ref());
+            if key.get_ref().contains(Self::PARTS) {
+                let (line, written) = place(key.span());
+                let words = "is one name: none has a dot or a bracket in quotes; a part of a table stands without quotes or under its [table]";
+                return Err(ModelError {
+                    line: Some(line),
+                    field: Some(written),
+                    ..ModelError::file(self.file(), words.into()).at(Some(self.source().into()), Some(key.span()))
+                });
+            }
             // A table's own span is not its header's; the key's is.
             let (line, _) = place(key.span());
-            self.add(&path, (line, key.span()), value, place);
+            self.add(&path, (line, key.span()), value, place)?;
         }
+        Ok(())
     }
 
     fn add(
@@ -61,11 +76,11 @@ impl Fields {
         (line, key): (usize, Range<usize>),
         spanned: &Spanned<DeValue<'_>>,
         place: &dyn Fn(Range<usize>) -> (usize, String),
-    ) {
+    ) -> Result<(), ModelError> {
         let (_, written) = place(spanned.span());
         let value = match spanned.get_ref() {
             DeValue::Table(table) => {
-                self.add_table(&format!("{path}."), table, place);
+                self.add_table(&format!("{path}."), table, place)?;
                 Value::Table
             }
             DeValue::Array(items) => {
@@ -75,7 +90,7 @@ impl Fields {
                     _ => {
                         for (index, item) in items.iter().enumerate() {
                             let (line, _) = place(item.span());
-                            self.add(&format!("{path}[{index}]"), (line, item.span()), item, place);
+                            self.add(&format!("{path}[{index}]"), (line, item.span()), item, place)?;
                         }
                         Value::Array(items.len())
                     }
@@ -86,5 +101,6 @@ impl Fields {
         };
         let field = Field { line: Some(line), is_there: true, key, span: spanned.span(), written, value };
         self.fields.insert(path.into(), field);
+        Ok(())
     }
 }

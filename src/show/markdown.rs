@@ -2,6 +2,7 @@
 
 use std::fmt::{self, Write};
 
+use crate::foreign;
 use crate::show::block::{Block, Section, Span, Table, Words};
 use crate::show::page;
 
@@ -65,9 +66,9 @@ fn table(out: &mut String, table: &Table) -> fmt::Result {
 /// Words as Markdown has them: bars, stars and angle brackets of a text stand for themselves.
 fn text(words: &Words) -> String {
     let of = |span: &Span| match span {
-        Span::Code(text) => format!("`{text}`"),
+        Span::Code(text) => format!("`{}`", foreign::visible(text)),
         Span::Unit(unit) => (*unit).to_owned(),
-        Span::Marked(_, text) => format!("*{}*", escaped(text)),
+        Span::Marked(_, text) => format!("*{}*", escaped(&foreign::visible(text))),
         Span::Break => "<br>".into(),
         span => escaped(&page::text(&span.clone().into())),
     };

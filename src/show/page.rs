@@ -9,6 +9,7 @@ use std::fmt::{self, Write};
 use textwrap::core::display_width;
 use textwrap::{Options, WordSeparator, WordSplitter, WrapAlgorithm};
 
+use crate::foreign;
 use crate::show::block::{Block, Mark, Span, Table, Words};
 
 /// Columns of a page where nothing says how many there are.
@@ -152,7 +153,7 @@ impl Page {
 /// Words as a terminal has them.
 pub(crate) fn text(words: &Words) -> String {
     let of = |span: &Span| match span {
-        Span::Text(text) | Span::Code(text) => text.clone(),
+        Span::Text(text) | Span::Code(text) => foreign::visible(text).into_owned(),
         Span::Unit(unit) => (*unit).to_owned(),
         Span::Number(value, digits) | Span::Against(value, _, digits) => digits.text(*value),
         Span::Complex([re, im], digits) if *im == 0.0 => digits.text(*re),
@@ -168,7 +169,7 @@ pub(crate) fn text(words: &Words) -> String {
             let entries = rows.iter().map(row).collect::<Vec<_>>().join(", ");
             if rows.iter().all(|row| row.len() == 1) { format!("({entries})") } else { format!("[{entries}]") }
         }
-        Span::Marked(mark, text) => mark.around(text),
+        Span::Marked(mark, text) => mark.around(&foreign::visible(text)),
         Span::Break => "\n".into(),
     };
     words.0.iter().map(of).collect()

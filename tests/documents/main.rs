@@ -93,6 +93,20 @@ fn what_is_not_run_is_held_elsewhere() {
     }
 }
 
+/// What the front page says to run is what must pass for a change to land.
+#[test]
+fn a_landing_runs_what_the_front_page_names() {
+    let page =
+        pages(root()).into_iter().find(|page| page.path.ends_with("README.md") && page.path.components().count() == 1);
+    let named: BTreeSet<String> =
+        commands(&[page.unwrap()]).into_iter().filter(|line| line.starts_with("make ")).collect();
+    let landing = std::fs::read_to_string(root().join(".ci/run")).unwrap();
+    let missing: Vec<&String> =
+        named.iter().filter(|line| !landing.lines().any(|runs| runs == line.as_str())).collect();
+    assert!(named.contains("make verify") && named.contains("make test"), "{named:?}");
+    assert!(missing.is_empty(), ".ci/run does not run {missing:?}");
+}
+
 /// `make pictures` is the commands of the pages, which are run and whose pictures are compared with those kept.
 #[test]
 fn make_draws_the_pictures_by_the_commands_of_the_pages() {

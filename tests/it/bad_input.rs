@@ -184,7 +184,7 @@ fn ranges_and_magnitudes_that_cannot_be_searched() {
     let text = common::osorio_text(&[("rpm_min", "1e-3")]);
     refuses("too-wide", text.as_bytes(), &["study.rpm_min = 1e-3", "spans too much", "radians"]);
     let text = common::osorio_text(&[("stiffness", "1e300"), ("mass", "1e-300")]);
-    refuses("overflow", text.as_bytes(), &["study.rpm_min = 600.0"]);
+    refuses("overflow", text.as_bytes(), &["follower.mass = 1e-300: makes mass 1e-300, below 1e-75"]);
 }
 
 /// Numbers at the edge of a double end in a message, never in a panic.

@@ -29,6 +29,7 @@ mod drawing;
 mod dynamics;
 mod figures;
 mod global;
+mod hostile;
 mod impact_map;
 mod interval;
 mod jump_order;

@@ -209,23 +209,23 @@ fn a_follower_that_sticks_is_kicked_at_corners() {
     }
 }
 
-/// A million rows: read, splined and run over in seconds.
+/// As many rows as a file holds: read, splined and run over in seconds.
 #[test]
 #[ignore = "slow"]
-fn a_table_of_a_million_rows() {
-    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("million");
+fn a_table_of_as_many_rows_as_a_file_holds() {
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("many");
     std::fs::create_dir_all(&folder).unwrap();
-    let rows = 1_000_000;
+    let rows = 400_000;
     let mut table = "angle_deg,lift\n".to_owned();
     for row in 0..rows {
         let angle = 360.0 * f64::from(row) / f64::from(rows);
         table += &format!("{angle},{}\n", 0.1 - 0.02 * angle.to_radians().cos());
     }
     std::fs::write(folder.join("lifts.csv"), table).unwrap();
-    let file = folder.join("million.toml");
+    let file = folder.join("many.toml");
     let text = "[follower]\nmass = 1.0\ndamping = 0.0\nstiffness = 0.0\ngravity = 9.81\nrest_position = 0.0\n\
                 restitution = 0.5\n[cam]\nlaw = \"table\"\nfile = \"lifts.csv\"\nspline = \"cubic\"\n";
-    let end = in_time("a million rows", move || {
+    let end = in_time("many rows", move || {
         let model = Model::parse(file.to_str().unwrap(), text).unwrap();
         let machine = Machine::new(Cam::new(&model).unwrap(), &model.follower, angular_velocity(300.0));
         let start = machine.start_on_cam(0.0, 0.0).unwrap();

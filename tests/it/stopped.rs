@@ -1,6 +1,6 @@
 //! Does a command that is stopped half-way, or runs out of room, leave the files as they were?
 
-#![cfg(unix)]
+#![cfg(target_os = "linux")]
 
 use std::fs;
 use std::os::unix::fs::symlink;
@@ -28,9 +28,13 @@ fn folder() -> TempDir {
     folder
 }
 
-fn hidden(folder: &TempDir) -> Vec<PathBuf> {
-    let paths = fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().path());
-    paths.filter(|path| path.file_name().unwrap().to_str().unwrap().starts_with('.')).collect()
+/// The files in a folder that a program is at and that have no name yet.
+fn unfinished(child: &Child, folder: &TempDir) -> Vec<PathBuf> {
+    let named: Vec<PathBuf> = fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let open = fs::read_dir(format!("/proc/{}/fd", child.id())).unwrap().map(|entry| entry.unwrap().path());
+    let is_new =
+        |path: &PathBuf| fs::read_link(path).is_ok_and(|to| to.starts_with(folder.path()) && !named.contains(&to));
+    open.filter(is_new).collect()
 }
 
 #[track_caller]
@@ -46,9 +50,9 @@ fn words(line: &str) -> impl Iterator<Item = String> {
 }
 
 /// Waits until `ready`, for as long as a busy machine may take.
-fn wait_until(child: &mut Child, ready: impl Fn() -> bool, line: &str) {
+fn wait_until(child: &mut Child, ready: impl Fn(&Child) -> bool, line: &str) {
     let started = Instant::now();
-    while !ready() {
+    while !ready(child) {
         assert!(child.try_wait().unwrap().is_none(), "{line}: ended by itself");
         assert!(started.elapsed() < common::PATIENCE, "{line}: never got there");
         std::thread::sleep(Duration::from_millis(1));
@@ -71,8 +75,8 @@ fn ctrl_c_leaves_the_old_files_and_no_others() {
         let folder = folder();
         let mut child = common::program(words(&line)).current_dir(&folder).stdout(Stdio::null()).spawn().unwrap();
         // Pictures are drawn in the end: until then there is an empty file.
-        let begun = || {
-            let files_there = hidden(&folder);
+        let begun = |child: &Child| {
+            let files_there = unfinished(child, &folder);
             let sizes = files_there.iter().map(|path| fs::metadata(path).map_or(0, |file| file.len()));
             files_there.len() == files && (!written || sizes.sum::<u64>() > 0)
         };

@@ -27,7 +27,8 @@ fn a_file_appears_when_it_is_complete() {
         writeln!(output, "{row},1.0").unwrap();
     }
     assert!(!path.exists());
-    assert_eq!(names(&folder).len(), 1);
+    // What has no name yet is nowhere; where a system has no such files it is hidden.
+    assert!(names(&folder).iter().all(|name| name.starts_with('.')), "{:?}", names(&folder));
     output.commit().unwrap();
     assert_eq!(names(&folder), ["out.csv"]);
     assert_eq!(fs::read_to_string(&path).unwrap().lines().count(), 100_000);
@@ -53,6 +54,19 @@ fn a_dash_is_standard_output() {
     output.commit().unwrap();
     assert_eq!(standard, b"a,b");
     assert!(!Path::new("-").exists());
+}
+
+/// What cannot be taken back says in its last line that it is not all.
+#[test]
+fn a_stream_that_is_not_complete_says_so() {
+    let mut standard = Vec::new();
+    let mut output = Output::create(Path::new("-"), &mut standard).unwrap();
+    writeln!(output, "a,b").unwrap();
+    drop(output);
+    assert_eq!(String::from_utf8(standard).unwrap(), "a,b\n# unfinished: standard error says why\n");
+    let mut standard = Vec::new();
+    drop(Output::create(Path::new("-"), &mut standard).unwrap());
+    assert!(standard.is_empty());
 }
 
 /// Refuses every byte, as a closed pipe or a full disk does.
@@ -141,10 +155,17 @@ mod unix {
         std::thread::sleep(crate::common::PATIENCE);
     }
 
+    /// What ends a program from outside: SIGHUP, INT, QUIT, KILL, USR1, USR2, ALRM, TERM, VTALRM, PROF, XCPU. Nothing is left, whether a file of
+    /// that name was there before or not.
+    #[cfg(target_os = "linux")]
     #[test]
-    fn ctrl_c_leaves_nothing() {
-        for signal in [2, 15] {
+    fn no_signal_leaves_anything() {
+        for signal in [1, 2, 3, 9, 10, 12, 14, 15, 24, 26, 27] {
             let folder = TempDir::new().unwrap();
+            let was_there = signal % 2 == 0;
+            if was_there {
+                fs::write(folder.path().join("out.csv"), "before").unwrap();
+            }
             let mut child = Command::new(std::env::current_exe().unwrap())
                 .args(["--exact", "whole_files::unix::child_that_waits", "--nocapture"])
                 .env("CORNER_IMPACT_TEST_FILE", folder.path().join("out.csv"))
@@ -153,12 +174,54 @@ mod unix {
                 .unwrap();
             let lines = BufReader::new(child.stdout.take().unwrap()).lines();
             assert!(lines.map(Result::unwrap).any(|line| line == "ready"));
-            assert_eq!(names(&folder).len(), 1);
             let kill = Command::new("kill").args([format!("-{signal}"), child.id().to_string()]).status().unwrap();
             assert!(kill.success());
             // The shell is to see the signal, not an exit code.
             assert_eq!(child.wait().unwrap().signal(), Some(signal));
-            assert!(names(&folder).is_empty(), "{:?}", names(&folder));
+            let left = names(&folder);
+            assert_eq!(left, if was_there { vec!["out.csv"] } else { Vec::new() }, "signal {signal}");
+            assert!(!was_there || fs::read_to_string(folder.path().join("out.csv")).unwrap() == "before");
         }
+    }
+
+    /// A name that is taken while the work goes on is replaced, as one that was taken before.
+    #[test]
+    fn a_name_that_is_taken_meanwhile_is_replaced() {
+        let folder = TempDir::new().unwrap();
+        let path = folder.path().join("out.csv");
+        let mut output = create(&path);
+        output.write_all(b"after").unwrap();
+        fs::write(&path, "meanwhile").unwrap();
+        output.commit().unwrap();
+        assert_eq!((names(&folder), fs::read_to_string(&path).unwrap()), (vec!["out.csv".into()], "after".into()));
+    }
+
+    /// As long a name as a file may have, which leaves no room for a longer one beside it.
+    #[test]
+    fn the_longest_name_is_as_good_as_any() {
+        let folder = TempDir::new().unwrap();
+        let path = folder.path().join("n".repeat(255));
+        for words in ["new", "in its place"] {
+            let mut output = create(&path);
+            output.write_all(words.as_bytes()).unwrap();
+            output.commit().unwrap();
+            assert_eq!((names(&folder).len(), fs::read_to_string(&path).unwrap().as_str()), (1, words));
+        }
+        let refused = Output::create(&folder.path().join("n".repeat(256)), &mut std::io::sink()).unwrap_err();
+        assert!(refused.to_string().contains("too long"), "{refused}");
+    }
+
+    /// Renaming asks nobody: neither a file that may not be written to nor a link that leads nowhere is replaced.
+    #[test]
+    fn read_only_files_and_links_to_nowhere_are_refused() {
+        let folder = TempDir::new().unwrap();
+        let (locked, link) = (folder.path().join("locked"), folder.path().join("link"));
+        fs::write(&locked, "mine").unwrap();
+        fs::set_permissions(&locked, fs::Permissions::from_mode(0o444)).unwrap();
+        symlink("nowhere", &link).unwrap();
+        let refused = |path: &Path| Output::create(path, &mut std::io::sink()).unwrap_err().to_string();
+        assert!(refused(&locked).contains("read-only"), "{}", refused(&locked));
+        assert!(refused(&link).contains("a link to what is not there"), "{}", refused(&link));
+        assert_eq!((names(&folder).len(), fs::read_to_string(&locked).unwrap().as_str()), (2, "mine"));
     }
 }

@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::contact::Contact;
 use super::loads::{Load, Loads};
 use crate::bracket::{Width, halve};
+use crate::foreign;
 use crate::known::Known;
 use crate::model::{Follower, Model};
 use crate::simulate::{Machine, SimulateError, angular_velocity};
@@ -52,7 +53,7 @@ impl FromStr for Need {
         let like = "must be like \"no separation to 4500 rpm\" or \"impact speed below 0.5 m/s to 6000 rpm\" (also gap, energy)";
         let number = |word: &str| {
             let number = word.parse().ok().filter(|number: &f64| number.is_finite() && *number > 0.0);
-            number.ok_or_else(|| format!("\"{word}\" is not a number above 0; {like}"))
+            number.ok_or_else(|| format!("\"{}\" is not a number above 0; {like}", foreign::value(word)))
         };
         let words: Vec<&str> = text.split_whitespace().collect();
         match words.as_slice() {
@@ -66,6 +67,7 @@ impl FromStr for Need {
                 let of_load = || UNITS.iter().filter(|(of, ..)| *of == load);
                 let Some((_, _, one)) = of_load().find(|(_, name, _)| name == unit) else {
                     let names: Vec<&str> = of_load().map(|(_, name, _)| *name).collect();
+                    let unit = foreign::value(unit);
                     return Err(format!("\"{unit}\": {} is in one of: {}", name.replace('-', " "), names.join(", ")));
                 };
                 Ok(Self { what: What::Below(load, number(value)? * one), rpm: number(rpm)? })

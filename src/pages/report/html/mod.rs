@@ -16,6 +16,7 @@ mod verdict;
 use maud::{DOCTYPE, PreEscaped, html};
 
 use crate::draw::svg::SvgError;
+use crate::foreign;
 use crate::pages::{local_map, verify};
 use crate::report::{Report, VERSION};
 use crate::show::block::{Block, Section, in_units};
@@ -101,7 +102,7 @@ pub fn render(report: &Report) -> Result<String, HtmlError> {
             }
         }
     };
-    Ok(page.into_string())
+    Ok(foreign::visible(&page.into_string()).into_owned())
 }
 
 /// Text that ends a `script` element neither by a tag nor by a comment.

@@ -1,0 +1,40 @@
+//! How many threads the work is shared by: as many as `--threads` says, or else RAYON_NUM_THREADS, or else one for each core.
+
+use std::error::Error;
+
+use super::CommandError;
+use crate::foreign;
+use crate::stop;
+
+/// More than any machine has cores for; each thread takes memory and time of its own.
+const MOST: u16 = 1024;
+/// What a machine's own set-up says, for programs of many kinds.
+const VARIABLE: &str = "RAYON_NUM_THREADS";
+
+/// How many, for clap.
+pub(super) fn threads(text: &str) -> Result<u16, String> {
+    let number = text.trim().parse().ok().filter(|number| (1..=MOST).contains(number));
+    number.ok_or_else(|| format!("must be a whole number of threads from 1 to {MOST}"))
+}
+
+/// Starts those that are there for everything. The variable may also be empty or 0, which says nothing.
+pub(super) fn start() -> Result<(), CommandError> {
+    let said = std::env::var_os(VARIABLE).unwrap_or_default();
+    let said = said.to_string_lossy();
+    let asked = match said.as_ref() {
+        "" | "0" => 0,
+        text => threads(text)
+            .map_err(|words| CommandError::Words(format!("{VARIABLE} = {}: {words}", foreign::value(text))))?,
+    };
+    // Where a program runs several commands, the first has started them.
+    let builder = rayon::ThreadPoolBuilder::new().num_threads(asked.into());
+    let builder = builder
+        .spawn_handler(|thread| std::thread::Builder::new().spawn(stop::carried(move || thread.run())).map(drop));
+    match builder.build_global() {
+        Err(error) if error.source().is_some() => {
+            let words = format!("threads cannot be started: {error}; {VARIABLE} says how many there are to be");
+            Err(CommandError::Words(words))
+        }
+        _ => Ok(()),
+    }
+}

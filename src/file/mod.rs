@@ -1,0 +1,215 @@
+//! Files that are there whole or not at all, and files that are read up to a limit.
+//!
+//! An [`Output`] is written to like any other stream, in bounded memory. A file of that name appears, or changes, only with
+//! [`Output::commit`]; until then it is unfinished: without any name where the system has such files, so that nothing is left behind
+//! whatever ends the program. `-` is standard output, which has no such luxury: what is not complete there says so in its last line.
+
+mod read;
+mod signals;
+mod unfinished;
+
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+pub(crate) use read::text;
+use unfinished::Unfinished;
+
+/// Why a file was not written.
+#[derive(Debug, thiserror::Error)]
+#[error("{path}: {action}: {why}")]
+pub struct FileError {
+    path: String,
+    standard: bool,
+    action: &'static str,
+    why: io::Error,
+}
+
+impl FileError {
+    fn new(path: &Path, action: &'static str) -> impl Fn(io::Error) -> Self + use<> {
+        let standard = path == Path::new("-");
+        let path = if standard { "standard output".to_owned() } else { path.display().to_string() };
+        move |why| Self { path: path.clone(), standard, action, why }
+    }
+
+    /// Whether it is standard output, and whoever read that has had enough.
+    pub(crate) fn is_unread(&self) -> bool {
+        self.standard && self.kind() == io::ErrorKind::BrokenPipe
+    }
+
+    /// What the system said.
+    pub fn kind(&self) -> io::ErrorKind {
+        self.why.kind()
+    }
+}
+
+/// A place for results: a file that appears when it is complete, or a stream.
+pub struct Output<'a> {
+    path: PathBuf,
+    sink: Sink<'a>,
+    /// Whether anybody has seen something of it.
+    begun: bool,
+}
+
+enum Sink<'a> {
+    Whole {
+        unfinished: BufWriter<Unfinished>,
+        target: PathBuf,
+    },
+    /// A device or pipe: there is nothing to replace.
+    Device(BufWriter<File>),
+    Standard(BufWriter<Box<dyn Write + 'a>>),
+    /// Committed: nobody has it any more.
+    Done(io::Sink),
+}
+
+/// The last line of what goes on standard output or a pipe, where that is not all.
+const UNFINISHED: &str = "# unfinished: standard error says why";
+
+impl std::fmt::Debug for Output<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Output({})", self.path.display())
+    }
+}
+
+impl<'a> Output<'a> {
+    /// Begins to write `path`; `-` stands for `standard`.
+    pub fn create(path: &Path, standard: &'a mut dyn Write) -> Result<Self, FileError> {
+        if path != Path::new("-") {
+            return Self::file(path);
+        }
+        Ok(Self { path: path.to_owned(), sink: Sink::Standard(BufWriter::new(Box::new(standard))), begun: false })
+    }
+
+    /// Begins to write a file of that name, whatever it is.
+    pub(crate) fn file(path: &Path) -> Result<Output<'static>, FileError> {
+        Ok(Output { path: path.to_owned(), sink: begin(path)?, begun: false })
+    }
+
+    /// Completes it: every byte is on the disk, and the file has its name, or there is an error and no file.
+    pub fn commit(mut self) -> Result<(), FileError> {
+        let write = FileError::new(&self.path, "cannot be written");
+        match std::mem::replace(&mut self.sink, Sink::Done(io::sink())) {
+            Sink::Standard(mut stream) => stream.flush().map_err(write),
+            Sink::Device(mut device) => device.flush().map_err(write),
+            Sink::Whole { unfinished, target } => {
+                let unfinished = unfinished.into_inner().map_err(io::IntoInnerError::into_error).map_err(&write)?;
+                // A full disk or a lost network folder may only be noticed here.
+                unfinished.file().sync_all().map_err(&write)?;
+                unfinished.named(&target).map_err(FileError::new(&self.path, "cannot be replaced"))
+            }
+            Sink::Done(_) => Ok(()),
+        }
+    }
+
+    fn stream(&mut self) -> &mut dyn Write {
+        match &mut self.sink {
+            Sink::Whole { unfinished, .. } => unfinished,
+            Sink::Device(device) => device,
+            Sink::Standard(stream) => stream,
+            Sink::Done(nowhere) => nowhere,
+        }
+    }
+}
+
+impl Drop for Output<'_> {
+    fn drop(&mut self) {
+        if let (Sink::Device(_) | Sink::Standard(_), true) = (&self.sink, self.begun) {
+            // Where nobody reads any more nobody is to be told.
+            let _ = writeln!(self.stream(), "{UNFINISHED}");
+        }
+    }
+}
+
+impl Write for Output<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.begun = true;
+        let written = self.stream().write(bytes);
+        written.map_err(|why| io::Error::new(why.kind(), FileError::new(&self.path, "cannot be written")(why)))
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        let flushed = self.stream().flush();
+        flushed.map_err(|why| io::Error::new(why.kind(), FileError::new(&self.path, "cannot be written")(why)))
+    }
+}
+
+/// Has signals that end the program wait while a file gets its name, and remove what is unfinished: for programs that are this
+/// library's from then on.
+pub fn clear_on_signals() -> io::Result<()> {
+    signals::watch()
+}
+
+/// Refuses results, each with what it is called, whose names lead to one file, by whatever path: the last would be all that is left.
+pub(crate) fn distinct<'a>(results: impl IntoIterator<Item = (&'a str, &'a Path)>) -> Result<(), FileError> {
+    let mut places = BTreeMap::new();
+    results.into_iter().try_for_each(|(what, path)| match places.insert(place(path), what) {
+        Some(before) => {
+            let words = format!("{before} and {what} both go there");
+            Err(FileError::new(path, "cannot be written")(io::Error::new(io::ErrorKind::InvalidInput, words)))
+        }
+        None => Ok(()),
+    })
+}
+
+/// Where a name leads to, as far as that is there.
+fn place(path: &Path) -> PathBuf {
+    let whole = || fs::canonicalize(path).ok();
+    let of_the_folder = || Some(fs::canonicalize(folder(path)).ok()?.join(path.file_name()?));
+    whole().or_else(of_the_folder).unwrap_or_else(|| path.to_owned())
+}
+
+fn folder(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+fn begin<'a>(path: &Path) -> Result<Sink<'a>, FileError> {
+    let refuse = FileError::new(path, "cannot be written");
+    let because = |kind: io::ErrorKind, words: &str| refuse(io::Error::new(kind, words));
+    let (target, permissions) = match fs::metadata(path) {
+        Ok(found) if found.is_dir() => return Err(refuse(io::ErrorKind::IsADirectory.into())),
+        // Renaming over /dev/null or a pipe would destroy it.
+        Ok(found) if !found.is_file() => {
+            return File::options()
+                .write(true)
+                .open(path)
+                .map(|device| Sink::Device(BufWriter::new(device)))
+                .map_err(refuse);
+        }
+        // A file is replaced whoever may write to it.
+        Ok(found) if !may_be_written(path, &found) => {
+            return Err(because(io::ErrorKind::PermissionDenied, "it is there already, and read-only"));
+        }
+        // What a link points to is replaced, not the link.
+        Ok(found) => (fs::canonicalize(path).map_err(&refuse)?, Some(found.permissions())),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => (path.to_owned(), None),
+        Err(error) => return Err(refuse(error)),
+    };
+    if permissions.is_none() && fs::symlink_metadata(path).is_ok() {
+        return Err(because(io::ErrorKind::NotFound, "it is a link to what is not there"));
+    }
+    let folder = folder(&target);
+    if !folder.is_dir() {
+        return Err(because(io::ErrorKind::NotFound, &format!("there is no folder {}", folder.display())));
+    }
+    if target.file_name().is_none() {
+        return Err(because(io::ErrorKind::InvalidInput, "it names no file"));
+    }
+    let unfinished = Unfinished::begin(folder).map_err(&refuse)?;
+    if let Some(permissions) = permissions {
+        unfinished.file().set_permissions(permissions).map_err(&refuse)?;
+    }
+    Ok(Sink::Whole { unfinished: BufWriter::new(unfinished), target })
+}
+
+#[cfg(unix)]
+fn may_be_written(path: &Path, found: &fs::Metadata) -> bool {
+    // The system lets its administrator write to any file.
+    !found.permissions().readonly() && rustix::fs::access(path, rustix::fs::Access::WRITE_OK).is_ok()
+}
+
+#[cfg(not(unix))]
+fn may_be_written(_: &Path, found: &fs::Metadata) -> bool {
+    !found.permissions().readonly()
+}

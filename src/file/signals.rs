@@ -1,0 +1,78 @@
+//! Signals that end the program: none of them while a file gets its name, and hidden files are removed before.
+//!
+//! Destructors do not run when a signal ends the program. A thread of its own waits for signals, removes what is
+//! unfinished and lets the signal do what it would have done: no loop has to poll a flag, and the shell sees the signal.
+
+use std::collections::BTreeSet;
+use std::io;
+use std::path::PathBuf;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// Hidden files that a signal has to remove; held while a file comes, goes or gets its name.
+static HIDDEN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+
+pub(super) fn held() -> MutexGuard<'static, BTreeSet<PathBuf>> {
+    // A set of paths is whole whatever happened to the thread that held it.
+    HIDDEN.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A hidden file's entry among them.
+pub(super) struct Listed(pub(super) PathBuf);
+
+impl Drop for Listed {
+    fn drop(&mut self) {
+        held().remove(&self.0);
+    }
+}
+
+#[cfg(unix)]
+pub(super) fn watch() -> io::Result<()> {
+    use std::sync::atomic::AtomicBool;
+    use std::sync::{Arc, Once};
+
+    use signal_hook::consts::{
+        SIGALRM, SIGHUP, SIGINT, SIGPROF, SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2, SIGVTALRM, SIGXCPU, SIGXFSZ,
+    };
+    use signal_hook::iterator::Signals;
+    use signal_hook::low_level::emulate_default_handler;
+
+    /// Those that end a program and can be held up, but for what a program gets for its own faults.
+    const ENDING: [i32; 10] =
+        [SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGALRM, SIGUSR1, SIGUSR2, SIGVTALRM, SIGPROF, SIGXCPU];
+    static WATCHED: Once = Once::new();
+    let mut result = Ok(());
+    WATCHED.call_once(|| {
+        // A file that may not grow any more is an error with a sentence, as a full disk is.
+        let too_large = signal_hook::flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false)));
+        let ignored = ignored();
+        let heeded = ENDING.into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0);
+        result = too_large.and_then(|_| Signals::new(heeded)).and_then(|mut signals| {
+            std::thread::Builder::new().name("signals".into()).spawn(move || {
+                for signal in signals.forever() {
+                    // Held to the end: no other thread may begin or finish a file now.
+                    let held = held();
+                    for path in held.iter() {
+                        let _ = std::fs::remove_file(path);
+                    }
+                    let _ = emulate_default_handler(signal);
+                }
+            })?;
+            Ok(())
+        });
+    });
+    result
+}
+
+/// The signals that this program was started to ignore, as under `nohup`, a bit for each: that of a lost
+/// terminal where the system does not say.
+#[cfg(unix)]
+fn ignored() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(1 << (signal_hook::consts::SIGHUP - 1))
+}
+
+#[cfg(not(unix))]
+pub(super) fn watch() -> io::Result<()> {
+    Ok(())
+}

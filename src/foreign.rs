@@ -1,0 +1,87 @@
+//! Text that somebody else wrote, as it is shown: a name in a file, a path, a word of the command line.
+//!
+//! What would steer a terminal or a browser is written out, and what is long is cut in the middle. Documents for programs, JSON and CSV, have it as
+//! it is.
+
+use std::borrow::Cow;
+
+/// The most of a value that is shown, and of a sentence that has values in it, characters.
+const VALUE: usize = 60;
+const SENTENCE: usize = 2000;
+/// What stands for what is left out.
+const CUT: &str = "...";
+
+/// Whether a letter does something else than stand there: control characters, and those that turn the direction of writing.
+fn steers(letter: char) -> bool {
+    letter.is_control() || matches!(letter, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
+fn written_out(text: &str, is_kept: impl Fn(char) -> bool) -> Cow<'_, str> {
+    let is_seen = |letter: char| !steers(letter) || is_kept(letter);
+    if text.chars().all(is_seen) {
+        return text.into();
+    }
+    let part = |letter: char| if is_seen(letter) { letter.to_string() } else { letter.escape_default().to_string() };
+    text.chars().map(part).collect()
+}
+
+fn cut(text: Cow<'_, str>, most: usize) -> Cow<'_, str> {
+    let length = text.chars().count();
+    if length <= most {
+        return text;
+    }
+    let (head, tail) = ((most - CUT.len()).div_ceil(2), (most - CUT.len()) / 2);
+    let ends = [text.chars().take(head).collect(), CUT.to_owned(), text.chars().skip(length - tail).collect()];
+    ends.concat().into()
+}
+
+/// A page, or a part of one: lines and tabulators stay.
+pub(crate) fn visible(text: &str) -> Cow<'_, str> {
+    written_out(text, |letter| matches!(letter, '\n' | '\t'))
+}
+
+/// A complaint, which has values in it.
+pub(crate) fn sentence(text: &str) -> Cow<'_, str> {
+    cut(visible(text), SENTENCE)
+}
+
+/// A value, in one line.
+pub(crate) fn value(text: &str) -> Cow<'_, str> {
+    cut(written_out(text, |_| false), VALUE)
+}
+
+/// Text of a file in which every letter is where it was, in bytes, and none does anything: for a drawing that points into it.
+pub(crate) fn in_place(text: &str) -> String {
+    let mut letters = text.chars().peekable();
+    let mut seen = String::with_capacity(text.len());
+    while let Some(letter) = letters.next() {
+        let is_end = letter == '\r' && letters.peek() == Some(&'\n');
+        seen.push(match (letter, letter.len_utf8()) {
+            ('\n' | '\t', _) => letter,
+            _ if is_end || !steers(letter) => letter,
+            (_, 1) => '?',
+            (_, 2) => '\u{b7}',
+            _ => '\u{fffd}',
+        });
+    }
+    seen
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_steers_is_written_out_and_what_is_long_is_cut() {
+        assert_eq!(visible("a\x1b[31m\0\u{9b}\u{202e}\u{7f}\tb\n"), "a\\u{1b}[31m\\u{0}\\u{9b}\\u{202e}\\u{7f}\tb\n");
+        assert_eq!(value("one\ntwo\r"), "one\\ntwo\\r");
+        assert_eq!(value(&"9".repeat(60)), "9".repeat(60));
+        let long = value(&format!("begin{}end", "\x1b".repeat(1000))).into_owned();
+        assert!(long.starts_with("begin\\u{1b}") && long.ends_with("end") && long.contains("..."), "{long}");
+        assert_eq!(long.chars().count(), 60);
+        assert_eq!(sentence(&"ä".repeat(5000)).chars().count(), 2000);
+        let text = "\u{feff}x\x1b = \u{9b}\u{2029}\r\n\r\t";
+        assert_eq!(in_place(text), "\u{feff}x? = \u{b7}\u{fffd}\r\n?\t");
+        assert_eq!(in_place(text).len(), text.len());
+    }
+}
