@@ -12,11 +12,10 @@ const LONGEST: usize = 40;
 
 impl Paged for Comparison {
     fn blocks(&self) -> Vec<Block> {
-        let (a, b) = (&self.verdict.a, &self.verdict.b);
-        let verdict = match a == b {
-            true => words!["the same: ", (Mark::Good, a.to_string().as_str())],
-            false => {
-                let [a, b] = [a, b].map(ToString::to_string);
+        let [a, b] = [&self.verdict.a, &self.verdict.b].map(ToString::to_string);
+        let verdict = match self.verdict_changed() {
+            false => words!["the same: ", (Mark::Good, a.as_str())],
+            true => {
                 words![(Mark::Bad, "changed"), Span::Break, "A: ", a, Span::Break, "B: ", b]
             }
         };

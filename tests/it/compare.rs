@@ -120,6 +120,10 @@ fn a_model_is_no_other_than_itself() {
 fn what_happens_comes_first() {
     let found = document(&["compare", PAPER, "models/persistence.toml"]);
     assert_eq!(found["verdict"], json!({ "a": "nonsmooth-fold", "b": "persistence" }));
+    assert_eq!(found["verdict_changed"], true);
+    // Neither file says where to look, each in its own words.
+    let [harmonic, program] = ["harmonic", "program"].map(|law| format!("models/laws/{law}.toml"));
+    assert_eq!(document(&["compare", &harmonic, &program])["verdict_changed"], false);
     assert_eq!(told(&found, "fixed_points_exist_for_minus").0["b"], "slower");
     assert!(found["changes"][0]["difference"].is_null(), "words come first: {}", found["changes"][0]);
     for (model, says) in [

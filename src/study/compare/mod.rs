@@ -55,12 +55,24 @@ document!(Comparison as it {
     known: Known::Computed,
     models: it.models,
     verdict: it.verdict,
+    verdict_changed: it.verdict_changed(),
     fields: it.fields,
     changes: it.changes,
     unchanged: it.unchanged,
 });
 
 impl Comparison {
+    /// Whether something else happens, or is known; that nothing is there is the same whatever the file and the corners.
+    pub fn verdict_changed(&self) -> bool {
+        let Pair { a, b } = &self.verdict;
+        let is_alike = match (&a.found, &b.found) {
+            (Err(NoVerdict::NotThere(_)), Err(NoVerdict::NotThere(_))) => true,
+            (Err(NoVerdict::NotLookedFor(_)), Err(NoVerdict::NotLookedFor(_))) => true,
+            (a, b) => a == b,
+        };
+        !is_alike || a.agrees != b.agrees
+    }
+
     /// Whether the routes that ran agree about both.
     pub fn agrees(&self) -> bool {
         self.verdict.a.agrees && self.verdict.b.agrees
