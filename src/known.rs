@@ -1,9 +1,9 @@
 //! How a result is known: the word that every result carries, in documents and on pages.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// How a result is known; the strongest first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Known {
     /// By algebra, or by enclosures that leave no case out.

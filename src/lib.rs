@@ -122,6 +122,8 @@ pub mod figures;
 
 pub mod report;
 
+pub mod explain;
+
 pub mod pages;
 
 pub mod cli;

@@ -211,7 +211,7 @@ fn is_integrated(route: RouteName) -> bool {
 }
 
 /// An orbit by one route: name, x* and T*.
-pub(crate) type NamedOrbit = (RouteName, Vector2<f64>, f64);
+pub type NamedOrbit = (RouteName, Vector2<f64>, f64);
 
 /// Every pair of routes to the orbit.
 pub(crate) fn compare_orbits(orbits: &[NamedOrbit]) -> Vec<Agreement> {

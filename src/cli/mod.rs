@@ -13,6 +13,7 @@ mod continuation;
 mod curve;
 mod design;
 mod diagram;
+mod explain;
 mod figure;
 mod help;
 mod locate;
@@ -93,6 +94,7 @@ subcommands! {
         Verify = verify,
         Report = report,
         Claims = claims,
+        Explain = explain,
         Locate = locate,
         Certify = certify,
         Compare = compare,

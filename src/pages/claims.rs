@@ -1,5 +1,8 @@
 //! The pages of `claims`: for a terminal, and the one under `docs/`.
 
+use crate::explain::{ExplainError, Links};
+use crate::known::Known;
+use crate::pages::explain::behind;
 use crate::paper::{Claims, Held};
 use crate::published::Verdict;
 use crate::show::block::{Block, Column, Mark, Section, Span, Table, Words, words};
@@ -11,7 +14,7 @@ pub(crate) fn terminal(found: &Claims) -> Vec<Block> {
     let about = format!("All of it is about {}.", found.source);
     let mut blocks =
         vec![Block::Paragraph(0, (Mark::Heading, title.as_str()).into()), Block::Paragraph(0, about.into())];
-    for (verdict, held) in found.groups() {
+    for (verdict, held) in found.groups().filter(|(_, held)| !held.is_empty()) {
         let name = verdict_word(verdict).to_uppercase();
         let count = format!(" ({})", count(found, verdict, held.len()));
         blocks.extend([Block::Gap, Block::Paragraph(0, words![(mark(verdict), name.as_str()), count])]);
@@ -51,7 +54,9 @@ fn by_slip(claim: &Held) -> Option<String> {
 }
 
 /// The page under `docs/`: what stands before its sections, and these.
-pub fn document(found: &Claims) -> (Vec<Block>, Vec<Section>) {
+pub fn document(found: &Claims) -> Result<(Vec<Block>, Vec<Section>), ExplainError> {
+    let links = Links::read()?;
+    let behind_claims = links.of_claims();
     let term = |name| (Mark::Strong, name);
     let about = words![
         "Written by ",
@@ -90,19 +95,39 @@ pub fn document(found: &Claims) -> (Vec<Block>, Vec<Section>) {
     );
     let title = Block::Title("What the paper states, and what was found".into());
     let sections = found.groups().map(|(verdict, held)| {
-        let columns =
-            ["id", "where", "statement", "right instead", "known", "evidence"].map(|head| Column::left(head, 0, 0));
+        let columns = ["id", "where", "statement", "right instead", "known", "evidence", "code", "proof", "test"]
+            .map(|head| Column::left(head, 0, 0));
         let mut table = Table::new("", columns);
         for claim in held.iter() {
             let correct = claim.correct.as_deref().unwrap_or_default();
             let known = claim.known.to_string();
-            table.row([&claim.id, &claim.place, &claim.statement, correct, &known, &claim.evidence].map(Words::from));
+            let mut cells =
+                [&claim.id, &claim.place, &claim.statement, correct, &known, &claim.evidence].map(Words::from).to_vec();
+            cells.extend(behind_claims.get(claim.id.as_str()).map(behind).unwrap_or_default());
+            table.row(cells);
         }
         let title = words![capitalized(verdict_word(verdict)), format!(" ({})", count(found, verdict, held.len()))];
         Section { id: "", title, blocks: vec![Block::Table(table)] }
     });
     let lead = vec![title, Block::paragraph(about), Block::paragraph(counts)];
-    (lead, std::iter::once(slips(found)).chain(sections).collect())
+    Ok((lead, [by_knowledge(found), slips(found)].into_iter().chain(sections).collect()))
+}
+
+/// How many statements have which verdict, known how.
+fn by_knowledge(found: &Claims) -> Section {
+    let ways = [Known::Proved, Known::Computed, Known::Sampled, Known::Read];
+    let heads = ["".to_owned()].into_iter().chain(ways.map(|known| known.to_string()));
+    let mut table = Table::new("", heads.map(|head| Column::left(head, 0, 0)).collect::<Vec<_>>());
+    for (verdict, held) in found.groups() {
+        let count = |known| held.iter().filter(|claim| claim.known == known).count();
+        table.row([vec![verdict_word(verdict).into()], ways.map(|known| count(known).into()).to_vec()].concat());
+    }
+    let filter = Words::prose(
+        "`corner-impact claims --verdict refuted --known computed` lists those of a kind, and `corner-impact explain` with an id says \
+         what is behind one.",
+        [],
+    );
+    Section { id: "", title: "How each is known".into(), blocks: vec![Block::Table(table), Block::paragraph(filter)] }
 }
 
 /// Each slip and what is wrong by it.

@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 
 use crate::border_collision::{LocalOutcome, RobustChaos, RoundedCorner};
 use crate::cam::Side;
-use crate::show::block::{Block, Column, Span, Table, Words, words};
+use crate::show::block::{Block, Column, Span, Table, Words, about, words};
 use crate::show::digits::Digits;
 use crate::show::words;
 use crate::study::verify::Verification;
@@ -25,11 +25,11 @@ pub(crate) fn conditions(found: &Verification) -> Vec<(Words, Words)> {
         (found.conditions.iter().filter(|condition| condition.holds()).count(), found.conditions.len());
     let nearest = found.conditions.iter().min_by(|a, b| a.distance.total_cmp(&b.distance)).map(|nearest| {
         let words = format!("{holding} of {count} hold; nearest to failing, by ");
-        ("conditions".into(), words![words, (nearest.distance, Digits::Size), ": ", nearest.name])
+        ("conditions".into(), about("conditions", words![words, (nearest.distance, Digits::Size), ": ", nearest.name]))
     });
     let failing = found.conditions.iter().filter(|condition| !condition.holds()).map(|failing| {
         let rests = format!(": {}; the {} rests on it", failing.meaning, words::decides(failing.decides));
-        ("fails".into(), words![failing.name, " = ", (failing.value, Digits::Size), rests])
+        ("fails".into(), about("conditions", words![failing.name, " = ", (failing.value, Digits::Size), rests]))
     });
     nearest.into_iter().chain(failing).collect()
 }
@@ -57,7 +57,7 @@ pub(crate) fn blocks(found: &Verification) -> Vec<Block> {
     }
     let mut blocks = vec![
         Block::Heading("What the local map does by itself, next to the corner impact".into()),
-        Block::Entries(COLUMN, found.outcomes.iter().flat_map(motions).collect()),
+        Block::Entries(COLUMN, found.outcomes.iter().flat_map(motions).collect()).about("local_map"),
     ];
     for outcome in found.outcomes.iter().filter(|outcome| outcome.mu != 0.0 && outcome.orbits.len() > SHOWN) {
         let orbits = outcome
@@ -69,17 +69,18 @@ pub(crate) fn blocks(found: &Verification) -> Vec<Block> {
     }
     if !found.ranges.is_empty() {
         blocks.push(Block::Heading("How far it holds: within 10 % of the simulated machine".into()));
-        blocks.push(Block::Entries(COLUMN, held(found, |range| range.order == 1).collect()));
+        blocks.push(Block::Entries(COLUMN, held(found, |range| range.order == 1).collect()).about("linear_range"));
     }
     if let Some(curved) = &found.second_order {
         blocks.push(Block::Heading("With the terms of second order".into()));
         let sides = [Side::Minus, Side::Plus].into_iter();
         let branches = sides.filter_map(|side| Some(branch(side, curved.of(side).fixed_point()?)));
-        blocks.push(Block::Entries(COLUMN, branches.collect()));
+        blocks.push(Block::Entries(COLUMN, branches.collect()).about("second_order"));
         for (within, title) in [(tolerance::LINEAR_WITHIN, "within 10 %:"), (tolerance::CURVED_WITHIN, "within 1e-4:")]
         {
             let held = held(found, move |range| range.order == 2 && range.within == within.value);
-            blocks.extend([Block::paragraph(title), Block::Entries(COLUMN, held.collect())]);
+            let held = Block::Entries(COLUMN, held.collect()).about("linear_range");
+            blocks.extend([Block::paragraph(title), held]);
         }
     }
     if let Some(RoundedCorner { rpm_per_degree, degrees }) = found.rounded_corner {
@@ -87,10 +88,8 @@ pub(crate) fn blocks(found: &Verification) -> Vec<Block> {
             [rpm_per_degree, degrees, tolerance::ROUNDED_AWAY.value].map(|value| words![(value, Digits::Power(2))]);
         blocks.push(Block::Heading("If the corner is rounded".into()));
         let told = "the fold is smooth, and {} rpm from omega* for each degree that it is rounded over: no more than {} rpm up to {} deg";
-        blocks.push(Block::Entries(
-            COLUMN,
-            vec![("by a polynomial".into(), Words::prose(told, [moved, within, degrees]))],
-        ));
+        let told = vec![("by a polynomial".into(), Words::prose(told, [moved, within, degrees]))];
+        blocks.push(Block::Entries(COLUMN, told).about("rounded_corner"));
     }
     blocks
 }

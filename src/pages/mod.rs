@@ -9,6 +9,7 @@ mod chart;
 pub mod claims;
 mod compare;
 pub(crate) mod design;
+pub(crate) mod explain;
 mod local_map;
 mod locate;
 mod orbit;

@@ -33,6 +33,7 @@ pub struct Context<'a> {
 #[derive(Debug, Deserialize)]
 pub(super) struct Equation {
     label: String,
+    statement: String,
     pub verdict: Verdict,
     pub evidence: Residuals,
 }
@@ -56,21 +57,43 @@ struct Proofs {
 
 #[derive(Deserialize)]
 struct Stage {
+    stage: String,
     #[serde(default)]
     proved: Vec<String>,
+}
+
+fn derived(file: &str, error: &serde_json::Error) -> LedgerError {
+    LedgerError::Derived(format!("golden/derived/{file}: {error}"))
+}
+
+fn equations() -> Result<Vec<Equation>, LedgerError> {
+    let read: Result<Equations, _> = serde_json::from_str(EQUATIONS);
+    Ok(read.map_err(|error| derived("printed_equations.json", &error))?.equations)
+}
+
+fn stages() -> Result<Vec<Stage>, LedgerError> {
+    let read: Result<Proofs, _> = serde_json::from_str(PROOFS);
+    Ok(read.map_err(|error| derived("proofs.json", &error))?.stages)
+}
+
+/// Of each printed equation by its label, and of each statement that is proved by itself: the script, and what it states.
+pub fn proofs() -> Result<BTreeMap<String, [String; 2]>, LedgerError> {
+    let printed = |equation: Equation| (equation.label, [script("printed equations"), equation.statement]);
+    let of_stage = |stage: Stage| stage.proved.into_iter().map(move |it| (it.clone(), [script(&stage.stage), it]));
+    Ok(stages()?.into_iter().flat_map(of_stage).chain(equations()?.into_iter().map(printed)).collect())
+}
+
+/// The script of a stage of the derivations.
+fn script(stage: &str) -> String {
+    format!("derivations/{}.py", stage.replace(' ', "_"))
 }
 
 impl<'a> Context<'a> {
     /// The context of a verified model.
     pub fn new(model: &'a Model, cam: &'a Cam, findings: &'a Verification) -> Result<Self, LedgerError> {
-        let derived =
-            |file: &str, error: serde_json::Error| LedgerError::Derived(format!("golden/derived/{file}: {error}"));
-        let read: Equations =
-            serde_json::from_str(EQUATIONS).map_err(|error| derived("printed_equations.json", error))?;
-        let proofs: Proofs = serde_json::from_str(PROOFS).map_err(|error| derived("proofs.json", error))?;
         let is_paper = model.is_the_papers().map_err(|error| LedgerError::Derived(error.to_string()))?;
-        let equations = read.equations.into_iter().map(|equation| (equation.label.clone(), equation)).collect();
-        let proved = proofs.stages.into_iter().flat_map(|stage| stage.proved).collect();
+        let equations = equations()?.into_iter().map(|equation| (equation.label.clone(), equation)).collect();
+        let proved = stages()?.into_iter().flat_map(|stage| stage.proved).collect();
         Ok(Self { model, cam, findings, is_paper, equations, proved })
     }
 

@@ -31,6 +31,8 @@ pub struct Claim {
     /// Of what is wrong, the statements whose slips it has, by id: its own where nothing is listed.
     #[serde(default)]
     pub slips: Vec<String>,
+    /// The function that decides it, `FILE: FUNCTION`, where that is neither a proof nor a printed number's comparison.
+    pub check: Option<String>,
 }
 
 /// A statement with what its check found.

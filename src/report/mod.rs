@@ -1,6 +1,6 @@
 //! Everything that is found about one model in one value: what the HTML page is made of.
 
-mod quantities;
+pub(crate) mod quantities;
 pub mod through;
 
 use serde::Serialize;
@@ -46,6 +46,8 @@ pub struct Report {
     pub margin: Option<Margin>,
     /// What the model's lengths are told in.
     pub units: Units,
+    /// The model.
+    pub parsed: Model,
     /// What the follower does at other speeds, or why that is not known.
     pub speeds: Result<Speeds, String>,
     /// Where its impacts fall over these speeds: the picture of the answer.
@@ -241,6 +243,7 @@ impl Report {
             measured: likely.map(|likely| likely.measured),
             margin,
             units,
+            parsed: model.clone(),
             speeds,
             overview,
             attractors,

@@ -20,6 +20,17 @@ pub struct Quantity {
     pub unit: String,
 }
 
+impl Quantity {
+    /// What `explain` knows it by.
+    pub(crate) fn name(&self) -> &str {
+        match (self.field.as_str(), self.symbol) {
+            ("", "ζ") => "zeta",
+            ("", _) => "omega0",
+            (field, _) => field,
+        }
+    }
+}
+
 /// Fields that are known by name: path, symbol, meaning, unit.
 const KNOWN: [(&str, &str, &str, &str); 16] = [
     ("follower.mass", "m", "mass of the follower", "kg"),

@@ -44,6 +44,8 @@ pub enum Span {
     Unit(&'static str),
     /// Words that stand out.
     Marked(Mark, String),
+    /// What stands for something that `explain` knows by this name.
+    About(String, Words),
     /// The end of a line.
     Break,
 }
@@ -168,10 +170,19 @@ impl From<Symbol> for Words {
     }
 }
 
+/// Words that stand for something that `explain` knows by a name.
+pub(crate) fn about(what: impl Into<String>, words: impl Into<Words>) -> Words {
+    Span::About(what.into(), words.into()).into()
+}
+
 impl Words {
     /// The same with units in the length of a model.
     fn in_units(self, units: &Units) -> Self {
-        let told = |span| if let Span::Unit(unit) = span { Span::Text(units.spelled(unit)) } else { span };
+        let told = |span| match span {
+            Span::Unit(unit) => Span::Text(units.spelled(unit)),
+            Span::About(what, words) => Span::About(what, words.in_units(units)),
+            span => span,
+        };
         Self(self.0.into_iter().map(told).collect())
     }
 }
@@ -200,6 +211,8 @@ pub enum Block {
     Brief(Vec<Block>),
     /// For a browser alone: more than a terminal shows.
     Full(Vec<Block>),
+    /// All of these stand for something that `explain` knows by this name, but for what says that it stands for something else.
+    About(String, Vec<Block>),
     /// An empty line of a terminal.
     Gap,
     /// What only a browser can show: a drawing, a form.
@@ -210,6 +223,11 @@ impl Block {
     /// A paragraph that is indented as most are.
     pub(crate) fn paragraph(words: impl Into<Words>) -> Self {
         Self::Paragraph(2, words.into())
+    }
+
+    /// This, standing for something that `explain` knows by a name.
+    pub(crate) fn about(self, what: &str) -> Self {
+        Self::About(what.into(), vec![self])
     }
 }
 
@@ -235,6 +253,7 @@ pub(crate) fn in_units(blocks: Vec<Block>, units: &Units) -> Vec<Block> {
         Block::Details(summary, blocks) => Block::Details(told(summary), in_units(blocks, units)),
         Block::Brief(blocks) => Block::Brief(in_units(blocks, units)),
         Block::Full(blocks) => Block::Full(in_units(blocks, units)),
+        Block::About(what, blocks) => Block::About(what, in_units(blocks, units)),
         Block::Gap | Block::Markup(_) => block,
     };
     blocks.into_iter().map(of_block).collect()

@@ -24,6 +24,7 @@ fn block(block: &Block) -> Markup {
             Block::List(items) => ul { @for item in items { li { (words(item)) } } }
             Block::Details(summary, inside) => details { summary { (words(summary)) } (blocks(inside)) }
             Block::Full(inside) => (blocks(inside)),
+            Block::About(what, inside) => div data-about=(what) { (blocks(inside)) },
             Block::Markup(markup) => (markup),
             Block::Brief(_) | Block::Gap => {}
         }
@@ -70,6 +71,7 @@ fn plain(words: &Words) -> String {
         Span::Text(text) | Span::Code(text) | Span::Marked(_, text) => text.clone(),
         Span::Symbol(symbol) => symbol.plain.clone(),
         Span::Unit(unit) => (*unit).to_owned(),
+        Span::About(_, words) => plain(words),
         Span::Number(..) | Span::Complex(..) | Span::Against(..) | Span::Matrix(..) | Span::Break => String::new(),
     };
     words.0.iter().map(part).collect()
@@ -106,6 +108,7 @@ fn span(span: &Span) -> Markup {
             Span::Marked(Mark::Bad, text) => span.bad { (text) },
             Span::Marked(Mark::Doubtful, text) => span.doubtful { (text) },
             Span::Marked(Mark::Open, text) => span.open { (text) },
+            Span::About(what, inside) => span data-about=(what) { (words(inside)) },
             Span::Break => br;
         }
     }

@@ -27,7 +27,7 @@ fn after_a_gap(out: &mut String) -> fmt::Result {
 fn blocks(out: &mut String, blocks: &[Block]) -> fmt::Result {
     for block in blocks {
         match block {
-            Block::Full(inside) => self::blocks(out, inside)?,
+            Block::Full(inside) | Block::About(_, inside) => self::blocks(out, inside)?,
             Block::Brief(_) | Block::Gap | Block::Markup(_) => {}
             block => {
                 after_a_gap(out)?;
@@ -52,7 +52,7 @@ fn block(out: &mut String, block: &Block) -> fmt::Result {
             writeln!(out, "{}", text(summary))?;
             blocks(out, inside)
         }
-        Block::Full(_) | Block::Brief(_) | Block::Gap | Block::Markup(_) => Ok(()),
+        Block::Full(_) | Block::About(..) | Block::Brief(_) | Block::Gap | Block::Markup(_) => Ok(()),
     }
 }
 
@@ -70,6 +70,7 @@ fn text(words: &Words) -> String {
         Span::Unit(unit) => (*unit).to_owned(),
         Span::Marked(_, text) => format!("*{}*", escaped(&foreign::visible(text))),
         Span::Break => "<br>".into(),
+        Span::About(_, words) => self::text(words),
         span => escaped(&page::text(&span.clone().into())),
     };
     words.0.iter().map(of).collect()

@@ -118,7 +118,7 @@ impl Page {
             }
             Block::Table(table) => self.table(table),
             Block::List(items) => items.iter().try_for_each(|words| self.paragraph(2, &text(words))),
-            Block::Brief(blocks) => self.blocks(blocks),
+            Block::Brief(blocks) | Block::About(_, blocks) => self.blocks(blocks),
             Block::Gap => writeln!(self),
             Block::Full(_) | Block::Details(..) | Block::Markup(_) => Ok(()),
         })
@@ -170,6 +170,7 @@ pub(crate) fn text(words: &Words) -> String {
             if rows.iter().all(|row| row.len() == 1) { format!("({entries})") } else { format!("[{entries}]") }
         }
         Span::Marked(mark, text) => mark.around(&foreign::visible(text)),
+        Span::About(_, words) => self::text(words),
         Span::Break => "\n".into(),
     };
     words.0.iter().map(of).collect()

@@ -46,6 +46,8 @@ pub struct Verification {
     pub certificate: Option<Certificate>,
     /// The map by each route that ran.
     pub routes: Vec<Route>,
+    /// The orbit by each route that finds it: x*, m from the equilibrium and m/s, and T*, s.
+    pub orbits: Vec<NamedOrbit>,
     /// Every comparison of two routes.
     pub comparisons: Vec<Agreement>,
     /// `(e, f)`: the impact comes before the corner where `e dx + f dT < 0`.
@@ -80,6 +82,7 @@ document!(Verification as found {
     certificate if_any: found.certificate,
     uncertainty if_any: found.measured,
     routes: found.routes.iter().map(|route| (route.name, route)).collect::<BTreeMap<_, _>>(),
+    orbits: found.orbits.iter().map(|(name, x, period)| (*name, Orbit(x, *period))).collect::<BTreeMap<_, _>>(),
     agreement: found.comparisons,
     eigenvalues: found.map.map(SideMap::eigenvalues),
     normal_form: found.normal_form.as_ref().ok(),
@@ -94,6 +97,11 @@ document!(Verification as found {
     skipped: found.skipped,
     agrees: found.agrees,
 });
+
+/// An orbit by a route.
+struct Orbit<'a>(&'a Vector2<f64>, f64);
+
+document!(Orbit<'_> as it { period_s: it.1, state: it.0.as_slice() });
 
 /// What the accuracy of a measured cam leaves open.
 #[derive(Clone, Debug)]
@@ -353,6 +361,7 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
         measured,
         certificate,
         routes,
+        orbits,
         comparisons,
         border,
         normal_form,

@@ -46,8 +46,11 @@ fn ledger() -> &'static corner_impact::paper::Claims {
     written().dossier.claims.as_ref().unwrap()
 }
 
+/// Open, with the slider's data unpacked.
 fn open() -> Option<Page> {
-    Page::open(&written().file)
+    let mut page = Page::open(&written().file)?;
+    page.until("!document.getElementById('player').hidden");
+    Some(page)
 }
 
 /// Nothing was said on the console, and nothing fetched.
@@ -266,6 +269,26 @@ fn the_ledger_is_filtered_by_verdict_and_words_and_linked_to() {
     page.value(&format!("location.hash = '#' + {hidden}"));
     page.until(&format!("document.getElementById({hidden}).getClientRects().length > 0"));
     assert_eq!(visible(&mut page), ledger.claims.len());
+    assert_quiet(&page);
+}
+
+#[test]
+fn a_click_on_a_number_shows_what_it_stands_for() {
+    let Some(mut page) = open() else { return };
+    let shown = page.value(
+        "document.querySelector('#maps [data-about=B_minus] data').click(), document.getElementById('explained').textContent",
+    );
+    let shown = shown.as_str().unwrap();
+    for part in ["B_minus", "eq:PT", "src/corner/closed_form.rs", "derivations/corner_map.py", "variational"] {
+        assert!(shown.contains(part), "{part}: {shown}");
+    }
+    assert_eq!(page.value("document.getElementById('explained').open"), true);
+    // The number nearest to the click decides: what is allowed is another thing than the quantity.
+    let other = page.value(
+        "document.getElementById('explained').close(), document.querySelector('#maps [data-about=bound] data').click(),
+         document.querySelector('#explained h3').textContent",
+    );
+    assert_eq!(other, "bound");
     assert_quiet(&page);
 }
 

@@ -8,10 +8,11 @@ use crate::common::{PROGRAM, ROOT, corner_impact, program, text};
 use rayon::prelude::*;
 use tempfile::TempDir;
 
-pub const COMMANDS: [&str; 21] = [
+pub const COMMANDS: [&str; 22] = [
     "verify",
     "report",
     "claims",
+    "explain",
     "locate",
     "certify",
     "compare",

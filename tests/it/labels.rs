@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::layering::rust_files;
 
 /// The labels of the paper's equations.
-const LABELS: [&str; 26] = [
+pub const LABELS: [&str; 26] = [
     "eq:fb1",
     "eq:i1",
     "eq:lmap_g",

@@ -171,7 +171,7 @@ fn another_model_leaves_the_papers_numbers_open() {
 #[ignore = "slow"]
 fn the_page_in_docs_is_fresh() {
     let model = common::osorio();
-    let (lead, sections) = pages::claims::document(&held(&model));
+    let (lead, sections) = pages::claims::document(&held(&model)).unwrap();
     let page = markdown::page(&lead, &sections).unwrap();
     let stored = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/claims.md")).unwrap();
     assert!(page == stored, "docs/claims.md is stale: `make claims` writes it");

@@ -27,6 +27,7 @@ mod design;
 mod digits;
 mod drawing;
 mod dynamics;
+mod explain;
 mod figures;
 mod global;
 mod hostile;

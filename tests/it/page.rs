@@ -5,6 +5,8 @@ use std::path::Path;
 use std::sync::OnceLock;
 
 use crate::common;
+use crate::explain::all_are_explained;
+use base64::Engine;
 use corner_impact::border_collision::feigin::Speeds;
 use corner_impact::figures::through_corner::{Moment, Place, Shown, through_corner};
 use corner_impact::model::{Model, OSORIO_2008};
@@ -19,7 +21,7 @@ use corner_impact::study::verify::{External, verify};
 use serde_json::Value;
 
 /// The paper's report and its page, made once.
-fn papers() -> &'static (Report, String) {
+pub fn papers() -> &'static (Report, String) {
     static MADE: OnceLock<(Report, String)> = OnceLock::new();
     MADE.get_or_init(|| {
         let dossier = Report::of(&Model::built_in().unwrap(), External::LeftOut, None, &Unwatched).unwrap();
@@ -31,6 +33,12 @@ fn papers() -> &'static (Report, String) {
 /// The text between two others, once for each time that they stand in a page.
 fn between<'a>(page: &'a str, from: &str, to: &str) -> Vec<&'a str> {
     page.split(from).skip(1).map(|rest| rest.split(to).next().unwrap()).collect()
+}
+
+/// A document that the page carries packed.
+fn unpacked(packed: &str) -> Value {
+    let bytes = base64::engine::general_purpose::STANDARD.decode(packed).unwrap();
+    serde_json::from_reader(flate2::read::ZlibDecoder::new(&bytes[..])).unwrap()
 }
 
 fn numbers(value: &Value, found: &mut BTreeSet<u64>) {
@@ -92,7 +100,7 @@ fn the_sliders_data_are_the_documents() {
     let (dossier, page) = papers();
     let embedded = between(page, "id=\"through-data\">", "</script>");
     let [embedded] = embedded.as_slice() else { panic!("{} blocks of data", embedded.len()) };
-    let embedded: Value = serde_json::from_str(embedded).unwrap();
+    let embedded = unpacked(embedded);
     assert_eq!(embedded, serde_json::to_value(dossier.through.as_ref().unwrap()).unwrap());
 }
 
@@ -193,7 +201,7 @@ fn text_in_the_sliders_data_does_not_end_it() {
     let page = html::render(&dossier).unwrap();
     assert!(!page.contains("<script>alert"));
     let embedded = between(&page, "id=\"through-data\">", "</script>");
-    let embedded: Value = serde_json::from_str(embedded[0]).unwrap();
+    let embedded = unpacked(embedded[0]);
     assert_eq!(embedded["corner"], "</script><script>alert(1)</script><!--");
 }
 
@@ -230,7 +238,8 @@ fn a_model_without_a_corner_impact_has_a_page_that_says_why() {
     assert!(page.contains("There is no corner impact to verify"));
     assert!(page.contains("[study] says where to look for the corner impact"));
     let sections: Vec<&str> = between(&page, "<section id=\"", "\"").into_iter().collect();
-    assert_eq!(sections, ["answer", "model", "speeds", "figures", "reproduce"]);
+    assert_eq!(sections, ["answer", "model", "speeds", "figures", "reproduce", "numbers"]);
+    all_are_explained(&page);
     for said in ["Separation.", "Impacts.", "Coexistence.", "What is proved.", "id=\"plate-overview\""] {
         let at = page.find(said).unwrap_or_else(|| panic!("{said}"));
         assert!(at < page.find("<section id=\"model\"").unwrap(), "{said} is not in the answer");

@@ -1,9 +1,9 @@
 //! The part of the page on the map: by every route, side by side, how well estimates know it, and whether the routes agree.
 
-use crate::agreement::{Agreement, by_quantity, shared_decimals, worse};
+use crate::agreement::{Agreement, Quantity, by_quantity, shared_decimals, worse};
 use crate::cam::Side;
 use crate::corner::map::{CornerMap, Route, Uncertainty};
-use crate::show::block::{Block, Column, Mark, Span, Table, Words, words};
+use crate::show::block::{Block, Column, Mark, Span, Table, Words, about, words};
 use crate::show::digits::Digits;
 use crate::show::words;
 use crate::study::verify::{LeftOpen, Verification};
@@ -34,11 +34,12 @@ pub(crate) fn map(found: &Verification) -> Vec<Block> {
         blocks.extend([Block::Brief(brief), Block::Full(full), Block::Gap]);
     }
     let (c, ten) = (found.map.c(), Digits::Significant(10));
-    let border = words!["C = (", (c[0], ten), ", ", (c[1], ten), "),  D = ", (found.map.d(), ten)];
+    let line = about("C", words!["C = (", (c[0], ten), ", ", (c[1], ten), ")"]);
+    let border = words![line, ",  ", about("D", words!["D = ", (found.map.d(), ten)])];
     blocks.push(Block::Entries(0, vec![("".into(), border)]));
     let (e, f) = found.border;
     let side = words!["minus where e dx + f dT < 0:  e = (", (e[0], ten), ", ", (e[1], ten), "),  f = ", (f, ten)];
-    blocks.extend([Block::Entries(0, vec![("".into(), side)]), Block::Gap]);
+    blocks.extend([Block::Entries(0, vec![("".into(), about("border", side))]), Block::Gap]);
     blocks.extend(found.measured.iter().flat_map(measured));
     blocks.extend(found.routes_by_name().filter_map(known_to).flatten());
     blocks
@@ -61,15 +62,16 @@ fn entries(found: &Verification, side: Side, has_room: bool) -> Table {
     table.repeated = Some(printed);
     for (index, row) in rows.iter().enumerate() {
         let like = if index < 4 { &rows[..4] } else { &rows[4..] };
+        let quantity = if index < 4 { Quantity::A(side) } else { Quantity::B(side) }.to_string();
         let mut cells = vec![words::entry(row.entry, side).into()];
         cells.extend(row.values.iter().enumerate().map(|(route, value)| {
             let digits = match has_room {
                 true => Digits::Aligned(11),
                 false => digits(like.iter().map(|row| row.values[route])),
             };
-            Words::from(Span::Against(*value, row.values[0], digits))
+            about(&quantity, Span::Against(*value, row.values[0], digits))
         }));
-        cells.extend(has_room.then(|| words![(row.spread, Digits::Size)]));
+        cells.extend(has_room.then(|| about(&quantity, words![(row.spread, Digits::Size)])));
         cells.extend(row.printed.as_ref().map(Words::from));
         table.row(cells);
     }
@@ -90,7 +92,7 @@ fn digits(entries: impl Iterator<Item = f64>) -> Digits {
 fn measured(open: &LeftOpen) -> Vec<Block> {
     let Some((_, map)) = &open.error else { return Vec::new() };
     let text = format!("What the measured cam leaves open of each entry, {}:", words::accuracy(&open.cam));
-    vec![Block::paragraph(text), Block::Table(errors(map)), Block::Gap]
+    vec![Block::paragraph(text), Block::Table(errors(map)).about("measured_error"), Block::Gap]
 }
 
 /// How well a route says that it knows the entries.
@@ -120,7 +122,7 @@ fn known_to(route: &Route) -> Option<[Block; 2]> {
     };
     let title = format!("How well {name} knows its entries");
     let entries = Block::Entries(name.len() + 2, vec![(format!("{name}:").into(), words)]);
-    Some([entries, Block::Details(title.into(), vec![Block::Table(table)])])
+    Some([entries, Block::Details(title.into(), vec![Block::Table(table)])].map(|block| block.about("uncertainty")))
 }
 
 /// The error of each entry.
@@ -165,7 +167,8 @@ pub(crate) fn agreement(found: &Verification) -> Vec<Block> {
             };
             let head = (index == 0).then(|| (words::quantity(pairs.quantity), Words::from(count)));
             let (name, count) = head.unwrap_or_default();
-            let [differ, allowed] = [*max_abs_diff, bound.value].map(|value| Words::from((value, Digits::Size)));
+            let [differ, allowed] = [(*max_abs_diff, "agreement"), (bound.value, "bound")]
+                .map(|(value, what)| about(what, (value, Digits::Size)));
             let between = match agrees {
                 true => between.into(),
                 false => (Mark::Bad, format!("{between}  DISAGREE").as_str()).into(),
@@ -180,7 +183,7 @@ pub(crate) fn agreement(found: &Verification) -> Vec<Block> {
         Block::Note(note.into())
     });
     let all = format!("All {} comparisons, with the reason of each bound", found.comparisons.len());
-    let all = Block::Details(all.into(), vec![Block::Table(comparisons(found))]);
+    let all = Block::Details(all.into(), vec![Block::Table(comparisons(found)).about("agreement")]);
     [Block::Heading(title.into()), Block::Table(table)].into_iter().chain(follow).chain([all]).collect()
 }
 
@@ -190,8 +193,8 @@ fn comparisons(found: &Verification) -> Table {
     columns.extend(["verdict", "why so much is allowed"].map(Column::words));
     let mut table = Table::new("All comparisons", columns);
     for pair in &found.comparisons {
-        let [differ, parts, allowed] =
-            [pair.max_abs_diff, pair.max_rel_diff, pair.bound.value].map(|value| words![(value, Digits::Size)]);
+        let [differ, parts] = [pair.max_abs_diff, pair.max_rel_diff].map(|value| words![(value, Digits::Size)]);
+        let allowed = about("bound", (pair.bound.value, Digits::Size));
         let verdict = Words::from(match (pair.agrees, pair.follows) {
             (true, false) => "agrees",
             (true, true) => "agrees, which follows",

@@ -2,14 +2,14 @@
 
 mod map;
 
-use crate::agreement::{Agreement, shared_decimals};
+use crate::agreement::{Agreement, Quantity, shared_decimals};
 use crate::border_collision::feigin::{Scenario, SideCounts};
 use crate::border_collision::{Classification, NormalForm, Refusal};
 use crate::cam::Side;
 use crate::pages::local_map;
 use crate::pages::speeds::measured_speed;
 use crate::show::Paged;
-use crate::show::block::{Block, Column, Mark, Span, Table, Words, words};
+use crate::show::block::{Block, Column, Mark, Span, Table, Words, about, words};
 use crate::show::digits::Digits;
 use crate::show::words;
 use crate::study::verify::{Tally, Verification};
@@ -36,30 +36,33 @@ pub(crate) fn orbit(found: &Verification) -> Vec<Block> {
     let significant = |value, digits| words![(value, Digits::Significant(digits))];
     let fixed = |value, places| words![(value, Digits::Fixed(places))];
     let degrees = |angle: f64| fixed(angle.to_degrees(), 6);
-    let period = Words::prose("_T^*_ = {} s   ({} rpm)", [significant(at.period, 14), fixed(at.speed_rpm(), 9)]);
+    let period = Words::prose(
+        "_T^*_ = {} s   ({} rpm)",
+        [about("T_star", significant(at.period, 14)), about("speed_rpm", fixed(at.speed_rpm(), 9))],
+    );
     let x_star = Words::prose(
         "_x^*_ = ({}, {}){}half a revolution from the impact; position is measured from _q_ = {} {}",
         [
-            significant(state[0], 13),
-            significant(state[1], 13),
+            about("x_star", significant(state[0], 13)),
+            about("x_star", significant(state[1], 13)),
             Span::Break.into(),
-            significant(at.origin, 9),
+            about("state_origin", significant(at.origin, 9)),
             Span::Unit("m").into(),
         ],
     );
     let impact = Words::prose(
         "at cam angle {} deg, where c'' jumps from {} to {} {}{}_q_ = {} {}, _v_ = {} before and {} after, c' = {} {}",
         [
-            degrees(at.corner.angle),
-            fixed(acceleration.minus, 4),
-            fixed(acceleration.plus, 4),
+            about("corner", degrees(at.corner.angle)),
+            about("cam_acceleration", fixed(acceleration.minus, 4)),
+            about("cam_acceleration", fixed(acceleration.plus, 4)),
             Span::Unit("m/s^2").into(),
             Span::Break.into(),
-            fixed(at.corner.plus.value, 9),
+            about("position", fixed(at.corner.plus.value, 9)),
             Span::Unit("m").into(),
-            fixed(at.velocity_before, 6),
-            fixed(at.velocity_after, 6),
-            fixed(at.cam_velocity, 6),
+            about("velocity_before", fixed(at.velocity_before, 6)),
+            about("velocity_after", fixed(at.velocity_after, 6)),
+            about("cam_velocity", fixed(at.cam_velocity, 6)),
             Span::Unit("m/s").into(),
         ],
     );
@@ -67,12 +70,13 @@ pub(crate) fn orbit(found: &Verification) -> Vec<Block> {
         vec![("period".into(), period), ("state".into(), x_star), ("impact".into(), impact)];
     entries.extend(found.others.iter().map(|other| {
         let (speed, angle) = (fixed(other.speed_rpm(), 6), degrees(other.corner.angle));
-        ("also".into(), words![speed, " rpm at ", angle, " deg: narrow [study] to verify that one"])
+        let place = about("other_corner_impacts", words![speed, " rpm at ", angle, " deg"]);
+        ("also".into(), words![place, ": narrow [study] to verify that one"])
     }));
     if let Some(open) = found.measured.as_ref().filter(|open| open.cam.is_noisy) {
         let speed =
             measured_speed(at.speed_rpm(), Digits::Fixed(9), open.error.map(|(speed, _)| speed), Some(&open.cam));
-        entries.push(("cam".into(), speed));
+        entries.push(("cam".into(), about("measured_error", speed)));
     }
     if let Some(certificate) = &found.certificate {
         let words = format!(
@@ -84,7 +88,11 @@ pub(crate) fn orbit(found: &Verification) -> Vec<Block> {
     let close = Words::prose(
         "_T^∗_ lies between {} and {} s; one simulated revolution ends within {} of where it started, in parts of the orbit's \
          size.",
-        [significant(at.bracket[0], 16), significant(at.bracket[1], 16), words![(at.closure, Digits::Size)]],
+        [
+            about("period_bracket", significant(at.bracket[0], 16)),
+            about("period_bracket", significant(at.bracket[1], 16)),
+            about("closure", words![(at.closure, Digits::Size)]),
+        ],
     );
     let title = Block::Heading("The orbit, solved for from the model".into());
     vec![title, Block::Entries(9, entries), Block::Full(vec![Block::Note(close)])]
@@ -95,7 +103,7 @@ pub(crate) fn bifurcation(found: &Verification) -> Vec<Block> {
     let eigenvalues = |side| {
         let [one, two] =
             found.map.of(side).eigenvalues().map(|value| Span::Complex([value.re, value.im], Digits::Fixed(9)));
-        words![one, ",  ", two]
+        about(Quantity::Eigenvalues(side).to_string(), words![one, ",  ", two])
     };
     let mut entries: Vec<(Words, Words)> = vec![
         (Words::prose("eigenvalues of _A^-_", []), eigenvalues(Side::Minus)),
@@ -108,11 +116,13 @@ pub(crate) fn bifurcation(found: &Verification) -> Vec<Block> {
     }
     entries.extend(local_map::conditions(found));
     let mut full: Vec<Block> = found.classification.iter().flat_map(fixed_points).collect();
-    full.extend((!found.conditions.is_empty()).then(|| Block::Table(local_map::every_condition(found))));
+    full.extend(
+        (!found.conditions.is_empty()).then(|| Block::Table(local_map::every_condition(found)).about("conditions")),
+    );
     full.extend(found.normal_form.iter().map(|form| {
-        let column = |at: nalgebra::Vector2<f64>| Span::Matrix(vec![vec![at[0]], vec![at[1]]], Digits::UpTo(9)).into();
-        let shift = (Words::prose("_B\u{303}_", []), column(form.b_tilde));
-        Block::Entries(20, vec![(Words::prose("_W_", []), rows(&form.w).into()), shift])
+        let column = |at: nalgebra::Vector2<f64>| Span::Matrix(vec![vec![at[0]], vec![at[1]]], Digits::UpTo(9));
+        let shift = (Words::prose("_B\u{303}_", []), about("B_tilde", column(form.b_tilde)));
+        Block::Entries(20, vec![(Words::prose("_W_", []), about("normal_form", rows(&form.w))), shift])
     }));
     vec![Block::Heading("What happens there".into()), Block::Entries(20, entries), Block::Full(full)]
 }
@@ -122,14 +132,14 @@ fn normal_form(form: &NormalForm) -> Words {
     Words::prose(
         "A-bar {}{}A+bar {}{}B bar ({}, {}),  C bar ({}, {})",
         [
-            rows(&form.a_bar_minus).into(),
+            about("A_bar_minus", rows(&form.a_bar_minus)),
             Span::Break.into(),
-            rows(&form.a_bar_plus).into(),
+            about("A_bar_plus", rows(&form.a_bar_plus)),
             Span::Break.into(),
-            entry(form.b_bar[0]),
-            entry(form.b_bar[1]),
-            entry(form.c_bar[0]),
-            entry(form.c_bar[1]),
+            about("B_bar", entry(form.b_bar[0])),
+            about("B_bar", entry(form.b_bar[1])),
+            about("C_bar", entry(form.c_bar[0])),
+            about("C_bar", entry(form.c_bar[1])),
         ],
     )
 }
@@ -158,7 +168,7 @@ fn classification(kind: &Classification) -> Vec<(Words, Words)> {
     };
     let fixed = words!["minus: ", fate(minus), Span::Break, "plus:  ", fate(plus)];
     [("Feigin's counts", counts.into()), ("verdict", verdict), ("fixed points", fixed)]
-        .map(|(name, words)| (name.into(), words))
+        .map(|(name, words)| (name.into(), about("feigin", words)))
         .into()
 }
 
@@ -174,7 +184,7 @@ fn fixed_points(kind: &Classification) -> [Block; 2] {
     }
     let odd =
         "An odd number of eigenvalues above 1 on both sides together is a fold; an odd number below -1 is a flip.";
-    [Block::Table(table), Block::Note(odd.into())]
+    [Block::Table(table).about("fixed_point"), Block::Note(odd.into())]
 }
 
 fn none(refusal: &Refusal) -> Words {
@@ -211,6 +221,7 @@ pub(crate) fn published(found: &Verification) -> Vec<Block> {
         ]);
         for (index, digits) in number.printed.iter().enumerate() {
             let computed = number.computed.get(index).map(|value| words![(*value, Digits::Significant(15))]);
+            let computed = computed.map(|words| about(quantity.to_string(), words));
             let mut cells = vec![Words::default(), Words::default(), digits.into(), computed.unwrap_or_default()];
             if index == 0 {
                 cells[..2].clone_from_slice(&[name.clone(), place.clone()]);
@@ -221,11 +232,12 @@ pub(crate) fn published(found: &Verification) -> Vec<Block> {
         }
         if !number.note.is_empty() {
             let computed = number.computed.iter().map(|value| words![(*value, Digits::Significant(10))]);
-            let parts = [name, number.printed.join(", ").into(), Words::joined(computed, ", "), number.note.into()];
+            let computed = about(quantity.to_string(), Words::joined(computed, ", "));
+            let parts = [name, number.printed.join(", ").into(), computed, number.note.into()];
             notes.extend([Block::Gap, Block::paragraph(Words::prose("{}, printed ({}), computed ({}): {}", parts))]);
         }
     }
-    let tables = [Block::Brief(vec![Block::Table(brief)]), Block::Full(vec![Block::Table(full)])];
+    let tables = [Block::Brief(vec![Block::Table(brief)]), Block::Full(vec![Block::Table(full).about("published")])];
     [Block::Heading(label.into())].into_iter().chain(tables).chain(notes).collect()
 }
 

@@ -5,7 +5,7 @@ use crate::figures::chaotic_set;
 use crate::pages::report::html::{HtmlError, plates};
 use crate::pages::speeds::{measured_speed, together};
 use crate::report::Report;
-use crate::show::block::{Block, Mark, Section, Span, Words, words};
+use crate::show::block::{Block, Mark, Section, Span, Words, about, words};
 use crate::show::digits::Digits;
 use crate::study::design::contact::Separation;
 
@@ -17,8 +17,8 @@ pub(crate) fn section(report: &Report) -> Result<Section, HtmlError> {
     Ok(Section { id: "answer", title: "In brief".into(), blocks })
 }
 
-fn headed(head: &str, sentence: Words) -> Words {
-    words![(Mark::Strong, head), " ", sentence]
+fn headed(head: &str, what: &str, sentence: Words) -> Words {
+    words![(Mark::Strong, head), " ", about(what, sentence)]
 }
 
 fn separates(report: &Report) -> Words {
@@ -38,7 +38,7 @@ fn separates(report: &Report) -> Words {
         }
         _ => "The follower leaves the cam however slow that turns: the spring does not press it on all of it.".into(),
     };
-    headed("Separation.", sentence)
+    headed("Separation.", "separation", sentence)
 }
 
 fn margin(report: &Report) -> Option<Words> {
@@ -55,7 +55,7 @@ fn margin(report: &Report) -> Option<Words> {
         still,
         format!(" {}.", margin.force_unit)
     ];
-    Some(headed("Margin.", sentence))
+    Some(headed("Margin.", "contact_force", sentence))
 }
 
 fn impacts(report: &Report) -> Option<Words> {
@@ -73,7 +73,7 @@ fn impacts(report: &Report) -> Option<Words> {
         ],
         None => format!("None was seen from {low} to {high} rpm.").into(),
     };
-    Some(headed("Impacts.", sentence))
+    Some(headed("Impacts.", "impact_speed", sentence))
 }
 
 fn coexistence(report: &Report) -> Option<Words> {
@@ -82,7 +82,7 @@ fn coexistence(report: &Report) -> Option<Words> {
         ranges if ranges.is_empty() => "At no speed were two motions found that runs come to.".into(),
         ranges => words!["Which motion a run comes to depends on its start at ", several(ranges), "."],
     };
-    Some(headed("Coexistence.", sentence))
+    Some(headed("Coexistence.", "attractors", sentence))
 }
 
 /// The first few of some ranges, and how many there are.
@@ -115,5 +115,5 @@ fn proved(report: &Report) -> Words {
             "; what is said of other speeds comes from runs at some of them."
         ],
     };
-    headed("What is proved.", sentence)
+    headed("What is proved.", "speed_rpm", sentence)
 }

@@ -4,6 +4,9 @@ use std::collections::BTreeMap;
 
 use maud::html;
 
+use crate::explain::Links;
+use crate::pages::explain::behind;
+use crate::pages::report::html::HtmlError;
 use crate::published::Verdict;
 use crate::report::Report;
 use crate::show::block::{Block, Section};
@@ -25,8 +28,10 @@ fn anchors<'a>(ids: impl Iterator<Item = &'a str>) -> Vec<String> {
     ids.map(anchor).collect()
 }
 
-pub(crate) fn section(report: &Report) -> Option<Section> {
-    let ledger = report.claims.as_ref()?;
+pub(crate) fn section(report: &Report) -> Result<Option<Section>, HtmlError> {
+    let Some(ledger) = report.claims.as_ref() else { return Ok(None) };
+    let links = Links::read()?;
+    let behind_claims = links.of_claims();
     let anchors = anchors(ledger.claims.iter().map(|claim| claim.id.as_str()));
     let anchor_of = |id: &str| {
         let found = ledger.claims.iter().position(|claim| claim.id == id);
@@ -65,11 +70,14 @@ pub(crate) fn section(report: &Report) -> Option<Section> {
                         p { "By the slip of " a href={ "#" (anchor_of(slip)) } { (slip) } "." }
                     }
                     p.evidence { "Evidence, " (claim.known) ": " (sentence(&claim.evidence)) }
+                    @for part in behind_claims.get(claim.id.as_str()).map(behind).unwrap_or_default().iter().filter(|part| !part.is_empty()) {
+                        p.behind { (words(part)) }
+                    }
                     @if !claim.as_found { p.disagrees { "This is otherwise than the ledger says." } }
                 }
             }
         }
         }
     };
-    Some(Section { id: "claims", title: "The paper's claims".into(), blocks: vec![Block::Markup(body)] })
+    Ok(Some(Section { id: "claims", title: "The paper's claims".into(), blocks: vec![Block::Markup(body)] }))
 }

@@ -7,15 +7,23 @@
 mod answer;
 mod ledger;
 mod model;
+mod numbers;
 mod plates;
 mod reproduce;
 mod slider;
 mod speeds;
 mod verdict;
 
+use std::io::Write;
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
 use maud::{DOCTYPE, PreEscaped, html};
 
 use crate::draw::svg::SvgError;
+use crate::explain::ExplainError;
 use crate::foreign;
 use crate::pages::{local_map, verify};
 use crate::report::{Report, VERSION};
@@ -24,7 +32,13 @@ use crate::show::html::{blocks, words};
 use crate::study::verify::Verification;
 
 const STYLE: &str = include_str!("page.css");
-const SCRIPTS: [&str; 3] = [include_str!("ledger.js"), include_str!("slider.js"), include_str!("save.js")];
+const SCRIPTS: [&str; 5] = [
+    include_str!("unpack.js"),
+    include_str!("ledger.js"),
+    include_str!("slider.js"),
+    include_str!("save.js"),
+    include_str!("explain.js"),
+];
 
 /// Why there is no page.
 #[derive(Debug, thiserror::Error)]
@@ -35,6 +49,9 @@ pub enum HtmlError {
     /// A figure's data could not be packed.
     #[error("data of a figure: {0}")]
     Packed(#[from] std::io::Error),
+    /// A number stands for what the table of links does not know, or it does not read.
+    #[error(transparent)]
+    Explanation(#[from] ExplainError),
     /// The slider's data could not be written.
     #[error("data: {0}")]
     Data(#[from] serde_json::Error),
@@ -48,7 +65,7 @@ pub fn render(report: &Report) -> Result<String, HtmlError> {
         let blocks = found.map(of).filter(|blocks| !blocks.is_empty())?;
         Some(Section { id, title: title.into(), blocks: blocks.into_iter().skip(1).collect() })
     };
-    let sections: Vec<Section> = [
+    let mut sections: Vec<Section> = [
         Some(answer::section(report)?),
         slider::section(report)?,
         verdict::section(report),
@@ -58,7 +75,7 @@ pub fn render(report: &Report) -> Result<String, HtmlError> {
         titled("printed", "The paper's digits", verify::published),
         titled("bifurcation", "What happens there", verify::bifurcation),
         titled("local-map", "What the local map does by itself", local_map::blocks),
-        ledger::section(report),
+        ledger::section(report)?,
         Some(speeds::section(report)?),
         plates::section(report)?,
         Some(reproduce::section(report)),
@@ -66,6 +83,7 @@ pub fn render(report: &Report) -> Result<String, HtmlError> {
     .into_iter()
     .flatten()
     .collect();
+    sections.push(numbers::section(report, &sections)?);
     let what = if report.verification.is_ok() { "Corner impact" } else { "Cam and follower" };
     let title = format!("{what} of {}", report.model.name);
     let page = html! {
@@ -105,7 +123,9 @@ pub fn render(report: &Report) -> Result<String, HtmlError> {
     Ok(foreign::visible(&page.into_string()).into_owned())
 }
 
-/// Text that ends a `script` element neither by a tag nor by a comment.
-fn json(text: &str) -> PreEscaped<String> {
-    PreEscaped(text.replace('<', "\\u003c").replace('>', "\\u003e").replace('&', "\\u0026"))
+/// Text packed as a browser unpacks it.
+fn packed(text: &str) -> Result<String, std::io::Error> {
+    let mut packer = ZlibEncoder::new(Vec::new(), Compression::best());
+    packer.write_all(text.as_bytes())?;
+    Ok(STANDARD.encode(packer.finish()?))
 }

@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use crate::pages::cam;
 use crate::pages::report::html::{HtmlError, plates};
 use crate::report::Report;
-use crate::show::block::{Block, Column, Section, Span, Table, Words, words};
+use crate::show::block::{Block, Column, Section, Span, Table, Words, about, words};
 use crate::show::digits::Digits;
 use crate::show::words::symbol;
 
@@ -23,8 +23,9 @@ pub(crate) fn section(report: &Report) -> Result<Section, HtmlError> {
         count if count > LONG => Block::Details(words![count, " numbers of the model"], vec![numbers]),
         _ => numbers,
     });
-    blocks.push(Block::paragraph(words!["The cam: ", cam::lift(&sheet.cam), "."]));
-    blocks.extend(cam::parts(&sheet.cam));
+    let cam =
+        [vec![Block::paragraph(words!["The cam: ", cam::lift(&sheet.cam), "."])], cam::parts(&sheet.cam)].concat();
+    blocks.push(Block::About("lift".into(), cam));
     if let Some(plate) = report.plates.iter().find(|plate| plate.id == plates::CAM) {
         blocks.push(Block::Markup(plates::plate(plate, report)?));
     }
@@ -59,7 +60,7 @@ fn numbers(report: &Report) -> Table {
         table.row([
             (&quantity.meaning).into(),
             letter,
-            words![(quantity.value, digits)],
+            about(quantity.name(), (quantity.value, digits)),
             (&quantity.unit).into(),
             field,
         ]);

@@ -1,16 +1,10 @@
 //! The figures, in the paper's order.
 
-use std::io::Write;
-
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
-use flate2::Compression;
-use flate2::write::ZlibEncoder;
 use maud::{Markup, PreEscaped, html};
 
 use crate::draw::{Look, svg};
 use crate::figures::{Drawn, Plate};
-use crate::pages::report::html::HtmlError;
+use crate::pages::report::html::{HtmlError, packed};
 use crate::report::Report;
 use crate::show::block::{Block, Section};
 use crate::show::csv;
@@ -35,13 +29,6 @@ pub(crate) fn section(report: &Report) -> Result<Option<Section>, HtmlError> {
 
 fn elsewhere(plate: &Plate, report: &Report) -> Markup {
     html! { p.note { (place(plate, report)) a href={ "#plate-" (plate.id) } { (plate.title) } " stands with the model." } }
-}
-
-/// Text packed as a browser unpacks it.
-fn packed(text: &str) -> Result<String, std::io::Error> {
-    let mut packer = ZlibEncoder::new(Vec::new(), Compression::best());
-    packer.write_all(text.as_bytes())?;
-    Ok(STANDARD.encode(packer.finish()?))
 }
 
 /// A figure on a telephone: as wide as that, and its letters as high as those around it.

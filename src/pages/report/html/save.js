@@ -8,10 +8,6 @@
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 1000);
   };
-  const unpacked = (packed) => {
-    const bytes = Uint8Array.from(atob(packed), (letter) => letter.charCodeAt(0));
-    return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"))).text();
-  };
   const phone = matchMedia("(max-width: 40rem)");
   const narrow = () => {
     if (!phone.matches) return;

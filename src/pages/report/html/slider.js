@@ -1,10 +1,10 @@
 // The slider: picks a frame of the data in the page and draws it. Every number comes from there; what is reckoned here is
 // where on the screen it goes.
 "use strict";
-(() => {
+(async () => {
   const source = document.getElementById("through-data");
   if (!source) return;
-  const data = JSON.parse(source.textContent);
+  const data = JSON.parse(await unpacked(source.textContent));
   const { frames, axes, places } = data;
   const get = (id) => document.getElementById(id);
   const slider = get("speed");

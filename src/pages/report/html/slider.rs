@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use crate::pages::report::html::{HtmlError, json};
+use crate::pages::report::html::{HtmlError, packed};
 use crate::report::Report;
 use crate::report::through::ThroughCorner;
 use crate::show::block::{Block, Column, Section, Span, Table, Words, words};
@@ -15,7 +15,7 @@ pub(crate) fn section(report: &Report) -> Result<Option<Section>, HtmlError> {
     let Ok(through) = &report.through else { return Ok(None) };
     let blocks = vec![
         Block::Markup(player(through, &report.units.spelled("m/s"))),
-        Block::Details("The same as a table".into(), vec![Block::Table(table(through))]),
+        Block::Details("The same as a table".into(), vec![Block::Table(table(through)).about("through")]),
         Block::Markup(data(through)?),
     ];
     Ok(Some(Section { id: "through", title: "Through the corner impact".into(), blocks }))
@@ -24,7 +24,7 @@ pub(crate) fn section(report: &Report) -> Result<Option<Section>, HtmlError> {
 /// What the script reads.
 fn data(through: &ThroughCorner) -> Result<Markup, HtmlError> {
     let data = serde_json::to_string(through)?;
-    Ok(html! { script type="application/json" id="through-data" { (json(&data)) } })
+    Ok(html! { script type="text/plain" id="through-data" { (packed(&data)?) } })
 }
 
 fn player(through: &ThroughCorner, velocity: &str) -> Markup {

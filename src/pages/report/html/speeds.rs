@@ -4,7 +4,7 @@ use crate::pages::report::html::HtmlError;
 use crate::pages::report::html::plates::plate;
 use crate::pages::speeds::{detachment, how, rests, table, together};
 use crate::report::Report;
-use crate::show::block::{Block, Section, Words, words};
+use crate::show::block::{self, Block, Section, Words, words};
 use crate::study::speeds::Speeds;
 
 pub(crate) fn section(report: &Report) -> Result<Section, HtmlError> {
@@ -25,9 +25,10 @@ fn attractors(found: &Speeds) -> Vec<Block> {
             words!["Which one a run ends on depends on its start at ", Words::joined(together(found), ", "), " rpm."]
         }
     };
-    let about = words!["The follower leaves the cam for the first time at ", detachment(found), ". ", together];
+    let separation = block::about("separation", detachment(found));
+    let about = words!["The follower leaves the cam for the first time at ", separation, ". ", together];
     let mut blocks = vec![Block::paragraph(about), Block::Table(table(found))];
     blocks.extend(found.attractors.iter().filter_map(rests).map(Block::paragraph));
     blocks.push(Block::paragraph(how(found)));
-    blocks
+    vec![Block::About("attractors".into(), blocks)]
 }

@@ -5,7 +5,7 @@ use maud::html;
 use crate::pages::verify::tally;
 use crate::published::Verdict;
 use crate::report::Report;
-use crate::show::block::{Block, Mark, Section, Words, words};
+use crate::show::block::{Block, Mark, Section, Words, about, words};
 use crate::show::digits::Digits;
 use crate::show::words::{quantity, route, slips, spoken};
 use crate::study::verify::Verification;
@@ -36,8 +36,8 @@ fn findings(report: &Report, found: &Verification) -> Vec<Words> {
         Ok(kind) => words!["It is a ", strong(&spoken(&kind.scenario.to_string())), "."],
         Err(_) => "It has no classification.".into(),
     };
-    let speed = words![(found.at.speed_rpm(), Digits::Fixed(6))];
-    let angle = words![(found.at.corner.angle.to_degrees(), Digits::Fixed(4))];
+    let speed = about("speed_rpm", (found.at.speed_rpm(), Digits::Fixed(6)));
+    let angle = about("corner", (found.at.corner.angle.to_degrees(), Digits::Fixed(4)));
     let place = "The corner impact is at {} rpm, where the cam has turned by {}°. {}";
     let mut findings = tally(found);
     findings.insert(1, Words::prose(place, [speed, angle, kind]));
@@ -76,9 +76,9 @@ fn disagreements(report: &Report, found: &Verification) -> Vec<Words> {
         words![
             quantity(pair.quantity),
             format!(" by {one} and {other} differs by "),
-            (pair.max_abs_diff, Digits::Size),
+            about("agreement", (pair.max_abs_diff, Digits::Size)),
             ", allowed is ",
-            (pair.bound.value, Digits::Size)
+            about("bound", (pair.bound.value, Digits::Size))
         ]
     });
     let numbers = found.published.iter().filter(|number| !number.as_found).map(|number| {

@@ -1,0 +1,380 @@
+//! From any name to its formula, its proof and its test: of a number, an equation's label, a claim, a tolerance, a column.
+//!
+//! `links.toml` says where each is evaluated, derived and tested, once; values are read out of the documents of what was found.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use crate::cam::Side;
+use crate::known::Known;
+use crate::model::{Model, Units, nearest};
+use crate::paper::checks::{self, Check};
+use crate::paper::{Claim, LedgerError, ledger, proofs};
+use crate::report::quantities::{Quantity, quantities};
+use crate::study::verify::Verification;
+use crate::tolerance::{self, Tolerance};
+
+const LINKS: &str = include_str!("links.toml");
+
+/// What a name stands for; serializes to the document of `explain`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Explanation {
+    schema: &'static str,
+    /// The name.
+    pub what: String,
+    /// What it is.
+    pub sentence: String,
+    /// How it is evaluated.
+    pub formula: Option<String>,
+    /// The formula's label in the paper.
+    pub label: Option<String>,
+    /// What goes in, with its value for the model.
+    pub inputs: Vec<Input>,
+    /// Its value for the model, as documents have it; none where nothing was run, or it is no number of one corner impact.
+    pub value: Option<Value>,
+    /// The same by each route that knows it.
+    pub routes: BTreeMap<String, Value>,
+    /// How it is known.
+    pub known: Known,
+    /// What evaluates it.
+    pub code: Option<Code>,
+    /// What proves it.
+    pub derivation: Option<Derivation>,
+    /// What holds it.
+    pub tests: Vec<Test>,
+    /// Where the paper has it.
+    pub paper: Option<String>,
+}
+
+impl Explanation {
+    fn plain(what: &str, sentence: &str, known: Known) -> Self {
+        Self {
+            schema: "corner-impact/explain/1",
+            what: what.into(),
+            sentence: sentence.into(),
+            formula: None,
+            label: None,
+            inputs: Vec::new(),
+            value: None,
+            routes: BTreeMap::new(),
+            known,
+            code: None,
+            derivation: None,
+            tests: Vec::new(),
+            paper: None,
+        }
+    }
+}
+
+/// Something that goes into a number.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Input {
+    /// A field of the model, or a name that can be explained.
+    pub name: String,
+    /// Its value.
+    pub value: Option<Value>,
+}
+
+/// A function of this program.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[expect(missing_docs, reason = "the names say what each is")]
+pub struct Code {
+    pub file: String,
+    pub function: String,
+}
+
+/// A statement that a script proves.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[expect(missing_docs, reason = "the names say what each is")]
+pub struct Derivation {
+    pub script: String,
+    pub statement: String,
+}
+
+/// A test.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[expect(missing_docs, reason = "the names say what each is")]
+pub struct Test {
+    pub file: String,
+    pub test: String,
+}
+
+/// Why there is no explanation.
+#[derive(Debug, thiserror::Error)]
+pub enum ExplainError {
+    /// Nothing has the name.
+    #[error("nothing is called \"{what}\" here{} (`explain --list` has every name)", hint(.meant))]
+    Unknown {
+        /// What was asked for.
+        what: String,
+        /// The nearest name.
+        meant: Option<String>,
+    },
+    /// The table does not read.
+    #[error("links.toml: {0}")]
+    Unreadable(#[from] toml::de::Error),
+    /// The ledger does not.
+    #[error(transparent)]
+    Ledger(#[from] LedgerError),
+    /// What was found cannot be written as a document.
+    #[error("document: {0}")]
+    Document(#[from] serde_json::Error),
+}
+
+fn hint(meant: &Option<String>) -> String {
+    meant.as_ref().map_or_else(String::new, |meant| format!("; did you mean {meant}?"))
+}
+
+/// A row of the table.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Link {
+    name: String,
+    /// Whether there is one of either side.
+    #[serde(default)]
+    sides: bool,
+    #[serde(default)]
+    also: Vec<String>,
+    sentence: String,
+    formula: Option<String>,
+    #[serde(default)]
+    labels: Vec<String>,
+    #[serde(default)]
+    inputs: Vec<String>,
+    value: Option<String>,
+    routes: Option<String>,
+    orbits: Option<String>,
+    known: Known,
+    code: String,
+    derivation: Option<String>,
+    tests: Vec<String>,
+    paper: Option<String>,
+}
+
+#[derive(Deserialize)]
+struct Table {
+    link: Vec<Link>,
+}
+
+/// The table, and what names can stand for besides.
+pub struct Links {
+    table: Vec<Link>,
+    claims: Vec<Claim>,
+    /// What is proved, by labels of printed equations and by itself: the script, and the statement.
+    proofs: BTreeMap<String, [String; 2]>,
+}
+
+/// What a name stands for.
+enum Target<'a> {
+    Link(&'a Link, Option<Side>),
+    Tolerance(&'static Tolerance),
+    Claim(&'a Claim),
+    Field(Quantity),
+}
+
+/// What was found of a model, for values.
+pub struct Findings<'a> {
+    model: &'a Model,
+    document: Value,
+}
+
+impl<'a> Findings<'a> {
+    /// Of a model alone, or of its verified corner impact.
+    pub fn new(model: &'a Model, found: Option<&Verification>) -> Result<Self, ExplainError> {
+        Ok(Self { model, document: found.map(serde_json::to_value).transpose()?.unwrap_or_default() })
+    }
+}
+
+impl Links {
+    /// Reads the table and the ledger.
+    pub fn read() -> Result<Self, ExplainError> {
+        let table: Table = toml::from_str(LINKS)?;
+        Ok(Self { table: table.link, claims: ledger::claims()?, proofs: proofs()? })
+    }
+
+    /// Every name with what it stands for in a sentence, of a kind after the other.
+    pub fn names(&self) -> Vec<(String, String)> {
+        let sided = |link: &Link| match link.sides {
+            true => [Side::Minus, Side::Plus].map(|side| format!("{}_{side}", link.name)).into(),
+            false => vec![link.name.clone()],
+        };
+        let links = self.table.iter().flat_map(|link| {
+            let all = sided(link).into_iter().chain(link.labels.iter().chain(&link.also).cloned());
+            all.map(|name| (name, link.sentence.replace(['{', '}'], ""))).collect::<Vec<_>>()
+        });
+        let tolerances = tolerance::TABLE.iter().map(|row| (row.name.to_owned(), row.reason.to_owned()));
+        let claims = self.claims.iter().map(|claim| (claim.id.clone(), claim.statement.clone()));
+        links.chain(tolerances).chain(claims).collect()
+    }
+
+    /// What a name stands for: a number by its name, with its side or its entry's indices or without; a label; a tolerance; a
+    /// claim by its id, or by what stands behind its kind; a field of the model.
+    fn find(&self, what: &str, model: &Model) -> Result<Target<'_>, ExplainError> {
+        let side = [("_minus", Side::Minus), ("_plus", Side::Plus)]
+            .into_iter()
+            .find_map(|(end, side)| Some((what.strip_suffix(end)?, side)));
+        let link = self.table.iter().find_map(|link| {
+            let named = |name: &str| link.name == name || link.also.iter().any(|also| also == name);
+            match side {
+                Some((name, side)) if link.sides && named(name) => Some(Target::Link(link, Some(side))),
+                _ if named(what) => Some(Target::Link(link, link.sides.then_some(Side::Minus))),
+                _ => None,
+            }
+        });
+        // The equation that a label is of, or else a step on its way.
+        let by_label = || {
+            let place = |link: &Link| link.labels.iter().position(|label| label == what);
+            let links = self.table.iter().filter_map(|link| Some((place(link)?, link)));
+            links.min_by_key(|(place, _)| *place).map(|(_, link)| Target::Link(link, link.sides.then_some(Side::Minus)))
+        };
+        let tolerance =
+            || tolerance::TABLE.iter().find(|row| row.name.eq_ignore_ascii_case(what)).map(Target::Tolerance);
+        let is_claim = |claim: &&Claim| claim.id == what || claim.id.split_once(": ").is_some_and(|(_, id)| id == what);
+        let claim = || self.claims.iter().find(is_claim).map(Target::Claim);
+        let field = || quantities(model).into_iter().find(|it| it.field == what).map(Target::Field);
+        link.or_else(by_label).or_else(tolerance).or_else(claim).or_else(field).ok_or_else(|| {
+            let names = self.names();
+            let meant = nearest(what, names.iter().map(|(name, _)| name.as_str())).map(str::to_owned);
+            ExplainError::Unknown { what: what.into(), meant }
+        })
+    }
+
+    /// Whether a name's value takes a verified corner impact.
+    pub fn needs_verification(&self, what: &str, model: &Model) -> Result<bool, ExplainError> {
+        Ok(matches!(self.find(what, model)?, Target::Link(link, _) if link.value.is_some()))
+    }
+
+    /// What a name stands for, with the values of a model.
+    pub fn explain(&self, what: &str, findings: &Findings<'_>) -> Result<Explanation, ExplainError> {
+        let plain = |sentence: &str, known| Explanation::plain(what, sentence, known);
+        Ok(match self.find(what, findings.model)? {
+            Target::Link(link, side) => {
+                let sentence = in_units(&link.sentence, &findings.model.units);
+                self.of_link(link, side, findings, plain(&sentence, link.known))
+            }
+            Target::Tolerance(row) => Explanation {
+                value: Some(row.value.into()),
+                code: Some(Code { file: "src/tolerance.rs".into(), function: row.name.into() }),
+                tests: tests(&["tests/it/tolerance.rs: every_row_has_its_reason".into()]),
+                ..plain(&format!("A tolerance: {}.", row.reason), Known::Read)
+            },
+            Target::Claim(claim) => self.of_claim(claim, plain(&claim.statement, Known::Read)),
+            Target::Field(it) => {
+                let unit = if it.unit.is_empty() { String::new() } else { format!(", in {}", it.unit) };
+                Explanation {
+                    value: Some(it.value.into()),
+                    code: Some(Code { file: "src/report/quantities.rs".into(), function: "quantities".into() }),
+                    ..plain(&format!("A number of the model: {}{unit}.", it.meaning), Known::Read)
+                }
+            }
+        })
+    }
+
+    /// What decides each statement of the paper, by its id.
+    pub fn of_claims(&self) -> BTreeMap<&str, Explanation> {
+        let of = |claim: &Claim| self.of_claim(claim, Explanation::plain(&claim.id, &claim.statement, Known::Read));
+        self.claims.iter().map(|claim| (claim.id.as_str(), of(claim))).collect()
+    }
+
+    fn of_link(&self, link: &Link, side: Option<Side>, findings: &Findings<'_>, plain: Explanation) -> Explanation {
+        let sided = |text: &str| side.map_or_else(|| text.to_owned(), |side| text.replace("{side}", &side.to_string()));
+        let at = |path: &str| findings.document.pointer(&sided(path)).filter(|value| !value.is_null()).cloned();
+        let of_input = |name: &str| {
+            let (base, side) = match name.rsplit_once('_') {
+                Some((base, side @ ("minus" | "plus"))) => (base, side),
+                _ => (name, ""),
+            };
+            let path = self.table.iter().find(|link| link.name == base).and_then(|link| link.value.as_ref());
+            let found = path.and_then(|path| findings.document.pointer(&path.replace("{side}", side)).cloned());
+            found.or_else(|| {
+                quantities(findings.model).into_iter().find(|it| it.name() == name).map(|it| it.value.into())
+            })
+        };
+        let names = link.inputs.iter().map(|name| sided(name));
+        let inputs = names.map(|name| Input { value: of_input(&name), name }).collect();
+        let each = |of: &str, path: Option<&String>| -> BTreeMap<String, Value> {
+            let all = findings.document.pointer(of).and_then(Value::as_object).into_iter().flatten();
+            let one = |(route, found): (&String, &Value)| Some((route.clone(), found.pointer(&sided(path?))?.clone()));
+            all.filter_map(one).collect()
+        };
+        let mut routes = each("/routes", link.routes.as_ref());
+        routes.extend(each("/orbits", link.orbits.as_ref()));
+        let is_proved = routes.contains_key("certificate");
+        Explanation {
+            formula: link.formula.clone(),
+            label: link.labels.first().cloned(),
+            inputs,
+            value: link.value.as_deref().and_then(at),
+            known: if is_proved { Known::Proved } else { link.known },
+            routes,
+            code: code(&link.code),
+            derivation: link.derivation.as_deref().and_then(derivation),
+            tests: tests(&link.tests),
+            paper: link.paper.clone(),
+            ..plain
+        }
+    }
+
+    /// A statement of the paper: what decides it.
+    fn of_claim(&self, claim: &Claim, plain: Explanation) -> Explanation {
+        let holds = "tests/it/ledger.rs: every_check_comes_to_the_ledgers_verdict";
+        let link = |named: &dyn Fn(&Link) -> bool| self.table.iter().find(|link| named(link));
+        let proved = |of: &str| {
+            let [script, statement] = self.proofs.get(of)?.clone();
+            Some(Derivation { script, statement })
+        };
+        let (known, code_at, proof) = match checks::find(&claim.id) {
+            Some(Check::Equation(label)) => {
+                let link = link(&|link| link.labels.iter().any(|of| of == label));
+                (Known::Proved, link.map_or("src/paper/checks.rs: equation", |link| &link.code), proved(label))
+            }
+            Some(Check::Proofs(_, all, _)) => {
+                (Known::Proved, "src/paper/checks.rs: run", all.first().and_then(|one| proved(one)))
+            }
+            Some(Check::Number(quantity)) => {
+                let base = quantity.trim_end_matches("_minus").trim_end_matches("_plus");
+                let link = link(&|link| link.name == base || link.name == quantity);
+                let proof = link.and_then(|link| derivation(link.derivation.as_deref()?));
+                (Known::Computed, link.map_or("src/published.rs: compare_published", |link| &link.code), proof)
+            }
+            Some(Check::Any(known, _) | Check::Paper(known, _)) => {
+                (known, claim.check.as_deref().unwrap_or_default(), None)
+            }
+            Some(Check::Read(..)) | None => (Known::Read, "", None),
+        };
+        Explanation {
+            value: Some(claim.verdict.to_string().into()),
+            known,
+            code: code(code_at),
+            derivation: proof,
+            tests: tests(&[holds.into()]),
+            paper: Some(claim.place.clone()),
+            ..plain
+        }
+    }
+}
+
+/// A sentence with each unit, which stands in braces in metres, as a model has it.
+fn in_units(sentence: &str, units: &Units) -> String {
+    let told = |(place, text): (usize, &str)| if place % 2 == 1 { units.spelled(text) } else { text.to_owned() };
+    sentence.split(['{', '}']).enumerate().map(told).collect()
+}
+
+/// `FILE: FUNCTION`.
+fn code(place: &str) -> Option<Code> {
+    place.split_once(": ").map(|(file, function)| Code { file: file.into(), function: function.into() })
+}
+
+/// `SCRIPT: STATEMENT`.
+fn derivation(place: &str) -> Option<Derivation> {
+    let of = |(script, statement): (&str, &str)| Derivation { script: script.into(), statement: statement.into() };
+    place.split_once(": ").map(of)
+}
+
+/// `FILE: TEST`, each.
+fn tests(places: &[String]) -> Vec<Test> {
+    let of = |place: &String| place.split_once(": ").map(|(file, test)| Test { file: file.into(), test: test.into() });
+    places.iter().filter_map(of).collect()
+}

@@ -1,0 +1,91 @@
+//! The page of `explain`, and the same behind a number of the report.
+
+use serde_json::Value;
+
+use crate::explain::Explanation;
+use crate::show::Paged;
+use crate::show::block::{Block, Column, Mark, Span, Table, Words, words};
+use crate::show::digits::Digits;
+use crate::show::words;
+
+/// Digits of an entry that routes are read against one another in.
+const TWELVE: Digits = Digits::Aligned(12);
+
+impl Paged for Explanation {
+    fn blocks(&self) -> Vec<Block> {
+        [vec![Block::Title(self.what.as_str().into())], explained(self)].concat()
+    }
+}
+
+/// What a name stands for, without its title.
+pub(crate) fn explained(it: &Explanation) -> Vec<Block> {
+    let code = |text: &str| Words::from(Span::Code(text.into()));
+    let mut entries: Vec<(Words, Words)> = Vec::new();
+    let mut say = |name: &str, words: Words| entries.push((name.into(), words));
+    if let Some(formula) = &it.formula {
+        let label = it.label.as_ref().map_or_else(String::new, |label| format!("   ({label})"));
+        say("formula", words![code(formula), label]);
+    } else if let Some(label) = &it.label {
+        say("label", label.into());
+    }
+    let inputs = it.inputs.iter().map(|input| match &input.value {
+        Some(found) => words![&input.name, " = ", value(found, Digits::Short)],
+        None => (&input.name).into(),
+    });
+    if !it.inputs.is_empty() {
+        say("from", Words::joined(inputs, ", "));
+    }
+    if let (Some(found), true) = (&it.value, it.routes.is_empty()) {
+        say("value", value(found, Digits::Short));
+    }
+    say("known", words![(Mark::Strong, it.known.to_string().as_str())]);
+    for (name, words) in ["code", "proof", "tests"].into_iter().zip(behind(it)) {
+        if !words.is_empty() {
+            say(name, words);
+        }
+    }
+    if let Some(paper) = &it.paper {
+        say("paper", paper.into());
+    }
+    let mut blocks = vec![Block::paragraph(&it.sentence), Block::Gap, Block::Entries(10, entries)];
+    if !it.routes.is_empty() {
+        let mut table = Table::new("By each route", [Column::words("route"), Column::words("value")]);
+        for (route, found) in &it.routes {
+            table.row([words::spoken(route).into(), value(found, TWELVE)]);
+        }
+        blocks.extend([Block::Gap, Block::Table(table)]);
+    }
+    blocks
+}
+
+/// What evaluates, proves and tests it: each empty where there is none.
+pub(crate) fn behind(it: &Explanation) -> [Words; 3] {
+    let code = |text: &str| Words::from(Span::Code(text.into()));
+    let place = |file: &str, name: &str| words![code(file), ": ", code(name)];
+    let function = it.code.as_ref().map(|function| place(&function.file, &function.function));
+    let proof = it.derivation.as_ref().map(|proof| words![code(&proof.script), ": ", &proof.statement]);
+    let tests = Words::joined(it.tests.iter().map(|test| place(&test.file, &test.test)), ", ");
+    [function.unwrap_or_default(), proof.unwrap_or_default(), tests]
+}
+
+/// A value of a document.
+fn value(found: &Value, digits: Digits) -> Words {
+    let each = |found: &Value| value(found, digits);
+    match found {
+        Value::Number(number) => words![(number.as_f64().unwrap_or(f64::NAN), digits)],
+        Value::String(text) => text.into(),
+        Value::Null => "none".into(),
+        Value::Bool(is_so) => if *is_so { "yes" } else { "no" }.into(),
+        Value::Array(rows) if rows.iter().all(Value::is_array) && !rows.is_empty() => {
+            words!["[", Words::joined(rows.iter().map(each), ", "), "]"]
+        }
+        Value::Array(entries) => words!["(", Words::joined(entries.iter().map(each), ", "), ")"],
+        Value::Object(parts) if parts.len() == 2 && parts.contains_key("im") => {
+            let part = |name: &str| parts.get(name).and_then(Value::as_f64).unwrap_or(f64::NAN);
+            Span::Complex([part("re"), part("im")], Digits::Significant(12)).into()
+        }
+        Value::Object(fields) => {
+            Words::joined(fields.iter().map(|(name, of)| words![words::spoken(name), " ", each(of)]), ", ")
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! What each number of the page stands for: what `explain` says, folded away here and shown where a number is clicked.
+
+use std::collections::BTreeSet;
+
+use maud::html;
+
+use crate::explain::{Findings, Links};
+use crate::pages::explain::explained;
+use crate::pages::report::html::HtmlError;
+use crate::report::Report;
+use crate::show::block::{Block, Section, Span, Words, in_units, words};
+use crate::show::html::blocks;
+
+/// Of every name that the blocks of these sections stand for.
+pub(crate) fn section(report: &Report, sections: &[Section]) -> Result<Section, HtmlError> {
+    let mut names = BTreeSet::new();
+    sections.iter().for_each(|section| of_blocks(&section.blocks, &mut names));
+    let (links, found) = (Links::read()?, report.verification.as_ref().ok());
+    let findings = Findings::new(&report.parsed, found)?;
+    let mut parts = vec![Block::paragraph(Words::prose(
+        "Click on a number of this page, and what it stands for is shown: formula, inputs, value by every route, how it is known, \
+         and the code, the proof and the tests behind it. The same is folded away here under each name, and `corner-impact explain` \
+         prints it.",
+        [],
+    ))];
+    for name in names {
+        let explanation = links.explain(name, &findings)?;
+        let inside = in_units(explained(&explanation), &report.units);
+        parts.push(Block::Markup(html! {
+            details.explanation id={ "explain-" (name) } { summary { code { (name) } } (blocks(&inside)) }
+        }));
+    }
+    Ok(Section { id: "numbers", title: words!["Where each number comes from"], blocks: parts })
+}
+
+fn of_blocks<'a>(blocks: &'a [Block], names: &mut BTreeSet<&'a str>) {
+    for block in blocks {
+        match block {
+            Block::Title(words) | Block::Heading(words) | Block::Line(words) | Block::Paragraph(_, words) => {
+                of_words(words, names);
+            }
+            Block::Note(words) => of_words(words, names),
+            Block::Entries(_, entries) => entries.iter().for_each(|(_, words)| of_words(words, names)),
+            Block::Table(table) => {
+                table.rows.iter().flat_map(|row| &row.cells).for_each(|words| of_words(words, names));
+            }
+            Block::List(items) => items.iter().for_each(|words| of_words(words, names)),
+            Block::About(name, inside) => {
+                names.insert(name);
+                of_blocks(inside, names);
+            }
+            Block::Details(_, inside) | Block::Full(inside) => of_blocks(inside, names),
+            Block::Brief(_) | Block::Gap | Block::Markup(_) => {}
+        }
+    }
+}
+
+fn of_words<'a>(words: &'a Words, names: &mut BTreeSet<&'a str>) {
+    for span in &words.0 {
+        if let Span::About(name, inside) = span {
+            names.insert(name);
+            of_words(inside, names);
+        }
+    }
+}
