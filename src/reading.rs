@@ -122,7 +122,7 @@ impl Model {
 
     /// Refuses numbers that what is made of them leaves the range of a double with.
     fn sized(&self) -> Result<(), ModelError> {
-        let (most, least) = (tolerance::LARGEST_SIZE.value, tolerance::LARGEST_SIZE.value.recip());
+        let (most, least) = (tolerance::LEAST_SIZE.value.recip(), tolerance::LEAST_SIZE.value);
         let Follower { mass, damping, stiffness, gravity, rest_position, .. } = self.follower;
         let products = [
             ("follower.mass", "mass", mass),
@@ -139,7 +139,7 @@ impl Model {
         match odd.or_else(|| sums.iter().find(|(.., size)| !(size.abs() <= most))) {
             Some((field, what, size)) => {
                 let bound =
-                    if is_small(*size) { format!("below {least:.0e}") } else { format!("above {most:e} in size") };
+                    if is_small(*size) { format!("below {least:.0e}") } else { format!("above {most:.0e} in size") };
                 let words = format!("makes {what} {size:e}, {bound}: use other units");
                 Err(self.reject(field, words))
             }

@@ -22,9 +22,9 @@ macro_rules! table {
 }
 
 table! {
-    /// The largest size of a number that motions are computed with.
-    LARGEST_SIZE = 1e75, "absolute, in whatever units: its fourth power is still a double, and more are not multiplied with each other; \
-        the smallest size of a divisor is its inverse";
+    /// The least size of a divisor that motions are computed with; the largest of a number is its inverse.
+    LEAST_SIZE = 1e-75, "absolute, in whatever units: its fourth power and that of its inverse are still doubles, and more are not \
+        multiplied with each other";
     /// When one-sided derivatives of the lift differ enough to be a corner.
     CAM_JUMP = 1e-9, "of the largest derivative of that order on the two segments that meet: a thousand times what rounding \
         leaves between two laws that meet smoothly, and far below any jump that a machined cam would have by design";

@@ -15,13 +15,13 @@ impl Cam {
         let cam = Self::of(model, &model.cam)?;
         let sizes =
             |segment: &Segment| [segment.bounds.third, segment.bounds.lift[0].abs(), segment.bounds.lift[1].abs()];
-        let is_sized = |size: f64| size <= tolerance::LARGEST_SIZE.value;
+        let is_sized = |size: f64| size <= tolerance::LEAST_SIZE.value.recip();
         if cam.segments.iter().flat_map(sizes).all(is_sized) {
             Ok(cam)
         } else {
-            let most = tolerance::LARGEST_SIZE.value;
+            let most = tolerance::LEAST_SIZE.value.recip();
             Err(model
-                .reject("cam.law", format!("gives lifts or derivatives too large, above {most:e}: use other units")))
+                .reject("cam.law", format!("gives lifts or derivatives too large, above {most:.0e}: use other units")))
         }
     }
 

@@ -312,9 +312,20 @@ impl Links {
             code: code(&link.code),
             derivation: link.derivation.as_deref().and_then(derivation),
             tests: tests(&link.tests),
-            paper: link.paper.clone(),
+            paper: self.place(link),
             ..plain
         }
+    }
+
+    /// Where the paper has it, and what is not right there.
+    fn place(&self, link: &Link) -> Option<String> {
+        let label = link.labels.first().map(|label| format!("equation: {label}"));
+        let wrong = self.claims.iter().find(|claim| label.as_ref().is_some_and(|label| claim.id.starts_with(label)));
+        let slip = wrong.and_then(|claim| {
+            let right = claim.correct.as_ref()?;
+            Some(format!("; {} in print, right is: {right}", claim.verdict))
+        });
+        link.paper.as_ref().map(|place| format!("{place}{}", slip.unwrap_or_default()))
     }
 
     /// A statement of the paper: what decides it.
@@ -344,7 +355,9 @@ impl Links {
             }
             Some(Check::Read(..)) | None => (Known::Read, "", None),
         };
+        let right = claim.correct.as_ref().map_or_else(String::new, |right| format!(" Right instead: {right}"));
         Explanation {
+            sentence: format!("The paper states, of its own model: {}{right}", claim.statement),
             value: Some(claim.verdict.to_string().into()),
             known,
             code: code(code_at),

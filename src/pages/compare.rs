@@ -13,7 +13,10 @@ const LONGEST: usize = 40;
 impl Paged for Comparison {
     fn blocks(&self) -> Vec<Block> {
         let [a, b] = [&self.verdict.a, &self.verdict.b].map(ToString::to_string);
+        let is_word = |change: &&Change| change.difference.is_none() && change.a.is_some() && change.b.is_some();
+        let others = self.changes.iter().filter(is_word).count();
         let verdict = match self.verdict_changed() {
+            false if others > 0 => words!["the same: ", a, format!("; but {others} findings are of another kind")],
             false => words!["the same: ", (Mark::Good, a.as_str())],
             true => {
                 words![(Mark::Bad, "changed"), Span::Break, "A: ", a, Span::Break, "B: ", b]

@@ -218,7 +218,8 @@ fn table(rows: Range<usize>) -> impl Strategy<Value = Law> {
         let count = rows.len() as f64;
         let mut table = "angle_deg,lift\n".to_owned();
         for (index, (shift, lift)) in rows.iter().enumerate() {
-            let angle = 360.0 * (index as f64 + 0.6 * shift) / count;
+            // Of three rows, two are less than half a turn apart: more would be refused.
+            let angle = 360.0 * (index as f64 + 0.4 * shift) / count;
             let lift = around(offset, 0.5) + 0.2 * angle.to_radians().cos() + around(*lift, 0.1 * noise);
             table += &format!("{angle:?},{lift:?}\n");
         }

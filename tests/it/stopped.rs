@@ -73,7 +73,8 @@ fn ctrl_c_leaves_the_old_files_and_no_others() {
         ("diagram MODEL --rpm 180:190:1000000 --out out.png".into(), 1, false),
     ] {
         let folder = folder();
-        let mut child = common::program(words(&line)).current_dir(&folder).stdout(Stdio::null()).spawn().unwrap();
+        let mut command = common::that_signals_end(common::program(words(&line)).current_dir(&folder));
+        let mut child = command.stdout(Stdio::null()).spawn().unwrap();
         // Pictures are drawn in the end: until then there is an empty file.
         let begun = |child: &Child| {
             let files_there = unfinished(child, &folder);

@@ -166,8 +166,9 @@ mod unix {
             if was_there {
                 fs::write(folder.path().join("out.csv"), "before").unwrap();
             }
-            let mut child = Command::new(std::env::current_exe().unwrap())
-                .args(["--exact", "whole_files::unix::child_that_waits", "--nocapture"])
+            let mut program = Command::new(std::env::current_exe().unwrap());
+            program.args(["--exact", "whole_files::unix::child_that_waits", "--nocapture"]);
+            let mut child = crate::common::that_signals_end(&program)
                 .env("CORNER_IMPACT_TEST_FILE", folder.path().join("out.csv"))
                 .stdout(Stdio::piped())
                 .spawn()

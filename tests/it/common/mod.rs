@@ -29,6 +29,21 @@ pub fn program<Word: AsRef<OsStr>>(words: impl IntoIterator<Item = Word>) -> Com
     command
 }
 
+/// A program that signals end as they do by themselves: whoever runs the tests in the background may have it that some are ignored, and what
+/// is ignored at the start stays so.
+#[cfg(unix)]
+pub fn that_signals_end(program: &Command) -> Command {
+    let mut command = Command::new("env");
+    if cfg!(target_os = "linux") {
+        command.arg("--default-signal");
+    }
+    command.arg(program.get_program()).args(program.get_args());
+    if let Some(folder) = program.get_current_dir() {
+        command.current_dir(folder);
+    }
+    command
+}
+
 /// Runs the program in the project's folder.
 pub fn corner_impact<Word: AsRef<OsStr>>(words: impl IntoIterator<Item = Word>) -> Output {
     program(words).output().unwrap()
