@@ -212,7 +212,7 @@ impl Links {
     /// What a name stands for: a number by its name, with its side or its entry's indices or without; a label; a tolerance; a
     /// claim by its id, or by what stands behind its kind; a field of the model.
     fn find(&self, what: &str, model: &Model) -> Result<Target<'_>, ExplainError> {
-        let side = [("_minus", Side::Minus), ("_plus", Side::Plus)]
+        let side = [("_minus", Side::Minus), ("_plus", Side::Plus), ("-", Side::Minus), ("+", Side::Plus)]
             .into_iter()
             .find_map(|(end, side)| Some((what.strip_suffix(end)?, side)));
         let link = self.table.iter().find_map(|link| {
@@ -234,7 +234,14 @@ impl Links {
         let is_claim = |claim: &&Claim| claim.id == what || claim.id.split_once(": ").is_some_and(|(_, id)| id == what);
         let claim = || self.claims.iter().find(is_claim).map(Target::Claim);
         let field = || quantities(model).into_iter().find(|it| it.field == what).map(Target::Field);
-        link.or_else(by_label).or_else(tolerance).or_else(claim).or_else(field).ok_or_else(|| {
+        let found = link.or_else(by_label).or_else(tolerance).or_else(claim).or_else(field);
+        // An entry of a matrix or a pair: what it is an entry of.
+        let part = what.strip_suffix("_re").or_else(|| what.strip_suffix("_im")).unwrap_or(what);
+        let whole = part.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end_matches('_');
+        if found.is_none() && whole.len() < what.len() && !whole.is_empty() {
+            return self.find(whole, model);
+        }
+        found.ok_or_else(|| {
             let names = self.names();
             let meant = nearest(what, names.iter().map(|(name, _)| name.as_str())).map(str::to_owned);
             ExplainError::Unknown { what: what.into(), meant }
@@ -306,7 +313,7 @@ impl Links {
             formula: link.formula.clone(),
             label: link.labels.first().cloned(),
             inputs,
-            value: link.value.as_deref().and_then(at),
+            value: link.value.as_deref().map_or_else(|| of_input(&link.name), at),
             known: if is_proved { Known::Proved } else { link.known },
             routes,
             code: code(&link.code),

@@ -163,6 +163,27 @@ fn the_document_has_the_fields_of_the_contract() {
     assert_eq!(it["value"][0].as_f64().unwrap(), found.map.minus.b[0]);
 }
 
+/// As a reader writes them, and as `compare` does.
+#[test]
+fn entries_and_symbols_lead_to_what_they_are_of() {
+    let (links, model) = (Links::read().unwrap(), Model::built_in().unwrap());
+    let findings = Findings::new(&model, None).unwrap();
+    let formula = |name: &str| links.explain(name, &findings).unwrap().formula;
+    for (name, of) in [
+        ("A-", "A_minus"),
+        ("A_minus_21", "A_minus"),
+        ("B_plus_2", "B_plus"),
+        ("x_star_1", "x_star"),
+        ("x*", "x_star"),
+        ("eigenvalues_plus_1_re", "eigenvalues_plus"),
+        ("lambda", "eigenvalues_minus"),
+    ] {
+        assert_eq!(formula(name), formula(of), "{name}");
+    }
+    assert_eq!(links.explain("zeta", &findings).unwrap().value, Some(0.0.into()));
+    assert!(links.explain("q_1", &findings).is_err() && links.explain("7", &findings).is_err());
+}
+
 #[test]
 fn what_is_not_known_is_refused_with_what_is_near() {
     let output = corner_impact(["explain", "B_mins"]);
