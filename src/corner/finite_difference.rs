@@ -110,6 +110,8 @@ impl Parts {
             // The corner is in one part alone: in others there is no gap, nor an error of it.
             gap += by_start(&next.gap, &all);
             gap_off += by_start(&error.gap, &SideMap { a: all.a.abs(), b: all.b.abs() });
+            // What is not known of the parts before it, which move where it starts.
+            gap_off += by_start(&next.gap.abs().component_mul(&RowVector3::new(1.0, 1.0, 0.0)), &off);
             off.a += after.abs() * error.map.a * all.a.abs();
             off.b += after.abs() * (error.map.a * all.b.abs() + error.map.b);
             all = next.map.after(&all);

@@ -238,10 +238,9 @@ impl Links {
         // An entry of a matrix or a pair: what it is an entry of.
         let part = what.strip_suffix("_re").or_else(|| what.strip_suffix("_im")).unwrap_or(what);
         let whole = part.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end_matches('_');
-        if found.is_none() && whole.len() < what.len() && !whole.is_empty() {
-            return self.find(whole, model);
-        }
-        found.ok_or_else(|| {
+        let is_part = whole.len() < what.len() && !whole.is_empty();
+        let entry = || is_part.then(|| self.find(whole, model).ok()).flatten();
+        found.or_else(entry).ok_or_else(|| {
             let names = self.names();
             let meant = nearest(what, names.iter().map(|(name, _)| name.as_str())).map(str::to_owned);
             ExplainError::Unknown { what: what.into(), meant }
