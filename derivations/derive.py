@@ -80,7 +80,7 @@ def run():
 
     apart = smoothing_spline.scipys()
     stage("smoothing spline", [
-        Measurement(f"the B-splines of smoothing_spline.py meet scipy's to {DOUBLE}", apart < DOUBLE),
+        Measurement(f"the B-splines of splines.py meet scipy's to {DOUBLE}", apart < DOUBLE),
     ])  # fmt: skip
 
     note = "written by derivations/derive.py; do not edit"

@@ -19,6 +19,7 @@ from pathlib import Path
 from mpmath import mp, mpf
 
 import motions
+import splines
 from arithmetic import evaluate, exact, flow, later, responses, text
 
 DERIVED = Path(__file__).resolve().parent.parent / "golden" / "derived" / "corner_map.json"
@@ -135,7 +136,40 @@ def polynomial(cam):
     return motions.polynomials(each)
 
 
-LAWS = {"arcs": arcs, "program": program, "polynomial": polynomial}
+def harmonic(cam):
+    """A sum of cosines, each of a phase: [(0, law)]."""
+    each = zip(map(exact, cam.get("amplitudes", [])), map(exact, cam.get("phases_deg", [])))
+    return motions.cosines(number(cam, "cam", "offset"), [(size, phase * mp.pi / 180) for size, phase in each])
+
+
+def rectified_sine(cam):
+    """The absolute value of a sine: [(angle where each half starts, law)]."""
+    return motions.rectified(number(cam, "cam", "offset"), number(cam, "cam", "amplitude"))
+
+
+def table(cam):
+    """A spline through the rows, or near them with the weight, the knots and what else was fitted to them."""
+    rows = [(exact(row["angle_deg"]), exact(row["lift"])) for row in cam["rows"]]
+    angles, lifts = [angle * mp.pi / 180 for angle, _ in rows], [lift for _, lift in rows]
+    if "fitted" not in cam:
+        basis = splines.Splines({"cubic": 3, "quintic": 5}[cam["spline"]], angles)
+        return motions.polynomials(list(basis.powers(basis.through(angles, lifts))))
+    fitted = cam["fitted"]
+    knots, corners = ([exact(angle) for angle in fitted[name]] for name in ("knots_rad", "corners_rad"))
+    dwells = [tuple(map(exact, dwell)) for dwell in fitted["dwells_rad"]]
+    basis = splines.Splines(splines.QUINTIC, splines.knots([*knots, *(end for dwell in dwells for end in dwell)], corners), [start for start, _ in dwells])
+    numbers = basis.fitted(angles, lifts, exact(fitted["weight"]))
+    return motions.polynomials(list(basis.powers(numbers)))
+
+
+SHARP = {
+    "arcs": arcs,
+    "harmonic": harmonic,
+    "rectified-sine": rectified_sine,
+    "program": program,
+    "polynomial": polynomial,
+    "table": table,
+}
 # A model's numbers are doubles, which meet where two segments do but for their rounding.
 SAME = mpf(10) ** -9
 
@@ -148,6 +182,15 @@ def corners(laws):
         size = abs(left[0]) + abs(left[1]) + abs(left[2]) + abs(right[2])
         if abs(left[2] - right[2]) > SAME * size and abs(left[1] - right[1]) <= SAME * size:
             yield starts, left, right
+
+
+def profile(cam):
+    """The laws of a cam with the angles where they start, its corners rounded where it says so."""
+    if cam.get("law") not in SHARP:
+        raise Refused(f"cam.law: this route knows {', '.join(SHARP)}, not {cam.get('law')!r}")
+    laws = SHARP[cam["law"]](cam)
+    half = exact(cam.get("corner_rounding_deg", 0)) * mp.pi / 360
+    return motions.rounded(laws, [angle for angle, _, _ in corners(laws)], half) if half else laws
 
 
 class Follower:
@@ -262,11 +305,7 @@ def locate(document):
     """The slowest corner impact of the model."""
     follower = Follower(document)
     cam = section(document, "cam")
-    if cam.get("law") not in LAWS:
-        raise Refused(f"cam.law: this route knows {', '.join(LAWS)}, not {cam.get('law')!r}")
-    if cam.get("corner_rounding_deg", 0) != 0:
-        raise Refused("cam.corner_rounding_deg: this route knows sharp corners only")
-    laws = LAWS[cam["law"]](cam)
+    laws = profile(cam)
     slowest_rpm, fastest_rpm = numbers(document, "study", ("rpm_min", "rpm_max"))
     if not 0 < slowest_rpm < fastest_rpm:
         raise Refused("study: needs 0 < rpm_min < rpm_max")

@@ -1,4 +1,4 @@
-"""Cams of standard motions and of polynomials for the symbolic route: each motion is its acceleration, integrated twice.
+"""Cams of standard motions, polynomials and waves for the symbolic route: each motion is its acceleration, integrated twice.
 
 What a motion is called after is the shape of its acceleration over a unit of time, from one end at rest to the other; its size is
 whatever makes the rise 1. So nothing but the shapes is written down here.
@@ -113,3 +113,47 @@ def polynomials(segments):
         start, last = laws[-1]
         laws.insert(0, (mpf(0), Piece(start - 2 * mp.pi, last.powers)))
     return laws
+
+
+class Sum:
+    """Pieces one on top of the other."""
+
+    def __init__(self, pieces):
+        self.pieces = pieces
+
+    def lift(self, angle, library=mp):
+        return tuple(map(sum, zip(*(piece.lift(angle, library) for piece in self.pieces))))
+
+    def rounded(self):
+        return Sum([piece.rounded() for piece in self.pieces])
+
+
+def cosines(offset, waves):
+    """offset + sum a_k cos(k angle + phase_k), k from 1, each wave (a_k, phase_k)."""
+    each = [Piece(mpf(0), [], (size, mpf(k), phase + mp.pi / 2)) for k, (size, phase) in enumerate(waves, 1)]
+    return [(mpf(0), Sum([Piece(mpf(0), [offset]), *each]))]
+
+
+def rectified(offset, amplitude):
+    """offset + amplitude |sin angle|."""
+    return [(start, Piece(start, [offset], (amplitude, mpf(1), mpf(0)))) for start in (mpf(0), mp.pi)]
+
+
+def rounded(laws, corners, half):
+    """Laws with each corner taken out: from `half` before it to `half` after it goes the quintic that has c, c', c'' of both there."""
+    turn = 2 * mp.pi
+    found = [(start + half if start in corners else start, law) for start, law in laws]
+    for corner in corners:
+        index = [start for start, _ in laws].index(corner)
+        end = corner if index else turn
+        left, right = laws[index - 1][1].lift(end - half), laws[index][1].lift(corner + half)
+        # Each derivative of sum a_k x^k at -half and at half.
+        system = mp.matrix(6, 6)
+        for row, (x, order) in enumerate((x, order) for x in (-half, half) for order in range(3)):
+            for k in range(order, 6):
+                system[row, k] = mp.ff(k, order) * x ** (k - order)
+        powers = list(mp.lu_solve(system, mp.matrix([*left, *right])))
+        found.append((end - half, Piece(end, powers)))
+        if not index:
+            found.append((corner, Piece(corner, powers)))
+    return sorted(found, key=lambda place: place[0])

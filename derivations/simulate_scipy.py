@@ -26,7 +26,6 @@ standard errors hold it, estimated from a second, wider fit; not what the integr
 import json
 import math
 import sys
-from bisect import bisect_right
 from itertools import product
 
 try:
@@ -36,14 +35,14 @@ try:
 except ImportError as missing:
     sys.exit(f"this check needs numpy and scipy: {missing}")
 
+from scipy_cams import NOISE, Cam, CannotCheck, number
+
 METHOD = "DOP853"
 # Error allowed per step, relative, and absolute in units of the base radius (for velocities: base radius times omega).
 RTOL = ATOL = 1e-13
 
 # Periods tried per corner, at least, and for each swing of the follower on its spring, before roots are refined.
 SCAN, SCAN_PER_SWING = 4000, 40
-# What counts as zero beside the terms it is the sum of: well above the integrator's error.
-NOISE = 1e-8
 # Points at which a revolution is compared with the cam, before minima are refined.
 LOOKS = 2000
 # Furthest continuation of a law past its corner, rad.
@@ -56,187 +55,6 @@ LIMITS = (
     "bias of the fit, of the fifth degree in the perturbations, above some hundredths of the reach, and rounding below a "
     "hundredth; at the width used either leaves about 1e-11 to 1e-9 in A and B, the integrator's tolerance less"
 )
-
-
-class CannotCheck(Exception):
-    """The input is not a model that this check can take, or there is nothing to check."""
-
-
-# ---------------------------------------------------------------------------------------------------------- 1. The cam
-
-
-class Circle:
-    """A stretch of the cam's outline: seen from the axis, its distance along the ray at angle theta is the lift."""
-
-    def __init__(self, centre, radius):
-        self.x, self.y = centre
-        self.radius = radius
-
-    def law(self, theta):
-        """Lift, and its first and second derivative by the angle."""
-        cos, sin = math.cos(theta), math.sin(theta)
-        # The circle's centre along the ray and across it, and half of the chord that it cuts from the ray.
-        along, across = self.x * cos + self.y * sin, self.x * sin - self.y * cos
-        square = (self.radius - across) * (self.radius + across)
-        if square <= 0.0:
-            raise CannotCheck(f"the ray at {theta} rad misses the circle of radius {self.radius}")
-        chord = math.sqrt(square)
-        lift = along + chord
-        slope = -across * lift / chord
-        return lift, slope, -(along * lift + across * slope) / chord - across**2 * along * lift / chord**3
-
-    def mirrored(self):
-        return Circle((self.x, -self.y), self.radius)
-
-    def last_ray(self, theta):
-        """Angle from theta to the nearest ray that only touches the circle; the lift is not analytic there."""
-        distance = math.hypot(self.x, self.y)
-        if distance <= self.radius:
-            return math.inf
-        from_centre = math.remainder(theta - math.atan2(self.y, self.x), math.tau)
-        return math.asin(self.radius / distance) - abs(from_centre)
-
-
-class Stretch:
-    """A displacement given in closed form over a stretch: a polynomial and a sine, in the part of the stretch gone through."""
-
-    def __init__(self, start, span, base, rise, powers, sine=(0.0, 1.0, 0.0), centre=None):
-        self.start, self.span, self.base, self.rise = start, span, base, rise
-        # Angles are taken from the turn around here.
-        self.centre = start + 0.5 * span if centre is None else centre
-        self.powers, self.sine = np.polynomial.Polynomial(powers), sine
-
-    def law(self, theta):
-        """Lift, and its first and second derivative by the angle."""
-        part = (self.centre - self.start + math.remainder(theta - self.centre, math.tau)) / self.span
-        size, rate, phase = self.sine
-        turned = rate * part + phase
-        lift = self.powers(part) + size * math.sin(turned)
-        slope = self.powers.deriv()(part) + size * rate * math.cos(turned)
-        bend = self.powers.deriv(2)(part) - size * rate**2 * math.sin(turned)
-        return self.base + self.rise * lift, self.rise * slope / self.span, self.rise * bend / self.span**2
-
-    def last_ray(self, theta):
-        """No angle: it is analytic everywhere."""
-        return math.inf
-
-
-PI = math.pi
-# Displacements from 0 to 1 in a unit of time, as handbooks of cams print them: (up to where, powers, (size, rate, phase)).
-DISPLACEMENTS = {
-    "dwell": [(1.0, [0.0], (0.0, 1.0, 0.0))],
-    "parabolic": [(0.5, [0.0, 0.0, 2.0], (0.0, 1.0, 0.0)), (1.0, [-1.0, 4.0, -2.0], (0.0, 1.0, 0.0))],
-    "harmonic": [(1.0, [0.5], (-0.5, PI, 0.5 * PI))],
-    "cycloidal": [(1.0, [0.0, 1.0], (-0.5 / PI, 2.0 * PI, 0.0))],
-    "modified-sine": [
-        (0.125, [0.0, PI / (4.0 + PI)], (-0.25 / (4.0 + PI), 4.0 * PI, 0.0)),
-        (0.875, [2.0 / (4.0 + PI), PI / (4.0 + PI)], (-2.25 / (4.0 + PI), 4.0 * PI / 3.0, PI / 3.0)),
-        (1.0, [4.0 / (4.0 + PI), PI / (4.0 + PI)], (-0.25 / (4.0 + PI), 4.0 * PI, 0.0)),
-    ],
-    "poly345": [(1.0, [0.0, 0.0, 0.0, 10.0, -15.0, 6.0], (0.0, 1.0, 0.0))],
-    "poly4567": [(1.0, [0.0, 0.0, 0.0, 0.0, 35.0, -84.0, 70.0, -20.0], (0.0, 1.0, 0.0))],
-}
-# Of the modified trapezoid the first half; the second is its image, s(u) = 1 - s(1 - u).
-WHOLE = 2.0 + PI
-FIRST_HALF = [
-    (0.125, [0.0, 2.0 / WHOLE], (-0.5 / (PI * WHOLE), 4.0 * PI, 0.0)),
-    (0.375, [(PI / 16.0 - 0.5 / PI) / WHOLE, (2.0 - PI) / WHOLE, 4.0 * PI / WHOLE], (0.0, 1.0, 0.0)),
-    (0.5, [-0.5 * PI / WHOLE, (2.0 + 2.0 * PI) / WHOLE], (-0.5 / (PI * WHOLE), 4.0 * PI, -PI)),
-]
-
-
-def imaged(powers, sine):
-    """1 - s(1 - u)."""
-    turned = np.polynomial.Polynomial(powers)(np.polynomial.Polynomial([1.0, -1.0]))
-    size, rate, phase = sine
-    return (1.0 - turned).coef, (size, rate, -rate - phase)
-
-
-DISPLACEMENTS["modified-trapezoid"] = FIRST_HALF + [
-    (1.0 - start, *imaged(powers, sine)) for (_, powers, sine), start in zip(reversed(FIRST_HALF), (0.375, 0.125, 0.0))
-]
-
-
-def program(numbers):
-    """The pieces of standard motions one after the other: angles where they start, and laws."""
-    start, base, starts, laws = 0.0, number(numbers, "base"), [], []
-    for part in numbers.get("segment", []):
-        span, rise = math.radians(number(part, "span_deg", least=0.0)), number(part, "rise")
-        begins = 0.0
-        if part.get("motion") not in DISPLACEMENTS:
-            raise CannotCheck(f"no motion {part.get('motion')!r} is known here")
-        for ends, powers, sine in DISPLACEMENTS[part["motion"]]:
-            starts.append(start + begins * span)
-            laws.append(Stretch(start, span, base, rise, powers, sine))
-            begins = ends
-        start, base = start + span, base + rise
-    return starts, laws
-
-
-def polynomials(numbers):
-    """Polynomials of the angle from where they start: angles where they start, and laws."""
-    each = [(math.radians(number(part, "start_deg")), part["coefficients"]) for part in numbers.get("segment", [])]
-    starts = [start for start, _ in each]
-    ends = [*starts[1:], starts[0] + math.tau]
-    laws = [Stretch(start, 1.0, 0.0, 1.0, powers, centre=0.5 * (start + end)) for (start, powers), end in zip(each, ends)]
-    if starts[0] > 0.0:
-        starts, laws = [0.0, *starts], [laws[-1], *laws]
-    return starts, laws
-
-
-class Cam:
-    """Stretches, each from its first angle on: base circle, flank, nose, dwell and their mirror images, motions or polynomials."""
-
-    def __init__(self, numbers):
-        if numbers.get("corner_rounding_deg", 0) != 0:
-            raise CannotCheck("cam.corner_rounding_deg: only sharp corners can be checked")
-        if numbers.get("law") == "arcs":
-            self.starts, self.circles = self.arcs(numbers)
-        elif numbers.get("law") in ("program", "polynomial"):
-            self.starts, self.circles = (program if numbers["law"] == "program" else polynomials)(numbers)
-            self.base = max(abs(self.law(start)[0]) for start in self.starts)
-        else:
-            raise CannotCheck(f"no cam law {numbers.get('law')!r} can be checked")
-
-    def arcs(self, numbers):
-        base, flank, nose = (number(numbers, key, least=0.0) for key in ("base_radius", "flank_radius", "nose_radius"))
-        start, end = (math.radians(number(numbers, key)) for key in ("flank_start_deg", "nose_end_deg"))
-        if not 0.0 <= start < end <= math.pi:
-            raise CannotCheck("the cam needs 0 <= flank_start_deg < nose_end_deg <= 180")
-        self.base = base
-        toward_start, toward_end = (np.array([math.cos(angle), math.sin(angle)]) for angle in (start, end))
-        # The flank touches the base circle at `start` from outside it: its centre lies behind the axis.
-        flank_centre = -(flank - base) * toward_start
-        # The nose touches the flank from inside: their centres are flank - nose apart. The root along the ray at `end`:
-        b, c = toward_end @ flank_centre, flank_centre @ flank_centre - (flank - nose) ** 2
-        if flank <= base or flank <= nose or b * b < c or b + math.sqrt(b * b - c) <= 0.0:
-            raise CannotCheck("the circles of the cam cannot touch each other")
-        nose_distance = b + math.sqrt(b * b - c)
-        nose_centre, top = nose_distance * toward_end, nose_distance + nose
-        meeting_point = flank_centre + flank * (nose_centre - flank_centre) / (flank - nose)
-        meeting = math.atan2(meeting_point[1], meeting_point[0])
-        if not start < meeting < end:
-            raise CannotCheck("flank and nose of the cam do not meet between flank_start_deg and nose_end_deg")
-
-        axis, bounds = np.zeros(2), [0.0, start, meeting, end, math.pi]
-        circles = Circle(axis, base), Circle(flank_centre, flank), Circle(nose_centre, nose), Circle(axis, top)
-        half = [stretch for stretch in zip(bounds, bounds[1:], circles) if stretch[1] > stretch[0]]
-        other = [(math.tau - stop, circle.mirrored()) for _, stop, circle in reversed(half)]
-        starts = [first for first, _, _ in half] + [first for first, _ in other]
-        return starts, [circle for _, _, circle in half] + [circle for _, circle in other]
-
-    def law(self, theta):
-        return self.circles[bisect_right(self.starts, theta % math.tau) - 1].law(theta)
-
-    def corners(self):
-        """(angle, circle before, circle after, angle to the nearest other boundary) of each jump of the curvature."""
-        for i, theta in enumerate(self.starts):
-            before, after = self.circles[i - 1], self.circles[i]
-            if abs(after.law(theta)[1] - before.law(theta)[1]) > NOISE * self.base:
-                continue
-            if abs(after.law(theta)[2] - before.law(theta)[2]) > NOISE * self.base:
-                others = self.starts[:i] + self.starts[i + 1 :]
-                yield theta, before, after, min(abs(math.remainder(theta - other, math.tau)) for other in others)
 
 
 class Follower:
@@ -442,15 +260,6 @@ class OneSidedMap:
 
 
 # ------------------------------------------------------------------------------------------------------------- In and out
-
-
-def number(table, key, least=None):
-    value = table.get(key)
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
-        raise CannotCheck(f"{key} must be a number, not {value!r}")
-    if least is not None and not value > least:
-        raise CannotCheck(f"{key} must be above {least}, not {value}")
-    return float(value)
 
 
 def entries(matrix):

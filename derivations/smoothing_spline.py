@@ -1,20 +1,14 @@
-"""Periodic quintic smoothing splines by another way than the program's: B-splines, quadrature and one dense system.
+"""Periodic quintic smoothing splines of small tables by splines.py, to 40 digits, with what the rows leave of freedom.
 
-Of all curves the spline has the least
-
-    integral of c'''^2 + weight sum over rows of (c(row) - lift)^2
-
-The curve is a sum of periodic B-splines of degree 5, by the recursion of Cox and de Boor, with a knot at every row; a corner is
-four knots in one, across which only lift and slope are continuous. A dwell ends in three, across which the curvature is, too, and
-equations hold the curve constant in between. The integral
-is that of a polynomial of degree 4 in each piece, which three points of Gauss give exactly. All of it to 40 digits.
+The freedom is the trace of what makes lifts of the spline of lifts of the rows: what each row alone puts where it is.
 """
 
 import numpy as np
 from mpmath import mp, mpf
 from scipy.interpolate import BSpline
 
-DEGREE = 5
+import splines
+
 DIGITS = 16
 ROWS = 30
 # Weights with angles in radians: near a circle, between, and near the rows.
@@ -23,112 +17,24 @@ WEIGHTS = ["3e3", "1e6", "1e9"]
 PLACES = [mpf(11) * k + mpf(k) / 7 for k in range(32)]
 
 
-class Knots:
-    """Knots once round, and the B-splines on them."""
-
-    def __init__(self, angles):
-        self.angles = angles
-        self.count = len(angles)
-
-    def at(self, index):
-        turns, inside = divmod(index, self.count)
-        return self.angles[inside] + turns * 2 * mp.pi
-
-    def piece(self, angle):
-        """The index of the last knot that is not behind an angle of [0, 2 pi + first knot)."""
-        inside = [index for index in range(-1, self.count) if self.at(index) <= angle < self.at(index + 1)]
-        return inside[0]
-
-    def values(self, angle, order, piece=None):
-        """Derivatives of every B-spline, as one row of a matrix."""
-        piece = self.piece(angle) if piece is None else piece
-        row = [mpf(0)] * self.count
-        for index in range(piece - DEGREE, piece + 1):
-            row[index % self.count] += self.derivative(index, DEGREE, order, angle, piece)
-        return row
-
-    def derivative(self, index, degree, order, angle, piece):
-        if order == 0:
-            return self.value(index, degree, angle, piece)
-        total = mpf(0)
-        for sign, first in ((1, index), (-1, index + 1)):
-            width = self.at(first + degree) - self.at(first)
-            if width:
-                total += sign * degree / width * self.derivative(first, degree - 1, order - 1, angle, piece)
-        return total
-
-    def value(self, index, degree, angle, piece):
-        if degree == 0:
-            return mpf(index == piece)
-        total = mpf(0)
-        width = self.at(index + degree) - self.at(index)
-        if width:
-            total += (angle - self.at(index)) / width * self.value(index, degree - 1, angle, piece)
-        width = self.at(index + degree + 1) - self.at(index + 1)
-        if width:
-            end = self.at(index + degree + 1)
-            total += (end - angle) / width * self.value(index + 1, degree - 1, angle, piece)
-        return total
-
-
-def penalty(knots):
-    """The integral of the product of the third derivatives of every two B-splines."""
-    form = mp.zeros(knots.count)
-    nodes = [(-mp.sqrt(mpf(3) / 5), mpf(5) / 9), (mpf(0), mpf(8) / 9), (mp.sqrt(mpf(3) / 5), mpf(5) / 9)]
-    for piece in range(knots.count):
-        low, high = knots.at(piece), knots.at(piece + 1)
-        if low == high:
-            continue
-        for node, share in nodes:
-            row = mp.matrix([knots.values((low + high) / 2 + node * (high - low) / 2, 3, piece)])
-            form += row.T * row * (share * (high - low) / 2)
-    return form
-
-
 def spline(angles, lifts, weight, corner=None, dwell=None):
     """The residuals, what the rows leave of freedom, and lift, slope and curvature at PLACES."""
     radians = [mp.radians(angle) for angle in angles]
-    times = {corner: 4} | {end: 3 for end in dwell or ()}
-    repeated = [angle for index, angle in enumerate(radians) for _ in range(times.get(index, 1))]
-    knots = Knots(repeated)
-    seen = mp.matrix([knots.values(angle, 0) for angle in radians])
-    form = penalty(knots) + weight * (seen.T * seen)
-    held = []
-    if dwell:
-        first, last = dwell
-        held += [knots.values(radians[first], order) for order in (1, 2)]
-        for row in range(first, last):
-            one, two = (knots.values(radians[index], 0) for index in (row, row + 1))
-            held += [[b - a for a, b in zip(one, two)]]
-            # Constant on its first piece, a curve with four continuous derivatives has one number left on each of the others.
-            if row == first:
-                held += [knots.values(radians[row + 1], order) for order in (1, 2)]
-    count, more = knots.count, len(held)
-    system = mp.zeros(count + more)
-    for i in range(count):
-        for j in range(count):
-            system[i, j] = form[i, j]
-        for j in range(more):
-            system[i, count + j] = system[count + j, i] = held[j][i]
-    right = mp.zeros(count + more, len(lifts) + 1)
-    known = weight * seen.T
-    column = known * mp.matrix(lifts)
-    for i in range(count):
-        right[i, 0] = column[i]
-        for j in range(len(lifts)):
-            right[i, j + 1] = known[i, j]
-    # One solution for the lifts, and one for each row alone: where it is seen again is the trace.
-    inverse = system**-1
-    solved = inverse * right
-    coefficients = solved[:count, 0]
-    fitted = seen * coefficients
-    trace = sum((seen[row, :] * solved[:count, row + 1])[0] for row in range(len(lifts)))
-    residuals = [lift - fitted[index] for index, lift in enumerate(lifts)]
-    at = []
-    for place in PLACES:
-        angle = mp.radians(place)
-        at.append([(mp.matrix([knots.values(angle, order)]) * coefficients)[0] for order in range(3)])
-    return residuals, trace, at
+    corners = [] if corner is None else [radians[corner]]
+    dwells = [tuple(radians[end] for end in dwell)] if dwell else []
+    # A row inside of a dwell is no knot.
+    free = [angle for angle in radians if not any(first < angle < last for first, last in dwells)]
+    basis = splines.Splines(splines.QUINTIC, splines.knots(free, corners), [first for first, _ in dwells])
+    solved, rows = basis.near(radians, weight)
+    numbers = solved.solve(splines.seen(rows, lifts, weight, basis.count))
+
+    def sum_of(row, numbers):
+        return sum(value * numbers[column] for column, value in row.items())
+
+    residuals = [lift - sum_of(row, numbers) for row, lift in zip(rows, lifts)]
+    alone = (sum_of(row, solved.solve(splines.seen([row], [1], weight, basis.count))) for row in rows)
+    at = [[sum_of(basis.values(mp.radians(place), order), numbers) for order in range(3)] for place in PLACES]
+    return residuals, sum(alone), at
 
 
 def rows():
@@ -147,16 +53,16 @@ def resting(angle, first, last):
 def scipys():
     """The largest difference of a B-spline and its third derivative from scipy's, over a turn."""
     angles, _ = rows()
-    knots = Knots([mp.radians(angle) for angle in angles])
+    basis = splines.Splines(splines.QUINTIC, [mp.radians(angle) for angle in angles])
     worst = 0.0
     for index in range(3, 9):
-        basis = BSpline.basis_element(np.array([float(knots.at(index + k)) for k in range(DEGREE + 2)]), False)
+        ends = [basis.at(index + k) for k in range(splines.QUINTIC + 2)]
+        theirs = BSpline.basis_element(np.array([float(end) for end in ends]), False)
         for part in range(1, 12):
-            angle = knots.at(index) + (knots.at(index + DEGREE + 1) - knots.at(index)) * part / 12
-            piece = knots.piece(angle)
+            angle = ends[0] + (ends[-1] - ends[0]) * part / 12
             for order, scale in ((0, 1), (3, 500)):
-                here = knots.derivative(index, DEGREE, order, angle, piece)
-                worst = max(worst, abs(float(here) - float(basis.derivative(order)(float(angle)))) / scale)
+                here = basis.values(angle, order)[index]
+                worst = max(worst, abs(float(here) - float(theirs.derivative(order)(float(angle)))) / scale)
     return worst
 
 

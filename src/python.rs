@@ -17,7 +17,7 @@ use tempfile::TempDir;
 use crate::stop;
 
 /// The scripts, with the modules that they import and the file that they read, by their places in the project.
-const FILES: [(&str, &str); 22] = [
+const FILES: [(&str, &str); 24] = [
     ("derivations/arithmetic.py", include_str!("../derivations/arithmetic.py")),
     ("derivations/balls/__init__.py", include_str!("../derivations/balls/__init__.py")),
     ("derivations/balls/branches.py", include_str!("../derivations/balls/branches.py")),
@@ -38,7 +38,9 @@ const FILES: [(&str, &str); 22] = [
     ("derivations/certify.py", include_str!("../derivations/certify.py")),
     ("derivations/evaluate.py", include_str!("../derivations/evaluate.py")),
     ("derivations/motions.py", include_str!("../derivations/motions.py")),
+    ("derivations/scipy_cams.py", include_str!("../derivations/scipy_cams.py")),
     ("derivations/simulate_scipy.py", include_str!("../derivations/simulate_scipy.py")),
+    ("derivations/splines.py", include_str!("../derivations/splines.py")),
     ("golden/derived/corner_map.json", include_str!("../golden/derived/corner_map.json")),
 ];
 

@@ -12,7 +12,7 @@
 use std::f64::consts::TAU;
 
 use super::features::{self, Features};
-use super::smoothing::{Layout, Smoothed};
+use super::smoothing::{Fitted, Layout, Smoothed};
 use super::{Cam, Joint};
 use crate::bracket::{Width, halve};
 use crate::model::{Model, ModelError, Smoothing, TableProfile, Tolerance};
@@ -58,6 +58,16 @@ impl Fit {
         let (laws, breaks) = self.layout.laws(&self.spline);
         Cam::from_laws(laws, Joint::Spline { degree: 5, breaks: breaks.into() })
     }
+}
+
+/// What was chosen for the smoothing spline of a model, for one that is laid by other means; none where its cam is no such spline.
+pub(crate) fn fitted(model: &Model) -> Result<Option<Fitted>, ModelError> {
+    let smoothed = model.table().and_then(|table| Some((table, table.spline.smoothing()?)));
+    let fitted = smoothed.map(|(table, smoothing)| {
+        let fit = fit(model, table, smoothing)?;
+        Ok(fit.layout.fitted(10.0_f64.powf(fit.weight)))
+    });
+    fitted.transpose()
 }
 
 fn largest(residuals: &[f64]) -> f64 {

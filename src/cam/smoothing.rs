@@ -2,8 +2,8 @@
 //!
 //! Of all periodic curves the spline has the least `integral of c'''^2 + weight sum of (c(row) - lift)^2`. Its unknowns are lift f,
 //! slope s and curvature k at every knot; the integral over a piece is a form in those at its ends, and setting the derivatives
-//! to zero gives a positive definite system of neighbours. Nothing else is asked for at a knot, so that derivatives up to the
-//! fourth are continuous there of themselves.
+//! to zero gives a positive definite system of neighbours. Nothing else is asked for at a knot: derivatives up to the fourth are
+//! continuous there of themselves, unless a row is between it and the next one.
 //!
 //! A corner is a knot with a curvature of its own on either side, which the integral is the least for: there the third
 //! derivative is 0 on both sides. A dwell is one knot with a width, where only the lift is unknown: slope and curvature are 0, the
@@ -12,6 +12,7 @@
 use std::f64::consts::TAU;
 
 use nalgebra::{Matrix3, Matrix6, Vector6};
+use serde::Serialize;
 
 use super::cyclic::Cyclic;
 use super::law::Law;
@@ -79,6 +80,18 @@ pub(super) struct Layout {
     places: Vec<Place>,
     /// The mean gap between two knots, rad: widths are in units of it, so that their powers stay in range.
     unit: f64,
+}
+
+/// What a smoothing spline is the least of, in radians, for one that is laid by other means.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(crate) struct Fitted {
+    /// Of the sum of squares beside the integral, 1/rad^5.
+    weight: f64,
+    /// Where pieces meet, but for dwells.
+    knots_rad: Vec<f64>,
+    corners_rad: Vec<f64>,
+    /// From and to.
+    dwells_rad: Vec<[f64; 2]>,
 }
 
 /// A smoothing spline.
@@ -177,6 +190,21 @@ impl Layout {
         };
         layout.places = angles.iter().map(place).collect();
         Some(layout)
+    }
+
+    /// It, with a weight in its own units.
+    pub fn fitted(&self, weight: f64) -> Fitted {
+        let mut fitted = Fitted { weight: weight / self.unit.powi(5), ..Fitted::default() };
+        for knot in &self.knots {
+            let ends = [knot.start, knot.end % TAU];
+            let corners = ends.into_iter().zip(knot.corner).filter(|(_, is_corner)| *is_corner);
+            fitted.corners_rad.extend(corners.map(|(end, _)| end));
+            match knot.is_dwell() {
+                true => fitted.dwells_rad.push(ends),
+                false => fitted.knots_rad.push(knot.start),
+            }
+        }
+        fitted
     }
 
     fn after(&self, knot: usize) -> usize {

@@ -1,12 +1,14 @@
 //! The orbit and its map by programs outside this one: `symbolic` (the derived expressions, to 30 digits) and `scipy` (an
-//! integration of its own). Both get the numbers of the model file and nothing else, and find the corner impact themselves.
+//! integration of its own). Both get the numbers of the model file and nothing else, and find the corner impact themselves; near the rows
+//! of a table they lay a spline of their own, of the weight and the knots that were chosen here.
 
 use nalgebra::{Matrix2, RowVector2, Vector2};
 use serde::Deserialize;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::map::{Eigenvalue, Own, Route, RouteName, SideMap, Sides, Uncertainty};
-use crate::model::{CamProfile, Model, Study};
+use crate::cam;
+use crate::model::{Model, ModelError, Study};
 use crate::python::{self, PythonError};
 
 /// A route outside this program: its name, and its script in `derivations/`.
@@ -32,15 +34,18 @@ pub struct Outside {
     pub period: f64,
 }
 
-/// Whether they know the cam's law: those that can have a corner of order 2, unless it is rounded.
-pub fn know(model: &Model) -> bool {
-    matches!(model.cam, CamProfile::Arcs(_) | CamProfile::Program(_) | CamProfile::Polynomial(_))
+/// What they are told of a model whose study range is `study`: its numbers, and of a smoothing spline what was fitted to its rows.
+pub fn told(model: &Model, study: Study) -> Result<Value, ModelError> {
+    let mut numbers = json!({ "follower": model.follower, "cam": model.cam, "study": study });
+    if let Some(fitted) = cam::fitted(model)? {
+        numbers["cam"]["fitted"] = json!(fitted);
+    }
+    Ok(numbers)
 }
 
-/// Runs one of them on a model whose study range is `study`.
-pub fn run(program: Program, model: &Model, study: Study) -> Result<Outside, PythonError> {
-    let numbers = json!({ "follower": model.follower, "cam": model.cam, "study": study });
-    let answer: Answer = python::run(program.script, &numbers)?;
+/// Runs one of them on what they are told of a model.
+pub fn run(program: Program, told: &Value) -> Result<Outside, PythonError> {
+    let answer: Answer = python::run(program.script, told)?;
     let (map, own) = (answer.map.map(Matrices::map), answer.own());
     let uncertainty = answer.standard_error.map(|error| Uncertainty::Fit {
         standard: error.map(Matrices::map),

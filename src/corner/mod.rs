@@ -47,5 +47,6 @@ pub mod variational;
 pub mod varied;
 
 pub use corner_impact::CornerImpact;
+pub use external::told;
 pub use locate::{LocateError, locate};
 pub use map::{CornerMap, Route, SideMap};

@@ -299,9 +299,6 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
     for (program, answer) in outside {
         watch.at(&format!("the map by {}, in Python", program.name), 0, 0);
         match answer.map(JoinHandle::join) {
-            None if external == External::Run => {
-                log.leave_out(program.name, "knows cams of arcs, programs and polynomials with sharp corners only")
-            }
             None => log.leave_out(program.name, "left out by --no-external"),
             Some(Ok(result)) => {
                 if let Some(Outside { route, x_star, period }) = log.keep(program.name, result) {
@@ -406,11 +403,10 @@ type Started = (Program, Option<JoinHandle<Result<Outside, PythonError>>>);
 
 /// Starts every program outside, or none.
 fn start_outside(model: &Model, external: External) -> Result<Vec<Started>, LocateError> {
-    let study = model.study()?;
+    let told = external::told(model, model.study()?)?;
     let start = |program: Program| {
-        let model = model.clone();
-        std::thread::spawn(stop::carried(move || external::run(program, &model, study)))
+        let told = told.clone();
+        std::thread::spawn(stop::carried(move || external::run(program, &told)))
     };
-    let runs = external == External::Run && external::know(model);
-    Ok(PROGRAMS.map(|program| (program, runs.then(|| start(program)))).into())
+    Ok(PROGRAMS.map(|program| (program, (external == External::Run).then(|| start(program)))).into())
 }
