@@ -71,7 +71,11 @@ impl StroboscopicMap {
                 Err(error) => return Err(error),
             };
             let miss = Vector2::new(end.position - state.position, end.velocity - state.velocity);
-            let Some(step) = (Matrix2::identity() - matrix).lu().solve(&miss) else { return Ok(None) };
+            // Velocities over omega, so that the largest of a column is the same in any units.
+            let unit = Matrix2::from_diagonal(&Vector2::new(1.0, omega));
+            let per_unit = Matrix2::from_diagonal(&Vector2::new(1.0, 1.0 / omega));
+            let equations = per_unit * (Matrix2::identity() - matrix) * unit;
+            let Some(step) = equations.lu().solve(&(per_unit * miss)).map(|step| unit * step) else { return Ok(None) };
             if size(step) <= tolerance::ORBIT_CLOSURE.value * size(Vector2::new(state.position, state.velocity)) {
                 return Ok(Some(Periodic { state, matrix }));
             }

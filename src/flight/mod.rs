@@ -265,7 +265,12 @@ impl Flight {
         if valley.is_infinite() {
             // Downwards without end: reached sooner or later, unless it settles above.
             let guess = (start.position - level) / start.velocity;
-            high = peak + if guess.is_finite() && guess != 0.0 { guess.abs() } else { 1.0 };
+            let decay = match self.regime {
+                Regime::Monotone { fast, .. } if fast > 0.0 => 1.0 / fast,
+                // Without any force a follower at rest never falls.
+                _ => 1.0,
+            };
+            high = peak + if guess.is_finite() && guess != 0.0 { guess.abs() } else { decay };
             while at(high).position >= level {
                 high *= 2.0;
                 if !(high < f64::MAX / 2.0) {

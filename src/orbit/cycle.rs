@@ -283,6 +283,19 @@ pub fn lift_size(machine: &Machine) -> f64 {
     if span > 0.0 { span } else { machine.cam().top().abs().max(f64::MIN_POSITIVE) }
 }
 
+/// The machine's own speed, rpm: what it would turn at if the cam moved with the follower's own acceleration. `None` where there is
+/// no force that would give it one; of a damper alone it is `b/m`.
+///
+/// ```text
+/// omega^2 = k/m + |g + k (c_min - rest)/m| / (c_max - c_min)
+/// ```
+pub fn own_speed(machine: &Machine) -> Option<f64> {
+    let (flight, size) = (machine.flight(), lift_size(machine));
+    let pressed = flight.omega0_squared() + flight.force(machine.cam().top() - size).abs() / size;
+    let squared = if pressed > 0.0 { pressed } else { (2.0 * flight.zeta()).powi(2) };
+    (squared > 0.0 && squared.is_finite()).then(|| squared.sqrt() * 60.0 / TAU)
+}
+
 /// The length of a step: angles as they are, velocities over omega by `size`.
 fn relative_length(step: &DVector<f64>, size: f64) -> f64 {
     let square = |(index, entry): (usize, &f64)| (if index % 2 == 0 { *entry } else { *entry / size }).powi(2);

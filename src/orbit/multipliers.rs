@@ -22,15 +22,25 @@ impl Eigenvalue {
 /// Both eigenvalues of a 2x2 matrix, the one with the larger real part first, of a pair the one with positive imaginary
 /// part.
 ///
-/// Not a number where the matrix is not finite.
+/// Not a number where the matrix is not finite. The entries off the diagonal have units, and only their product is taken, so that
+/// the eigenvalues are the same in any:
+///
+/// ```text
+/// m = (a + d)/2,  h = (a - d)/2        m +- sqrt(h^2 + b c) = d + z, d - b c/z,  z = h +- sqrt(h^2 + b c), which does not cancel
+/// ```
 pub fn eigenvalues(matrix: &Matrix2<f64>) -> [Eigenvalue; 2] {
-    let unknown = Eigenvalue { re: f64::NAN, im: f64::NAN };
-    let finite = matrix.iter().all(|entry| entry.is_finite());
-    let matrix = faer::Mat::from_fn(2, 2, |row, column| matrix[(row, column)]);
-    let Some(values) = finite.then(|| matrix.eigenvalues().ok()).flatten() else {
-        return [unknown; 2];
-    };
-    let mut pair = [values[0], values[1]].map(|value| Eigenvalue { re: value.re, im: value.im });
-    pair.sort_by(|x, y| y.re.total_cmp(&x.re).then(y.im.total_cmp(&x.im)));
-    pair
+    let real = |re: f64| Eigenvalue { re, im: 0.0 };
+    if !matrix.iter().all(|entry| entry.is_finite()) {
+        return [real(f64::NAN); 2].map(|unknown| Eigenvalue { im: f64::NAN, ..unknown });
+    }
+    let (a, d, across) = (matrix[(0, 0)], matrix[(1, 1)], matrix[(0, 1)] * matrix[(1, 0)]);
+    let half = 0.5 * (a - d);
+    let square = half * half + across;
+    if square < 0.0 {
+        let (re, im) = (0.5 * (a + d), (-square).sqrt());
+        return [Eigenvalue { re, im }, Eigenvalue { re, im: -im }];
+    }
+    let z = half + square.sqrt().copysign(half);
+    let pair = if z == 0.0 { [a, d] } else { [d + z, d - across / z] };
+    [pair[0].max(pair[1]), pair[0].min(pair[1])].map(real)
 }

@@ -143,6 +143,7 @@ impl Machine {
             settled: false,
             last_impact: f64::NAN,
             known: Known { segment, angle: cam_angle, lift },
+            events: (0, 0),
         };
         if gap <= rounding {
             let relative_velocity = state.velocity - self.angular_velocity * lift.slope;
@@ -205,7 +206,7 @@ impl Machine {
         goal: Goal,
         observer: &mut impl Observer,
     ) -> Result<ControlFlow<()>, SimulateError> {
-        let (mut revolution, mut events, mut steps) = (motion.revolution, 0, 0_u32);
+        let mut steps = 0_u32;
         loop {
             // On the way in, and then from time to time.
             if steps.is_multiple_of(64) {
@@ -221,22 +222,30 @@ impl Machine {
                 if motion.contact { self.follow(motion, left, observer)? } else { self.fly(motion, left, observer)? };
             match step {
                 Step::Moved => {}
-                Step::Event => events += 1,
+                Step::Event => self.counted(motion)?,
                 Step::Reached => {
                     (motion.revolution, motion.cam_angle) = (goal.revolution, goal.cam_angle);
                     motion.segment = self.cam().segment_at(goal.cam_angle);
                     return Ok(ControlFlow::Continue(()));
                 }
                 Step::Broken => {
+                    self.counted(motion)?;
                     self.wrap(motion);
                     return Ok(ControlFlow::Break(()));
                 }
             }
-            if motion.revolution != revolution {
-                (revolution, events) = (motion.revolution, 0);
-            } else if events > Self::MOST_EVENTS {
-                return Err(SimulateError::NoProgress { events, revolution, cam_angle: motion.cam_angle });
-            }
+        }
+    }
+
+    /// Counts an event, unless there are more of them in one revolution than a run may have.
+    #[inline(always)]
+    fn counted(&self, motion: &mut Motion) -> Result<(), SimulateError> {
+        let Motion { revolution, cam_angle, events: (last, events), .. } = motion;
+        *events = if last == revolution { *events + 1 } else { 1 };
+        *last = *revolution;
+        match *events > Self::MOST_EVENTS {
+            true => Err(SimulateError::NoProgress { events: *events, revolution: *last, cam_angle: *cam_angle }),
+            false => Ok(()),
         }
     }
 

@@ -27,6 +27,8 @@ pub struct Motion {
     pub(super) settled: bool,
     pub(super) last_impact: f64,
     pub(super) known: Known,
+    /// The revolution of the last event, and the events in it so far, however often the run was split.
+    pub(super) events: (u64, u32),
 }
 
 /// An angle, rad, and a segment's lift there, evaluated and not summed: a settled motion's impacts are close to it.

@@ -104,8 +104,11 @@ pub struct End {
 
 /// Events that are kept before they are shown.
 const KEPT: usize = 4096;
-/// Revolutions between two looks at the progress.
+/// Revolutions between two looks at the progress, and events.
 const STRIDE: u64 = 4096;
+const LOOKED: u32 = 1024;
+/// Parts of a revolution that progress is told in.
+const PARTS: f64 = 1000.0;
 /// Blocks of revolutions whose exponents tell the error of their mean.
 const BLOCKS: u32 = 20;
 /// Revolutions without an impact after which none is waited for.
@@ -139,6 +142,11 @@ impl Simulation {
         let (end, drawn) = (first.after(revolutions), first.after(revolutions.saturating_sub(wanted.drawn)));
         let (mut motion, mut before_drawn, mut wall, mut last_impact) = (*first, *first, Duration::ZERO, 0);
         let ([mut impacts, mut sticks, mut releases], mut kept) = ([0; 3], Vec::new());
+        let told = |impacts: u64, revolution: u64, cam_angle: f64| {
+            let turned = revolution as f64 + (cam_angle - first.cam_angle) / TAU;
+            let done = if revolutions == u64::MAX { impacts as f64 } else { turned };
+            watch.at("", (done * PARTS) as u64, (total as f64 * PARTS) as u64);
+        };
         while impacts < most {
             let mut goal = earlier(end, motion.after(STRIDE));
             goal = wanted.strobe.map_or(goal, |angle| earlier(goal, motion.next(angle)));
@@ -146,6 +154,7 @@ impl Simulation {
                 goal = earlier(goal, drawn);
             }
             let (before, clock) = (impacts, Instant::now());
+            let mut events = 0_u32;
             let flow = machine.advance(&mut motion, goal, &mut |event: &Event| {
                 match event.kind {
                     EventKind::Impact => impacts += 1,
@@ -154,6 +163,11 @@ impl Simulation {
                 }
                 if wanted.events {
                     kept.push(*event);
+                }
+                events = events.wrapping_add(1);
+                // Thousands of impacts in one revolution take as long as thousands of revolutions.
+                if events.is_multiple_of(LOOKED) {
+                    told(impacts, event.revolution, event.cam_angle);
                 }
                 if kept.len() >= KEPT || impacts >= most { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             });
@@ -176,7 +190,7 @@ impl Simulation {
             if wanted.strobe == Some(goal.cam_angle) {
                 see(Sight::State(&motion))?;
             }
-            watch.at("", if revolutions == u64::MAX { impacts } else { motion.revolution }, total);
+            told(impacts, motion.revolution, motion.cam_angle);
             if goal == end {
                 break;
             }

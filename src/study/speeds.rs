@@ -2,12 +2,12 @@
 
 use serde::Serialize;
 
-use crate::cam::Cam;
 use crate::estimate::Estimate;
 use crate::known::Known;
 use crate::measured::{Likely, Measured};
 use crate::model::{Model, ModelError};
 use crate::orbit::branch::Event;
+use crate::orbit::cycle::own_speed;
 use crate::orbit::ending::{Ending, Kind};
 use crate::progress::Watch;
 use crate::simulate::{EventKind, Machine, SimulateError, angular_velocity};
@@ -195,22 +195,16 @@ impl Attractor {
 /// The range of speeds to look at where none is named, rpm: from below the speed at which the follower first leaves the cam up to
 /// the fastest of `[study]`, or twice the larger of that speed and the machine's own.
 pub fn usual_range(model: &Model) -> Result<[f64; 2], ModelError> {
-    let cam = Cam::new(model)?;
-    let follower = &model.follower;
-    let lift = [cam.lowest().value, cam.top()];
-    // omega^2 = k/m + (g + k (c_min - rest)/m) / (c_max - c_min): the spring's, with what presses at the lowest lift over the travel.
-    let spring = follower.stiffness / follower.mass;
-    let pressing = (follower.gravity + spring * (lift[0] - follower.rest_position)).max(0.0);
-    let own = (spring + pressing / (lift[1] - lift[0])).sqrt() * 60.0 / std::f64::consts::TAU;
-    let own = if own > 0.0 && own.is_finite() { own } else { FALLBACK };
-    let leaves = Contact::new(&cam, *follower).separation().speed();
+    let machine = machine(model, FALLBACK)?;
+    let own = own_speed(&machine).unwrap_or(FALLBACK);
+    let leaves = Contact::new(machine.cam(), model.follower).separation().speed();
     let leaves = Some(leaves).filter(|rpm| *rpm > 0.0 && rpm.is_finite());
     let low = two_digits(leaves.map_or(0.5 * own, |rpm| 0.8 * rpm), f64::floor);
     let high = two_digits(2.0 * leaves.map_or(own, |rpm| rpm.max(own)), f64::ceil);
     Ok(model.study.map_or([low, high], |study| [low.min(study.rpm_min), study.rpm_max]))
 }
 
-/// The own speed of a machine that has no scale of time, rpm: nothing presses its follower.
+/// The own speed of a machine that has no scale of time, rpm: no force is on its follower.
 const FALLBACK: f64 = 100.0;
 
 /// A speed as a person would choose it.

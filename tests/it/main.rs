@@ -60,6 +60,7 @@ mod random_orbits;
 mod resting;
 mod rounded;
 mod routes;
+mod scales;
 mod second_order;
 mod set;
 mod settled;

@@ -21,8 +21,8 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// All that a run shows, up to a number of events.
 #[derive(Default)]
-struct Log {
-    events: Vec<Event>,
+pub struct Log {
+    pub events: Vec<Event>,
     flights: Vec<(State, f64)>,
 }
 
@@ -41,7 +41,7 @@ impl Observer for Log {
 }
 
 /// The goal `turn`, rad, after the start.
-fn goal(motion: &Motion, turn: f64) -> Goal {
+pub fn goal(motion: &Motion, turn: f64) -> Goal {
     let angle = motion.cam_angle + turn % TAU;
     let revolution = motion.revolution + (turn / TAU).floor() as u64 + u64::from(angle >= TAU);
     Goal { revolution, cam_angle: if angle >= TAU { angle - TAU } else { angle } }
@@ -301,18 +301,18 @@ fn the_first_contact_is_the_first_over_many_segments() {
 }
 
 /// How far rounding has moved the follower, as the flow carries it on: an upper bound, since nothing cancels.
-struct Growth<'a> {
+pub struct Growth<'a> {
     one: Variation<'a>,
     /// m and m/s.
-    error: Vector2<f64>,
+    pub error: Vector2<f64>,
     scale: Vector2<f64>,
-    log: Log,
+    pub log: Log,
     /// The error before each event.
     at_events: Vec<Vector2<f64>>,
 }
 
 impl<'a> Growth<'a> {
-    fn new(case: &'a Case, motion: &Motion) -> Self {
+    pub fn new(case: &'a Case, motion: &Motion) -> Self {
         let position = case.machine.cam().top().abs() + motion.state.position.abs() + 10.0 * case.stroke;
         let scale = 64.0 * f64::EPSILON * Vector2::new(position, case.velocity() + motion.state.velocity.abs());
         let one = Variation::new(&case.machine, motion);
@@ -349,7 +349,7 @@ impl Observer for Growth<'_> {
 }
 
 /// How deep the follower would go below the cam if it were not hit, by a parabola.
-fn depth(machine: &Machine, event: &Event) -> f64 {
+pub fn depth(machine: &Machine, event: &Event) -> f64 {
     let (omega, relative) = (machine.angular_velocity(), event.velocity_before - event.cam_velocity);
     let lift = machine.cam().segments()[event.segment].law.lift(event.cam_angle);
     let state = State { position: event.position, velocity: event.velocity_before };
@@ -357,56 +357,78 @@ fn depth(machine: &Machine, event: &Event) -> f64 {
     relative * relative / (2.0 * curvature.abs())
 }
 
+/// The motion goes on.
+fn on(_: &Machine, motion: Motion) -> Result<Motion, TestCaseError> {
+    Ok(motion)
+}
+
+/// A motion starts anew from the numbers that tell where one is, as they are printed.
+fn anew(machine: &Machine, motion: Motion) -> Result<Motion, TestCaseError> {
+    let mut again = machine.resume(&motion).map_err(|error| TestCaseError::fail(format!("{error}: {motion:?}")))?;
+    again.revolution = motion.revolution;
+    Ok(again)
+}
+
 /// Split at two places, a run has the same events, as far as rounding lets it be told.
 #[test]
 #[ignore = "slow"]
 fn a_run_may_be_split_anywhere() {
-    check(2000, |case| {
-        let (machine, first) = (&case.machine, case.motion().unwrap());
-        let whole_turn = case.turns(6.0);
-        let (mut whole, mut growth) = (first, Growth::new(case, &first));
-        if let Err(error) = machine.advance(&mut whole, goal(&first, whole_turn), &mut growth) {
-            return only_no_progress(case, error);
-        }
-        let (mut split, mut log) = (first, Log::default());
-        // Places that the case decides on, without a second source of chance.
-        let share = (case.rpm * 1e3).fract();
-        for turn in [0.5 * share * whole_turn, (0.5 + 0.4 * share) * whole_turn] {
-            if machine.advance(&mut split, goal(&first, turn), &mut log).unwrap().is_break() {
-                return Ok(());
-            }
-        }
-        let flow = machine.advance(&mut split, goal(&first, whole_turn), &mut log).unwrap();
-        for ((one, two), error) in growth.log.events.iter().zip(&log.events).zip(&growth.at_events) {
-            if one.kind != EventKind::Impact || two.kind != EventKind::Impact {
-                return Ok(());
-            }
-            // The least of what the two would have dipped below the cam: less than the error, and it is a graze that one of
-            // them may have passed over.
-            let depth = [one, two].map(|event| depth(machine, event)).into_iter().fold(f64::INFINITY, f64::min);
-            let relative = one.velocity_before - one.cam_velocity;
-            if depth <= 100.0 * error[0] || error[1] > 1e-3 * relative.abs() {
-                return Ok(());
-            }
-            let turn = 2.0 * machine.angular_velocity() * error[0] / relative.abs();
-            let (one, two) = (one.turned_since(0.0), two.turned_since(0.0));
-            prop_assert!((one - two).abs() <= turn + ROUNDING * one.max(1.0), "{one} rad, {two} rad, {turn}");
-        }
-        if flow.is_break() || whole.contact {
+    check(2000, |case| splits(case, on));
+}
+
+/// So has one that is started again from the state that it has come to.
+#[test]
+#[ignore = "slow"]
+fn a_run_may_be_started_again_anywhere() {
+    check(2000, |case| splits(case, anew));
+}
+
+fn splits(case: &Case, goes_on: fn(&Machine, Motion) -> Result<Motion, TestCaseError>) -> TestCaseResult {
+    let (machine, first) = (&case.machine, case.motion().unwrap());
+    let whole_turn = case.turns(6.0);
+    let (mut whole, mut growth) = (first, Growth::new(case, &first));
+    if let Err(error) = machine.advance(&mut whole, goal(&first, whole_turn), &mut growth) {
+        return only_no_progress(case, error);
+    }
+    let (mut split, mut log) = (first, Log::default());
+    // Places that the case decides on, without a second source of chance.
+    let share = (case.rpm * 1e3).fract();
+    for turn in [0.5 * share * whole_turn, (0.5 + 0.4 * share) * whole_turn] {
+        if machine.advance(&mut split, goal(&first, turn), &mut log).unwrap().is_break() {
             return Ok(());
         }
-        let (one, two) = (&growth.log.events, &log.events);
-        if let Some(more) = one.get(two.len()).or(two.get(one.len())) {
-            let is_graze = more.kind == EventKind::Impact && depth(machine, more) <= 100.0 * growth.error[0];
-            prop_assert!(is_graze, "only one of the two has {more:?}");
+        split = goes_on(machine, split)?;
+    }
+    let flow = machine.advance(&mut split, goal(&first, whole_turn), &mut log).unwrap();
+    for ((one, two), error) in growth.log.events.iter().zip(&log.events).zip(&growth.at_events) {
+        if one.kind != EventKind::Impact || two.kind != EventKind::Impact {
             return Ok(());
         }
-        let apart = [split.state.position - whole.state.position, split.state.velocity - whole.state.velocity];
-        for (apart, error) in apart.into_iter().zip(growth.error.iter()) {
-            prop_assert!(apart.abs() <= *error, "{apart}, {error}: {whole:?} {split:?}");
+        // The least of what the two would have dipped below the cam: less than the error, and it is a graze that one of
+        // them may have passed over.
+        let depth = [one, two].map(|event| depth(machine, event)).into_iter().fold(f64::INFINITY, f64::min);
+        let relative = one.velocity_before - one.cam_velocity;
+        if depth <= 100.0 * error[0] || error[1] > 1e-3 * relative.abs() {
+            return Ok(());
         }
-        Ok(())
-    });
+        let turn = 2.0 * machine.angular_velocity() * error[0] / relative.abs();
+        let (one, two) = (one.turned_since(0.0), two.turned_since(0.0));
+        prop_assert!((one - two).abs() <= turn + ROUNDING * one.max(1.0), "{one} rad, {two} rad, {turn}");
+    }
+    if flow.is_break() || whole.contact {
+        return Ok(());
+    }
+    let (one, two) = (&growth.log.events, &log.events);
+    if let Some(more) = one.get(two.len()).or(two.get(one.len())) {
+        let is_graze = more.kind == EventKind::Impact && depth(machine, more) <= 100.0 * growth.error[0];
+        prop_assert!(is_graze, "only one of the two has {more:?}");
+        return Ok(());
+    }
+    let apart = [split.state.position - whole.state.position, split.state.velocity - whole.state.velocity];
+    for (apart, error) in apart.into_iter().zip(growth.error.iter()) {
+        prop_assert!(apart.abs() <= *error, "{apart}, {error}: {whole:?} {split:?}");
+    }
+    Ok(())
 }
 
 #[test]

@@ -28,8 +28,8 @@ pub struct Case {
     pub start: Start,
     /// From the lowest lift to the highest, m; never 0.
     pub stroke: f64,
-    text: String,
-    table: Option<String>,
+    pub text: String,
+    pub table: Option<String>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -251,7 +251,7 @@ fn folder() -> PathBuf {
     PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name)
 }
 
-fn model(text: &str, table: Option<&str>) -> Model {
+pub fn model(text: &str, table: Option<&str>) -> Model {
     let Some(table) = table else { return Model::parse("random.toml", text).unwrap() };
     let folder = folder();
     std::fs::create_dir_all(&folder).unwrap();
