@@ -40,10 +40,10 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         return Ok(Exit::Agrees);
     };
     let model = arguments.model.read(session)?;
-    let external = if arguments.no_external { External::LeftOut } else { External::Run };
-    let verified = links
-        .needs_verification(what, &model)?
-        .then(|| watched("", |watch| verify_watched(&model, external, watch)))
+    let needed = links.needs(what, &model)?;
+    let verified = needed
+        .map(|external| if arguments.no_external { External::LeftOut } else { external })
+        .map(|external| watched("", |watch| verify_watched(&model, external, watch)))
         .transpose()
         .map_err(|error| session.note(&format!("no values: {error}")));
     let found = verified.ok().flatten();

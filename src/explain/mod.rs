@@ -7,13 +7,14 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::cam::Side;
+use crate::cam::{Cam, Side};
 use crate::known::Known;
-use crate::model::{Model, Units, nearest};
+use crate::model::{Model, ModelError, Units, nearest};
 use crate::paper::checks::{self, Check};
-use crate::paper::{Claim, LedgerError, ledger, proofs};
+use crate::paper::{Claim, Context, LedgerError, ledger, proofs};
 use crate::report::quantities::{Quantity, quantities};
-use crate::study::verify::Verification;
+use crate::study::compare::{self, Values};
+use crate::study::verify::{External, Verification};
 use crate::tolerance::{self, Tolerance};
 
 const LINKS: &str = include_str!("links.toml");
@@ -30,6 +31,9 @@ pub struct Explanation {
     pub formula: Option<String>,
     /// The formula's label in the paper.
     pub label: Option<String>,
+    /// What else the label is of, where a label was asked for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub also: Vec<String>,
     /// What goes in, with its value for the model.
     pub inputs: Vec<Input>,
     /// Its value for the model, as documents have it; none where nothing was run, or it is no number of one corner impact.
@@ -38,6 +42,9 @@ pub struct Explanation {
     pub routes: BTreeMap<String, Value>,
     /// How it is known.
     pub known: Known,
+    /// Of a statement of the paper: what its check found.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub evidence: Option<String>,
     /// What evaluates it.
     pub code: Option<Code>,
     /// What proves it.
@@ -56,10 +63,12 @@ impl Explanation {
             sentence: sentence.into(),
             formula: None,
             label: None,
+            also: Vec::new(),
             inputs: Vec::new(),
             value: None,
             routes: BTreeMap::new(),
             known,
+            evidence: None,
             code: None,
             derivation: None,
             tests: Vec::new(),
@@ -118,6 +127,9 @@ pub enum ExplainError {
     /// The ledger does not.
     #[error(transparent)]
     Ledger(#[from] LedgerError),
+    /// The cam cannot be built.
+    #[error(transparent)]
+    Model(#[from] ModelError),
     /// What was found cannot be written as a document.
     #[error("document: {0}")]
     Document(#[from] serde_json::Error),
@@ -137,6 +149,8 @@ struct Link {
     sides: bool,
     #[serde(default)]
     also: Vec<String>,
+    #[serde(default)]
+    starts: Vec<String>,
     sentence: String,
     formula: Option<String>,
     #[serde(default)]
@@ -177,13 +191,20 @@ enum Target<'a> {
 /// What was found of a model, for values.
 pub struct Findings<'a> {
     model: &'a Model,
+    found: Option<&'a Verification>,
+    cam: Cam,
     document: Value,
+    /// By the names that `compare` has.
+    values: Values,
 }
 
 impl<'a> Findings<'a> {
     /// Of a model alone, or of its verified corner impact.
-    pub fn new(model: &'a Model, found: Option<&Verification>) -> Result<Self, ExplainError> {
-        Ok(Self { model, document: found.map(serde_json::to_value).transpose()?.unwrap_or_default() })
+    pub fn new(model: &'a Model, found: Option<&'a Verification>) -> Result<Self, ExplainError> {
+        let cam = Cam::new(model)?;
+        let values = compare::values(model, &cam, found);
+        let document = found.map(serde_json::to_value).transpose()?.unwrap_or_default();
+        Ok(Self { model, found, cam, document, values })
     }
 }
 
@@ -210,7 +231,7 @@ impl Links {
     }
 
     /// What a name stands for: a number by its name, with its side or its entry's indices or without; a label; a tolerance; a
-    /// claim by its id, or by what stands behind its kind; a field of the model.
+    /// claim by its id, or by what stands behind its kind; a field of the model; a name of `compare` by how it begins.
     fn find(&self, what: &str, model: &Model) -> Result<Target<'_>, ExplainError> {
         let side = [("_minus", Side::Minus), ("_plus", Side::Plus), ("-", Side::Minus), ("+", Side::Plus)]
             .into_iter()
@@ -240,16 +261,27 @@ impl Links {
         let whole = part.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end_matches('_');
         let is_part = whole.len() < what.len() && !whole.is_empty();
         let entry = || is_part.then(|| self.find(whole, model).ok()).flatten();
-        found.or_else(entry).ok_or_else(|| {
+        let condition = || self.find(what.strip_suffix(" holds")?, model).ok();
+        let by_start = || {
+            let length =
+                |link: &Link| link.starts.iter().filter(|start| what.starts_with(*start)).map(String::len).max();
+            let links = self.table.iter().filter_map(|link| Some((length(link)?, link)));
+            links.max_by_key(|(length, _)| *length).map(|(_, link)| Target::Link(link, None))
+        };
+        found.or_else(by_start).or_else(entry).or_else(condition).ok_or_else(|| {
             let names = self.names();
             let meant = nearest(what, names.iter().map(|(name, _)| name.as_str())).map(str::to_owned);
             ExplainError::Unknown { what: what.into(), meant }
         })
     }
 
-    /// Whether a name's value takes a verified corner impact.
-    pub fn needs_verification(&self, what: &str, model: &Model) -> Result<bool, ExplainError> {
-        Ok(matches!(self.find(what, model)?, Target::Link(link, _) if link.value.is_some()))
+    /// With which routes a corner impact must be verified for a name's value, if at all: the evidence for a statement needs none outside.
+    pub fn needs(&self, what: &str, model: &Model) -> Result<Option<External>, ExplainError> {
+        Ok(match self.find(what, model)? {
+            Target::Link(link, _) => link.value.as_ref().filter(|path| path.starts_with('/')).map(|_| External::Run),
+            Target::Claim(_) => Some(External::LeftOut),
+            Target::Tolerance(_) | Target::Field(_) => None,
+        })
     }
 
     /// What a name stands for, with the values of a model.
@@ -266,7 +298,10 @@ impl Links {
                 tests: tests(&["tests/it/tolerance.rs: every_row_has_its_reason".into()]),
                 ..plain(&format!("A tolerance: {}.", row.reason), Known::Read)
             },
-            Target::Claim(claim) => self.of_claim(claim, plain(&claim.statement, Known::Read)),
+            Target::Claim(claim) => Explanation {
+                evidence: evidence(claim, findings)?,
+                ..self.of_claim(claim, plain(&claim.statement, Known::Read))
+            },
             Target::Field(it) => {
                 let unit = if it.unit.is_empty() { String::new() } else { format!(", in {}", it.unit) };
                 Explanation {
@@ -286,7 +321,13 @@ impl Links {
 
     fn of_link(&self, link: &Link, side: Option<Side>, findings: &Findings<'_>, plain: Explanation) -> Explanation {
         let sided = |text: &str| side.map_or_else(|| text.to_owned(), |side| text.replace("{side}", &side.to_string()));
-        let at = |path: &str| findings.document.pointer(&sided(path)).filter(|value| !value.is_null()).cloned();
+        let at = |path: &str| match path.starts_with('/') {
+            true => findings.document.pointer(&sided(path)).filter(|value| !value.is_null()),
+            false => findings.values.get(path),
+        };
+        // What `compare` calls by this name is one number of those that the link is about.
+        let own = findings.values.get(&plain.what).filter(|_| sided(&format!("{}_{{side}}", link.name)) != plain.what);
+        let others = self.table.iter().filter(|other| other.name != link.name && other.labels.contains(&plain.what));
         let of_input = |name: &str| {
             let (base, side) = match name.rsplit_once('_') {
                 Some((base, side @ ("minus" | "plus"))) => (base, side),
@@ -311,8 +352,9 @@ impl Links {
         Explanation {
             formula: link.formula.clone(),
             label: link.labels.first().cloned(),
+            also: others.map(|other| other.name.clone()).collect(),
             inputs,
-            value: link.value.as_deref().map_or_else(|| of_input(&link.name), at),
+            value: own.or_else(|| at(link.value.as_deref()?)).cloned().or_else(|| of_input(&link.name)),
             known: if is_proved { Known::Proved } else { link.known },
             routes,
             code: code(&link.code),
@@ -373,6 +415,13 @@ impl Links {
             ..plain
         }
     }
+}
+
+/// What the check of a statement finds in the model, where its corner impact is known.
+fn evidence(claim: &Claim, findings: &Findings<'_>) -> Result<Option<String>, ExplainError> {
+    let Some((found, check)) = findings.found.zip(checks::find(&claim.id)) else { return Ok(None) };
+    let context = Context::new(findings.model, &findings.cam, found)?;
+    Ok(Some(check.run(&context).evidence))
 }
 
 /// A sentence with each unit, which stands in braces in metres, as a model has it.

@@ -31,12 +31,12 @@ impl Paged for Comparison {
         let (numbers, words): (Vec<&Change>, Vec<_>) = both.into_iter().partition(|change| change.difference.is_some());
         page.extend(kinds(&words));
         let (known, unknown): (Vec<&Change>, Vec<_>) = numbers.into_iter().partition(|change| change.error.is_some());
-        page.extend(moved("Numbers that moved, the most first", &known));
-        page.extend(moved("Numbers whose error is not known, the most first", &unknown));
+        page.extend(moved("Numbers that moved, speeds and then the most first", &known));
+        page.extend(moved("Numbers whose error is not known, speeds and then the most first", &unknown));
         if known.is_empty() && unknown.is_empty() {
             page.extend([Block::Gap, Block::paragraph("No number that both have moved by more than its error.")]);
         } else {
-            let note = "moved: what of the difference is more than its error, over the larger of both. times error: the difference \
+            let note = "moved: what of B less A is more than its error, over the larger of both. times error: the difference \
                         over its error, which is how far routes differ, or an estimate's own, and what a measured cam leaves open, \
                         of both models. All computed.";
             page.push(Block::Note(note.into()));
@@ -97,7 +97,8 @@ fn moved(title: &str, changes: &[&Change]) -> Vec<Block> {
     columns.extend(has_errors.then(|| number("times error")));
     let mut table = Table::new(title, columns);
     for change in changes {
-        let percent = change.relative.map_or("".into(), |part| words![(100.0 * part, Digits::Significant(3))]);
+        let sign = change.difference.map_or(1.0, f64::signum);
+        let percent = change.relative.map_or("".into(), |part| words![(sign * 100.0 * part, Digits::Significant(3))]);
         let mut cells =
             vec![change.quantity.as_str().into(), told(change.a.as_ref()), told(change.b.as_ref()), percent];
         cells.extend(has_errors.then(|| change.times_error.map_or("".into(), |times| words![(times, Digits::Size)])));

@@ -35,8 +35,15 @@ pub(crate) fn explained(it: &Explanation) -> Vec<Block> {
     if !it.inputs.is_empty() {
         say("from", Words::joined(inputs, ", "));
     }
-    if let (Some(found), true) = (&it.value, it.routes.is_empty()) {
+    if !it.also.is_empty() {
+        say("also", words!["the label is of these, too: ", it.also.join(", ")]);
+    }
+    let parts = it.value.as_ref().and_then(parts);
+    if let (Some(found), true, None) = (&it.value, it.routes.is_empty(), &parts) {
         say("value", value(found, Digits::Short));
+    }
+    if let Some(evidence) = &it.evidence {
+        say("evidence", evidence.into());
     }
     say("known", words![(Mark::Strong, it.known.to_string().as_str())]);
     for (name, words) in ["code", "proof", "tests"].into_iter().zip(behind(it)) {
@@ -48,6 +55,11 @@ pub(crate) fn explained(it: &Explanation) -> Vec<Block> {
         say("paper", paper.into());
     }
     let mut blocks = vec![Block::paragraph(&it.sentence), Block::Gap, Block::Entries(10, entries)];
+    if let (Some(parts), true) = (parts, it.routes.is_empty()) {
+        let mut table = Table::new("Its values", [Column::words("of"), Column::words("value")]);
+        parts.into_iter().for_each(|(of, found)| table.row([of, found]));
+        blocks.extend([Block::Gap, Block::Table(table)]);
+    }
     if !it.routes.is_empty() {
         let mut table = Table::new("By each route", [Column::words("route"), Column::words("value")]);
         for (route, found) in &it.routes {
@@ -66,6 +78,24 @@ pub(crate) fn behind(it: &Explanation) -> [Words; 3] {
     let proof = it.derivation.as_ref().map(|proof| words![code(&proof.script), ": ", &proof.statement]);
     let tests = Words::joined(it.tests.iter().map(|test| place(&test.file, &test.test)), ", ");
     [function.unwrap_or_default(), proof.unwrap_or_default(), tests]
+}
+
+/// What a value has several parts of, each with its name: fields, or the rows of a list; nothing of one that reads well in a line.
+fn parts(found: &Value) -> Option<Vec<(Words, Words)>> {
+    const NAMES: [&str; 4] = ["name", "quantity", "speeds", "compared"];
+    let of = |name: &str, found: &Value| (Words::from(words::spoken(name)), value(found, Digits::Short));
+    match found {
+        Value::Object(fields) if fields.len() > 2 => Some(fields.iter().map(|(name, found)| of(name, found)).collect()),
+        Value::Array(rows) if rows.iter().any(Value::is_object) => {
+            let row = |(index, row): (usize, &Value)| {
+                let mut row = row.clone();
+                let name = row.as_object_mut().and_then(|row| NAMES.iter().find_map(|name| row.remove(*name)));
+                of(name.as_ref().and_then(Value::as_str).unwrap_or(&(index + 1).to_string()), &row)
+            };
+            Some(rows.iter().enumerate().map(row).collect())
+        }
+        _ => None,
+    }
 }
 
 /// A value of a document.

@@ -8,6 +8,8 @@ use crate::labels::LABELS;
 use crate::page::papers;
 use corner_impact::explain::{Explanation, Findings, Links};
 use corner_impact::model::Model;
+use corner_impact::progress::Unwatched;
+use corner_impact::study::compare::compare;
 use corner_impact::study::verify::{External, verify};
 use serde_json::Value;
 
@@ -182,6 +184,37 @@ fn entries_and_symbols_lead_to_what_they_are_of() {
     }
     assert_eq!(links.explain("zeta", &findings).unwrap().value, Some(0.0.into()));
     assert!(links.explain("q_1", &findings).is_err() && links.explain("7", &findings).is_err());
+}
+
+/// Each of them with the value that it has there.
+#[test]
+fn every_name_that_compare_has_is_reached() {
+    let (links, model) = (Links::read().unwrap(), Model::built_in().unwrap());
+    let found = verify(&model, External::LeftOut).unwrap();
+    let findings = Findings::new(&model, Some(&found)).unwrap();
+    let text = file("models/osorio-2008.toml").replace("restitution = 0.8", "restitution = 0.7");
+    let other = Model::parse("other.toml", &text).unwrap();
+    let moved = compare(&model, &other, External::LeftOut, &Unwatched).unwrap();
+    assert!(moved.changes.len() > 90, "{}", moved.changes.len());
+    for change in moved.changes.iter().chain(&moved.unchanged).filter(|change| change.a.is_some()) {
+        let it = links.explain(&change.quantity, &findings).unwrap_or_else(|error| panic!("{error}"));
+        assert!(it.code.is_some(), "{}", change.quantity);
+        assert_eq!(it.value, change.a, "{}", change.quantity);
+    }
+}
+
+#[test]
+fn a_label_and_a_claim_tell_all() {
+    let (links, model) = (Links::read().unwrap(), Model::built_in().unwrap());
+    let found = verify(&model, External::LeftOut).unwrap();
+    let findings = Findings::new(&model, Some(&found)).unwrap();
+    assert_eq!(links.explain("eq:pwlf", &findings).unwrap().also, ["D"]);
+    assert!(links.explain("C", &findings).unwrap().also.is_empty());
+    let evidence = links.explain("odd count", &findings).unwrap().evidence.unwrap();
+    let claims = corner_impact(["claims", "--json"]);
+    let claims: Value = serde_json::from_str(&text(claims.stdout)).unwrap();
+    let claim = claims["claims"].as_array().unwrap().iter().find(|claim| claim["id"] == "odd count").unwrap();
+    assert_eq!(claim["evidence"].as_str().unwrap(), evidence);
 }
 
 #[test]

@@ -27,7 +27,7 @@ use crate::study::verify::{External, Verification, Whole, verify_watched};
 pub(super) type Numbers = BTreeMap<String, f64>;
 
 /// Numbers and words by their names.
-pub(super) type Values = BTreeMap<String, Value>;
+pub type Values = BTreeMap<String, Value>;
 
 /// As documents have it. What is flattened here has names for its fields, so that it can be one.
 fn document(found: &impl Serialize) -> Value {
@@ -254,6 +254,14 @@ impl Findings {
     pub fn names(&self) -> impl Iterator<Item = &String> {
         self.computed.keys().chain(self.besides.keys())
     }
+}
+
+/// What `compare` has of one model, in its own units: of its cam, and of its corner impact where that is known.
+pub(crate) fn values(model: &Model, cam: &Cam, found: Option<&Verification>) -> Values {
+    let at = found.map(|found| (&found.at, found.classification.is_ok()));
+    let mut all = found.map_or_else(Values::new, |found| flattened(&besides(found), &model.units));
+    all.extend(computed(model, cam, at, &model.units));
+    all
 }
 
 /// The numbers among values.

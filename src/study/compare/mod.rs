@@ -24,6 +24,7 @@ use crate::model::{Model, ModelError};
 use crate::progress::Watch;
 use crate::tolerance;
 use findings::{Findings, differences, numbers, open};
+pub(crate) use findings::{Values, values};
 
 /// Something of each of the two models.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -43,8 +44,8 @@ pub struct Comparison {
     pub verdict: Pair<Verdict>,
     /// The fields of the model files that differ.
     pub fields: Vec<FieldChange>,
-    /// What differs by more than its error: words, then numbers, those that moved most in parts of their size first, and those without an
-    /// error after those with one, then what one model has alone.
+    /// What differs by more than its error: words, then numbers, the speeds first and then those that moved most in parts of their size,
+    /// and those without an error after those with one, then what one model has alone.
     pub changes: Vec<Change>,
     /// What does not, in the order of the names.
     pub unchanged: Vec<Change>,
@@ -178,11 +179,15 @@ impl Change {
         self.relative.map_or(self.a != self.b, |relative| relative > 0.0)
     }
 
-    /// Words first, then numbers with an error, then those without, then what one model has alone; what moved most before what moved less.
-    fn rank(&self) -> (bool, bool, f64) {
+    /// Words first, then numbers with an error, then those without, then what one model has alone; of numbers the speeds in front that
+    /// everybody asks for, then what moved most before what moved less.
+    fn rank(&self) -> (bool, bool, bool, bool, f64) {
+        const SPEEDS: [&str; 2] = ["speed_rpm", "separation_speed_rpm"];
         let is_alone = self.a.is_none() || self.b.is_none();
         let relative = self.relative.unwrap_or(f64::INFINITY);
-        (is_alone, self.difference.is_some() && self.error.is_none(), -relative)
+        let is_unknown = self.difference.is_some() && self.error.is_none();
+        let is_speed = SPEEDS.contains(&self.quantity.as_str());
+        (is_alone, is_unknown, self.difference.is_some(), !is_speed, -relative)
     }
 }
 

@@ -12,8 +12,7 @@ use crate::study::design::contact::Separation;
 pub(crate) fn section(report: &Report) -> Result<Section, HtmlError> {
     let picture = report.overview.as_ref().map(|plate| plates::plate(plate, report)).transpose()?;
     let said = [Some(separates(report)), margin(report), impacts(report), coexistence(report), Some(proved(report))];
-    let blocks =
-        picture.map(Block::Markup).into_iter().chain([Block::List(said.into_iter().flatten().collect())]).collect();
+    let blocks = picture.into_iter().chain([Block::List(said.into_iter().flatten().collect())]).collect();
     Ok(Section { id: "answer", title: "In brief".into(), blocks })
 }
 

@@ -27,7 +27,7 @@ pub(crate) fn section(report: &Report) -> Result<Section, HtmlError> {
         [vec![Block::paragraph(words!["The cam: ", cam::lift(&sheet.cam), "."])], cam::parts(&sheet.cam)].concat();
     blocks.push(Block::About("lift".into(), cam));
     if let Some(plate) = report.plates.iter().find(|plate| plate.id == plates::CAM) {
-        blocks.push(Block::Markup(plates::plate(plate, report)?));
+        blocks.push(plates::plate(plate, report)?);
     }
     Ok(Section { id: "model", title: "The model".into(), blocks })
 }

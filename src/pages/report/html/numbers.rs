@@ -1,7 +1,5 @@
 //! What each number of the page stands for: what `explain` says, folded away here and shown where a number is clicked.
 
-use std::collections::BTreeSet;
-
 use maud::html;
 
 use crate::explain::{Findings, Links};
@@ -13,7 +11,7 @@ use crate::show::html::blocks;
 
 /// Of every name that the blocks of these sections stand for.
 pub(crate) fn section(report: &Report, sections: &[Section]) -> Result<Section, HtmlError> {
-    let mut names = BTreeSet::new();
+    let mut names: Vec<&str> = Vec::new();
     sections.iter().for_each(|section| of_blocks(&section.blocks, &mut names));
     let (links, found) = (Links::read()?, report.verification.as_ref().ok());
     let findings = Findings::new(&report.parsed, found)?;
@@ -33,7 +31,14 @@ pub(crate) fn section(report: &Report, sections: &[Section]) -> Result<Section, 
     Ok(Section { id: "numbers", title: words!["Where each number comes from"], blocks: parts })
 }
 
-fn of_blocks<'a>(blocks: &'a [Block], names: &mut BTreeSet<&'a str>) {
+/// In the order in which the page has them.
+fn named<'a>(name: &'a str, names: &mut Vec<&'a str>) {
+    if !names.contains(&name) {
+        names.push(name);
+    }
+}
+
+fn of_blocks<'a>(blocks: &'a [Block], names: &mut Vec<&'a str>) {
     for block in blocks {
         match block {
             Block::Title(words) | Block::Heading(words) | Block::Line(words) | Block::Paragraph(_, words) => {
@@ -46,7 +51,7 @@ fn of_blocks<'a>(blocks: &'a [Block], names: &mut BTreeSet<&'a str>) {
             }
             Block::List(items) => items.iter().for_each(|words| of_words(words, names)),
             Block::About(name, inside) => {
-                names.insert(name);
+                named(name, names);
                 of_blocks(inside, names);
             }
             Block::Details(_, inside) | Block::Full(inside) => of_blocks(inside, names),
@@ -55,10 +60,10 @@ fn of_blocks<'a>(blocks: &'a [Block], names: &mut BTreeSet<&'a str>) {
     }
 }
 
-fn of_words<'a>(words: &'a Words, names: &mut BTreeSet<&'a str>) {
+fn of_words<'a>(words: &'a Words, names: &mut Vec<&'a str>) {
     for span in &words.0 {
         if let Span::About(name, inside) = span {
-            names.insert(name);
+            named(name, names);
             of_words(inside, names);
         }
     }

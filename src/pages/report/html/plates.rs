@@ -19,12 +19,11 @@ pub(crate) fn section(report: &Report) -> Result<Option<Section>, HtmlError> {
         return Ok(None);
     }
     let drawn = there.into_iter().map(|plate| match plate.id {
-        CAM => Ok(elsewhere(plate, report)),
+        CAM => Ok(Block::Markup(elsewhere(plate, report))),
         _ => self::plate(plate, report),
     });
-    let drawn = drawn.collect::<Result<Vec<_>, _>>()?;
-    let body = html! { @for plate in &drawn { (plate) } };
-    Ok(Some(Section { id: "figures", title: "Figures".into(), blocks: vec![Block::Markup(body)] }))
+    let blocks = drawn.collect::<Result<Vec<_>, _>>()?;
+    Ok(Some(Section { id: "figures", title: "Figures".into(), blocks }))
 }
 
 fn elsewhere(plate: &Plate, report: &Report) -> Markup {
@@ -44,7 +43,7 @@ fn place(plate: &Plate, report: &Report) -> Markup {
 }
 
 /// A figure with its caption, the paper's figure that it redraws, and the command that makes it.
-pub(crate) fn plate(plate: &Plate, report: &Report) -> Result<Markup, HtmlError> {
+pub(crate) fn plate(plate: &Plate, report: &Report) -> Result<Block, HtmlError> {
     let (drawing, caption) = match &plate.drawn {
         Ok(Drawn { figure, caption }) => {
             let [broad, narrow] = [Look::default(), narrow()].map(|look| svg::render(figure, &look));
@@ -57,7 +56,8 @@ pub(crate) fn plate(plate: &Plate, report: &Report) -> Result<Markup, HtmlError>
         }
         Err(why) => (html! {}, html! { strong { (plate.title) } ". " span.absent { "Not drawn: " (why) "." } }),
     };
-    Ok(html! {
+    let figure = html! {
         figure id={ "plate-" (plate.id) } { (drawing) figcaption { (place(plate, report)) (caption) } }
-    })
+    };
+    Ok(Block::Markup(figure).about("figure_data"))
 }

@@ -14,7 +14,7 @@ use crate::show::words;
 pub(crate) fn section(report: &Report) -> Result<Option<Section>, HtmlError> {
     let Ok(through) = &report.through else { return Ok(None) };
     let blocks = vec![
-        Block::Markup(player(through, &report.units.spelled("m/s"))),
+        Block::Markup(player(through, &report.units.spelled("m/s"))).about("through"),
         Block::Details("The same as a table".into(), vec![Block::Table(table(through)).about("through")]),
         Block::Markup(data(through)?),
     ];

@@ -13,7 +13,7 @@ pub(crate) fn section(report: &Report) -> Result<Section, HtmlError> {
         Err(why) => vec![Block::paragraph(format!("Not known: {why}."))],
     };
     if let Some(picture) = &report.attractors {
-        blocks.push(Block::Markup(plate(picture, report)?));
+        blocks.push(plate(picture, report)?);
     }
     Ok(Section { id: "speeds", title: "At each speed".into(), blocks })
 }
