@@ -7,7 +7,7 @@ CARGO ?= cargo
 RELEASE := --release --locked
 
 .DEFAULT_GOAL := help
-.PHONY: help verify report quick test properties python slurm-test check derive derive-check theorems claims pictures review mutants bench bench-each bench-peers clean
+.PHONY: help verify report quick test properties python slurm-test check derive derive-check theorems claims pictures review mutants mutants-sample fuzz soak bench bench-each bench-peers clean
 
 # Python and its packages, once; again when the list of packages changes.
 PYTHON ?= python3
@@ -94,9 +94,28 @@ review: ## after a change to the model: look at each number that moved, accept o
 	@command -v cargo-insta >/dev/null || $(CARGO) install cargo-insta --locked
 	$(CARGO) insta test --release --review --test it -- snapshots:: work::
 
-mutants: ## change signs and factors in the formulas; each change must fail a test
-	@command -v cargo-mutants >/dev/null || $(CARGO) install cargo-mutants --locked
-	$(CARGO) mutants
+# In the same .venv: a grammar of Rust, to change the formulas by.
+MUTATION := .venv/.mutation
+$(MUTATION): $(VENV) tests/mutants/requirements.txt
+	.venv/bin/python -m pip install --quiet --disable-pip-version-check -r tests/mutants/requirements.txt
+	@touch $@
+
+mutants: $(MUTATION) ## change operators, conditions and values in the formulas, one at a time; each must fail a test (many hours)
+	.venv/bin/python tests/mutants/mutants.py
+
+mutants-sample: $(MUTATION) ## the same of ten of each stage, a hundredth of all, drawn by the commit (half an hour)
+	.venv/bin/python tests/mutants/mutants.py --sample 10 --seed $$(git rev-parse HEAD)
+
+# Each round looks at other cases; what fails is shown with its seed, and the round is the same whenever that is given.
+FUZZ_SECONDS ?= 600
+fuzz: $(VENV) ## random machines, flights, texts and command lines against laws, sixty digits and each other, for ten minutes
+	@seed=$$(date +%s); end=$$((seed + $(FUZZ_SECONDS))); while [ $$(date +%s) -lt $$end ]; do \
+	    seed=$$((seed + 1)); echo "PROPTEST_CASES=1000 PROPTEST_RNG_SEED=$$seed"; \
+	    PROPTEST_CASES=1000 PROPTEST_RNG_SEED=$$seed $(CARGO) test $(RELEASE) --quiet --test it -- --include-ignored --nocapture \
+	        fuzz:: || exit 1; done
+
+soak: ## a thousand million revolutions at 700 rpm, a hundred million at 670: memory, digits, halves (some minutes)
+	SOAK=all $(CARGO) test $(RELEASE) --test it -- --include-ignored --nocapture the_length_of_a_run
 
 bench: ## time a revolution: the scan-and-bisect baseline and the simulator side by side, interleaved
 	$(CARGO) bench --locked --quiet --bench table

@@ -72,7 +72,6 @@ print(held, count)
 #[test]
 #[ignore = "slow"]
 fn sine_and_cosine_are_held_at_a_million_angles() {
-    use std::io::Write;
     let spread = parts(900_000)
         .zip(parts(2_000_000).skip(1_000_000))
         .map(|(part, power)| (2.0 * part - 1.0) * 2.0_f64.powf(40.0 * power - 20.0));
@@ -90,15 +89,101 @@ fn sine_and_cosine_are_held_at_a_million_angles() {
             format!("{angle:?} {:?} {:?} {:?} {:?}\n", sin.low(), sin.high(), cos.low(), cos.high())
         })
         .collect();
+    assert!(lines.lines().count() > 1_000_000 - 100);
+    held(BY_200_BITS, &lines);
+}
+
+/// Asks a program of Python's how many lines hold what is true; all must.
+#[track_caller]
+fn held(by: &str, lines: &str) {
+    use std::io::Write;
     let python = std::path::Path::new(common::ROOT).join(".venv/bin/python");
     let piped = std::process::Stdio::piped;
-    let mut child =
-        std::process::Command::new(python).args(["-c", BY_200_BITS]).stdin(piped()).stdout(piped()).spawn().unwrap();
+    let mut child = std::process::Command::new(python).args(["-c", by]).stdin(piped()).stdout(piped()).spawn().unwrap();
     child.stdin.take().unwrap().write_all(lines.as_bytes()).unwrap();
     let said = common::text(child.wait_with_output().unwrap().stdout);
     let count = lines.lines().count();
-    assert!(count > 1_000_000 - 100);
     assert_eq!(said.trim(), format!("{count} {count}"));
+}
+
+/// The same of lines `operation a b c d low high`: ends of two ranges, and of what comes out. The true results are largest and smallest at
+/// the ends of ranges, and where a sine turns. No sum of two doubles has more bits than these.
+const OPERATIONS_EXACTLY: &str = "
+import sys
+from itertools import product
+from flint import arb, ctx
+operations = {'+': lambda x, y: x + y, '-': lambda x, y: x - y, '*': lambda x, y: x * y, '/': lambda x, y: x / y,
+    'squared': lambda x, _: x * x, 'sqrt': lambda x, _: x.sqrt(), 'sin': lambda x, _: x.sin(), 'cos': lambda x, _: x.cos()}
+held = count = 0
+for line in sys.stdin:
+    name, *numbers = line.split()
+    a, b, c, d, low, high = map(float, numbers)
+    ctx.prec = 2200 if name in '+-' else 300
+    ends = [arb(a), arb(b)]
+    if name == 'squared' and a < 0 < b:
+        ends.append(arb(0))
+    if name in ('sin', 'cos') and abs(b) < 1e9:
+        quarter = arb.pi() / 2
+        turns = range(int(a / 1.5707963267948966) - 1, min(int(b / 1.5707963267948966), int(a / 1.5707963267948966) + 6) + 2)
+        ends += [quarter * turn for turn in turns if quarter * turn > arb(a) and quarter * turn < arb(b)]
+    # Balls about -1 and 1, and about what is not beyond the largest double, do not say that they end there.
+    beyond = 1 if name in ('sin', 'cos') else float('inf')
+    low, high = (arb(end) if abs(end) < beyond else None for end in (low, high))
+    results = [operations[name](x, y) for x, y in product(ends, [arb(c), arb(d)])]
+    count += 1
+    held += all((low is None or low <= x) and (high is None or x <= high) for x in results)
+print(held, count)
+";
+
+/// Sums, products, quotients, squares, roots and circular functions of ranges of every size, from the smallest double to the largest.
+#[test]
+#[ignore = "slow"]
+fn operations_on_ranges_are_held() {
+    let every: Vec<f64> = parts(1_000_000).skip(7).step_by(7).collect();
+    let number = |index: usize| match index % 23 {
+        0 => [0.0, 5e-324, -5e-324, f64::MAX, f64::MIN, f64::MIN_POSITIVE, -1.0, 1e300][index / 23 % 8],
+        // Half of them of one size, so that they cancel.
+        turn => {
+            let size =
+                if turn < 12 { 2090.0 * every[index % 99_991] - 1070.0 } else { 8.0 * every[index % 99_989] - 4.0 };
+            (2.0 * every[index % 99_971] - 1.0) * 2.0_f64.powf(size.min(1023.0))
+        }
+    };
+    let range = |index: usize| {
+        let (one, two) = (number(index), number(index + 1));
+        // Points, ranges an ulp wide, ranges of any width.
+        let two = [one, one.next_up(), two, one + one.abs() * every[index]][index % 4].clamp(f64::MIN, f64::MAX);
+        Interval::new(one.min(two), one.max(two))
+    };
+    let mut lines = String::new();
+    for index in 0..10_000 {
+        let (x, y) = (range(2 * index), range(2 * index + 40_001));
+        // Within the largest angle that is looked at.
+        let angle = Interval::new(x.low().clamp(-1e6, 1e6), x.high().clamp(-1e6, 1e6));
+        let (sin, cos) = angle.sin_cos();
+        let root = Interval::new(x.low().abs().min(x.high().abs()), x.magnitude());
+        let divides = !y.holds_zero();
+        for (name, x, y, result, is_asked) in [
+            ("+", x, y, x + y, true),
+            ("-", x, y, x - y, true),
+            ("*", x, y, x * y, true),
+            ("/", x, y, x / y, divides),
+            ("+", x, y.low().into(), x + y.low(), true),
+            ("-", x, y.low().into(), x - y.low(), true),
+            ("*", x, y.low().into(), x * y.low(), true),
+            ("/", x, y.low().into(), x / y.low(), y.low() != 0.0),
+            ("squared", x, x, x.squared(), true),
+            ("sqrt", root, root, root.sqrt(), true),
+            ("sin", angle, angle, sin, true),
+            ("cos", angle, angle, cos, true),
+        ] {
+            let ends = [x.low(), x.high(), y.low(), y.high(), result.low(), result.high()];
+            if is_asked {
+                lines += &format!("{name} {}\n", ends.map(|end| format!("{end:?}")).join(" "));
+            }
+        }
+    }
+    held(OPERATIONS_EXACTLY, &lines);
 }
 
 /// A quotient is a product with a reciprocal, which is rounded first: one in a hundred needs room for both.
@@ -120,6 +205,14 @@ fn what_is_no_number_says_nothing() {
         assert_eq!(anything, all);
     }
     assert!(!all.is_positive() && !all.is_negative() && all.holds_zero());
+}
+
+#[test]
+fn an_end_belongs_to_an_interval() {
+    let (below, above) = (Interval::new(-1.0, 0.0), Interval::new(0.0, 1.0));
+    assert!(below.holds_zero() && above.holds_zero() && !below.is_negative() && !above.is_positive());
+    assert!(!below.is_inside(Interval::new(-2.0, 0.0)) && !below.is_inside(Interval::new(-1.0, 1.0)));
+    assert!(below.is_inside(Interval::new(-2.0, 1.0)));
 }
 
 /// Value and rate over a range of what falls at one rate up to a time, and at another from there on.

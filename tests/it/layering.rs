@@ -263,19 +263,25 @@ fn thresholds_stand_in_the_table() {
     }
 }
 
-/// What `make mutants` changes, and the tests that must see it, are there.
+/// `make mutants` looks into stages that are there, and what is explained of mutants that survive is about the source as it is.
 #[test]
 fn mutants_are_looked_for_where_there_is_something() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let settings = std::fs::read_to_string(root.join(".cargo/mutants.toml")).unwrap();
-    let quoted: Vec<&str> = settings.split('"').skip(1).step_by(2).collect();
-    let (files, filters): (Vec<&str>, Vec<&str>) = quoted.iter().partition(|word| word.ends_with(".rs"));
-    let modules: Vec<&str> = filters.iter().filter_map(|word| word.strip_suffix("::")).collect();
-    assert!(!files.is_empty() && !modules.is_empty(), "{settings}");
-    for file in files {
-        assert!(root.join(file).is_file(), "{file} is no file");
-    }
-    for module in modules {
-        assert!(root.join(format!("tests/it/{module}.rs")).is_file(), "{module} is no module of tests/it");
+    let text = |path: &str| std::fs::read_to_string(root.join(path)).unwrap();
+    let script = text("tests/mutants/mutants.py");
+    let (_, after) = script.split_once("STAGES = [").unwrap();
+    let named: Vec<&str> = after.split_once(']').unwrap().0.split('"').skip(1).step_by(2).collect();
+    let stages = stages(&root.join("src"));
+    assert!(named.len() > 10 && named.iter().all(|name| stages.iter().any(|stage| stage == name)), "{named:?}");
+    let explained: toml::Table = toml::from_str(&text("tests/mutants/explained.toml")).unwrap();
+    for mutant in explained["mutant"].as_array().unwrap() {
+        let of = |name: &str| mutant[name].as_str().unwrap_or_else(|| panic!("{mutant:?}: no {name}"));
+        let source = text(of("file")).split_whitespace().collect::<Vec<_>>().join(" ");
+        let function = of("function").rsplit("::").next().unwrap();
+        let is_there = source.split(&format!("fn {function}")).skip(1).any(|rest| {
+            let body = rest.split(" fn ").next().unwrap();
+            body.contains(of("code"))
+        });
+        assert!(is_there && !of("replacement").is_empty() && of("why").len() > 20, "{mutant:?}");
     }
 }

@@ -29,6 +29,7 @@ mod drawing;
 mod dynamics;
 mod explain;
 mod figures;
+mod fuzz;
 mod global;
 mod hostile;
 mod impact_map;

@@ -239,41 +239,33 @@ fn least_gap(machine: &Machine, angle: f64, start: State, end: f64) -> (f64, f64
     least
 }
 
-/// From the start and from every event on which a flight begins, a scan of that one flight finds nothing below the cam
-/// before the next impact, and nothing above it there.
-fn first_contacts(case: &Case) -> TestCaseResult {
-    let (machine, mut motion) = (&case.machine, case.motion().unwrap());
-    let omega = machine.angular_velocity();
-    let mut from = (!motion.contact).then_some((case.angle, motion.state));
-    let (mut turned, mut log) = (case.angle, Log::default());
-    let goal = goal(&motion, case.turns(3.0));
-    if let Err(error) = machine.advance(&mut motion, goal, &mut log) {
-        return only_no_progress(case, error);
-    }
+/// A flight of a run: from where, and up to which event, if not the end of the run.
+pub struct Leg {
+    pub angle: f64,
+    pub start: State,
+    /// The angle turned where it begins, rad.
+    pub turned: f64,
+    /// s.
+    pub time: f64,
+    pub event: Option<Event>,
+}
+
+/// The flights of a run over `turns`, from the start and from every event on which one begins.
+pub fn legs(case: &Case, mut motion: Motion, turns: f64) -> Result<Vec<Leg>, SimulateError> {
+    let machine = &case.machine;
+    let mut from = (!motion.contact).then_some((motion.cam_angle, motion.state));
+    let (mut turned, mut log) = (motion.cam_angle, Log::default());
+    let goal = goal(&motion, case.turns(turns));
+    let _ = machine.advance(&mut motion, goal, &mut log)?;
     let end = (motion.revolution as f64) * TAU + motion.cam_angle;
-    let ends = log.events.iter().map(|event| (event.turned_since(0.0), Some(event)));
+    let ends = log.events.iter().map(|event| (event.turned_since(0.0), Some(*event)));
     let broken = log.events.len() >= EVENTS;
-    for (until, event) in ends.chain((!broken).then_some((end, None))).take(60) {
+    let mut legs = Vec::new();
+    for (until, event) in ends.chain((!broken).then_some((end, None))) {
         // A stick after a chatter is where infinitely many flights end.
         let ends_flights = event.is_some_and(|event| event.kind == EventKind::Stick);
         if let Some((angle, start)) = from.filter(|_| !ends_flights) {
-            let time = (until - turned) / omega;
-            let (least, at) = least_gap(machine, angle, start, time);
-            let there = State { position: start.position, velocity: machine.flight().fly(start, at).1.velocity };
-            let blur = |time: f64, state: State| blur(case, (angle + omega * time) % TAU, state, time);
-            prop_assert!(
-                least >= -blur(at, there),
-                "{least} m after {at} s of {time} s from {start:?} at {angle}, {event:?}"
-            );
-            if event.is_some_and(|event| event.kind == EventKind::Impact) {
-                let end = machine.flight().fly(start, time).1;
-                // The angles of two events tell the time between them to the rounding of angles only.
-                let last = gap(machine, angle, start, time);
-                prop_assert!(
-                    last.abs() <= blur(time, end) + ROUNDING * end.velocity.abs() * turned / omega,
-                    "{last} m at the impact, after {time} s from {start:?} at {angle}: {event:?}"
-                );
-            }
+            legs.push(Leg { angle, start, turned, time: (until - turned) / machine.angular_velocity(), event });
         }
         let Some(event) = event else { break };
         turned = until;
@@ -283,6 +275,35 @@ fn first_contacts(case: &Case) -> TestCaseResult {
             EventKind::Release => Some((event.cam_angle, state)),
             _ => None,
         };
+    }
+    Ok(legs)
+}
+
+/// A scan of each flight finds nothing below the cam before the next impact, and nothing above it there.
+fn first_contacts(case: &Case) -> TestCaseResult {
+    let (machine, motion) = (&case.machine, case.motion().unwrap());
+    let omega = machine.angular_velocity();
+    let legs = match legs(case, motion, 3.0) {
+        Ok(legs) => legs,
+        Err(error) => return only_no_progress(case, error),
+    };
+    for Leg { angle, start, turned, time, event } in legs.into_iter().take(60) {
+        let (least, at) = least_gap(machine, angle, start, time);
+        let there = State { position: start.position, velocity: machine.flight().fly(start, at).1.velocity };
+        let blur = |time: f64, state: State| blur(case, (angle + omega * time) % TAU, state, time);
+        prop_assert!(
+            least >= -blur(at, there),
+            "{least} m after {at} s of {time} s from {start:?} at {angle}, {event:?}"
+        );
+        if event.is_some_and(|event| event.kind == EventKind::Impact) {
+            let end = machine.flight().fly(start, time).1;
+            // The angles of two events tell the time between them to the rounding of angles only.
+            let last = gap(machine, angle, start, time);
+            prop_assert!(
+                last.abs() <= blur(time, end) + ROUNDING * end.velocity.abs() * turned / omega,
+                "{last} m at the impact, after {time} s from {start:?} at {angle}: {event:?}"
+            );
+        }
     }
     Ok(())
 }

@@ -308,20 +308,35 @@ fn cases(law: impl Strategy<Value = Law>) -> impl Strategy<Value = Case> {
     })
 }
 
+/// Cams whose lift a page of formulas gives, for a reference that shares none.
+pub fn cases_of_few_laws() -> impl Strategy<Value = Case> {
+    cases(Union::new([arcs().boxed(), harmonic().boxed(), rectified_sine().boxed(), polynomial(2..6).boxed()]))
+}
+
+/// Machines of every law, for what is asked of their models.
+pub fn cases_of_every_law() -> impl Strategy<Value = Case> {
+    cases(law())
+}
+
 /// Asks `holds` of `count` cases, or as many as the environment says.
 #[track_caller]
 pub fn check(count: u32, holds: fn(&Case) -> TestCaseResult) {
-    check_over(law(), count, holds);
+    check_all(cases(law()), count, holds);
 }
 
 /// The same over cams of many segments.
 #[track_caller]
 pub fn check_many_segments(count: u32, holds: fn(&Case) -> TestCaseResult) {
-    check_over(law_of_many_segments(), count, holds);
+    check_all(cases(law_of_many_segments()), count, holds);
 }
 
+/// The same over anything.
 #[track_caller]
-fn check_over(law: impl Strategy<Value = Law>, count: u32, holds: fn(&Case) -> TestCaseResult) {
+pub fn check_all<Each: fmt::Debug + Send + 'static>(
+    each: impl Strategy<Value = Each>,
+    count: u32,
+    holds: fn(&Each) -> TestCaseResult,
+) {
     let is_set = |name: &str| std::env::var_os(name).is_some();
     let config = Config::default();
     let config = Config {
@@ -332,8 +347,8 @@ fn check_over(law: impl Strategy<Value = Law>, count: u32, holds: fn(&Case) -> T
         ..config
     };
     let in_time =
-        move |case: Case| common::ends(move || holds(&case)).unwrap_or_else(|why| Err(TestCaseError::fail(why)));
-    if let Err(error) = TestRunner::new(config).run(&cases(law), in_time) {
+        move |case: Each| common::ends(move || holds(&case)).unwrap_or_else(|why| Err(TestCaseError::fail(why)));
+    if let Err(error) = TestRunner::new(config).run(&each, in_time) {
         panic!("{error}");
     }
 }

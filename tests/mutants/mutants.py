@@ -1,0 +1,513 @@
+"""Changes operators, conditions and values in the formulas, one at a time; each change must fail a test.
+
+All changes are compiled at once, as mutant schemata (Untch, Offutt, Harrold 1993): where the source says `a + b`, a copy of it
+says "a + b, but a - b in mutant 17 and a * b in mutant 18", and an environment variable says which mutant a process is. One build
+then serves thousands of mutants, of which each takes as long as the tests that reach it, quickest first, up to the first
+that fails. A first run of each test notes what it reaches.
+
+    python tests/mutants/mutants.py                   every mutant of every stage: some hours
+    python tests/mutants/mutants.py simulate/again    those in files whose path has these words
+    python tests/mutants/mutants.py --sample 100 --seed 7      so many, drawn by the seed; or --seconds 60, as many as fit
+
+What survives and is not in explained.toml is listed, and the exit code is 1.
+"""
+
+import argparse
+import hashlib
+import json
+import os
+import random
+import re
+import resource
+import shutil
+import subprocess
+import sys
+import time
+import tomllib
+from collections import Counter, defaultdict
+from pathlib import Path
+
+import tree_sitter
+import tree_sitter_rust
+
+ROOT = Path(__file__).resolve().parents[2]
+COPY = ROOT / "target" / "mutants"
+STAGES = ["model", "cam", "flight", "impact", "simulate", "section", "orbit", "corner", "border_collision", "study", "interval"]
+
+ARITHMETIC = {"+": "-*", "-": "+/", "*": "+/", "/": "*%", "%": "/+"}
+COMPARISONS = {"==": ["!="], "!=": ["=="], "<": ["<=", ">"], ">": [">=", "<"], "<=": ["<", ">"], ">=": [">", "<"]}
+LOGICAL = ["left alone", "right alone"]
+VALUES = {"bool": ["true", "false"], "f64": ["0.0", "1.0", "-1.0"], "usize": ["0", "1"], "u32": ["0", "1"], "u64": ["0", "1"]}
+# Where nothing can be switched at run time, or where an operator is no arithmetic.
+PASSED_OVER = {"const_item", "static_item", "const_block", "attribute_item", "macro_invocation", "macro_definition", "type_arguments",
+               "array_type", "enum_variant", "string_literal", "line_comment", "block_comment", "use_declaration"}
+
+SWITCH = """
+/// Which mutant this process is: MUTANT is its number, or the name of a file for what is reached.
+pub mod mutants {
+    use std::sync::atomic::{AtomicU8, AtomicU32, Ordering::Relaxed};
+    const NONE: u32 = u32::MAX - 2;
+    const NOTES: u32 = u32::MAX - 1;
+    const UNKNOWN: u32 = u32::MAX;
+    static MUTANT: AtomicU32 = AtomicU32::new(UNKNOWN);
+    static SEEN: [AtomicU8; COUNT] = [const { AtomicU8::new(0) }; COUNT];
+
+    #[inline(always)]
+    pub fn is(id: u32) -> bool {
+        let now = MUTANT.load(Relaxed);
+        if now >= NOTES { note(id) }
+        now == id
+    }
+
+    #[inline(always)]
+    pub fn none(first: u32, count: u32) -> bool {
+        let now = MUTANT.load(Relaxed);
+        if now >= NOTES { note(first) }
+        now.wrapping_sub(first) >= count
+    }
+
+    #[cold]
+    fn note(id: u32) {
+        use std::io::Write;
+        let name = std::env::var("MUTANT").unwrap_or_default();
+        let now = name.parse().unwrap_or(if name.is_empty() { NONE } else { NOTES });
+        MUTANT.store(now, Relaxed);
+        if now == NOTES && SEEN[id as usize].swap(1, Relaxed) == 0 {
+            let file = std::fs::OpenOptions::new().create(true).append(true).open(name);
+            let _ = file.and_then(|mut file| file.write_all(format!("{id}\\n").as_bytes()));
+        }
+    }
+}
+"""
+
+
+def flat(text):
+    return " ".join(text.split())
+
+
+class Schema:
+    """A file with all its mutants in it."""
+
+    def __init__(self, path, parser, unviable, mutants):
+        self.path, self.unviable, self.mutants = path, unviable, mutants
+        self.source = (ROOT / path).read_bytes()
+        # In what is written: from where to where a mutant stands, to tell which of them the compiler complains about.
+        self.places = []
+        self.function = ""
+        self.repeated = Counter()
+        self.out, self.length = [], 0
+        self.node(parser.parse(self.source).root_node)
+        self.text = "".join(self.out)
+
+    def put(self, text):
+        self.out.append(text)
+        self.length += len(text.encode())
+
+    def said(self, node):
+        return self.source[node.start_byte : node.end_byte].decode()
+
+    def take(self, node, replacements):
+        """Those of the replacements that compile, each with its number."""
+        code, ids = flat(self.said(node)), []
+        for replacement in replacements:
+            mutant = {"file": str(self.path), "function": self.function, "code": code, "replacement": replacement}
+            key = json.dumps(mutant)
+            self.repeated[key] += 1
+            mutant |= {"line": node.start_point[0] + 1, "key": f"{key}#{self.repeated[key]}"}
+            if mutant["key"] not in self.unviable:
+                ids.append((len(self.mutants), replacement))
+                self.mutants.append(mutant)
+        return ids
+
+    def variants(self, ids, original, variant, end="}"):
+        """`if none { original } else if is(17) { .. }`: the original first, so that the compiler takes its type from it."""
+        first, count = ids[0][0], len(ids)
+        self.put(f"if crate::mutants::none({first}, {count}) {{ {original} }}")
+        for number, (id, replacement) in enumerate(ids):
+            begin = self.length
+            test = f" if crate::mutants::is({id})" if number + 1 < count else ""
+            self.put(f" else{test} {{ {variant(replacement)} }}")
+            self.places.append((begin, self.length, [id]))
+        self.put(end)
+
+    def wrapped(self, ids, write):
+        begin = self.length
+        write()
+        self.places.append((begin, self.length, [id for id, _ in ids]))
+
+    def children(self, node):
+        at = node.start_byte
+        for child in node.children:
+            self.put(self.source[at : child.start_byte].decode())
+            self.node(child)
+            at = child.end_byte
+        self.put(self.source[at : node.end_byte].decode())
+
+    def node(self, node):
+        if node.type in PASSED_OVER or node.type == "mod_item" and "tests" in self.said(node.child_by_field_name("name")):
+            return self.put(self.said(node))
+        write = getattr(self, node.type, None)
+        if not (write and write(node)):
+            self.children(node)
+
+    def function_item(self, node):
+        if any(child.type == "function_modifiers" and "const" in self.said(child) for child in node.children):
+            self.put(self.said(node))
+            return True
+        outer, name = self.function, self.said(node.child_by_field_name("name"))
+        owner, above = "", node.parent
+        while above is not None and not owner:
+            owner = self.said(above.child_by_field_name("type")).split("<")[0] + "::" if above.type == "impl_item" else ""
+            above = above.parent
+        self.function = owner + name
+        body, returned = node.child_by_field_name("body"), node.child_by_field_name("return_type")
+        kind = flat(self.said(returned)) if returned else "()"
+        values = VALUES.get(kind, [])
+        inner = re.fullmatch(r"Option<(.*)>", kind)
+        if inner:
+            values = ["None"] + [f"Some({value})" for value in VALUES.get(inner[1], [])]
+        elif kind.startswith("Vec<"):
+            values = ["Vec::new()"]
+        elif kind.startswith("Result<(),"):
+            values = ["Ok(())"]
+        elif kind == "String":
+            values = ["String::new()"]
+        at = node.start_byte
+        for child in node.children:
+            self.put(self.source[at : child.start_byte].decode())
+            at = child.end_byte
+            if child == body:
+                self.put("{")
+                # By the name alone: a body is too long to tell it by.
+                for id, value in self.take(node.child_by_field_name("name"), values):
+                    self.wrapped([(id, value)], lambda: self.put(f"if crate::mutants::is({id}) {{ return {value}; }}"))
+                self.put("{")
+                self.children(child)
+                self.put("}}")
+            else:
+                self.put(self.said(child))
+        self.function = outer
+        return True
+
+    def binary_expression(self, node):
+        left, right = node.child_by_field_name("left"), node.child_by_field_name("right")
+        operator = self.said(node.child_by_field_name("operator"))
+        replacements = ARITHMETIC.get(operator) or COMPARISONS.get(operator) or (operator in ("&&", "||") and LOGICAL)
+        if not replacements or "let_condition" in str(node):
+            return False
+        ids = self.take(node, list(replacements))
+        if not ids:
+            return False
+
+        def write():
+            if operator in ("&&", "||"):
+                on = {name: "false" for name in LOGICAL} | {name: f"crate::mutants::is({id})" for id, name in ids}
+                self.put("({ let l__: bool = ")
+                self.node(left)
+                sign = "!" if operator == "&&" else ""
+                self.put(f"; if {sign}l__ && !{on['right alone']} || {on['left alone']} {{ l__ }} else {{ ")
+                self.node(right)
+                self.put(" } })")
+                return
+            compares = operator in COMPARISONS
+            self.put("(match (&(" if compares else "(match (")
+            self.node(left)
+            self.put("), &(" if compares else ", ")
+            self.node(right)
+            self.put(")) { (l__, r__) => " if compares else ") { (l__, r__) => ")
+            star = "*" if compares else ""
+            self.variants(ids, f"{star}l__ {operator} {star}r__", lambda other: f"{star}l__ {other} {star}r__", "})")
+
+        self.wrapped(ids, write)
+        return True
+
+    def compound_assignment_expr(self, node):
+        left, right = node.child_by_field_name("left"), node.child_by_field_name("right")
+        operator = self.said(node.child_by_field_name("operator"))
+        ids = self.take(node, [other + "=" for other in ARITHMETIC.get(operator[:-1], "")])
+        if not ids:
+            return False
+
+        def write():
+            self.put("match ")
+            self.node(right)
+            self.put(" { r__ => ")
+            place = self.said(left)
+            self.variants(ids, f"{place} {operator} r__", lambda other: f"{place} {other} r__")
+
+        self.wrapped(ids, write)
+        return True
+
+    def unary_expression(self, node):
+        operator = node.children[0].type
+        ids = self.take(node, ["without it"]) if operator in "-!" else []
+        if not ids:
+            return False
+
+        def write():
+            self.put("(match ")
+            self.node(node.children[1])
+            self.put(" { x__ => ")
+            self.variants(ids, f"{operator}x__", lambda _: "x__", "})")
+
+        self.wrapped(ids, write)
+        return True
+
+    def match_block(self, node):
+        """An arm before one that takes everything may be left out."""
+        arms = [child for child in node.children if child.type == "match_arm"]
+        patterns = [arm.child_by_field_name("pattern") for arm in arms]
+        takes_all = bool(patterns) and self.said(patterns[-1]) == "_"
+        at = node.start_byte
+        for child in node.children:
+            self.put(self.source[at : child.start_byte].decode())
+            at = child.end_byte
+            if child.type != "match_arm":
+                self.put(self.said(child))
+                continue
+            pattern = child.child_by_field_name("pattern")
+            guard = pattern.child_by_field_name("condition")
+            value = child.child_by_field_name("value")
+            if guard is not None and ("let_condition" in str(guard) or guard.type == "let_chain"):
+                self.node(child)
+                continue
+            left_out = takes_all and child != arms[-1]
+            ids = dict((name, id) for id, name in self.take(pattern, (["arm left out"] if left_out else []) + (["guard left out"] if guard else [])))
+            begin = self.length
+            self.put(self.source[child.start_byte : (guard.start_byte if guard else pattern.end_byte)].decode())
+            conditions = []
+            if "arm left out" in ids:
+                conditions.append(f"!crate::mutants::is({ids['arm left out']})")
+            if conditions or guard:
+                self.put(("" if guard else " if ") + " && ".join(conditions + [""]) if guard else " if " + conditions[0])
+            if guard:
+                self.put(f"(crate::mutants::is({ids['guard left out']}) || (" if "guard left out" in ids else "((")
+                self.node(guard)
+                self.put("))")
+            if ids:
+                self.places.append((begin, self.length, list(ids.values())))
+            self.put(self.source[pattern.end_byte : value.start_byte].decode())
+            self.node(value)
+            self.put(self.source[value.end_byte : child.end_byte].decode())
+        self.put(self.source[at : node.end_byte].decode())
+        return True
+
+
+def sources():
+    for stage in STAGES:
+        one = ROOT / "src" / f"{stage}.rs"
+        yield from [one] if one.is_file() else sorted((ROOT / "src" / stage).rglob("*.rs"))
+
+
+def schemata(unviable):
+    parser = tree_sitter.Parser(tree_sitter.Language(tree_sitter_rust.language()))
+    mutants = []
+    return [Schema(path.relative_to(ROOT), parser, unviable, mutants) for path in sources()], mutants
+
+
+def changed(path, text):
+    if not path.exists() or path.read_text() != text:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+
+
+def copied():
+    """A copy of the package to write the mutants into; what its tests read stays where it is."""
+    COPY.mkdir(parents=True, exist_ok=True)
+    shutil.copytree(ROOT / "src", COPY / "src", dirs_exist_ok=True)
+    for name in subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True).stdout.split("\n"):
+        top = name.split("/")[0]
+        if top and top not in ("src", "Cargo.toml") and not (COPY / top).exists():
+            (COPY / top).symlink_to(ROOT / top)
+    if (ROOT / ".venv").exists() and not (COPY / ".venv").exists():
+        (COPY / ".venv").symlink_to(ROOT / ".venv")
+    # A mutant may be unreachable, unused or absurd: no lint.
+    manifest = re.sub(r"\[lints\.\w+\]\n(.+\n)*", "", (ROOT / "Cargo.toml").read_text())
+    # Unoptimised, simulations are slow; more than a little optimised, the compiler is.
+    manifest = manifest.replace("opt-level = 2                   # 3", "opt-level = 1                   # 3")
+    changed(COPY / "Cargo.toml", manifest)
+
+
+def cargo(words):
+    environment = os.environ | {"CARGO_TARGET_DIR": str(COPY / "target"), "CARGO_INCREMENTAL": "1", "RUSTFLAGS": os.environ.get("RUSTFLAGS", "")}
+    words = ["cargo", *words, "--release", "--locked", "--offline", "--message-format=json"]
+    done = subprocess.run(words, cwd=COPY, env=environment, capture_output=True, text=True)
+    return done, [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
+
+
+def built():
+    """The binary with the tests of all mutants that compile, and these."""
+    known = COPY / "unviable.json"
+    copied()
+    if not (COPY / "target" / "release").exists() and (ROOT / "target" / "release").exists():
+        # What the package needs is compiled already.
+        (COPY / "target" / "release").mkdir(parents=True)
+        for part in ("deps", "build", ".fingerprint"):
+            subprocess.run(["cp", "-al", ROOT / "target" / "release" / part, COPY / "target" / "release" / part], check=True)
+    unviable = set(json.loads(known.read_text())) if known.exists() else set()
+    while True:
+        files, mutants = schemata(unviable)
+        for file in files:
+            changed(COPY / file.path, file.text)
+        library = (ROOT / "src" / "lib.rs").read_text() + SWITCH.replace("COUNT", str(len(mutants)))
+        changed(COPY / "src" / "lib.rs", library)
+        done, messages = cargo(["check", "--lib"])
+        refused = set()
+        for message in messages:
+            message = message.get("message", {})
+            if message.get("level") != "error":
+                continue
+            for span in message["spans"]:
+                file = next((file for file in files if str(file.path) == span["file_name"]), None)
+                if not span["is_primary"] or file is None:
+                    continue
+                around = [place for place in file.places if place[0] <= span["byte_start"] and span["byte_end"] <= place[1]]
+                if around:
+                    refused.update(min(around, key=lambda place: place[1] - place[0])[2])
+                else:
+                    print("nowhere:", message["rendered"])
+        print(f"{len(mutants)} mutants, of which the compiler refuses {len(refused)}", flush=True)
+        if not refused:
+            if done.returncode:
+                sys.exit(done.stderr[-3000:])
+            break
+        unviable |= {mutants[id]["key"] for id in refused}
+        known.write_text(json.dumps(sorted(unviable)))
+    done, messages = cargo(["test", "--no-run", "--test", "it"])
+    if done.returncode:
+        sys.exit("\n".join(message["message"]["rendered"] for message in messages if message.get("message", {}).get("level") == "error") or done.stderr)
+    binary = next(message["executable"] for message in messages if message.get("executable") and message["target"]["name"] == "it")
+    return binary, mutants
+
+
+def limited():
+    resource.setrlimit(resource.RLIMIT_AS, (6 << 30, 6 << 30))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    os.setpgid(0, 0)
+
+
+def passes(binary, tests, seconds, mutant):
+    """Whether these tests pass; what takes far longer than it should does not."""
+    words = [binary, "--include-ignored", "--exact", "--test-threads=1", *tests]
+    run = subprocess.Popen(words, cwd=COPY, env=os.environ | {"MUTANT": mutant, "RAYON_NUM_THREADS": "1", "INSTA_UPDATE": "no"},
+                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, preexec_fn=limited)
+    try:
+        return run.wait(seconds) == 0
+    except subprocess.TimeoutExpired:
+        return False
+    finally:
+        try:
+            os.killpg(run.pid, 9)
+        except ProcessLookupError:
+            pass
+        run.wait()
+
+
+def reached(binary, longest):
+    """Of each test that passes in time: how long it takes, s, and which places it reaches."""
+    stamp = hashlib.sha256(Path(binary).read_bytes()).hexdigest()
+    kept = COPY / "reached.json"
+    if kept.exists() and (known := json.loads(kept.read_text()))["stamp"] == stamp:
+        return known["tests"]
+    listed = subprocess.run([binary, "--list"], cwd=COPY, capture_output=True, text=True, check=True).stdout
+    names = [line.removesuffix(": test") for line in listed.splitlines() if line.endswith(": test")]
+    tests, notes = {}, COPY / "notes"
+    for name in names:
+        notes.unlink(missing_ok=True)
+        begun = time.monotonic()
+        if passes(binary, [name], longest, str(notes)):
+            took = time.monotonic() - begun
+            tests[name] = [took, sorted({int(line) for line in notes.read_text().split()}) if notes.exists() else []]
+    print(f"{len(tests)} of {len(names)} tests pass within {longest} s each", flush=True)
+    kept.write_text(json.dumps({"stamp": stamp, "tests": tests}))
+    return tests
+
+
+def main():
+    ask = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    ask.add_argument("words", nargs="*", help="parts of the paths of the files to look at")
+    ask.add_argument("--sample", type=int, help="so many mutants of each stage")
+    ask.add_argument("--seed", default="", help="what draws them")
+    ask.add_argument("--seconds", type=float, default=float("inf"), help="begin no mutant after so long")
+    ask.add_argument("--longest", type=float, default=10.0, help="no test that takes longer, s")
+    ask.add_argument("--out", help="write what became of each, as JSON lines")
+    ask.add_argument("--list", action="store_true", help="list them, and run none")
+    asked = ask.parse_args()
+    begun = time.monotonic()
+    explained = [entry for entry in tomllib.loads((ROOT / "tests/mutants/explained.toml").read_text()).get("mutant", [])]
+    told = {tuple(entry[key] for key in ("file", "function", "code", "replacement")) for entry in explained}
+    name = lambda mutant: tuple(mutant[key] for key in ("file", "function", "code", "replacement"))
+
+    binary, mutants = built()
+    gone = told - {name(mutant) for mutant in mutants}
+    if gone:
+        sys.exit(f"explained, and there is no such mutant: {sorted(gone)}")
+    # A place notes the number of its first mutant.
+    chosen = [id for id, mutant in enumerate(mutants) if not asked.words or any(word in mutant["file"] for word in asked.words)]
+    stage = lambda id: Path(mutants[id]["file"]).parts[1].removesuffix(".rs")
+    in_all = Counter(map(stage, chosen))
+    random.Random(asked.seed).shuffle(chosen)
+    if asked.sample:
+        drawn = Counter()
+        chosen = [id for id in chosen if drawn.update([stage(id)]) or drawn[stage(id)] <= asked.sample]
+    if asked.list:
+        for id in sorted(chosen):
+            print(*name(mutants[id]), sep=" | ")
+        return
+    tests = reached(binary, asked.longest)
+    print(f"ready after {time.monotonic() - begun:.0f} s", flush=True)
+
+    places = defaultdict(list)
+    for test, (took, noted) in tests.items():
+        for id in noted:
+            places[id].append(test)
+    place = {}
+    for id, mutant in enumerate(mutants):
+        place[id] = id if id in places or id == 0 else place[id - 1] if same_place(mutants[id - 1], mutant) else id
+
+    began, tried, caught, known, survivors = time.monotonic(), Counter(), Counter(), Counter(), []
+    kills = Counter()
+    out = open(asked.out, "a") if asked.out else None
+    for id in chosen:
+        if time.monotonic() - began > asked.seconds:
+            break
+        mutant = mutants[id]
+        tried[stage(id)] += 1
+        if name(mutant) in told:
+            known[stage(id)] += 1
+            continue
+        # What has caught others of this file, then what is quick.
+        reach = sorted(places[place[id]], key=lambda test: tests[test][0] / (1 + kills[mutant["file"], test]))
+        is_caught, batch, most = False, [], 0.5
+        while reach and not is_caught:
+            batch = [reach.pop(0)]
+            total = tests[batch[0]][0]
+            while reach and total + tests[reach[0]][0] < most:
+                batch.append(reach.pop(0))
+                total += tests[batch[-1]][0]
+            most *= 2
+            if not passes(binary, batch, 5 + 8 * total, str(id)):
+                is_caught = True
+                if len(batch) == 1:
+                    kills[mutant["file"], batch[0]] += 1
+        if is_caught:
+            caught[stage(id)] += 1
+        else:
+            survivors.append(id)
+            print("survives:", f"{mutant['file']}:{mutant['line']}", mutant["function"], "|", mutant["code"], "|", mutant["replacement"],
+                  "" if places[place[id]] else "(reached by no test)", flush=True)
+        if out:
+            print(json.dumps(mutant | {"caught": is_caught}), file=out, flush=True)
+    for part in in_all:
+        print(f"{part}: {in_all[part]} mutants, {tried[part]} tried, {caught[part]} caught, {known[part]} explained, "
+              f"{tried[part] - caught[part] - known[part]} survive")
+    print(f"{sum(tried.values())} mutants in {time.monotonic() - began:.0f} s")
+    sys.exit(bool(survivors))
+
+
+def same_place(one, other):
+    return all(one[key] == other[key] for key in ("file", "function", "code", "line"))
+
+
+if __name__ == "__main__":
+    main()
