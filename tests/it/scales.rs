@@ -182,7 +182,9 @@ fn unit(place: &str) -> Option<Scales> {
 /// Names of what is not the machine's: how long it took, sentences, and what routes are compared by, which are the decimals of the
 /// paper's own units.
 fn is_left_out(place: &str) -> bool {
-    ["wall_s", "reason", "source", ".agreement", ".skipped", ".failed"].iter().any(|name| place.contains(name))
+    ["wall_s", "reason", "meaning", ".rounded_corner", "source", ".agreement", ".skipped", ".failed"]
+        .iter()
+        .any(|name| place.contains(name))
 }
 
 /// Whether a number is another one times a power of two; where the name tells the unit, times the right one.
