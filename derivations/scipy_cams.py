@@ -260,6 +260,7 @@ class Cam:
             self.base = max(abs(self.law(start)[0]) for start in self.starts)
         else:
             raise CannotCheck(f"no cam law {numbers.get('law')!r} can be checked")
+        self.is_rounded = False
         self.round(0.5 * math.radians(numbers.get("corner_rounding_deg", 0)))
 
     def round(self, half):
@@ -278,6 +279,7 @@ class Cam:
                 laws.append(blend)
         order = np.argsort(starts)
         self.starts, self.circles = [starts[index] for index in order], [laws[index] for index in order]
+        self.is_rounded = True
 
     def arcs(self, numbers):
         base, flank, nose = (number(numbers, key, least=0.0) for key in ("base_radius", "flank_radius", "nose_radius"))
@@ -311,7 +313,8 @@ class Cam:
 
     def corners(self):
         """(angle, circle before, circle after, angle to the nearest other boundary) of each jump of the curvature."""
-        for i, theta in enumerate(self.starts):
+        # Of a short polynomial the rounding would look like a jump.
+        for i, theta in enumerate([] if self.is_rounded else self.starts):
             before, after = self.circles[i - 1], self.circles[i]
             if abs(after.law(theta)[1] - before.law(theta)[1]) > NOISE * self.base:
                 continue

@@ -337,8 +337,9 @@ impl<'a, T: Tally> Window<'a, T> {
     fn march(&self, whole: f64) -> Passage {
         /// Longer than any segment of a machine whose cam keeps pace with its spring.
         const SWINGS: f64 = 4.0;
-        let rate = (self.flight.omega0_squared() + self.flight.zeta().powi(2)).sqrt();
-        let end = whole.min(SWINGS * TAU / rate);
+        // ws^2 = w0^2 - zeta^2; damped beyond that it does not swing.
+        let swinging = self.flight.omega0_squared() - self.flight.zeta().powi(2);
+        let end = if swinging > 0.0 { whole.min(SWINGS * TAU / swinging.sqrt()) } else { whole };
         self.tally.add(0, 0, 1);
         let omega = self.omega;
         let gap_at = |time: f64| {

@@ -91,8 +91,8 @@ const QUICK: [&str; 7] = [
 const SLOW: [&str; 7] = [
     "orbit --rpm {1} --json",
     "orbit --rpm {1} --revolutions 2 --json",
+    // The speeds that these three search or run at are a grid in rpm.
     "locate --rpm {0.99}:{1.01} --json",
-    // The speeds that it runs are round numbers of rpm.
     "speeds --rpm {0.95}:{1.05} --speeds 2 --starts 6 --json",
     "continue --from-rpm {1} --parameter rpm={0.95}:{1.05} --step 0.1 --out -",
     "curve --rpm {0.99}:{1.01} --parameter restitution=0.4:0.6 --step 0.1 --out -",
@@ -228,7 +228,8 @@ fn in_any_units(case: &Case, questions: &[&'static str], patience: Duration) -> 
     for question in questions {
         let one = asked(case, question, NONE, patience);
         for scales in SCALED {
-            let scales = if question.starts_with("speeds") { [scales[0], scales[1], 0] } else { scales };
+            let of_its_own_speeds = ["speeds", "locate", "curve"].iter().any(|command| question.starts_with(command));
+            let scales = if of_its_own_speeds { [scales[0], scales[1], 0] } else { scales };
             // A speed that is refused is one in no unit.
             if !(case.rpm * 1.25 * factor([0, 0, -1], scales) <= 1e9) {
                 continue;

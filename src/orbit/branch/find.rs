@@ -13,7 +13,6 @@ use rayon::prelude::*;
 use super::{Branch, BranchPoint, Following, Kind, doubled::doubled};
 use crate::cam::Cam;
 use crate::model::Model;
-use crate::orbit::cycle::own_speed;
 use crate::orbit::{Family, FamilyError, OrbitError, Parameter, PeriodicOrbit, Search, search};
 use crate::progress::{Unwatched, Watch};
 use crate::simulate::{Machine, SimulateError, angular_velocity};
@@ -80,33 +79,14 @@ pub struct MetPoints {
     pub failed: Option<OrbitError>,
 }
 
-/// The grid of speeds of a machine: the same for every range of them, and of its own scale.
-#[derive(Clone, Copy, Debug)]
-struct Speeds {
-    /// The speed, rpm, of which all are multiples.
-    own: f64,
+/// Where the step `index` of the grid begins, rpm; its speed is half-way to the next one.
+fn grid(index: f64) -> f64 {
+    GRID_RATIO.powf(index)
 }
 
-impl Speeds {
-    fn of(machine: &Machine) -> Self {
-        // Without any force the motions of all speeds are alike.
-        Self { own: own_speed(machine).unwrap_or(1.0) }
-    }
-
-    /// Where a step begins, rpm; its speed is half-way to the next one.
-    fn at(self, step: f64) -> f64 {
-        self.own * GRID_RATIO.powf(step)
-    }
-
-    /// The step that a speed, rpm, is in.
-    fn step(self, rpm: f64) -> i32 {
-        ((rpm / self.own).ln() / GRID_RATIO.ln()).floor() as i32
-    }
-
-    /// The cell that a speed, rpm, is in.
-    fn cell(self, rpm: f64) -> i32 {
-        self.step(rpm).div_euclid(CELL)
-    }
+/// The step of the grid that a speed, rpm, is in.
+fn step_at(rpm: f64) -> i32 {
+    (rpm.ln() / GRID_RATIO.ln()).floor() as i32
 }
 
 /// What a search at one speed came to.
@@ -115,19 +95,17 @@ type Orbits = Result<Vec<PeriodicOrbit>, SimulateError>;
 /// What searches came to at speeds, rpm, of the grid.
 struct Searched<'a> {
     model: &'a Model,
-    grid: Speeds,
     speeds: Vec<f64>,
     /// What was looked for, each over twice as many revolutions as the one before it, and what was found at each speed.
     orbits: Vec<(Search, Vec<Orbits>)>,
 }
 
 impl<'a> Searched<'a> {
-    /// At the speeds of the steps that `steps` takes from the grid, for the orbits that are wanted and those that they may have branched off from: of half as many
+    /// At the speeds in `steps`, for the orbits that are wanted and those that they may have branched off from: of half as many
     /// revolutions, again and again.
-    fn at(model: &'a Model, steps: impl FnOnce(Speeds) -> Range<i32>, wanted: &Search) -> Result<Self, FamilyError> {
+    fn at(model: &'a Model, steps: Range<i32>, wanted: &Search) -> Result<Self, FamilyError> {
         let machine = Machine::new(Cam::new(model)?, &model.follower, angular_velocity(1.0));
-        let grid = Speeds::of(&machine);
-        let speeds: Vec<f64> = steps(grid).map(|step| grid.at(f64::from(step) + 0.5)).collect();
+        let speeds: Vec<f64> = steps.map(|step| grid(f64::from(step) + 0.5)).collect();
         let at = |wanted: Search| {
             let searches = speeds.par_iter().map(|rpm| search(&machine.at_speed(angular_velocity(*rpm)), &wanted));
             (wanted, searches.collect())
@@ -136,7 +114,7 @@ impl<'a> Searched<'a> {
         let halved =
             (1..=halvings).rev().map(|times| Search { revolutions: wanted.revolutions >> times, impacts: None });
         let orbits = halved.chain([*wanted]).map(at).collect();
-        Ok(Self { model, grid, speeds, orbits })
+        Ok(Self { model, speeds, orbits })
     }
 
     /// The branches of the wanted orbits between two speeds, rpm.
@@ -173,7 +151,7 @@ impl<'a> Searched<'a> {
 ///
 /// Found by searches at the speeds of the grid that are in the range: a branch that none of these meets is missing.
 pub fn find_branches(model: &Model, range: [f64; 2], wanted: &Search) -> Result<FoundBranches, FamilyError> {
-    Ok(Searched::at(model, |grid| grid.step(range[0])..grid.step(range[1]) + 1, wanted)?.branches(range))
+    Ok(Searched::at(model, step_at(range[0])..step_at(range[1]) + 1, wanted)?.branches(range))
 }
 
 /// The special points of some kinds between two speeds, rpm, of orbits of `wanted.revolutions` that have `wanted.impacts` where
@@ -184,17 +162,16 @@ pub fn special_points(
     wanted: &Search,
     is_wanted: impl Fn(Kind) -> bool + Sync,
 ) -> Result<MetPoints, FamilyError> {
-    let window = |first: i32, last: i32| CELL * first - MARGIN..CELL * (last + 1) + MARGIN;
-    let searched = Searched::at(model, |grid| window(grid.cell(range[0]), grid.cell(range[1])), wanted)?;
-    let grid = searched.grid;
+    let [first, last] = range.map(|rpm| step_at(rpm).div_euclid(CELL));
+    let searched = Searched::at(model, CELL * first - MARGIN..CELL * (last + 1) + MARGIN, wanted)?;
     let of_cell = |cell: i32| {
-        let Range { start, end } = window(cell, cell);
-        let found = searched.branches([start, end].map(|step| grid.at(f64::from(step))));
+        let window = [CELL * cell - MARGIN, CELL * (cell + 1) + MARGIN];
+        let found = searched.branches(window.map(|step| grid(f64::from(step))));
         let mut points = points_on(&found.branches, &is_wanted);
-        points.retain(|point| grid.cell(point.rpm) == cell);
+        points.retain(|point| step_at(point.rpm).div_euclid(CELL) == cell);
         (points, found)
     };
-    let cells: Vec<_> = (grid.cell(range[0])..=grid.cell(range[1])).into_par_iter().map(of_cell).collect();
+    let cells: Vec<_> = (first..=last).into_par_iter().map(of_cell).collect();
     let mut all = MetPoints { speeds: searched.speeds, ..MetPoints::default() };
     for (points, found) in cells {
         all.points.extend(points.into_iter().filter(|point| range[0] <= point.rpm && point.rpm <= range[1]));
