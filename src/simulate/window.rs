@@ -7,7 +7,6 @@
 //! the segment. Windows of any other shape go to [`super::contact`], which marches.
 
 use std::cell::Cell;
-use std::f64::consts::TAU;
 
 use super::contact::{self, Gap, Outcome};
 use super::{Machine, Motion, Work};
@@ -332,14 +331,9 @@ impl<'a, T: Tally> Window<'a, T> {
         }
     }
 
-    /// Any shape of gap; over no more than a few swings of the follower, as bounds over thousands of them would say nothing.
+    /// Any shape of gap.
     #[cold]
-    fn march(&self, whole: f64) -> Passage {
-        /// Longer than any segment of a machine whose cam keeps pace with its spring.
-        const SWINGS: f64 = 4.0;
-        // ws^2 = w0^2 - zeta^2; damped beyond that it does not swing.
-        let swinging = self.flight.omega0_squared() - self.flight.zeta().powi(2);
-        let end = if swinging > 0.0 { whole.min(SWINGS * TAU / swinging.sqrt()) } else { whole };
+    fn march(&self, end: f64) -> Passage {
         self.tally.add(0, 0, 1);
         let omega = self.omega;
         let gap_at = |time: f64| {
@@ -356,7 +350,6 @@ impl<'a, T: Tally> Window<'a, T> {
             self.flight.jerk_bound(state) + omega.powi(3) * self.segment.law.third_bound(angle, angle + omega * reach)
         };
         match contact::first_contact(gap_at, third_bound, end) {
-            Outcome::None if end < whole => self.advanced(end),
             Outcome::None => self.free(end),
             Outcome::Contact(time) => {
                 let now = if time == 0.0 { self.at_start() } else { self.at(time) };

@@ -21,6 +21,13 @@ pub enum Held {
 pub const ELSEWHERE: &[(&str, &str, Held)] = &[
     ("cargo install --path .", "compiles the program once more", Held::Landing),
     ("make properties", "takes an hour", Held::Target),
+    (
+        "make fuzz",
+        "looks at new cases for ten minutes; tests/it/fuzz.rs looks at the same ones each time",
+        Held::Target,
+    ),
+    ("make mutants-sample", "takes half an hour", Held::Target),
+    ("make soak", "takes minutes", Held::Target),
     ("make check", "compiles everything once more", Held::Landing),
     ("make review", "asks a person about each snapshot; tests/it/snapshots.rs holds them", Held::Target),
     ("make quick", "runs a part of what `make test` does", Held::Target),
