@@ -166,7 +166,7 @@ fn crossing(map: &LocalMap) -> (f64, f64) {
 }
 
 /// The determinant of two rows, over its terms.
-pub(super) fn seen(first: RowVector2<f64>, second: RowVector2<f64>) -> (f64, f64) {
+fn seen(first: RowVector2<f64>, second: RowVector2<f64>) -> (f64, f64) {
     let terms = [first[0] * second[1], -first[1] * second[0]];
     (terms[0] + terms[1], (terms[0] + terms[1]).abs() / (terms[0].abs() + terms[1].abs()))
 }

@@ -6,7 +6,6 @@
 use nalgebra::{Matrix2, RowVector2, Vector2};
 
 use super::Degenerate;
-use super::conditions::seen;
 use crate::corner::CornerMap;
 use crate::corner::map::rows;
 use crate::tolerance;
@@ -51,8 +50,9 @@ pub fn normal_form(map: &CornerMap) -> Result<NormalForm, Degenerate> {
     let observability = Matrix2::from_rows(&[c, c * a]);
     let triangle = Matrix2::new(1.0, 0.0, -a.trace(), 1.0);
     let w = triangle * observability;
-    let (determinant, of_terms) = seen(c, c * a);
-    let inverse = w.try_inverse().filter(|_| of_terms > tolerance::DEGENERATE.value);
+    let size = observability.row(0).norm() * observability.row(1).norm();
+    let determinant = observability.determinant();
+    let inverse = w.try_inverse().filter(|_| determinant.abs() > tolerance::DEGENERATE.value * size);
     let Some(inverse) = inverse else {
         return Err(Degenerate::Vanishes { what: "the determinant of [C; C A-]", value: determinant });
     };
