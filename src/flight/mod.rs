@@ -271,11 +271,13 @@ impl Flight {
                 _ => 1.0,
             };
             high = peak + if guess.is_finite() && guess != 0.0 { guess.abs() } else { decay };
-            while at(high).position >= level {
-                high *= 2.0;
-                if !(high < f64::MAX / 2.0) {
+            // It has settled where its velocity has died out, however small or large a unit of time is.
+            while !(at(high).position < level) {
+                let State { position, velocity } = at(high);
+                if velocity == 0.0 || !position.is_finite() {
                     return None;
                 }
+                high *= 2.0;
             }
         } else if at(valley).position >= level {
             // Later valleys are shallower.
