@@ -1,7 +1,7 @@
 //! Runs one script of `derivations/`: JSON in, JSON out, errors that carry the command and what the script said.
 //!
 //! The scripts get a model's numbers and nothing that this program computed. They are part of the program: for each run they
-//! are written to a private temporary folder, run there, and removed. The current folder holds what somebody else wrote, and
+//! are written to a private temporary folder, run there, and removed, whatever signal ends the program. The current folder holds what somebody else wrote, and
 //! nothing of it is run or imported: the private folder is the script's own current folder, so that a relative entry of PATH
 //! or PYTHONPATH leads there, too. The interpreter is `$CORNER_IMPACT_PYTHON`; else the one that has loaded this library, if one
 //! has; else that of the `.venv` of the folder in which this program was built, if it is still there; else `python3` of the PATH.
@@ -12,8 +12,7 @@ use std::process::{Child, Command, Stdio};
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
-use tempfile::TempDir;
-
+use crate::file::Scratch;
 use crate::stop;
 
 /// The scripts, with the modules that they import and the file that they read, by their places in the project.
@@ -78,7 +77,8 @@ fn remedy(of_the_command: &str) -> String {
 
 /// Runs `derivations/<script>` with `input` on standard input and reads its standard output as a `T`.
 pub(crate) fn run<T: serde::de::DeserializeOwned>(script: &str, input: &serde_json::Value) -> Result<T, PythonError> {
-    let folder = written().map_err(PythonError::NotWritten)?;
+    // Laid out as the project is.
+    let folder = Scratch::of(&FILES).map_err(PythonError::NotWritten)?;
     let interpreter = interpreter();
     let script = format!("derivations/{script}");
     let command = format!("{} {script}", interpreter.display());
@@ -148,17 +148,6 @@ fn collect(mut pipe: impl Read) -> String {
     // What was read before an error is still worth showing.
     let _ = pipe.read_to_end(&mut bytes);
     String::from_utf8_lossy(&bytes).into_owned()
-}
-
-/// A private folder with the scripts in it, laid out as the project is; it is removed when it is dropped.
-fn written() -> std::io::Result<TempDir> {
-    let folder = tempfile::Builder::new().prefix("corner-impact.").tempdir()?;
-    for (name, text) in FILES {
-        let path = folder.path().join(name);
-        path.parent().map_or(Ok(()), std::fs::create_dir_all)?;
-        std::fs::write(path, text)?;
-    }
-    Ok(folder)
 }
 
 /// The interpreter that this library is loaded by.

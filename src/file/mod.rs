@@ -1,10 +1,11 @@
-//! Files that are there whole or not at all, and files that are read up to a limit.
+//! Files that are there whole or not at all, files that are read up to a limit, and folders that nobody is left with.
 //!
 //! An [`Output`] is written to like any other stream, in bounded memory. A file of that name appears, or changes, only with
 //! [`Output::commit`]; until then it is unfinished: without any name where the system has such files, so that nothing is left behind
 //! whatever ends the program. `-` is standard output, which has no such luxury: what is not complete there says so in its last line.
 
 mod read;
+mod scratch;
 mod signals;
 mod unfinished;
 
@@ -14,6 +15,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 pub(crate) use read::text;
+pub(crate) use scratch::Scratch;
 use unfinished::Unfinished;
 
 /// Why a file was not written.

@@ -1,4 +1,4 @@
-//! Signals that end the program: none of them while a file gets its name, and hidden files are removed before.
+//! Signals that end the program: none of them while a file gets its name, and hidden files and private folders are removed before.
 //!
 //! Destructors do not run when a signal ends the program. A thread of its own waits for signals, removes what is
 //! unfinished and lets the signal do what it would have done: no loop has to poll a flag, and the shell sees the signal.
@@ -8,7 +8,7 @@ use std::io;
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Hidden files that a signal has to remove; held while a file comes, goes or gets its name.
+/// Hidden files, and private folders, that a signal has to remove; held while one comes, goes or gets its name.
 static HIDDEN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
 pub(super) fn held() -> MutexGuard<'static, BTreeSet<PathBuf>> {
@@ -16,7 +16,7 @@ pub(super) fn held() -> MutexGuard<'static, BTreeSet<PathBuf>> {
     HIDDEN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A hidden file's entry among them.
+/// An entry among them.
 pub(super) struct Listed(pub(super) PathBuf);
 
 impl Drop for Listed {
@@ -52,7 +52,7 @@ pub(super) fn watch() -> io::Result<()> {
                     // Held to the end: no other thread may begin or finish a file now.
                     let held = held();
                     for path in held.iter() {
-                        let _ = std::fs::remove_file(path);
+                        let _ = std::fs::remove_file(path).or_else(|_| std::fs::remove_dir_all(path));
                     }
                     let _ = emulate_default_handler(signal);
                 }

@@ -4,7 +4,7 @@
 
 use std::fs;
 use std::os::unix::fs::symlink;
-use std::os::unix::process::ExitStatusExt;
+use std::os::unix::process::{CommandExt, ExitStatusExt};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
@@ -87,6 +87,54 @@ fn ctrl_c_leaves_the_old_files_and_no_others() {
         // The shell is to see the signal, not an exit code.
         assert_eq!(child.wait().unwrap().signal(), Some(SIGINT), "{line}");
         is_as_it_was(&folder, &line);
+    }
+}
+
+/// A line of each command that may take long, and takes minutes here; but for those whose work Python does.
+const PYTHON: [&str; 6] = [
+    "verify MODEL",
+    "report MODEL --out out.html",
+    "claims MODEL",
+    "explain eq:pwlf MODEL",
+    "compare MODEL --external --set restitution=0.7",
+    "certify MODEL --orbits --rpm 100:900",
+];
+const LONG: [&str; 11] = [
+    "certify MODEL --rpm 100:5000",
+    "locate MODEL --rpm 670:680 --revolutions 20",
+    "speeds MODEL --rpm 50:760 --step 0.01 --out out.svg",
+    "diagram MODEL --rpm 180:190:1000000 --summary",
+    "chart MODEL --x rpm=600:760:2000 --y restitution=0.5:0.9:2000 --out out.png",
+    "orbit MODEL --rpm 0.1 --impacts 2",
+    "curve MODEL --rpm 600:760 --parameter restitution=0.1:0.99 --step 0.00001 --out out.svg",
+    "basins MODEL --rpm 678 --grid 2000x2000 --out out.png",
+    "basins MODEL --rpm 678 --grid 1x400000 --revolutions 1 --position 50:60 --out out.csv",
+    "chaos MODEL --rpm 500:760",
+    "simulate MODEL --rpm 183 --revolutions 1000000000000",
+];
+
+/// Whatever a command is at, it ends at once, with the scripts that it has written and the Python that runs them.
+#[test]
+fn ctrl_c_ends_every_command_at_once_and_leaves_nothing() {
+    const AT_ONCE: Duration = Duration::from_secs(5);
+    let lines = PYTHON.map(|line| (line, true)).into_iter().chain(LONG.map(|line| (line, false)));
+    for (line, is_python) in lines {
+        let (folder, scripts) = (folder(), TempDir::new().unwrap());
+        let written = || fs::read_dir(&scripts).unwrap().count();
+        let mut command = common::that_signals_end(common::program(words(line)).current_dir(&folder));
+        // As a terminal does: of its own group, of which all get the signal.
+        command.env("TMPDIR", scripts.path()).process_group(0).stdout(Stdio::null()).stderr(Stdio::null());
+        let started = Instant::now();
+        let mut child = command.spawn().unwrap();
+        let at_it = |_: &Child| if is_python { written() > 0 } else { started.elapsed() > Duration::from_millis(300) };
+        wait_until(&mut child, at_it, line);
+        let asked = Instant::now();
+        let kill = Command::new("kill").args(["-INT", "--", &format!("-{}", child.id())]).status().unwrap();
+        assert!(kill.success(), "{line}");
+        assert_eq!(child.wait().unwrap().signal(), Some(SIGINT), "{line}");
+        assert!(asked.elapsed() < AT_ONCE, "{line}: went on for {:?}", asked.elapsed());
+        assert_eq!(written(), 0, "{line}: left its scripts");
+        is_as_it_was(&folder, line);
     }
 }
 
