@@ -99,9 +99,9 @@ impl Ensemble {
         start: impl Fn(usize) -> Result<Option<Motion>, SimulateError> + Sync,
         watch: &dyn Watch,
     ) -> Result<Self, Failed> {
-        let (done, total) = (AtomicU64::new(0), count as u64);
+        let told = each(watch, "runs", count);
         let first = |index: usize| {
-            watch.at("runs", done.fetch_add(1, Ordering::Relaxed), total);
+            told();
             let run = start(index)?.map(|mut motion| -> Result<End, SimulateError> {
                 Ok(End { run: settling.run(&mut motion, patience.revolutions)?, motion, wandered: false })
             });
@@ -111,11 +111,11 @@ impl Ensemble {
         let mut ends: Vec<Option<End>> = runs.collect::<Result<_, _>>()?;
         let mut fates = Fates::new();
         follow(settling, &ends, &mut fates)?;
-        let (outlast, wandering) = wait(settling, &mut ends, &fates)?;
+        let (outlast, wandering) = wait(settling, &mut ends, &fates, watch)?;
         follow(settling, &ends, &mut fates)?;
         let exits = exits(&ends, &fates);
         let wandering = Wandering { left: exits.len() as u64, ..wandering };
-        let wanders = if exits.is_empty() { told_wandering(settling, &ends, &fates, outlast)? } else { exits };
+        let wanders = if exits.is_empty() { told_wandering(settling, &ends, &fates, outlast, watch)? } else { exits };
         // What is left sooner or later is left from each of its rests as well.
         let wanders_on = |ending: &Ending| wandering.left > 0 && is_wandering(ending);
         let mut ensemble = Self { parts: Vec::new(), wandering };
@@ -164,7 +164,12 @@ impl Ensemble {
 
 /// Runs those that wander on, until all of them together have run for as long as is told; what leaves at first was only slow
 /// to settle, and does not count. With whether these are runs of another motion than those that had rested by then.
-fn wait(settling: &Settling<'_>, ends: &mut [Option<End>], fates: &Fates) -> Result<(bool, Wandering), Failed> {
+fn wait(
+    settling: &Settling<'_>,
+    ends: &mut [Option<End>],
+    fates: &Fates,
+    watch: &dyn Watch,
+) -> Result<(bool, Wandering), Failed> {
     /// Revolutions that do not count, and the least that is worth a look for an orbit after them.
     const SLOW: u64 = 200;
     const LEAST: u64 = 32;
@@ -178,8 +183,10 @@ fn wait(settling: &Settling<'_>, ends: &mut [Option<End>], fates: &Fates) -> Res
             let all = all.unwrap_or_default();
             return Ok((outlasts(all, soon), all));
         }
+        let told = each(watch, "runs that end on nothing so far", wanderers as usize);
         let runs = ends.par_iter_mut().enumerate().map(|(index, end)| -> Result<Wandering, Failed> {
             let Some(End { run: run @ Run::Wanders, motion, wandered }) = end else { return Ok(Wandering::default()) };
+            told();
             let begun = motion.revolution;
             *wandered = all.is_some();
             *run = settling.run(motion, round).map_err(|error| (index, error))?;
@@ -258,6 +265,7 @@ fn told_wandering(
     ends: &[Option<End>],
     fates: &Fates,
     outlast: bool,
+    watch: &dyn Watch,
 ) -> Result<Vec<Ending>, Failed> {
     let wanderers: Vec<(usize, Motion)> = ends
         .iter()
@@ -276,8 +284,21 @@ fn told_wandering(
         (Ending::Chaotic(_), Some(resting)) => vec![resting.clone()],
         (Ending::Chaotic(_), None) => vec![together],
         // Where they are not chaotic all together, each is told by itself.
-        _ => wanderers.par_iter().map(measured).collect::<Result<_, _>>()?,
+        _ => {
+            let told = each(watch, "growth of deviations from runs that end on nothing", wanderers.len());
+            let one = |run| {
+                told();
+                measured(run)
+            };
+            wanderers.par_iter().map(one).collect::<Result<_, _>>()?
+        }
     })
+}
+
+/// Tells `watch` of one more piece of so many with each call.
+fn each<'a>(watch: &'a dyn Watch, what: &'a str, total: usize) -> impl Fn() + Sync + 'a {
+    let done = AtomicU64::new(0);
+    move || watch.at(what, done.fetch_add(1, Ordering::Relaxed), total as u64)
 }
 
 /// What follows a release, rad.
