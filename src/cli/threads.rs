@@ -6,15 +6,19 @@ use super::CommandError;
 use crate::foreign;
 use crate::stop;
 
-/// More than any machine has cores for; each thread takes memory and time of its own.
-const MOST: u16 = 1024;
+/// A thread without work looks through all others for some, so that what is lost grows with the square of how many there are: a tenth
+/// of a second of one core with these, before anything is done, and more than a second with four times as many.
+const MOST: u16 = 256;
 /// What a machine's own set-up says, for programs of many kinds.
 const VARIABLE: &str = "RAYON_NUM_THREADS";
 
 /// How many, for clap.
 pub(super) fn threads(text: &str) -> Result<u16, String> {
-    let number = text.trim().parse().ok().filter(|number| (1..=MOST).contains(number));
-    number.ok_or_else(|| format!("must be a whole number of threads from 1 to {MOST}"))
+    // What a machine has cores for it may use.
+    let cores = std::thread::available_parallelism().map_or(1, |cores| cores.get().try_into().unwrap_or(u16::MAX));
+    let most = MOST.max(cores);
+    let number = text.trim().parse().ok().filter(|number| (1..=most).contains(number));
+    number.ok_or_else(|| format!("must be a whole number of threads from 1 to {most}"))
 }
 
 /// Starts those that are there for everything. The variable may also be empty or 0, which says nothing.

@@ -231,8 +231,11 @@ impl Fields {
     }
 
     pub(super) fn text(&mut self, path: &str) -> Result<String, ModelError> {
+        /// Longer ones are on every page and figure that they name, characters.
+        const LONGEST: usize = 1000;
         match self.take(path)?.value {
-            Value::Text(text) => Ok(text),
+            Value::Text(text) if text.chars().count() <= LONGEST => Ok(text),
+            Value::Text(_) => Err(self.reject(path, format!("must have {LONGEST} characters or fewer"))),
             _ => Err(self.reject(path, "must be text in quotes")),
         }
     }

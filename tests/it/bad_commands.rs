@@ -97,8 +97,8 @@ fn numbers_that_cannot_be() {
         }
     }
     place.refuses(&simulate("--rpm 700 --drawn 0"), &["--drawn <N>", "1..=1000"]);
-    place.refuses(&diagram("--rpm 600:700:3 --threads 0"), &["--threads <N>", "1 to 1024"]);
-    place.refuses(&diagram("--rpm 600:700:3 --threads 4000"), &["--threads <N>", "1 to 1024"]);
+    place.refuses(&diagram("--rpm 600:700:3 --threads 0"), &["--threads <N>", "1 to 256"]);
+    place.refuses(&diagram("--rpm 600:700:3 --threads 4000"), &["--threads <N>", "1 to 256"]);
     for number in ["nan", "inf", "-inf", "up"] {
         place.refuses(&simulate(&format!("--rpm 700 --start-angle={number}")), &["--start-angle <RAD>", number]);
         place.refuses(&simulate(&format!("--rpm 700 --strobe={number} --strobe-out s.csv")), &["--strobe <RAD>"]);

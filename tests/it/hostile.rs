@@ -72,9 +72,13 @@ fn a_message_is_no_longer_than_a_page() {
         assert!(said.len() < 2500, "{} bytes: {}", said.len(), &said[..2500]);
         assert!(said.contains(&cut), "{said}");
     };
-    for (field, value) in
-        [("mass", quoted.as_str()), ("law", &quoted), ("source", &format!("3\n{long} = 1")), ("source", &long)]
-    {
+    for (field, value) in [
+        ("mass", quoted.as_str()),
+        ("law", &quoted),
+        ("name", &quoted),
+        ("source", &format!("3\n{long} = 1")),
+        ("source", &long),
+    ] {
         let (_kept, path) = file(field, value);
         let said = refused(run(&["cam", &path]));
         assert!(said.len() < 1000, "{field}: {} bytes", said.len());
@@ -106,6 +110,12 @@ fn files_and_lines_have_a_limit() {
         fs::write(at("table.toml"), table).unwrap();
         let said = refused(run(&["cam", &at("table.toml")]));
         assert!(said.contains("cam.file") && said.contains(whole), "{said}");
+        // A store of a chart, asked for and gone on with, is neither read further nor begun anew.
+        fs::create_dir(at("a.zarr")).unwrap();
+        std::os::unix::fs::symlink("/dev/zero", at("a.zarr/zarr.json")).unwrap();
+        assert!(refused(run(&["chart", "--status", &at("a.zarr")])).contains(whole));
+        let chart = ["chart", MODEL, "--x", "rpm=660:760:2", "--y", "restitution=0.4:0.6:2", "--out", &at("a.zarr")];
+        assert!(refused(run(&chart)).contains(whole));
     }
 }
 
@@ -207,7 +217,7 @@ fn threads_are_counted_by_one_rule() {
         let mut words = program(words.iter().copied());
         words.env("RAYON_NUM_THREADS", threads).output().unwrap()
     };
-    let rule = "must be a whole number of threads from 1 to 1024";
+    let rule = "must be a whole number of threads from 1 to 256";
     for command in
         [&["locate", MODEL, "--rpm", "670:680"][..], &["speeds"], &["basins", "--rpm", "678", "--grid", "2x2"]]
     {

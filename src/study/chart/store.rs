@@ -4,14 +4,14 @@
 //! Each variable is an array of little-endian numbers without compression; a block of it is one file, which is there whole
 //! or not at all. A block whose files are all there is done: to go on, to share the work and to put it together is the same.
 
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
 use super::{Axis, Blocks, Chart, ChartError, Filled, Point, class};
 use crate::diagram::{Placed, Start};
-use crate::file::{FileError, Output};
+use crate::file::{self, FileError, Output};
 use crate::flight::State;
 use crate::model::Units;
 use crate::orbit::ending::Kind;
@@ -225,9 +225,16 @@ impl<'a> Store<'a> {
             let bytes: Vec<u8> = axis.values.iter().flat_map(|value| value.to_le_bytes()).collect();
             (Path::new(axis.parameter.name()).join("c/0"), bytes)
         });
-        if let Ok(text) = std::fs::read_to_string(folder.join("zarr.json")) {
+        let there = match file::text(&folder.join("zarr.json")) {
+            Err(error) if error.kind() == ErrorKind::NotFound => None,
+            read => Some(read.map_err(|error| none(folder, error.to_string()))?),
+        };
+        if let Some(text) = there {
             let is_there = |(file, bytes): &(PathBuf, Vec<u8>)| {
-                std::fs::read(folder.join(file)).is_ok_and(|there| there == *bytes)
+                let file = folder.join(file);
+                // Of another length it is another's, and need not be read.
+                std::fs::metadata(&file).is_ok_and(|there| there.len() == bytes.len() as u64)
+                    && std::fs::read(file).is_ok_and(|there| there == *bytes)
             };
             let same =
                 serde_json::from_str::<Value>(&text).is_ok_and(|there| there == whole) && grid.iter().all(is_there);
@@ -382,10 +389,14 @@ pub fn status(folder: &Path) -> Result<Blocks, StoreError> {
     Ok(Blocks { computed: 0, done: blocks.iter().filter(|done| **done).count(), total: blocks.len() })
 }
 
+fn none(folder: &Path, why: String) -> StoreError {
+    StoreError::None { folder: folder.display().to_string(), why }
+}
+
 /// Whether each block of the store in a folder is done, row by row.
 pub fn blocks_of(folder: &Path) -> Result<Vec<bool>, StoreError> {
-    let none = |why: String| StoreError::None { folder: folder.display().to_string(), why };
-    let text = std::fs::read_to_string(folder.join("zarr.json")).map_err(|error| none(error.to_string()))?;
+    let none = |why: String| none(folder, why);
+    let text = file::text(&folder.join("zarr.json")).map_err(|error| none(error.to_string()))?;
     let group: Value = serde_json::from_str(&text).map_err(|error| none(error.to_string()))?;
     let classes = &group["consolidated_metadata"]["metadata"]["class"];
     let side = |axis: usize| {
