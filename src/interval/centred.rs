@@ -17,7 +17,7 @@ use super::varied::Varied;
 
 /// A number over a box, with N unknowns.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Centred<'a, const N: usize> {
+pub struct Centred<'a, const N: usize> {
     /// What holds it at the centre.
     pub centre: Interval,
     /// What holds it, and its derivatives, all over the box.

@@ -4,9 +4,9 @@
 //! are alternating series with the term left out as their error. What has no bound, or is no number, is everything: no
 //! comparison then holds, so nothing is concluded from it.
 
-pub(crate) mod centred;
+pub mod centred;
 pub mod roots;
-pub(crate) mod varied;
+pub mod varied;
 
 use std::f64::consts::FRAC_PI_2;
 use std::ops::{Add, Div, Mul, Neg, Sub};

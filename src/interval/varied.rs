@@ -6,8 +6,10 @@ use super::Interval;
 
 /// A number, and what it changes by with each unknown.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Varied<const N: usize> {
+pub struct Varied<const N: usize> {
+    /// What holds the number.
     pub value: Interval,
+    /// What holds its derivative by each.
     pub by: [Interval; N],
 }
 

@@ -207,6 +207,23 @@ fn what_is_no_number_says_nothing() {
     assert!(!all.is_positive() && !all.is_negative() && all.holds_zero());
 }
 
+/// What a formula leaves out counts in intervals, and not in doubles.
+#[test]
+fn what_is_left_out_is_on_both_sides() {
+    assert_eq!(Interval::left_out(2.0), Interval::new(-2.0, 2.0));
+    assert_eq!([f64::left_out(2.0), Number::magnitude(-2.0)], [0.0, 2.0]);
+    assert_eq!([Interval::new(-3.0, 2.0), Interval::new(-2.0, 3.0)].map(Number::magnitude), [3.0; 2]);
+}
+
+/// Over more than a turn, or at angles that are too large to be told apart, sine and cosine are what they may be anywhere.
+#[test]
+fn sines_of_wide_ranges_are_all_there_are() {
+    let all = Interval::new(-1.0, 1.0);
+    for wide in [Interval::new(-4.0, 4.0), Interval::new(0.0, 1e9), Interval::EVERYTHING, 1e9.into()] {
+        assert_eq!(wide.sin_cos(), (all, all), "{wide:?}");
+    }
+}
+
 #[test]
 fn an_end_belongs_to_an_interval() {
     let (below, above) = (Interval::new(-1.0, 0.0), Interval::new(0.0, 1.0));
@@ -242,6 +259,33 @@ fn a_root_is_only_where_newton_s_method_holds_it() {
         falls_to_zero(0.0, falls([1.0, -1.0], 2.0)).map(|root| root.low() < 1.0 && 1.0 < root.high()),
         Some(true)
     );
+}
+
+/// The root of 2 - t - t^3, from guesses on both sides: in how many looks, and how narrow.
+#[test]
+fn a_root_is_held_within_ulps() {
+    let falls = |times: Interval| {
+        let square = times.squared();
+        [-(times * square) - times + 2.0, square * -3.0 - 1.0]
+    };
+    for (guess, looks, width) in [
+        (1.0, 3, 8e-16),
+        (1.0 + 1e-9, 3, 8e-16),
+        (1.0 - 1e-9, 3, 8e-16),
+        (1.1, 5, 0.0163),
+        (0.9, 3, 0.0166),
+        (1.4, 9, 1.84),
+        (0.6, 3, 0.338),
+    ] {
+        let asked = std::cell::Cell::new(0);
+        let counted = |times: Interval| {
+            asked.set(asked.get() + 1);
+            falls(times)
+        };
+        let root = falls_to_zero(guess, counted).unwrap();
+        assert!(root.low() < 1.0 && 1.0 < root.high() && root.width() < width, "{guess}: {root:?}");
+        assert_eq!(asked.get(), looks, "{guess}");
+    }
 }
 
 fn double() -> impl Strategy<Value = f64> {

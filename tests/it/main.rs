@@ -59,6 +59,7 @@ mod python;
 mod random;
 mod random_orbits;
 mod resting;
+mod roots;
 mod rounded;
 mod routes;
 mod scales;

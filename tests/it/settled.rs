@@ -11,9 +11,9 @@ use std::ops::ControlFlow;
 
 use crate::common;
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use corner_impact::flight::State;
+use corner_impact::flight::{Flight, State};
 use corner_impact::model::Model;
-use corner_impact::simulate::{Event, EventKind, Machine, Motion, angular_velocity};
+use corner_impact::simulate::{Event, EventKind, Machine, Motion, Observer, Work, angular_velocity};
 
 /// omega, rad/s: a turn takes 2 pi seconds.
 const OMEGA: f64 = 1.0;
@@ -150,6 +150,21 @@ fn an_impact_past_a_corner_is_on_the_next_segment() {
     }
 }
 
+/// An impact is where the lift of its segment is, with its velocity.
+#[track_caller]
+fn is_on_its_segment(machine: &Machine, event: &Event) {
+    let segment = &machine.cam().segments()[event.segment];
+    assert!(segment.start <= event.cam_angle && event.cam_angle <= segment.end, "{event:?}");
+    let lift = segment.law.lift(event.cam_angle);
+    let cam_velocity = machine.angular_velocity() * lift.slope;
+    let steepest = segment.bounds.slope[0].abs().max(segment.bounds.slope[1].abs());
+    // An ulp of the sums that the lift and its slope are, and what an ulp of the angle makes of them.
+    let rounding = |sum: f64, rate: f64| 4.0 * f64::EPSILON * (sum + rate.abs() * event.cam_angle);
+    assert!((event.position - lift.value).abs() <= rounding(machine.cam().top(), lift.slope), "{event:?}, {lift:?}");
+    let apart = (event.cam_velocity - cam_velocity).abs() / machine.angular_velocity();
+    assert!(apart <= rounding(steepest, lift.curvature), "{event:?}, {cam_velocity}");
+}
+
 /// Runs `revolutions` from `turn`, rad, after the corner P, with `state`, and holds every impact against the lift of the
 /// segment that it is on; the impacts, by how far after P they are, rad.
 fn held(machine: &Machine, corner: f64, turn: f64, state: State, revolutions: u64) -> Vec<f64> {
@@ -158,15 +173,7 @@ fn held(machine: &Machine, corner: f64, turn: f64, state: State, revolutions: u6
     let mut found = Vec::new();
     let mut hold = |event: &Event| {
         if event.kind == EventKind::Impact {
-            let segment = &machine.cam().segments()[event.segment];
-            assert!(segment.start <= event.cam_angle && event.cam_angle <= segment.end, "{event:?}");
-            let lift = segment.law.lift(event.cam_angle);
-            let cam_velocity = machine.angular_velocity() * lift.slope;
-            // An ulp of the value, and what an ulp of the angle makes of it.
-            let rounding = |value: f64, rate: f64| 4.0 * f64::EPSILON * (value.abs() + rate.abs() * event.cam_angle);
-            assert!((event.position - lift.value).abs() <= rounding(lift.value, lift.slope), "{event:?}, {lift:?}");
-            let apart = (event.cam_velocity - cam_velocity).abs() / machine.angular_velocity();
-            assert!(apart <= rounding(lift.slope, lift.curvature), "{event:?}, {cam_velocity}");
+            is_on_its_segment(machine, event);
             found.push(event.cam_angle - corner);
         }
         ControlFlow::Continue(())
@@ -215,4 +222,145 @@ fn a_settled_motion_stays_on_the_cam() {
         let last = found.last().unwrap();
         assert!(found.iter().rev().take(100).all(|apart| (apart - last).abs() < 1e-12), "{rpm} rpm does not settle");
     }
+}
+
+/// How often the shortcut was taken.
+#[derive(Default)]
+struct Repeats {
+    events: Vec<Event>,
+    repeats: u64,
+    /// s, of flights: up to each event, and so far.
+    times: Vec<f64>,
+    time: f64,
+}
+
+impl Observer for Repeats {
+    const COUNTS: bool = true;
+
+    fn event(&mut self, event: &Event) -> ControlFlow<()> {
+        self.events.push(*event);
+        self.times.push(self.time);
+        if self.events.len() == 12 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+
+    fn work(&mut self, work: Work) {
+        self.repeats += work.repeats;
+    }
+
+    fn flight(&mut self, _: &Flight, _: State, time: f64) {
+        self.time += time;
+    }
+}
+
+/// Numbers from 0 to 1 that are the same in every run, and go through all places alike.
+fn part(index: u32, side: u32) -> f64 {
+    (f64::from(index + 1) * f64::from([2_u32, 3, 5, 7, 11, 13, 17][side as usize]).sqrt()).fract()
+}
+
+/// A machine whose flights come back to where they left in a turn, or nearly so, at a speed that falls or grows until something is in the
+/// way; and a run of it.
+fn recurrent(index: u32) -> (Machine, Motion) {
+    if index.is_multiple_of(3) { slow(index) } else { over_lobes(index) }
+}
+
+/// Over lobes as high as where it leaves, or higher, on one segment or many.
+fn over_lobes(index: u32) -> (Machine, Motion) {
+    let lobes = [1, 2, 3, 5, 8, 24][index as usize / 15 % 6];
+    let height =
+        |lobe: usize| AMPLITUDE * if index.is_multiple_of(2) { 2.0 } else { 2.0 * part(index, 6) + lobe as f64 % 2.0 };
+    let cam = if part(index, 0) < 0.4 {
+        let mut amplitudes = vec![0.0; lobes];
+        amplitudes[0] = AMPLITUDE * part(index, 6);
+        amplitudes[lobes - 1] += AMPLITUDE;
+        let (offset, phases) = (2.0 * AMPLITUDE, vec![180.0; lobes]);
+        format!("law = \"harmonic\"\noffset = {offset:?}\namplitudes = {amplitudes:?}\nphases_deg = {phases:?}")
+    } else {
+        // Steep lobes between others that are not.
+        let whole: f64 = (0..lobes).map(|lobe| 1.0 + (lobe % 3) as f64).sum();
+        let span = |lobe: usize| 180.0 * (1.0 + (lobe % 3) as f64) / whole;
+        program((0..lobes).flat_map(|lobe| [(span(lobe), height(lobe)), (span(lobe), -height(lobe))]))
+    };
+    let left = if (index / 3).is_multiple_of(3) { 1.0 } else { 0.2 + 0.8 * part(index, 2) };
+    let restitution = if index.is_multiple_of(5) { 1.0 } else { part(index, 3) };
+    // A little less than half a swing a turn, or a little more, or three.
+    let swings = [0.5, 0.5, 0.5, 1.5][index as usize / 4 % 4];
+    let speed = AMPLITUDE * 30.0 * part(index, 5).powi(2) * lobes as f64;
+    back_in_a_turn(index, &cam, TAU * part(index, 1), swings, left, restitution, |_| speed)
+}
+
+/// Slowly up a long rise behind a steep lobe, near the speed that it keeps.
+fn slow(index: u32) -> (Machine, Motion) {
+    let (rise, lobe) = (2.0 * AMPLITUDE, 3.0 * AMPLITUDE * part(index, 6));
+    let span = 50.0 + 100.0 * part(index, 0);
+    let cam = program([(60.0, 0.0), (15.0, lobe), (15.0, -lobe), (span, rise), (270.0 - span, -rise)]);
+    let angle = (90.0 + span * (0.2 + 0.6 * part(index, 1))).to_radians();
+    let (left, restitution) = (0.2 + 0.4 * part(index, 2), 0.6 + 0.4 * part(index, 3));
+    // v = (1 + r) c' + r left v
+    let kept = (1.0 + restitution) / (1.0 - restitution * left) - 1.0;
+    let share = 0.5 + part(index, 5);
+    back_in_a_turn(index, &cam, angle, 0.5, left, restitution, |slope| slope * kept * share)
+}
+
+fn program(segments: impl IntoIterator<Item = (f64, f64)>) -> String {
+    segments.into_iter().fold(format!("law = \"program\"\nbase = {AMPLITUDE:?}\n"), |cam, (span, rise)| {
+        let motion = if rise == 0.0 { "dwell" } else { "harmonic" };
+        cam + &format!("[[cam.segment]]\nmotion = \"{motion}\"\nspan_deg = {span:?}\nrise = {rise:?}\n")
+    })
+}
+
+/// With so many swings in a turn, but for some ten-millionths, and what is left of a speed after one. Speeds are a radian's.
+fn back_in_a_turn(
+    index: u32,
+    cam: &str,
+    angle: f64,
+    swings: f64,
+    left: f64,
+    restitution: f64,
+    relative_velocity: impl Fn(f64) -> f64,
+) -> (Machine, Motion) {
+    // The cam turns at any speed.
+    let omega = [1.0, 0.2, 5.0][index as usize / 12 % 3];
+    let swings = omega * swings * (1.0 - 2e-7 * part(index, 4).powi(2) + 1e-10);
+    let lift = machine(1.0, 0.0, 0.0, 1.0, cam).cam().lift(angle);
+    let machine = machine(swings, -omega * f64::ln(left) / TAU, lift.value, restitution, cam).at_speed(omega);
+    let relative_velocity = omega * relative_velocity(lift.slope).max(0.0);
+    let launch = State { position: lift.value, velocity: omega * lift.slope + relative_velocity };
+    // From within the flight, so that nothing is known of the cam where it comes down, where it is above the cam there.
+    let turned = part(index, 2) * PI;
+    let state = machine.flight().fly(launch, turned / omega).1;
+    let above = machine.start((angle + turned) % TAU, state);
+    let start = above.unwrap_or_else(|_| machine.start_on_cam(angle, relative_velocity).unwrap());
+    (machine, start)
+}
+
+/// Each impact, of whatever kind the way there was found in, is what a run finds that starts from the one before and knows of no other.
+#[test]
+fn what_is_found_one_turn_on_is_what_is_found_from_nothing() {
+    let (mut repeats, mut flights) = (0, 0);
+    for index in 0..1500 {
+        let (machine, mut motion) = recurrent(index);
+        let goal = motion.after(40);
+        let mut seen = Repeats::default();
+        let _ = machine.advance(&mut motion, goal, &mut seen).unwrap();
+        repeats += seen.repeats;
+        for (two, times) in seen.events.windows(2).zip(seen.times.windows(2)) {
+            // Hops that follow each other at once are known as badly as the small velocities they start with.
+            let turned = (two[1].revolution - two[0].revolution) as f64 * TAU + two[1].cam_angle - two[0].cam_angle;
+            if two[1].kind != EventKind::Impact || turned < 0.1 {
+                continue;
+            }
+            flights += 1;
+            // The lift is summed there, and may be an ulp below what it is here.
+            let position = two[0].position.max(machine.cam().lift(two[0].cam_angle).value);
+            let state = State { position, velocity: two[0].velocity_after };
+            let fresh = impacts(&machine, machine.start(two[0].cam_angle, state).unwrap(), 1)[0];
+            assert_eq!(fresh.revolution, two[1].revolution - two[0].revolution, "{index}: {two:?} {fresh:?}");
+            let size = fresh.velocity_before.abs() + fresh.cam_velocity.abs();
+            assert_abs_diff_eq!(fresh.cam_angle, two[1].cam_angle, epsilon = 1e-12);
+            assert_abs_diff_eq!(fresh.velocity_before, two[1].velocity_before, epsilon = 5e-14 * size);
+            assert_abs_diff_eq!(machine.angular_velocity() * (times[1] - times[0]), turned, epsilon = 1e-12);
+            is_on_its_segment(&machine, &two[1]);
+        }
+    }
+    assert_eq!([flights, repeats], [15020, 2434]);
 }

@@ -15,11 +15,13 @@ What survives and is not in explained.toml is listed, and the exit code is 1.
 import argparse
 import hashlib
 import json
+import math
 import os
 import random
 import re
 import resource
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -69,6 +71,7 @@ pub mod mutants {
     #[cold]
     fn note(id: u32) {
         use std::io::Write;
+        if MUTANT.load(Relaxed) == NOTES && SEEN[id as usize].load(Relaxed) == 1 { return }
         let name = std::env::var("MUTANT").unwrap_or_default();
         let now = name.parse().unwrap_or(if name.is_empty() { NONE } else { NOTES });
         MUTANT.store(now, Relaxed);
@@ -293,16 +296,18 @@ class Schema:
         return True
 
 
-def sources():
+def sources(words):
     for stage in STAGES:
         one = ROOT / "src" / f"{stage}.rs"
-        yield from [one] if one.is_file() else sorted((ROOT / "src" / stage).rglob("*.rs"))
+        for path in [one] if one.is_file() else sorted((ROOT / "src" / stage).rglob("*.rs")):
+            if not words or any(word in str(path.relative_to(ROOT)) for word in words):
+                yield path.relative_to(ROOT)
 
 
-def schemata(unviable):
+def schemata(unviable, words):
     parser = tree_sitter.Parser(tree_sitter.Language(tree_sitter_rust.language()))
     mutants = []
-    return [Schema(path.relative_to(ROOT), parser, unviable, mutants) for path in sources()], mutants
+    return [Schema(path, parser, unviable, mutants) for path in sources(words)], mutants
 
 
 def changed(path, text):
@@ -335,8 +340,8 @@ def cargo(words):
     return done, [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
 
 
-def built():
-    """The binary with the tests of all mutants that compile, and these."""
+def built(words):
+    """The binary with the tests of all mutants that compile of these files, and the mutants."""
     known = COPY / "unviable.json"
     copied()
     if not (COPY / "target" / "release").exists() and (ROOT / "target" / "release").exists():
@@ -346,7 +351,7 @@ def built():
             subprocess.run(["cp", "-al", ROOT / "target" / "release" / part, COPY / "target" / "release" / part], check=True)
     unviable = set(json.loads(known.read_text())) if known.exists() else set()
     while True:
-        files, mutants = schemata(unviable)
+        files, mutants = schemata(unviable, words)
         for file in files:
             changed(COPY / file.path, file.text)
         library = (ROOT / "src" / "lib.rs").read_text() + SWITCH.replace("COUNT", str(len(mutants)))
@@ -380,21 +385,23 @@ def built():
     return binary, mutants
 
 
-def limited():
+def limited(seconds):
     resource.setrlimit(resource.RLIMIT_AS, (6 << 30, 6 << 30))
+    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 1))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     os.setpgid(0, 0)
 
 
-def passes(binary, tests, seconds, mutant):
-    """Whether these tests pass; what takes far longer than it should does not."""
+def became(binary, tests, seconds, mutant):
+    """Whether these tests pass, fail, or take longer than they may: in seconds of a core, whatever else it does; but a test may wait."""
     words = [binary, "--include-ignored", "--exact", "--test-threads=1", *tests]
     run = subprocess.Popen(words, cwd=COPY, env=os.environ | {"MUTANT": mutant, "RAYON_NUM_THREADS": "1", "INSTA_UPDATE": "no"},
-                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, preexec_fn=limited)
+                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, preexec_fn=lambda: limited(math.ceil(seconds)))
     try:
-        return run.wait(seconds) == 0
+        code = run.wait(10 * seconds)
+        return "pass" if code == 0 else "too long" if code in (-signal.SIGXCPU, -signal.SIGKILL) else "fail"
     except subprocess.TimeoutExpired:
-        return False
+        return "too long"
     finally:
         try:
             os.killpg(run.pid, 9)
@@ -403,23 +410,37 @@ def passes(binary, tests, seconds, mutant):
         run.wait()
 
 
-def reached(binary, longest):
+def spent():
+    """Seconds of a core that all processes so far have taken."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def reached(binary, longest, words):
     """Of each test that passes in time: how long it takes, s, and which places it reaches."""
     stamp = hashlib.sha256(Path(binary).read_bytes()).hexdigest()
     kept = COPY / "reached.json"
-    if kept.exists() and (known := json.loads(kept.read_text()))["stamp"] == stamp:
+    known = json.loads(kept.read_text()) if kept.exists() else {"asked": [], "slow": {}}
+    asked = [stamp, longest, words]
+    if known["asked"] == asked:
         return known["tests"]
+    # What took longer than it may in another build is not waited for again.
+    slow = known["slow"]
     listed = subprocess.run([binary, "--list"], cwd=COPY, capture_output=True, text=True, check=True).stdout
     names = [line.removesuffix(": test") for line in listed.splitlines() if line.endswith(": test")]
+    names = [name for name in names if not words or any(word in name for word in words)]
     tests, notes = {}, COPY / "notes"
     for name in names:
         notes.unlink(missing_ok=True)
-        begun = time.monotonic()
-        if passes(binary, [name], longest, str(notes)):
-            took = time.monotonic() - begun
+        begun = spent()
+        done = "too long" if slow.get(name, 0) >= longest else became(binary, [name], longest, str(notes))
+        if done == "too long":
+            slow[name] = longest
+        if done == "pass":
+            took = spent() - begun
             tests[name] = [took, sorted({int(line) for line in notes.read_text().split()}) if notes.exists() else []]
     print(f"{len(tests)} of {len(names)} tests pass within {longest} s each", flush=True)
-    kept.write_text(json.dumps({"stamp": stamp, "tests": tests}))
+    kept.write_text(json.dumps({"asked": asked, "slow": slow, "tests": tests}))
     return tests
 
 
@@ -430,20 +451,22 @@ def main():
     ask.add_argument("--seed", default="", help="what draws them")
     ask.add_argument("--seconds", type=float, default=float("inf"), help="begin no mutant after so long")
     ask.add_argument("--longest", type=float, default=10.0, help="no test that takes longer, s")
+    ask.add_argument("--tests", nargs="*", default=[], help="parts of the names of the tests to ask, instead of all")
     ask.add_argument("--out", help="write what became of each, as JSON lines")
     ask.add_argument("--list", action="store_true", help="list them, and run none")
     asked = ask.parse_args()
     begun = time.monotonic()
     explained = [entry for entry in tomllib.loads((ROOT / "tests/mutants/explained.toml").read_text()).get("mutant", [])]
-    told = {tuple(entry[key] for key in ("file", "function", "code", "replacement")) for entry in explained}
     name = lambda mutant: tuple(mutant[key] for key in ("file", "function", "code", "replacement"))
+    told = {name(entry | {"replacement": other}) for entry in explained if Path(entry["file"]) in sources(asked.words)
+            for other in entry["replacements"]}
 
-    binary, mutants = built()
+    binary, mutants = built(asked.words)
     gone = told - {name(mutant) for mutant in mutants}
     if gone:
         sys.exit(f"explained, and there is no such mutant: {sorted(gone)}")
     # A place notes the number of its first mutant.
-    chosen = [id for id, mutant in enumerate(mutants) if not asked.words or any(word in mutant["file"] for word in asked.words)]
+    chosen = list(range(len(mutants)))
     stage = lambda id: Path(mutants[id]["file"]).parts[1].removesuffix(".rs")
     in_all = Counter(map(stage, chosen))
     random.Random(asked.seed).shuffle(chosen)
@@ -454,7 +477,7 @@ def main():
         for id in sorted(chosen):
             print(*name(mutants[id]), sep=" | ")
         return
-    tests = reached(binary, asked.longest)
+    tests = reached(binary, asked.longest, asked.tests)
     print(f"ready after {time.monotonic() - begun:.0f} s", flush=True)
 
     places = defaultdict(list)
@@ -465,7 +488,7 @@ def main():
     for id, mutant in enumerate(mutants):
         place[id] = id if id in places or id == 0 else place[id - 1] if same_place(mutants[id - 1], mutant) else id
 
-    began, tried, caught, known, survivors = time.monotonic(), Counter(), Counter(), Counter(), []
+    began, tried, caught, endless, known, survivors = time.monotonic(), Counter(), Counter(), Counter(), Counter(), []
     kills = Counter()
     out = open(asked.out, "a") if asked.out else None
     for id in chosen:
@@ -478,29 +501,30 @@ def main():
             continue
         # What has caught others of this file, then what is quick.
         reach = sorted(places[place[id]], key=lambda test: tests[test][0] / (1 + kills[mutant["file"], test]))
-        is_caught, batch, most = False, [], 0.5
-        while reach and not is_caught:
+        done, batch, most = "pass", [], 0.5
+        while reach and done == "pass":
             batch = [reach.pop(0)]
             total = tests[batch[0]][0]
             while reach and total + tests[reach[0]][0] < most:
                 batch.append(reach.pop(0))
                 total += tests[batch[-1]][0]
             most *= 2
-            if not passes(binary, batch, 5 + 8 * total, str(id)):
-                is_caught = True
-                if len(batch) == 1:
-                    kills[mutant["file"], batch[0]] += 1
-        if is_caught:
+            done = became(binary, batch, 5 + 8 * total, str(id))
+            if done != "pass" and len(batch) == 1:
+                kills[mutant["file"], batch[0]] += 1
+        if done == "fail":
             caught[stage(id)] += 1
+        elif done == "too long":
+            endless[stage(id)] += 1
         else:
             survivors.append(id)
             print("survives:", f"{mutant['file']}:{mutant['line']}", mutant["function"], "|", mutant["code"], "|", mutant["replacement"],
                   "" if places[place[id]] else "(reached by no test)", flush=True)
         if out:
-            print(json.dumps(mutant | {"caught": is_caught}), file=out, flush=True)
+            print(json.dumps(mutant | {"tests": done}), file=out, flush=True)
     for part in in_all:
-        print(f"{part}: {in_all[part]} mutants, {tried[part]} tried, {caught[part]} caught, {known[part]} explained, "
-              f"{tried[part] - caught[part] - known[part]} survive")
+        print(f"{part}: {in_all[part]} mutants, {tried[part]} tried, {caught[part]} fail a test, {endless[part]} take eight times as long, "
+              f"{known[part]} explained, {tried[part] - caught[part] - endless[part] - known[part]} survive")
     print(f"{sum(tried.values())} mutants in {time.monotonic() - began:.0f} s")
     sys.exit(bool(survivors))
 
