@@ -42,6 +42,7 @@ mod local_map;
 mod locate;
 mod measured;
 mod memory;
+mod mirrored;
 mod model_file;
 mod orbit_closed_forms;
 mod orbit_commands;
