@@ -9,7 +9,7 @@ use super::confirm::Candidate;
 use super::period_equation::at_corner;
 use crate::cam::{Cam, Side};
 use crate::model::{Model, Study};
-use crate::orbit::branch::{BranchPoint, Kind, special_points};
+use crate::orbit::branch::{BranchPoint, Kind, MetPoints, special_points};
 use crate::orbit::{Course, Impact, Search};
 use crate::tolerance;
 
@@ -19,10 +19,9 @@ pub const MOST_IMPACTS: usize = 12;
 /// less than half of that, and try reaches down to twice the least by halving.
 pub const NEAREST_OTHER: f64 = 4.0 * tolerance::LEAST_REACH.value;
 
-/// The corner impacts, and what was looked at.
+/// What was looked at.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Candidates {
-    pub list: Vec<Candidate>,
+pub struct Branches {
     /// Speeds at which orbits were searched for, rpm.
     pub speeds: Vec<f64>,
     /// Branches of orbits that were found there.
@@ -32,17 +31,16 @@ pub struct Candidates {
 }
 
 /// The corner impacts over a range of speeds of orbits of several impacts in `revolutions`.
-pub fn candidates(model: &Model, cam: &Cam, range: Study, revolutions: u64) -> Candidates {
+pub fn candidates(model: &Model, cam: &Cam, range: Study, revolutions: u64) -> (Vec<Candidate>, Branches) {
     let wanted = Search { revolutions, impacts: None };
     let is_corner = |kind| matches!(kind, Kind::Corner { .. });
     match special_points(model, [range.rpm_min, range.rpm_max], &wanted, is_corner) {
-        Ok(found) => Candidates {
-            list: found.points.iter().filter_map(|point| candidate(cam, point)).collect(),
-            speeds: found.speeds,
-            branches: found.branches,
-            failed: found.failed.map(|error| error.to_string()),
-        },
-        Err(error) => Candidates { failed: Some(error.to_string()), ..Candidates::default() },
+        Ok(found) => {
+            let candidates = found.points.iter().filter_map(|point| candidate(cam, point)).collect();
+            let MetPoints { speeds, branches, failed, .. } = found;
+            (candidates, Branches { speeds, branches, failed: failed.map(|error| error.to_string()) })
+        }
+        Err(error) => (Vec::new(), Branches { failed: Some(error.to_string()), ..Branches::default() }),
     }
 }
 

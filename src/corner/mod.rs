@@ -42,6 +42,7 @@ pub mod one_sided;
 pub(crate) mod period_equation;
 pub mod range;
 pub mod second_order;
+pub(crate) mod shots;
 pub(crate) mod simulated_orbit;
 pub mod variational;
 pub mod varied;

@@ -1,13 +1,17 @@
 //! Every corner impact of a range of speeds that can be found: those of one impact as roots of one equation, by search those of
 //! more.
 
-use super::candidates::{Candidates, candidates};
+use std::collections::BTreeMap;
+
+use super::candidates::{Branches, candidates};
 use super::confirm::Candidate;
 use super::corner_impact::CornerImpact;
 use super::period_equation::{PeriodEquation, RESONANCE, Root, Roots, Verdict};
+use super::shots::shots;
 use crate::cam::{Cam, Corner, Side};
 use crate::known::{Complete, Known};
 use crate::model::{Model, Study};
+use crate::orbit::Cycle;
 use crate::orbit::complete::Standing;
 use crate::simulate::angular_velocity;
 use crate::tolerance;
@@ -50,7 +54,36 @@ pub struct FoundCornerImpacts {
     /// Where one of one impact may be missing, or refused without a proof.
     pub undecided: Vec<UndecidedSpeeds>,
     /// How orbits of several impacts were looked for.
-    pub searched: Candidates,
+    pub searched: Branches,
+    /// How many of them each of the two ways found, by their number of impacts.
+    pub recaptured: BTreeMap<usize, Recaptured>,
+}
+
+/// How many corner impacts two ways of looking found that know nothing of each other.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Recaptured {
+    /// On branches.
+    pub branches: usize,
+    /// By shots.
+    pub shots: usize,
+    /// By either.
+    pub both: usize,
+}
+
+document!(Recaptured as it { branches: it.branches, shots: it.shots, both: it.both, missing: it.missing() });
+
+impl Recaptured {
+    /// How many neither way found, if each finds any one as easily as any other: what is hard to find makes it more. Estimated
+    /// from two catches (Chapman 1951):
+    ///
+    /// ```text
+    /// N = (n_1 + 1) (n_2 + 1) / (m + 1) - 1        m caught both times, of n_1 and n_2
+    /// N - (n_1 + n_2 - m) = (n_1 - m) (n_2 - m) / (m + 1)
+    /// ```
+    pub fn missing(&self) -> f64 {
+        let [branches, shots] = [self.branches, self.shots].map(|count| (count - self.both) as f64);
+        branches * shots / (self.both as f64 + 1.0)
+    }
 }
 
 /// Why a range of speeds cannot be looked through.
@@ -86,18 +119,35 @@ pub fn find_corner_impacts(
     let (one_impact, undecided) = one_impact(model, cam, &corners, range, revolutions)?;
     let known = if undecided.is_empty() { Known::Proved } else { Known::Sampled };
     let complete = vec![Complete { revolutions, impacts: 1, known }];
-    let searched = candidates(model, cam, range, revolutions);
-    let mut all =
-        FoundCornerImpacts { found: Vec::new(), rejected: Vec::new(), corners, complete, undecided, searched };
+    let (on_branches, searched) = candidates(model, cam, range, revolutions);
+    let mut all = FoundCornerImpacts {
+        found: Vec::new(),
+        rejected: Vec::new(),
+        corners,
+        complete,
+        undecided,
+        searched,
+        recaptured: BTreeMap::new(),
+    };
     for (corner, period, verdict) in one_impact {
-        all.keep(&corner, 60.0 / period, verdict);
+        let orbit = all.orbit(&corner, 60.0 / period, verdict);
+        all.found.extend(orbit);
     }
-    for candidate in all.searched.list.clone() {
-        let (corner, rpm) = (candidate.corner, 60.0 / candidate.period);
-        if low <= rpm && rpm <= high && !all.has(&candidate) {
-            all.keep(&corner, rpm, verdict(candidate, model, cam));
+    let on_branches = all.confirmed(model, cam, range, on_branches);
+    let by_shots = all.confirmed(model, cam, range, shots(model, cam, range, revolutions));
+    for at in &on_branches {
+        all.recaptured(at).branches += 1;
+    }
+    for at in by_shots {
+        let is_known = on_branches.iter().any(|known| is_same(known, (&at.corner, at.side, at.speed_rpm(), &at.cycle)));
+        let count = all.recaptured(&at);
+        count.shots += 1;
+        count.both += usize::from(is_known);
+        if !is_known {
+            all.found.push(at);
         }
     }
+    all.found.extend(on_branches);
     all.found.sort_by(|one, two| one.speed_rpm().total_cmp(&two.speed_rpm()));
     all.rejected.sort_by(|one, two| one.speed_rpm.total_cmp(&two.speed_rpm));
     Ok(all)
@@ -168,10 +218,11 @@ fn verdict(candidate: Candidate, model: &Model, cam: &Cam) -> Verdict {
 }
 
 impl FoundCornerImpacts {
-    fn keep(&mut self, corner: &Corner, speed_rpm: f64, verdict: Verdict) {
+    /// What the verdict keeps; what it refuses is told.
+    fn orbit(&mut self, corner: &Corner, speed_rpm: f64, verdict: Verdict) -> Option<CornerImpact> {
         let cam_angle = corner.angle;
         let why = match verdict {
-            Verdict::Orbit(orbit) => return self.found.push(*orbit),
+            Verdict::Orbit(orbit) => return Some(*orbit),
             Verdict::Rejected(why) => why,
             Verdict::Grazing(velocity) => {
                 format!(
@@ -183,17 +234,35 @@ impl FoundCornerImpacts {
         if !self.rejected.iter().any(again) {
             self.rejected.push(Rejected { cam_angle, speed_rpm, why });
         }
+        None
     }
 
-    /// Whether a corner impact has been found already, on another branch.
-    fn has(&self, at: &Candidate) -> bool {
-        self.found.iter().any(|known| {
-            known.corner.segment == at.corner.segment
-                && (known.corner.jump_order > 1 || known.side == at.side)
-                && is_same_speed(known.speed_rpm(), 60.0 / at.period)
-                && known.cycle.is_same(&at.cycle)
-        })
+    fn recaptured(&mut self, at: &CornerImpact) -> &mut Recaptured {
+        self.recaptured.entry(at.cycle.impacts.len()).or_default()
     }
+
+    /// The orbits among candidates in a range that are not of one impact, each once.
+    fn confirmed(&mut self, model: &Model, cam: &Cam, range: Study, candidates: Vec<Candidate>) -> Vec<CornerImpact> {
+        let mut found: Vec<CornerImpact> = Vec::new();
+        for candidate in candidates {
+            let (corner, rpm) = (candidate.corner, 60.0 / candidate.period);
+            let is_inside = range.rpm_min <= rpm && rpm <= range.rpm_max;
+            let is_known = |known: &CornerImpact| is_same(known, (&corner, candidate.side, rpm, &candidate.cycle));
+            let is_new = !self.found.iter().chain(&found).any(is_known);
+            if is_inside && is_new {
+                found.extend(self.orbit(&corner, rpm, verdict(candidate, model, cam)));
+            }
+        }
+        found
+    }
+}
+
+/// Whether a corner impact is the one at that corner, hit on that side, at that speed, rpm, by that cycle.
+fn is_same(known: &CornerImpact, (corner, side, rpm, cycle): (&Corner, Side, f64, &Cycle)) -> bool {
+    known.corner.segment == corner.segment
+        && (known.corner.jump_order > 1 || known.side == side)
+        && is_same_speed(known.speed_rpm(), rpm)
+        && known.cycle.is_same(cycle)
 }
 
 fn is_same_speed(one: f64, two: f64) -> bool {

@@ -66,7 +66,7 @@ pub fn search_all(machine: &Machine, wanted: &Search, watch: &dyn Watch) -> Resu
 }
 
 /// A velocity that few impacts of the machine are faster than, m/s: a fall from rest over the size of its motion.
-fn velocity_scale(machine: &Machine) -> f64 {
+pub(crate) fn velocity_scale(machine: &Machine) -> f64 {
     let cam = machine.cam();
     let omega = machine.angular_velocity();
     let steepest = cam.segments().iter().flat_map(|segment| segment.bounds.slope).fold(0.0_f64, |s, b| s.max(b.abs()));

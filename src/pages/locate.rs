@@ -1,8 +1,11 @@
 //! The page of `locate`: the corner impacts of a range of speeds, and what happens at each.
 
+use std::collections::BTreeMap;
+
 use crate::border_collision::Classification;
 use crate::corner::candidates::{MOST_IMPACTS, NEAREST_OTHER};
-use crate::corner::range::{FoundCornerImpacts, UndecidedSpeeds};
+use crate::corner::range::{FoundCornerImpacts, Recaptured, UndecidedSpeeds};
+use crate::corner::shots::{SHOT_RATIO, VELOCITIES};
 use crate::orbit::branch::GRID_RATIO;
 use crate::pages::speeds::measured_speed;
 use crate::show::Paged;
@@ -124,21 +127,24 @@ fn rejected(found: &Located) -> Vec<Block> {
 }
 
 fn searched(found: &Located) -> String {
-    let FoundCornerImpacts { corners, searched, undecided, .. } = &found.looked_at;
+    let FoundCornerImpacts { corners, searched, undecided, recaptured, .. } = &found.looked_at;
     let corners = corners.len();
     let mut words = if corners == 0 {
         "The cam has no corner: no derivative of its lift jumps as far as can be told.".to_owned()
     } else {
         format!(
-            "{corners} corner(s) of the cam. Orbits of one impact: {}. Orbits of several impacts: those on branches through what a \
-             search finds at {} speeds, each {:.0} % faster than the one before, and through what branches off there with twice the \
-             period ({} stretches of branches); of up to {MOST_IMPACTS} impacts a revolution, none of them within {:.2} deg of the \
-             one on the corner. There may be others, but a part of the range has the same. Orbits on which the follower sticks \
-             forget where they hit: they are left out.",
+            "{corners} corner(s) of the cam. Orbits of one impact: {}. Orbits of several impacts were looked for in two ways that know \
+             nothing of each other: on branches through what a search finds at {} speeds, each {:.0} % faster than the one before, and \
+             through what branches off there with twice the period ({} stretches of branches); and by {VELOCITIES} shots from each \
+             corner at speeds {:.1} % apart. {} Of up to {MOST_IMPACTS} impacts a revolution, none of them within {:.2} deg of the one on \
+             the corner. A part of the range has the same. Orbits on which the follower sticks forget where they hit: they are left \
+             out.",
             if undecided.is_empty() { "all, which is proved" } else { "all but for what is not decided" },
             searched.speeds.len(),
             100.0 * (GRID_RATIO - 1.0),
             searched.branches,
+            100.0 * (SHOT_RATIO - 1.0),
+            found_by(recaptured),
             NEAREST_OTHER.to_degrees(),
         )
     };
@@ -151,6 +157,17 @@ fn searched(found: &Located) -> String {
         words += &format!(" A search could not go on: {error}.");
     }
     words
+}
+
+/// What each way of looking found, and how many there may be besides.
+fn found_by(recaptured: &BTreeMap<usize, Recaptured>) -> String {
+    let sum = |count: fn(&Recaptured) -> usize| recaptured.values().map(count).sum::<usize>();
+    let (branches, shots, both) = (sum(|it| it.branches), sum(|it| it.shots), sum(|it| it.both));
+    let missing = recaptured.values().map(Recaptured::missing).sum::<f64>();
+    format!(
+        "The first found {branches}, the second {shots}, {both} of them the same: by that some {missing:.1} more are to be expected, \
+         and the more the harder they are to find."
+    )
 }
 
 /// What the routes say, in a word or two.

@@ -14,6 +14,7 @@ use crate::border_collision::{Classification, Refusal};
 use crate::cam::{Cam, Side};
 use crate::corner::map::RouteName;
 use crate::corner::range::{FoundCornerImpacts, RangeError, find_corner_impacts};
+use crate::corner::shots::{SHOT_RATIO, VELOCITIES};
 use crate::corner::{CornerImpact, CornerMap, variational};
 use crate::known::Known;
 use crate::measured::{Likely, Measured};
@@ -66,7 +67,17 @@ document!(Searched<'_> as it {
     speed_ratio: GRID_RATIO,
     branches: it.0.searched.branches,
     failed: it.0.searched.failed,
+    shots: Shots { speed_ratio: SHOT_RATIO, velocities: VELOCITIES },
+    found_by: it.0.recaptured,
 });
+
+/// How shots from corners were made.
+struct Shots {
+    speed_ratio: f64,
+    velocities: usize,
+}
+
+document!(Shots as it { speed_ratio: it.speed_ratio, velocities: it.velocities });
 
 /// A corner impact and its map.
 #[derive(Clone, Debug)]

@@ -38,7 +38,7 @@ use super::{Family, FamilyError, OrbitError, Parameter, PeriodicOrbit};
 use crate::model::Model;
 use crate::tolerance;
 pub(crate) use doubled::doubled;
-pub(crate) use find::{FoundBranches, GRID_RATIO, find_branches, special_points};
+pub(crate) use find::{FoundBranches, GRID_RATIO, MetPoints, find_branches, special_points};
 pub(crate) use moved::Event;
 pub(crate) use special::Special;
 pub use special::{Bifurcation, Kind};

@@ -35,6 +35,11 @@ impl<'a> Event<'a> {
 
     /// The speed, rpm, at which it is in another machine; none where Newton's method finds none nearby.
     pub fn moved(&self, model: &Model, cam: &Cam) -> Option<f64> {
+        self.solved(model, cam).map(|(_, rpm)| rpm)
+    }
+
+    /// The same with the cycle, and from guesses of both.
+    pub fn solved(&self, model: &Model, cam: &Cam) -> Option<(Cycle, f64)> {
         /// Times that an impact may turn out to be on another segment.
         const SEGMENTS: usize = 6;
         let there = Machine::new(cam.clone(), &model.follower, angular_velocity(self.rpm));
@@ -47,7 +52,7 @@ impl<'a> Event<'a> {
             let is_there = named.impacts.iter().zip(&cycle.impacts).all(|(one, two)| one.segment == two.segment);
             (cycle, rpm) = (named, speed);
             if is_there {
-                return Some(rpm);
+                return Some((cycle, rpm));
             }
         }
         None
@@ -58,7 +63,7 @@ impl<'a> Event<'a> {
 fn renamed(cycle: &Cycle, held: Held, here: &Machine, there: &Machine) -> Option<(Cycle, Held)> {
     let from = here.cam().segments();
     let mut renamed = cycle.clone();
-    let mut held = held;
+    let (mut held, mut is_before) = (held, None);
     for (index, impact) in renamed.impacts.iter_mut().enumerate() {
         match held {
             Held::Corner(Pinned { impact: pinned, at_end }) if pinned == index => {
@@ -73,7 +78,10 @@ fn renamed(cycle: &Cycle, held: Held, here: &Machine, there: &Machine) -> Option
                 if at_end && corner < 0.5 * (segment.start + segment.end) {
                     (impact.cam_angle, impact.revolution) = (impact.cam_angle - TAU, impact.revolution + 1);
                 }
-                held = Held::Corner(Pinned { impact: pinned, at_end: false });
+                let at_start = Pinned { impact: pinned, at_end: false };
+                held = Held::Corner(at_start);
+                // Only where the velocity jumps do the laws on its two sides differ.
+                is_before = (at_end && order == 1).then_some(at_start);
             }
             _ => {
                 let turns = (impact.cam_angle / TAU).floor();
@@ -83,7 +91,12 @@ fn renamed(cycle: &Cycle, held: Held, here: &Machine, there: &Machine) -> Option
             }
         }
     }
-    Some((renamed, held))
+    Some(match is_before {
+        Some(pinned) => {
+            (pinned.other_side(&renamed, there), Held::Corner(Pinned { impact: pinned.impact, at_end: true }))
+        }
+        None => (renamed, held),
+    })
 }
 
 /// The cycle and the speed at which everything holds, on these segments.

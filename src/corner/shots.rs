@@ -1,0 +1,172 @@
+//! Corner impacts by shots: a follower that leaves a corner and is back there a whole number of turns later, with the velocity
+//! that it left with.
+//!
+//! There are two unknowns, the speed of the cam and the velocity that the corner is left with, however many impacts come
+//! between. At each speed of a grid the follower leaves the corner with velocities of a grid; where the impact that comes
+//! nearest to the corner is off by less than at the velocities next to it, the shot is a guess for Newton's method on the
+//! equations of the whole orbit, with the speed free. No search for orbits is made and no branch is followed: what one way
+//! misses the other finds by itself.
+
+use std::f64::consts::TAU;
+use std::ops::ControlFlow;
+
+use rayon::prelude::*;
+
+use super::candidates::{MOST_IMPACTS, NEAREST_OTHER};
+use super::confirm::Candidate;
+use super::period_equation::at_corner;
+use crate::cam::{Cam, Corner, Side};
+use crate::flight::State;
+use crate::model::{Model, Study};
+use crate::orbit::branch::Event as OnCorner;
+use crate::orbit::cycle::lift_size;
+use crate::orbit::search::velocity_scale;
+use crate::orbit::{Cycle, Impact};
+use crate::simulate::{Event, EventKind, Machine, angular_velocity};
+use crate::tolerance;
+
+/// How much faster each speed of the grid is than the one before it.
+pub const SHOT_RATIO: f64 = 1.004;
+/// Velocities at each.
+pub const VELOCITIES: usize = 400;
+/// How far Newton's method may go in speed. As far beyond a range shots are made, so that what is found in a part of it is
+/// found for the whole of it, and the other way round.
+const REACH: f64 = 1.02;
+/// How far from the corner the last impact of a guess may be, rad.
+const NEAR: f64 = 0.3;
+
+/// The corner impacts of several impacts in `revolutions` that shots lead to, over a range of speeds and a little beyond.
+pub fn shots(model: &Model, cam: &Cam, range: Study, revolutions: u64) -> Vec<Candidate> {
+    let machine = Machine::new(cam.clone(), &model.follower, angular_velocity(1.0));
+    let step = |rpm: f64| rpm.ln() / SHOT_RATIO.ln();
+    let first = step(range.rpm_min / REACH).floor() as i32;
+    let speeds = first..=step(range.rpm_max * REACH).ceil() as i32;
+    let corners = cam.corners();
+    let from_corner = |corner: &Corner, rpm: f64| {
+        let sides = if corner.jump_order == 1 { &[Side::Minus, Side::Plus][..] } else { &[Side::Plus] };
+        let machine = machine.at_speed(angular_velocity(rpm));
+        let shooter =
+            |side: &Side| Shooter { model, machine: machine.clone(), rpm, corner: *corner, side: *side, revolutions };
+        sides.iter().flat_map(|side| shooter(side).corner_impacts()).collect::<Vec<_>>()
+    };
+    let at = |index: i32| {
+        let rpm = SHOT_RATIO.powf(f64::from(index) + 0.5);
+        corners.iter().flat_map(|corner| from_corner(corner, rpm)).collect::<Vec<_>>()
+    };
+    speeds.into_par_iter().flat_map_iter(at).collect()
+}
+
+/// Shots from one side of a corner at one speed.
+struct Shooter<'a> {
+    model: &'a Model,
+    machine: Machine,
+    rpm: f64,
+    corner: Corner,
+    side: Side,
+    revolutions: u64,
+}
+
+/// The impact of a shot that may close it.
+#[derive(Clone, Copy)]
+struct Closing {
+    /// Impacts of the orbit that it would close.
+    impacts: usize,
+    /// How far it is from the corner, rad, and its velocity from that of the start, over omega and the cam's size.
+    off: f64,
+}
+
+impl Shooter<'_> {
+    fn slope(&self) -> f64 {
+        match self.side {
+            Side::Minus => self.corner.minus.slope,
+            Side::Plus => self.corner.plus.slope,
+        }
+    }
+
+    /// Over omega, m/rad: closer where they are low, since a slow follower soon hits again.
+    fn leaving(&self, index: usize) -> f64 {
+        let part = (index as f64 + 0.5) / VELOCITIES as f64;
+        part * part * velocity_scale(&self.machine) / self.machine.angular_velocity()
+    }
+
+    /// The impacts after the start, up to the first one that is a period later; fewer where the follower sticks or chatters.
+    fn impacts(&self, leaving: f64) -> Vec<Event> {
+        let mut impacts = Vec::new();
+        let velocity = self.machine.angular_velocity() * (self.slope() + leaving);
+        let state = State { position: self.corner.plus.value, velocity };
+        let Ok(mut motion) = self.machine.start(self.corner.angle, state) else { return impacts };
+        let (most, end) = (MOST_IMPACTS * self.revolutions as usize, self.revolutions as f64 * TAU);
+        let goal = motion.after(self.revolutions + 1);
+        // A run that cannot go on has not come back.
+        let _ = self.machine.advance(&mut motion, goal, &mut |event: &Event| {
+            if event.kind != EventKind::Impact || impacts.len() > most {
+                return ControlFlow::Break(());
+            }
+            impacts.push(*event);
+            if event.turned_since(self.corner.angle) > end { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        impacts
+    }
+
+    /// The last impact before the corner comes round and the first one after.
+    fn closings(&self, leaving: f64) -> [Option<Closing>; 2] {
+        let impacts = self.impacts(leaving);
+        let (omega, size) = (self.machine.angular_velocity(), lift_size(&self.machine));
+        let closing = |count: usize| {
+            let event = impacts.get(count.checked_sub(1)?)?;
+            let angle = (event.turned_since(self.corner.angle) - self.revolutions as f64 * TAU).abs();
+            let velocity = ((event.velocity_after - event.cam_velocity) / omega - leaving).abs() / size;
+            (count > 1 && angle < NEAR).then_some(Closing { impacts: count, off: angle + velocity })
+        };
+        [impacts.len().saturating_sub(1), impacts.len()].map(closing)
+    }
+
+    fn corner_impacts(&self) -> Vec<Candidate> {
+        let all: Vec<_> = (0..VELOCITIES).map(|index| self.closings(self.leaving(index))).collect();
+        let off = |index: usize, impacts: usize| {
+            let closings = all.get(index).into_iter().flatten().flatten();
+            closings.filter(|closing| closing.impacts == impacts).fold(f64::INFINITY, |least, one| least.min(one.off))
+        };
+        let is_least = |index: usize, closing: &Closing| {
+            closing.off <= off(index.wrapping_sub(1), closing.impacts) && closing.off <= off(index + 1, closing.impacts)
+        };
+        let guesses =
+            all.iter().enumerate().flat_map(|(index, closings)| closings.iter().flatten().map(move |one| (index, one)));
+        let least = guesses.filter(|(index, closing)| is_least(*index, closing));
+        least.filter_map(|(index, closing)| self.solved(self.leaving(index), closing.impacts)).collect()
+    }
+
+    /// Newton's method from the shot that `impacts` of it close.
+    fn solved(&self, leaving: f64, impacts: usize) -> Option<Candidate> {
+        let (cam, omega, r) = (self.machine.cam(), self.machine.angular_velocity(), self.machine.restitution());
+        // v+ = (1 + r) c' - r v-
+        let velocity_before = omega * (self.slope() - leaving / r);
+        let first = at_corner(cam, &self.corner, self.side, 0, velocity_before);
+        let mut guess = Cycle::of_events(self.revolutions, self.impacts(leaving).get(..impacts - 1)?);
+        guess.impacts.insert(0, first);
+        let at_end = self.side == Side::Minus;
+        let on_corner = OnCorner::of_corner(&self.machine, self.rpm, &guess, 0, at_end);
+        let (mut cycle, rpm) = on_corner.solved(self.model, cam)?;
+        let is_near = (self.rpm / REACH..=self.rpm * REACH).contains(&rpm);
+        if !is_near || cycle.nearest_other(0) < NEAREST_OTHER {
+            return None;
+        }
+        let Impact { velocity_before, .. } = cycle.impacts[0];
+        cycle.impacts[0] = at_corner(cam, &self.corner, self.side, 0, velocity_before);
+        let machine = self.machine.at_speed(angular_velocity(rpm));
+        cycle.departure(&machine).is_ok_and(|departure| departure.is_none()).then(|| {
+            let (period, width) = (60.0 / rpm, tolerance::CYCLE_CLOSED.value);
+            let impact = cycle.place_in_order(0);
+            let cycle = cycle.in_order();
+            Candidate {
+                impact,
+                corner: self.corner,
+                side: self.side,
+                period,
+                bracket: [period * (1.0 - width), period * (1.0 + width)],
+                residual: cycle.residual(&machine).amax() / lift_size(&machine),
+                cycle,
+            }
+        })
+    }
+}
