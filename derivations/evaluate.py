@@ -157,7 +157,8 @@ def table(cam):
     fitted = cam["fitted"]
     knots, corners = ([exact(angle) for angle in fitted[name]] for name in ("knots_rad", "corners_rad"))
     dwells = [tuple(map(exact, dwell)) for dwell in fitted["dwells_rad"]]
-    basis = splines.Splines(splines.QUINTIC, splines.knots([*knots, *(end for dwell in dwells for end in dwell)], corners), [start for start, _ in dwells])
+    ends = [end for dwell in dwells for end in dwell]
+    basis = splines.Splines(splines.QUINTIC, splines.knots([*knots, *ends], corners), [start for start, _ in dwells])
     numbers = basis.fitted(angles, lifts, exact(fitted["weight"]))
     return motions.polynomials(list(basis.powers(numbers)))
 

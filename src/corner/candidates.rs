@@ -6,6 +6,7 @@
 use std::f64::consts::TAU;
 
 use super::confirm::Candidate;
+use super::corner_impact::Way;
 use super::period_equation::at_corner;
 use crate::cam::{Cam, Side};
 use crate::model::{Model, Study};
@@ -69,5 +70,5 @@ fn candidate(cam: &Cam, point: &BranchPoint) -> Option<Candidate> {
     cycle.impacts[impact] = Impact { revolution, ..on_corner };
     let [slow, fast] = special.bracket.map(|rpm| 60.0 / rpm);
     let (period, bracket) = (60.0 / point.rpm, [fast, slow]);
-    Some(Candidate { cycle, impact, corner, side, period, bracket, residual: special.residual })
+    Some(Candidate { cycle, impact, corner, side, period, bracket, residual: special.residual, way: Way::Branch })
 }

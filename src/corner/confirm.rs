@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::corner_impact::{CornerImpact, at_section, origin};
+use super::corner_impact::{CornerImpact, Way, at_section, origin};
 use crate::cam::{Cam, Corner, Side, apart};
 use crate::impact::rebound;
 use crate::model::Model;
@@ -26,12 +26,14 @@ pub struct Candidate {
     pub bracket: [f64; 2],
     /// What is left of the equation that it is a root of: see [`CornerImpact::residual`].
     pub residual: f64,
+    /// How it was found.
+    pub way: Way,
 }
 
 impl Candidate {
     /// The corner impact, if the cycle is an orbit of the cam as it is; or why it is none.
     pub fn confirmed(self, model: &Model, cam: &Cam) -> Result<CornerImpact, String> {
-        let Self { cycle, impact, corner, side, period, bracket, residual } = self;
+        let Self { cycle, impact, corner, side, period, bracket, residual, way } = self;
         let angular_velocity = TAU / period;
         let machine = Machine::new(cam.clone(), &model.follower, angular_velocity);
         let velocity_before = cycle.impacts[impact].velocity_before;
@@ -89,6 +91,7 @@ impl Candidate {
             cycle,
             impact,
             side,
+            ways: vec![way],
         })
     }
 }

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use nalgebra::Vector2;
+use serde::Serialize;
 
 use super::map::Sides;
 use crate::cam::{Corner, Lift, Side, apart};
@@ -11,6 +12,18 @@ use crate::model::Follower;
 use crate::orbit::{Cycle, Impact};
 use crate::simulate::Machine;
 use crate::tolerance;
+
+/// How a corner impact was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Way {
+    /// As a root of the equation for one impact.
+    Equation,
+    /// On a branch of orbits that passes the corner.
+    Branch,
+    /// By a shot from the corner.
+    Shot,
+}
 
 /// A periodic orbit with an impact on a corner of the cam.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,6 +56,8 @@ pub struct CornerImpact {
     pub impact: usize,
     /// The side whose law the impact obeys: where the velocity jumps, the orbits of the two sides differ.
     pub side: Side,
+    /// How it was found: by one way, or by two that know nothing of each other.
+    pub ways: Vec<Way>,
 }
 
 impl CornerImpact {

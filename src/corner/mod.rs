@@ -8,6 +8,7 @@
 //! |---|---|
 //! | `period_equation` | the speeds at which the one impact of an orbit is on a corner: all roots of one equation |
 //! | `candidates` | corner impacts of several impacts, where branches of orbits pass a corner |
+//! | `shots` | the same by shots from the corner, which know nothing of orbits and branches |
 //! | `confirm` | whether a corner impact of the equations is an orbit of the cam as it is |
 //! | [`mod@locate`] | the paper's kind, for `verify`; [`range`] all kinds |
 //!
@@ -47,7 +48,7 @@ pub(crate) mod simulated_orbit;
 pub mod variational;
 pub mod varied;
 
-pub use corner_impact::CornerImpact;
+pub use corner_impact::{CornerImpact, Way};
 pub use external::told;
 pub use locate::{LocateError, locate};
 pub use map::{CornerMap, Route, SideMap};

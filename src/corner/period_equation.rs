@@ -15,7 +15,7 @@ use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;
 
 use super::confirm::Candidate;
-use super::corner_impact::{CornerImpact, origin};
+use super::corner_impact::{CornerImpact, Way, origin};
 use crate::cam::{Cam, Corner, Lift, Side};
 use crate::flight::{Flight, State};
 use crate::interval::Interval;
@@ -247,6 +247,7 @@ impl<'a> PeriodEquation<'a> {
             cycle: self.cycle(cam, velocity_before),
             impact: 0,
             side: self.side,
+            ways: vec![Way::Equation],
         }))
     }
 
@@ -267,7 +268,7 @@ impl<'a> PeriodEquation<'a> {
         let [velocity_before, _] = self.velocities(root.period)?;
         let cycle = self.cycle(cam, velocity_before);
         let (corner, side, Root { period, bracket, residual, .. }) = (*self.corner, self.side, root);
-        Some(Candidate { cycle, impact: 0, corner, side, period, bracket, residual })
+        Some(Candidate { cycle, impact: 0, corner, side, period, bracket, residual, way: Way::Equation })
     }
 
     /// Impacts and end of one period, or why it is no orbit with impacts only where `from_corner(turned)` is 0.

@@ -5,13 +5,12 @@ use std::collections::BTreeMap;
 
 use super::candidates::{Branches, candidates};
 use super::confirm::Candidate;
-use super::corner_impact::CornerImpact;
+use super::corner_impact::{CornerImpact, Way};
 use super::period_equation::{PeriodEquation, RESONANCE, Root, Roots, Verdict};
 use super::shots::shots;
 use crate::cam::{Cam, Corner, Side};
 use crate::known::{Complete, Known};
 use crate::model::{Model, Study};
-use crate::orbit::Cycle;
 use crate::orbit::complete::Standing;
 use crate::simulate::angular_velocity;
 use crate::tolerance;
@@ -55,8 +54,6 @@ pub struct FoundCornerImpacts {
     pub undecided: Vec<UndecidedSpeeds>,
     /// How orbits of several impacts were looked for.
     pub searched: Branches,
-    /// How many of them each of the two ways found, by their number of impacts.
-    pub recaptured: BTreeMap<usize, Recaptured>,
 }
 
 /// How many corner impacts two ways of looking found that know nothing of each other.
@@ -120,34 +117,15 @@ pub fn find_corner_impacts(
     let known = if undecided.is_empty() { Known::Proved } else { Known::Sampled };
     let complete = vec![Complete { revolutions, impacts: 1, known }];
     let (on_branches, searched) = candidates(model, cam, range, revolutions);
-    let mut all = FoundCornerImpacts {
-        found: Vec::new(),
-        rejected: Vec::new(),
-        corners,
-        complete,
-        undecided,
-        searched,
-        recaptured: BTreeMap::new(),
-    };
+    let mut all =
+        FoundCornerImpacts { found: Vec::new(), rejected: Vec::new(), corners, complete, undecided, searched };
     for (corner, period, verdict) in one_impact {
         let orbit = all.orbit(&corner, 60.0 / period, verdict);
         all.found.extend(orbit);
     }
-    let on_branches = all.confirmed(model, cam, range, on_branches);
-    let by_shots = all.confirmed(model, cam, range, shots(model, cam, range, revolutions));
-    for at in &on_branches {
-        all.recaptured(at).branches += 1;
+    for candidates in [on_branches, shots(model, cam, range, revolutions)] {
+        all.confirm(model, cam, range, candidates);
     }
-    for at in by_shots {
-        let is_known = on_branches.iter().any(|known| is_same(known, (&at.corner, at.side, at.speed_rpm(), &at.cycle)));
-        let count = all.recaptured(&at);
-        count.shots += 1;
-        count.both += usize::from(is_known);
-        if !is_known {
-            all.found.push(at);
-        }
-    }
-    all.found.extend(on_branches);
     all.found.sort_by(|one, two| one.speed_rpm().total_cmp(&two.speed_rpm()));
     all.rejected.sort_by(|one, two| one.speed_rpm.total_cmp(&two.speed_rpm));
     Ok(all)
@@ -237,32 +215,44 @@ impl FoundCornerImpacts {
         None
     }
 
-    fn recaptured(&mut self, at: &CornerImpact) -> &mut Recaptured {
-        self.recaptured.entry(at.cycle.impacts.len()).or_default()
-    }
-
-    /// The orbits among candidates in a range that are not of one impact, each once.
-    fn confirmed(&mut self, model: &Model, cam: &Cam, range: Study, candidates: Vec<Candidate>) -> Vec<CornerImpact> {
-        let mut found: Vec<CornerImpact> = Vec::new();
+    /// Keeps the orbits among candidates in a range, each once, with every way that leads to it.
+    fn confirm(&mut self, model: &Model, cam: &Cam, range: Study, candidates: Vec<Candidate>) {
         for candidate in candidates {
-            let (corner, rpm) = (candidate.corner, 60.0 / candidate.period);
-            let is_inside = range.rpm_min <= rpm && rpm <= range.rpm_max;
-            let is_known = |known: &CornerImpact| is_same(known, (&corner, candidate.side, rpm, &candidate.cycle));
-            let is_new = !self.found.iter().chain(&found).any(is_known);
-            if is_inside && is_new {
-                found.extend(self.orbit(&corner, rpm, verdict(candidate, model, cam)));
+            let (corner, rpm, way) = (candidate.corner, 60.0 / candidate.period, candidate.way);
+            if !(range.rpm_min <= rpm && rpm <= range.rpm_max) {
+                continue;
+            }
+            match self.found.iter_mut().find(|known| is_same(known, &candidate)) {
+                Some(known) if known.ways.contains(&way) || known.cycle.impacts.len() == 1 => {}
+                Some(known) => known.ways.push(way),
+                None => {
+                    let orbit = self.orbit(&corner, rpm, verdict(candidate, model, cam));
+                    self.found.extend(orbit);
+                }
             }
         }
-        found
+    }
+
+    /// How many corner impacts of several impacts each of the two ways found, by their number of impacts.
+    pub fn recaptured(&self) -> BTreeMap<usize, Recaptured> {
+        let mut all = BTreeMap::<usize, Recaptured>::new();
+        for at in self.found.iter().filter(|at| at.cycle.impacts.len() > 1) {
+            let count = all.entry(at.cycle.impacts.len()).or_default();
+            let [branch, shot] = [Way::Branch, Way::Shot].map(|way| at.ways.contains(&way));
+            count.branches += usize::from(branch);
+            count.shots += usize::from(shot);
+            count.both += usize::from(branch && shot);
+        }
+        all
     }
 }
 
-/// Whether a corner impact is the one at that corner, hit on that side, at that speed, rpm, by that cycle.
-fn is_same(known: &CornerImpact, (corner, side, rpm, cycle): (&Corner, Side, f64, &Cycle)) -> bool {
-    known.corner.segment == corner.segment
-        && (known.corner.jump_order > 1 || known.side == side)
-        && is_same_speed(known.speed_rpm(), rpm)
-        && known.cycle.is_same(cycle)
+/// Whether a candidate is a corner impact that is known, found by another way or on another branch.
+fn is_same(known: &CornerImpact, at: &Candidate) -> bool {
+    known.corner.segment == at.corner.segment
+        && (known.corner.jump_order > 1 || known.side == at.side)
+        && is_same_speed(known.speed_rpm(), 60.0 / at.period)
+        && known.cycle.is_same(&at.cycle)
 }
 
 fn is_same_speed(one: f64, two: f64) -> bool {

@@ -14,8 +14,9 @@ use rayon::prelude::*;
 
 use super::candidates::{MOST_IMPACTS, NEAREST_OTHER};
 use super::confirm::Candidate;
+use super::corner_impact::Way;
 use super::period_equation::at_corner;
-use crate::cam::{Cam, Corner, Side};
+use crate::cam::{Cam, Corner, Side, apart};
 use crate::flight::State;
 use crate::model::{Model, Study};
 use crate::orbit::branch::Event as OnCorner;
@@ -151,7 +152,7 @@ impl Shooter<'_> {
         if !is_near || cycle.nearest_other(0) < NEAREST_OTHER {
             return None;
         }
-        let Impact { velocity_before, .. } = cycle.impacts[0];
+        let Impact { cam_angle, velocity_before, .. } = cycle.impacts[0];
         cycle.impacts[0] = at_corner(cam, &self.corner, self.side, 0, velocity_before);
         let machine = self.machine.at_speed(angular_velocity(rpm));
         cycle.departure(&machine).is_ok_and(|departure| departure.is_none()).then(|| {
@@ -164,8 +165,9 @@ impl Shooter<'_> {
                 side: self.side,
                 period,
                 bracket: [period * (1.0 - width), period * (1.0 + width)],
-                residual: cycle.residual(&machine).amax() / lift_size(&machine),
+                residual: apart(cam_angle, self.corner.angle),
                 cycle,
+                way: Way::Shot,
             }
         })
     }

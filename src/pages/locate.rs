@@ -1,8 +1,7 @@
 //! The page of `locate`: the corner impacts of a range of speeds, and what happens at each.
 
-use std::collections::BTreeMap;
-
 use crate::border_collision::Classification;
+use crate::corner::Way;
 use crate::corner::candidates::{MOST_IMPACTS, NEAREST_OTHER};
 use crate::corner::range::{FoundCornerImpacts, Recaptured, UndecidedSpeeds};
 use crate::corner::shots::{SHOT_RATIO, VELOCITIES};
@@ -127,7 +126,7 @@ fn rejected(found: &Located) -> Vec<Block> {
 }
 
 fn searched(found: &Located) -> String {
-    let FoundCornerImpacts { corners, searched, undecided, recaptured, .. } = &found.looked_at;
+    let FoundCornerImpacts { corners, searched, undecided, .. } = &found.looked_at;
     let corners = corners.len();
     let mut words = if corners == 0 {
         "The cam has no corner: no derivative of its lift jumps as far as can be told.".to_owned()
@@ -144,7 +143,7 @@ fn searched(found: &Located) -> String {
             100.0 * (GRID_RATIO - 1.0),
             searched.branches,
             100.0 * (SHOT_RATIO - 1.0),
-            found_by(recaptured),
+            found_by(found),
             NEAREST_OTHER.to_degrees(),
         )
     };
@@ -159,14 +158,22 @@ fn searched(found: &Located) -> String {
     words
 }
 
-/// What each way of looking found, and how many there may be besides.
-fn found_by(recaptured: &BTreeMap<usize, Recaptured>) -> String {
+/// What each way of looking found, which one way alone, and how many there may be besides.
+fn found_by(found: &Located) -> String {
+    let recaptured = found.looked_at.recaptured();
     let sum = |count: fn(&Recaptured) -> usize| recaptured.values().map(count).sum::<usize>();
     let (branches, shots, both) = (sum(|it| it.branches), sum(|it| it.shots), sum(|it| it.both));
     let missing = recaptured.values().map(Recaptured::missing).sum::<f64>();
+    let alone = |way: Way| {
+        let numbers =
+            (1..).zip(&found.found).filter(|(_, it)| it.at.ways == [way]).map(|(number, _)| number.to_string());
+        Some(numbers.collect::<Vec<_>>().join(", ")).filter(|numbers| !numbers.is_empty())
+    };
+    let on_branches = alone(Way::Branch).map_or_else(String::new, |numbers| format!(" On branches alone: {numbers}."));
+    let by_shots = alone(Way::Shot).map_or_else(String::new, |numbers| format!(" By shots alone: {numbers}."));
     format!(
         "The first found {branches}, the second {shots}, {both} of them the same: by that some {missing:.1} more are to be expected, \
-         and the more the harder they are to find."
+         and the more the harder they are to find.{on_branches}{by_shots}"
     )
 }
 

@@ -30,7 +30,13 @@ enum Part {
 
 /// A sentence with its formulas set. What is no formula stays as it is: words, numbers, names with a colon or an underscore in words.
 pub(crate) fn sentence(text: &str) -> Markup {
-    let words = text.split_inclusive(' ').flat_map(|word| {
+    // A space in braces parts no words.
+    let mut open = 0;
+    let is_gap = |letter: char| {
+        open += i32::from(letter == '{') - i32::from(letter == '}');
+        letter == ' ' && open <= 0
+    };
+    let words = text.split_inclusive(is_gap).flat_map(|word| {
         let bare = word.trim_end();
         let sign = SIGNS.iter().find(|(typed, _)| *typed == bare);
         match sign {
@@ -148,6 +154,7 @@ mod tests {
             ("omega0^2 -> 0", "<i>ω</i><sub>0</sub><sup>2</sup> → 0"),
             ("c'' is 5.1e-9 m/s^2", "<i>c</i>′′ is 5.1e-9 m/s^2"),
             ("as printed, eq:PT in one-impact words", "as printed, eq:PT in one-impact words"),
+            ("phi_t = e^{-zeta t} x*", "<i>φ</i><sub>t</sub> = <i>e</i><sup>−ζ t</sup> <i>x</i><sup>*</sup>"),
             ("W^{-1} x~", "<i>W</i><sup>−1</sup> <i>x</i>\u{303}"),
             ("a < b & \"_", "a &lt; b &amp; &quot;_"),
         ] {

@@ -68,7 +68,7 @@ document!(Searched<'_> as it {
     branches: it.0.searched.branches,
     failed: it.0.searched.failed,
     shots: Shots { speed_ratio: SHOT_RATIO, velocities: VELOCITIES },
-    found_by: it.0.recaptured,
+    found_by: it.0.recaptured(),
 });
 
 /// How shots from corners were made.
@@ -100,6 +100,7 @@ pub struct LocatedImpact {
 
 document!(LocatedImpact as it {
     known: Known::Computed,
+    found_by: it.at.ways,
     speed_rpm: it.at.speed_rpm(),
     error_rpm if_any: it.speed_error,
     period_s: it.at.period,

@@ -4,6 +4,7 @@ use std::process::Output;
 
 use crate::common;
 use corner_impact::border_collision::feigin::Scenario;
+use corner_impact::corner::Way;
 use corner_impact::corner::range::{self, RangeError, Recaptured};
 use corner_impact::model::{Model, Study};
 use corner_impact::study::locate::{Happens, LocateError, Located, LocatedImpact};
@@ -257,12 +258,18 @@ fn what_one_way_of_looking_misses_the_other_finds() {
         |it: &&LocatedImpact| (it.at.speed_rpm() - 294.280557836).abs() < 1e-8 && it.at.cycle.impacts.len() == 5;
     let by_shots = found.found.iter().find(is_it);
     assert!(by_shots.is_some_and(|it| it.agrees), "{:?}", found.found);
+    assert_eq!(by_shots.unwrap().at.ways, [Way::Shot]);
     // Each is counted under the ways that found it, and what both found once.
-    let recaptured = &found.looked_at.recaptured;
+    let recaptured = found.looked_at.recaptured();
     let several = found.found.iter().filter(|it| it.at.cycle.impacts.len() > 1).count();
     let counted = recaptured.values().map(|it| it.branches + it.shots - it.both).sum::<usize>();
     assert_eq!(counted, several, "{recaptured:?}");
-    assert!(recaptured.values().any(|it| it.shots > it.both), "{recaptured:?}");
+    assert!(
+        recaptured.values().any(|it| it.both > 0) && recaptured.values().any(|it| it.shots > it.both),
+        "{recaptured:?}"
+    );
+    let page = corner_impact::show::Paged::text(&found).unwrap();
+    assert!(page.contains("By shots alone: 2."), "{page}");
     // Chapman's 60 * 70 / 58 - 1 less the 59 + 69 - 57 that are known: 12 * 2 / 58.
     let missing = Recaptured { branches: 59, shots: 69, both: 57 }.missing();
     approx::assert_relative_eq!(missing, 24.0 / 58.0, max_relative = 1e-15);
