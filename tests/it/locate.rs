@@ -316,6 +316,22 @@ fn a_part_of_a_range_has_its_part_of_the_corner_impacts() {
     parts_are_the_whole(&common::tutorial("own.toml"), [1290.0, 1380.0], 1, 5);
 }
 
+/// Shots are made beyond either end of a range, as far as Newton's method may go from one.
+#[test]
+fn a_range_around_one_corner_impact_has_it_by_the_same_ways() {
+    let model = common::read("models/sharp-nose.toml".as_ref());
+    let find = |rpm_min: f64, rpm_max: f64| {
+        range::find_corner_impacts(&model, &common::cam(&model), Study { rpm_min, rpm_max }, 1).unwrap().found
+    };
+    let whole = find(222.0, 228.0);
+    assert!(whole.iter().any(|at| at.ways == [Way::Shot]), "{whole:?}");
+    for at in &whole {
+        let alone = find(at.speed_rpm() * (1.0 - 1e-7), at.speed_rpm() * (1.0 + 1e-7));
+        let ways = alone.iter().find(|it| it.cycle.is_same(&at.cycle)).map(|it| &it.ways[..]);
+        assert_eq!(ways, Some(&at.ways[..]), "{} rpm: {alone:?}", at.speed_rpm());
+    }
+}
+
 /// One model of each kind of cam that has corners, and orbits that repeat after two revolutions.
 #[test]
 #[ignore = "slow"]
