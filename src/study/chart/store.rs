@@ -226,7 +226,8 @@ impl<'a> Store<'a> {
             (Path::new(axis.parameter.name()).join("c/0"), bytes)
         });
         let there = match file::text(&folder.join("zarr.json")) {
-            Err(error) if error.kind() == ErrorKind::NotFound => None,
+            // Where there is a file on the way, making the folder says so.
+            Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => None,
             read => Some(read.map_err(|error| none(folder, error.to_string()))?),
         };
         if let Some(text) = there {
