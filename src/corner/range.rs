@@ -63,7 +63,7 @@ pub struct Recaptured {
     pub branches: usize,
     /// By shots.
     pub shots: usize,
-    /// By either.
+    /// By both.
     pub both: usize,
 }
 
