@@ -3,10 +3,35 @@
 //! A computation that may take longer than a second takes a [`Watch`] and tells it what it is at; what becomes of that is
 //! not its business. Nothing that is computed depends on who watches.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 /// Whoever wants to know how far a computation has come; told from any thread.
 pub trait Watch: Sync {
     /// `done` of `total` pieces are done, and `what`, in a few words, is what it is at; a total of 0 is not known.
     fn at(&self, what: &str, done: u64, total: u64);
+}
+
+/// Pieces of work that are done in any order, on any thread.
+pub struct Pieces<'a> {
+    watch: &'a dyn Watch,
+    what: &'a str,
+    done: AtomicU64,
+    total: u64,
+}
+
+impl<'a> Pieces<'a> {
+    /// None of them done yet.
+    pub fn new(watch: &'a dyn Watch, what: &'a str, total: usize) -> Self {
+        watch.at(what, 0, total as u64);
+        Self { watch, what, done: AtomicU64::new(0), total: total as u64 }
+    }
+
+    /// Does one of them, and says that it is done.
+    pub fn each<T>(&self, piece: impl FnOnce() -> T) -> T {
+        let result = piece();
+        self.watch.at(self.what, 1 + self.done.fetch_add(1, Ordering::Relaxed), self.total);
+        result
+    }
 }
 
 /// Nobody.

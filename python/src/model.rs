@@ -410,7 +410,11 @@ impl Model {
         let [rpm_min, rpm_max] = values::speed_range(rpm)?;
         let revolutions = within("revolutions", revolutions, [1, Search::MOST_REVOLUTIONS])?;
         let range = model::Study { rpm_min, rpm_max };
-        document(py, &spread(py, || locate(&self.model, range, revolutions))?.or_raise()?, &self.model.units)
+        document(
+            py,
+            &spread(py, || locate(&self.model, range, revolutions, &Unwatched))?.or_raise()?,
+            &self.model.units,
+        )
     }
 
     /// The attractors over a range of speeds, (lowest, highest) rpm, or over the one that `corner-impact speeds` takes: at `speeds`
@@ -533,7 +537,7 @@ impl Model {
                 };
                 document(
                     py,
-                    &spread(py, || certify(&self.model, range, revolutions, bits))?.or_raise()?,
+                    &spread(py, || certify(&self.model, range, revolutions, bits, &Unwatched))?.or_raise()?,
                     &self.model.units,
                 )
             }

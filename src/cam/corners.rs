@@ -59,7 +59,11 @@ impl Corner {
 
 impl Cam {
     /// The corners, in order of angle, whatever derivative jumps.
-    pub fn corners(&self) -> Vec<Corner> {
+    pub fn corners(&self) -> &[Corner] {
+        &self.corners
+    }
+
+    pub(super) fn meetings(&self) -> Vec<Corner> {
         let meetings = (0..self.segments().len()).map(|after| (self.before(after), after));
         meetings.filter_map(|(before, after)| self.corner(before, after)).collect()
     }

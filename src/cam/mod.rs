@@ -105,11 +105,12 @@ pub fn apart(one: f64, two: f64) -> f64 {
     turned.min(TAU - turned)
 }
 
-/// A periodic lift profile; clones share their segments.
+/// A periodic lift profile; clones share what it is made of.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cam {
     segments: std::sync::Arc<Vec<Segment>>,
     joint: Joint,
+    corners: std::sync::Arc<Vec<Corner>>,
 }
 
 impl Cam {
@@ -124,12 +125,19 @@ impl Cam {
         let count = laws.len();
         let segments = laws.into_iter().zip(ends).filter(|((start, _), end)| start < end);
         let segments = segments.map(|((start, law), end)| Segment::new(start, end, law, count)).collect();
-        Self { segments: std::sync::Arc::new(segments), joint }
+        Self::joined(segments, joint)
     }
 
     /// From segments that cover `[0, 2 pi]`.
     fn from_segments(segments: Vec<Segment>) -> Self {
-        Self { segments: std::sync::Arc::new(segments), joint: Joint::Free }
+        Self::joined(segments, Joint::Free)
+    }
+
+    fn joined(segments: Vec<Segment>, joint: Joint) -> Self {
+        let mut cam = Self { segments: std::sync::Arc::new(segments), joint, corners: std::sync::Arc::default() };
+        // Searches ask for them at each guess, and those of a table are many.
+        cam.corners = std::sync::Arc::new(cam.meetings());
+        cam
     }
 
     fn joint(&self) -> &Joint {

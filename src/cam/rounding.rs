@@ -18,7 +18,7 @@ use crate::model::{CORNER_ROUNDING, Model, ModelError};
 impl Cam {
     /// The cam with each corner of its acceleration rounded over so many degrees.
     pub(super) fn rounded(self, model: &Model, degrees: f64) -> Result<Self, ModelError> {
-        let corners: Vec<_> = self.corners().into_iter().filter(|corner| corner.jump_order == 2).collect();
+        let corners: Vec<_> = self.corners().iter().copied().filter(|corner| corner.jump_order == 2).collect();
         if corners.is_empty() {
             return Err(model.reject(CORNER_ROUNDING, "must be 0: the acceleration of this cam has no jump to round"));
         }

@@ -64,8 +64,8 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         Some([rpm_min, rpm_max]) => Study { rpm_min, rpm_max },
         None => model.study()?,
     };
-    let found = watched("proving corner impacts", |_| {
-        certify(&model, range, arguments.revolutions, arguments.bits).map_err(|error| match error {
+    let found = watched("proving corner impacts", |watch| {
+        certify(&model, range, arguments.revolutions, arguments.bits, watch).map_err(|error| match error {
             CertifyError::Range(error) => CommandError::Words(format!("{}: {error}", model.file())),
             error => error.into(),
         })

@@ -34,8 +34,8 @@ fn study(text: &str) -> Result<Study, String> {
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let model = arguments.model.read(session)?;
-    let found = watched("looking for orbits with an impact on a corner", |_| {
-        locate(&model, arguments.rpm, arguments.revolutions).map_err(|error| match error {
+    let found = watched("looking for orbits with an impact on a corner", |watch| {
+        locate(&model, arguments.rpm, arguments.revolutions, watch).map_err(|error| match error {
             LocateError::Range(error) => CommandError::Words(format!("{}: {error}", model.file())),
             error => error.into(),
         })

@@ -12,6 +12,7 @@ use crate::cam::{Cam, Side};
 use crate::model::{Model, Study};
 use crate::orbit::branch::{BranchPoint, Kind, MetPoints, special_points};
 use crate::orbit::{Course, Impact, Search};
+use crate::progress::Watch;
 use crate::tolerance;
 
 /// Impacts in a revolution of the orbits that are looked at: with more a follower is about to chatter.
@@ -32,10 +33,16 @@ pub struct Branches {
 }
 
 /// The corner impacts over a range of speeds of orbits of several impacts in `revolutions`.
-pub fn candidates(model: &Model, cam: &Cam, range: Study, revolutions: u64) -> (Vec<Candidate>, Branches) {
+pub fn candidates(
+    model: &Model,
+    cam: &Cam,
+    range: Study,
+    revolutions: u64,
+    watch: &dyn Watch,
+) -> (Vec<Candidate>, Branches) {
     let wanted = Search { revolutions, impacts: None };
     let is_corner = |kind| matches!(kind, Kind::Corner { .. });
-    match special_points(model, [range.rpm_min, range.rpm_max], &wanted, is_corner) {
+    match special_points(model, [range.rpm_min, range.rpm_max], &wanted, is_corner, watch) {
         Ok(found) => {
             let candidates = found.points.iter().filter_map(|point| candidate(cam, point)).collect();
             let MetPoints { speeds, branches, failed, .. } = found;

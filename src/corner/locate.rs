@@ -63,7 +63,7 @@ impl fmt::Display for NotFound {
 /// The slowest corner impact in `[study]`, and the others by rising speed.
 pub fn locate(model: &Model, cam: &Cam) -> Result<(CornerImpact, Vec<CornerImpact>), LocateError> {
     let study = model.study()?;
-    let corners: Vec<Corner> = cam.corners().into_iter().filter(|corner| corner.jump_order == 2).collect();
+    let corners: Vec<Corner> = cam.corners().iter().copied().filter(|corner| corner.jump_order == 2).collect();
     let complaint = |error: RangeError| {
         let words = match error {
             RangeError::TooWide { radians, .. } => format!(

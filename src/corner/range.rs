@@ -12,6 +12,7 @@ use crate::cam::{Cam, Corner, Side};
 use crate::known::{Complete, Known};
 use crate::model::{Model, Study};
 use crate::orbit::complete::Standing;
+use crate::progress::Watch;
 use crate::simulate::angular_velocity;
 use crate::tolerance;
 
@@ -107,6 +108,7 @@ pub fn find_corner_impacts(
     cam: &Cam,
     range: Study,
     revolutions: u64,
+    watch: &dyn Watch,
 ) -> Result<FoundCornerImpacts, RangeError> {
     let Study { rpm_min: low, rpm_max: high } = range;
     if !(low > 0.0 && high > low && angular_velocity(high).is_finite()) {
@@ -116,14 +118,20 @@ pub fn find_corner_impacts(
     let (one_impact, undecided) = one_impact(model, cam, &corners, range, revolutions)?;
     let known = if undecided.is_empty() { Known::Proved } else { Known::Sampled };
     let complete = vec![Complete { revolutions, impacts: 1, known }];
-    let (on_branches, searched) = candidates(model, cam, range, revolutions);
-    let mut all =
-        FoundCornerImpacts { found: Vec::new(), rejected: Vec::new(), corners, complete, undecided, searched };
+    let (on_branches, searched) = candidates(model, cam, range, revolutions, watch);
+    let mut all = FoundCornerImpacts {
+        found: Vec::new(),
+        rejected: Vec::new(),
+        corners: corners.to_vec(),
+        complete,
+        undecided,
+        searched,
+    };
     for (corner, period, verdict) in one_impact {
         let orbit = all.orbit(&corner, 60.0 / period, verdict);
         all.found.extend(orbit);
     }
-    for candidates in [on_branches, shots(model, cam, range, revolutions)] {
+    for candidates in [on_branches, shots(model, cam, range, revolutions, watch)] {
         all.confirm(model, cam, range, candidates);
     }
     all.found.sort_by(|one, two| one.speed_rpm().total_cmp(&two.speed_rpm()));

@@ -23,6 +23,7 @@ use crate::orbit::branch::Event as OnCorner;
 use crate::orbit::cycle::lift_size;
 use crate::orbit::search::velocity_scale;
 use crate::orbit::{Cycle, Impact};
+use crate::progress::{Pieces, Watch};
 use crate::simulate::{Event, EventKind, Machine, angular_velocity};
 use crate::tolerance;
 
@@ -37,34 +38,42 @@ const REACH: f64 = 1.02;
 const NEAR: f64 = 0.3;
 
 /// The corner impacts of several impacts in `revolutions` that shots lead to, over a range of speeds and a little beyond.
-pub fn shots(model: &Model, cam: &Cam, range: Study, revolutions: u64) -> Vec<Candidate> {
+pub fn shots(model: &Model, cam: &Cam, range: Study, revolutions: u64, watch: &dyn Watch) -> Vec<Candidate> {
     let machine = Machine::new(cam.clone(), &model.follower, angular_velocity(1.0));
     let step = |rpm: f64| rpm.ln() / SHOT_RATIO.ln();
     let first = step(range.rpm_min / REACH).floor() as i32;
     let speeds = first..=step(range.rpm_max * REACH).ceil() as i32;
     let corners = cam.corners();
-    let from_corner = |corner: &Corner, rpm: f64| {
-        let sides = if corner.jump_order == 1 { &[Side::Minus, Side::Plus][..] } else { &[Side::Plus] };
-        let machine = machine.at_speed(angular_velocity(rpm));
-        let shooter =
-            |side: &Side| Shooter { model, machine: machine.clone(), rpm, corner: *corner, side: *side, revolutions };
-        sides.iter().flat_map(|side| shooter(side).corner_impacts()).collect::<Vec<_>>()
-    };
     let at = |index: i32| {
         let rpm = SHOT_RATIO.powf(f64::from(index) + 0.5);
-        corners.iter().flat_map(|corner| from_corner(corner, rpm)).collect::<Vec<_>>()
+        let machine = machine.at_speed(angular_velocity(rpm));
+        let (fastest, size) = (velocity_scale(&machine) / machine.angular_velocity(), lift_size(&machine));
+        let of_corner = |corner: &Corner| {
+            let sides = if corner.jump_order == 1 { &[Side::Minus, Side::Plus][..] } else { &[Side::Plus] };
+            let shooter = |side: &Side| {
+                let (machine, corner, side) = (&machine, *corner, *side);
+                Shooter { model, machine, rpm, corner, side, revolutions, fastest, size }
+            };
+            sides.iter().flat_map(|side| shooter(side).corner_impacts()).collect::<Vec<_>>()
+        };
+        corners.iter().flat_map(of_corner).collect::<Vec<_>>()
     };
-    speeds.into_par_iter().flat_map_iter(at).collect()
+    let pieces = Pieces::new(watch, "shots from the corners", speeds.clone().count());
+    speeds.into_par_iter().flat_map_iter(|index| pieces.each(|| at(index))).collect()
 }
 
 /// Shots from one side of a corner at one speed.
 struct Shooter<'a> {
     model: &'a Model,
-    machine: Machine,
+    machine: &'a Machine,
     rpm: f64,
     corner: Corner,
     side: Side,
     revolutions: u64,
+    /// Velocity that a corner is left with at most, over omega, m/rad.
+    fastest: f64,
+    /// Of the cam's lift, m.
+    size: f64,
 }
 
 /// The impact of a shot that may close it.
@@ -87,7 +96,7 @@ impl Shooter<'_> {
     /// Over omega, m/rad: closer where they are low, since a slow follower soon hits again.
     fn leaving(&self, index: usize) -> f64 {
         let part = (index as f64 + 0.5) / VELOCITIES as f64;
-        part * part * velocity_scale(&self.machine) / self.machine.angular_velocity()
+        part * part * self.fastest
     }
 
     /// The impacts after the start, up to the first one that is a period later; fewer where the follower sticks or chatters.
@@ -112,11 +121,11 @@ impl Shooter<'_> {
     /// The last impact before the corner comes round and the first one after.
     fn closings(&self, leaving: f64) -> [Option<Closing>; 2] {
         let impacts = self.impacts(leaving);
-        let (omega, size) = (self.machine.angular_velocity(), lift_size(&self.machine));
+        let omega = self.machine.angular_velocity();
         let closing = |count: usize| {
             let event = impacts.get(count.checked_sub(1)?)?;
             let angle = (event.turned_since(self.corner.angle) - self.revolutions as f64 * TAU).abs();
-            let velocity = ((event.velocity_after - event.cam_velocity) / omega - leaving).abs() / size;
+            let velocity = ((event.velocity_after - event.cam_velocity) / omega - leaving).abs() / self.size;
             (count > 1 && angle < NEAR).then_some(Closing { impacts: count, off: angle + velocity })
         };
         [impacts.len().saturating_sub(1), impacts.len()].map(closing)
@@ -146,7 +155,7 @@ impl Shooter<'_> {
         let mut guess = Cycle::of_events(self.revolutions, self.impacts(leaving).get(..impacts - 1)?);
         guess.impacts.insert(0, first);
         let at_end = self.side == Side::Minus;
-        let on_corner = OnCorner::of_corner(&self.machine, self.rpm, &guess, 0, at_end);
+        let on_corner = OnCorner::of_corner(self.machine, self.rpm, &guess, 0, at_end);
         let (mut cycle, rpm) = on_corner.solved(self.model, cam)?;
         let is_near = (self.rpm / REACH..=self.rpm * REACH).contains(&rpm);
         if !is_near || cycle.nearest_other(0) < NEAREST_OTHER {

@@ -14,6 +14,7 @@ use crate::paper::checks::{self, Check};
 use crate::paper::{Claim, Context, LedgerError, ledger, proofs};
 use crate::report::quantities::{Quantity, quantities};
 use crate::study::compare::{self, Values};
+use crate::study::compared::Skipped;
 use crate::study::verify::{External, Verification};
 use crate::tolerance::{self, Tolerance};
 
@@ -40,6 +41,9 @@ pub struct Explanation {
     pub value: Option<Value>,
     /// The same by each route that knows it.
     pub routes: BTreeMap<String, Value>,
+    /// Those that did not run: on purpose, or because they failed.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub skipped: Vec<Skipped>,
     /// How it is known.
     pub known: Known,
     /// Of a statement of the paper: what its check found.
@@ -67,6 +71,7 @@ impl Explanation {
             inputs: Vec::new(),
             value: None,
             routes: BTreeMap::new(),
+            skipped: Vec::new(),
             known,
             evidence: None,
             code: None,
@@ -349,6 +354,7 @@ impl Links {
         let mut routes = each("/routes", link.routes.as_ref());
         routes.extend(each("/orbits", link.orbits.as_ref()));
         let is_proved = routes.contains_key("certificate");
+        let skipped = findings.found.filter(|_| !routes.is_empty()).map(|found| found.skipped.clone());
         Explanation {
             formula: link.formula.clone(),
             label: link.labels.first().cloned(),
@@ -357,6 +363,7 @@ impl Links {
             value: own.or_else(|| at(link.value.as_deref()?)).cloned().or_else(|| of_input(&link.name)),
             known: if is_proved { Known::Proved } else { link.known },
             routes,
+            skipped: skipped.unwrap_or_default(),
             code: code(&link.code),
             derivation: link.derivation.as_deref().and_then(derivation),
             tests: tests(&link.tests),

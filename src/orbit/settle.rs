@@ -46,7 +46,7 @@ pub fn close(machine: &Machine, guess: &Cycle) -> Option<PeriodicOrbit> {
         return None;
     }
     let (cycle, residual) = guess.closed(machine).ok()?;
-    let mut corners = machine.cam().corners().into_iter().map(|corner| corner.segment).collect::<Vec<_>>();
+    let mut corners = machine.cam().corners().iter().copied().map(|corner| corner.segment).collect::<Vec<_>>();
     corners.sort_unstable();
     let cycle = cycle.renamed(machine, |segment| corners.binary_search(&segment).is_ok()).in_order();
     let is_orbit = cycle.departure(machine).is_ok_and(|departure| departure.is_none()) && !cycle.repeats_sooner();

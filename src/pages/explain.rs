@@ -45,6 +45,10 @@ pub(crate) fn explained(it: &Explanation) -> Vec<Block> {
     if let Some(evidence) = &it.evidence {
         say("evidence", evidence.into());
     }
+    if !it.skipped.is_empty() {
+        let routes = Words::joined(it.skipped.iter().map(|skipped| Words::from(words::spoken(&skipped.route))), ", ");
+        say("not run", words![routes, " (`verify` says why)"]);
+    }
     say("known", words![(Mark::Strong, it.known.to_string().as_str())]);
     for (name, words) in ["code", "proof", "tests"].into_iter().zip(behind(it)) {
         if !words.is_empty() {

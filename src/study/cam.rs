@@ -102,7 +102,7 @@ impl CamSheet {
             measured: Likely::of(model)?.map(|likely| likely.measured),
             segments,
             highest_order,
-            corners: cam.corners().into_iter().filter(|corner| corner.jump_order <= highest_order).collect(),
+            corners: cam.corners().iter().copied().filter(|corner| corner.jump_order <= highest_order).collect(),
         })
     }
 }

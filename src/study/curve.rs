@@ -36,9 +36,8 @@ pub fn curves(
     // What has no event at its own value, as a sharp corner has no fold, is looked at where the range is nearest to it.
     let start = own.clamp(low, high);
     let model = &if start == own { model.clone() } else { model.with_number(path, start)? };
-    watch.at("looking for events of the model", 0, 0);
     let is_wanted = |kind: Kind| kind.bifurcation().is_some_and(|event| events.contains(&event));
-    let points = special_points(model, rpm, wanted, is_wanted)?.points;
+    let points = special_points(model, rpm, wanted, is_wanted, watch)?.points;
     let of_event = |event: Bifurcation| {
         points
             .iter()
@@ -52,7 +51,8 @@ pub fn curves(
             curves.push(EventCurve::new(&curve, kind));
         }
     }
-    let sharp = if path == CORNER_ROUNDING { sharp(&model.with_number(path, 0.0)?, rpm, wanted)? } else { Vec::new() };
+    let sharp =
+        if path == CORNER_ROUNDING { sharp(&model.with_number(path, 0.0)?, rpm, wanted, watch)? } else { Vec::new() };
     Ok(Curves { own, sharp, curves })
 }
 
@@ -61,8 +61,9 @@ fn sharp(
     model: &Model,
     [rpm_min, rpm_max]: [f64; 2],
     wanted: &Search,
+    watch: &dyn Watch,
 ) -> Result<Vec<(f64, RoundedCorner)>, StudyError> {
-    let located = locate(model, Study { rpm_min, rpm_max }, wanted.revolutions)?.found;
+    let located = locate(model, Study { rpm_min, rpm_max }, wanted.revolutions, watch)?.found;
     let fold = |found: &LocatedImpact| match &found.local {
         Happens::BorderCollision(Ok(kind)) => Some((found.at.speed_rpm(), rounded(kind, &found.at)?)),
         _ => None,

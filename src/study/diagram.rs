@@ -1,7 +1,6 @@
 //! What the motion settles on, speed by speed.
 
 use std::f64::consts::TAU;
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 use rayon::prelude::*;
@@ -10,7 +9,7 @@ use serde::Serialize;
 use crate::diagram::{Block, Following, Places, Section, Speeds, Start, Sweep, SweepError, Tally};
 use crate::draw::{Cloud, Density};
 use crate::model::Model;
-use crate::progress::Watch;
+use crate::progress::{Pieces, Watch};
 use crate::simulate::{Machine, Motion, SimulateError, angular_velocity};
 use crate::study::attractors::Here;
 use crate::study::chart::{Lengths, Point};
@@ -36,14 +35,14 @@ pub fn one_row(
     threads: Option<usize>,
     watch: &dyn Watch,
 ) -> Result<Vec<Result<Point, String>>, SweepError> {
-    let done = AtomicU64::new(0);
+    let pieces = Pieces::new(watch, "", speeds.count);
     let one = |index: usize| {
-        watch.at("", done.fetch_add(1, Ordering::Relaxed), speeds.count as u64);
         let machine = machine.at_speed(angular_velocity(speeds.value(index)));
         let run = start.motion(&machine).and_then(|motion| Point::of(&machine, motion, lengths));
         run.map_err(|error| error.to_string())
     };
-    Ok(crate::diagram::threads(threads)?.install(|| (0..speeds.count).into_par_iter().map(one).collect()))
+    let each = |index: usize| pieces.each(|| one(index));
+    Ok(crate::diagram::threads(threads)?.install(|| (0..speeds.count).into_par_iter().map(each).collect()))
 }
 
 /// The loads of each recorded revolution of a run from `start` at each of `speeds`; an error where it cannot be run.
@@ -56,7 +55,7 @@ pub fn loads(
     watch: &dyn Watch,
 ) -> Result<Vec<Vec<Loads>>, SweepError> {
     let (machine, speeds) = (&sweep.machine, &sweep.speeds);
-    let done = AtomicU64::new(0);
+    let pieces = Pieces::new(watch, "", speeds.count);
     let of_speed = |rpm: f64| -> Result<Vec<Loads>, SimulateError> {
         let machine = machine.at_speed(angular_velocity(rpm));
         let mut motion = start.motion(&machine)?;
@@ -66,9 +65,8 @@ pub fn loads(
         Ok(found.into_iter().map(|loads| Loads { rpm, ..loads }).collect())
     };
     let one = |index: usize| {
-        watch.at("", done.fetch_add(1, Ordering::Relaxed), speeds.count as u64);
         let rpm = speeds.value(index);
-        of_speed(rpm).map_err(|error| SweepError::Simulate { rpm, error })
+        pieces.each(|| of_speed(rpm)).map_err(|error| SweepError::Simulate { rpm, error })
     };
     crate::diagram::threads(threads)?.install(|| (0..speeds.count).into_par_iter().map(one).collect())
 }

@@ -20,6 +20,7 @@ use crate::known::Known;
 use crate::measured::{Likely, Measured};
 use crate::model::{Model, ModelError, Study};
 use crate::orbit::branch::{Event, GRID_RATIO};
+use crate::progress::{Pieces, Watch};
 use crate::simulate::Machine;
 use crate::study::ModelLabel;
 use crate::study::compared::{self, Log, Skipped};
@@ -199,10 +200,12 @@ pub enum LocateError {
 }
 
 /// Finds every corner impact of orbits of `revolutions` in `range`, and computes its map by every route of this program.
-pub fn locate(model: &Model, range: Study, revolutions: u64) -> Result<Located, LocateError> {
+pub fn locate(model: &Model, range: Study, revolutions: u64, watch: &dyn Watch) -> Result<Located, LocateError> {
     let cam = Cam::new(model)?;
-    let looked_at = find_corner_impacts(model, &cam, range, revolutions)?;
-    let found: Vec<LocatedImpact> = looked_at.found.par_iter().map(|at| located(model, &cam, at)).collect();
+    let looked_at = find_corner_impacts(model, &cam, range, revolutions, watch)?;
+    let pieces = Pieces::new(watch, "the map of each corner impact, by every route", looked_at.found.len());
+    let found: Vec<LocatedImpact> =
+        looked_at.found.par_iter().map(|at| pieces.each(|| located(model, &cam, at))).collect();
     let likely = if found.is_empty() { None } else { Likely::of(model)? };
     let mut found = found;
     if let Some(likely) = likely.as_ref().filter(|likely| likely.best.is_some()) {

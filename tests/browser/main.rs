@@ -289,6 +289,21 @@ fn a_click_on_a_number_shows_what_it_stands_for() {
          document.querySelector('#explained h3').textContent",
     );
     assert_eq!(other, "bound");
+    page.value("document.getElementById('explained').close()");
+    // Where the hand clicks, whatever lies over it: a tick of a figure, a cell and the speed of the slider.
+    for (number, name) in [
+        ("#plate-overview .broad svg text", "figure_data"),
+        ("#readout tbody td:nth-child(3)", "through"),
+        ("#speed-shown", "through"),
+        ("#near svg text", "through"),
+    ] {
+        page.click(number);
+        let open = page.value("document.getElementById('explained').open");
+        assert_eq!(open, true, "{number}");
+        assert_eq!(page.value("document.querySelector('#explained h3').textContent"), name, "{number}");
+        page.click("#explained button");
+        assert_eq!(page.value("document.getElementById('explained').open"), false, "{number}");
+    }
     assert_quiet(&page);
 }
 

@@ -52,7 +52,7 @@ fn motions_between_dwells_jump_at_their_orders() {
     // As large as a cam, as small as a scratch on it.
     for rise in [0.02, -1e-6] {
         for (motion, orders, first_jump) in expected {
-            let mut corners = between_dwells(motion, rise).corners();
+            let mut corners = between_dwells(motion, rise).corners().to_vec();
             // At 0 the return ends.
             corners.rotate_left(1);
             let found: Vec<usize> = corners.iter().map(|corner| corner.jump_order).collect();
@@ -81,7 +81,8 @@ fn jumps_of_any_order_are_found() {
             "law = \"polynomial\"\n[[cam.segment]]\nstart_deg = 0\ncoefficients = {coefficients:?}\n\
              [[cam.segment]]\nstart_deg = 57.29577951308232\ncoefficients = [0.1]\n"
         ))
-        .corners();
+        .corners()
+        .to_vec();
         let orders: Vec<usize> = corners.iter().map(|corner| corner.jump_order).collect();
         assert_eq!(orders, [order, order], "{corners:?}");
         let jump = 1e-2 * (1..=order).map(|k| k as f64).product::<f64>();
@@ -97,7 +98,7 @@ fn smooth_cams_and_velocity_jumps() {
     let cut = "law = \"polynomial\"\n[[cam.segment]]\nstart_deg = 0\ncoefficients = [0.1, 0.0, 0.0]\n\
                [[cam.segment]]\nstart_deg = 180\ncoefficients = [0.1]\n";
     assert!(cam_of(cut).corners().is_empty());
-    let sine = law_cam("rectified-sine.toml").corners();
+    let sine = law_cam("rectified-sine.toml").corners().to_vec();
     assert_eq!(sine.iter().map(|corner| corner.jump_order).collect::<Vec<_>>(), [1, 1]);
     assert_eq!((sine[0].angle, sine[0].jump), (0.0, 2.0));
     assert_abs_diff_eq!(sine[1].angle, std::f64::consts::PI);
@@ -110,7 +111,7 @@ fn smooth_cams_and_velocity_jumps() {
 #[test]
 fn every_row_of_a_table_is_a_corner_of_its_splines_order() {
     for (file, order) in [("table-cubic.toml", 3), ("table-quintic.toml", 5)] {
-        let corners = law_cam(file).corners();
+        let corners = law_cam(file).corners().to_vec();
         assert_eq!(corners.len(), 360);
         assert!(corners.iter().all(|corner| corner.jump_order == order));
     }

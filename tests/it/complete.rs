@@ -109,7 +109,7 @@ fn a_corner_is_left_undecided() {
 #[test]
 fn the_papers_corner_impacts_are_all_found() {
     let (paper, range) = (common::osorio(), Study { rpm_min: 600.0, rpm_max: 760.0 });
-    let looked_at = find_corner_impacts(&paper, &Cam::new(&paper).unwrap(), range, 1).unwrap();
+    let looked_at = find_corner_impacts(&paper, &Cam::new(&paper).unwrap(), range, 1, &Unwatched).unwrap();
     assert_eq!((looked_at.complete[0].known, &looked_at.undecided[..]), (Known::Proved, &[][..]));
     let of_one: Vec<f64> =
         looked_at.found.iter().filter(|it| it.cycle.impacts.len() == 1).map(|it| it.speed_rpm()).collect();

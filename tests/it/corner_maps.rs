@@ -12,6 +12,7 @@ use corner_impact::corner::one_sided::{OneSidedMap, SampleError};
 use corner_impact::corner::varied::{NoChange, Varied};
 use corner_impact::corner::{CornerImpact, CornerMap, Route, finite_difference, least_squares, range, variational};
 use corner_impact::model::{Model, Study};
+use corner_impact::progress::Unwatched;
 use nalgebra::{DMatrix, Matrix2, Vector2, Vector3};
 
 /// A model, its cam, and its corner impact next to a speed.
@@ -24,7 +25,7 @@ struct Case {
 fn case(model: Model, rpm: f64, revolutions: u64) -> Case {
     let cam = common::cam(&model);
     let near = Study { rpm_min: rpm - 1.0, rpm_max: rpm + 1.0 };
-    let found = range::find_corner_impacts(&model, &cam, near, revolutions).unwrap().found;
+    let found = range::find_corner_impacts(&model, &cam, near, revolutions, &Unwatched).unwrap().found;
     let at = found.into_iter().find(|at| (at.speed_rpm() - rpm).abs() < 1e-3).unwrap();
     Case { model, cam, at }
 }
@@ -237,7 +238,7 @@ fn differences_know_their_errors_where_impacts_amplify_rounding() {
         let model = common::tutorial(name);
         let cam = common::cam(&model);
         let range = Study { rpm_min: 1000.0, rpm_max: 2000.0 };
-        let found = range::find_corner_impacts(&model, &cam, range, 1).unwrap().found;
+        let found = range::find_corner_impacts(&model, &cam, range, 1, &Unwatched).unwrap().found;
         assert!(found.len() >= least && found.iter().any(|at| at.cycle.impacts.len() >= 12), "{name}: {}", found.len());
         let mut amplified: f64 = 0.0;
         for at in found {

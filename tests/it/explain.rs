@@ -9,6 +9,7 @@ use crate::page::papers;
 use corner_impact::explain::{Explanation, Findings, Links};
 use corner_impact::model::Model;
 use corner_impact::progress::Unwatched;
+use corner_impact::show::Paged;
 use corner_impact::study::compare::compare;
 use corner_impact::study::verify::{External, verify};
 use serde_json::Value;
@@ -78,6 +79,22 @@ fn every_link_leads_to_something_that_exists() {
             "{name} twice"
         );
     }
+}
+
+/// Where a value by a route is missing, the page says so.
+#[test]
+fn routes_that_did_not_run_are_told() {
+    let (links, model) = (Links::read().unwrap(), Model::built_in().unwrap());
+    let found = verify(&model, External::LeftOut).unwrap();
+    let it = links.explain("B_minus", &Findings::new(&model, Some(&found)).unwrap()).unwrap();
+    for route in ["symbolic", "scipy", "certificate"] {
+        assert!(!it.routes.contains_key(route) && it.skipped.iter().any(|one| one.route == route), "{route}: {it:?}");
+    }
+    let page = it.text().unwrap();
+    assert!(page.contains("not run   symbolic, scipy, certificate (`verify` says why)"), "{page}");
+    // One that no route computes misses none.
+    let alone = links.explain("CAM_JUMP", &Findings::new(&model, Some(&found)).unwrap()).unwrap();
+    assert!(alone.skipped.is_empty(), "{alone:?}");
 }
 
 #[test]

@@ -11,6 +11,7 @@ use corner_impact::model::{Model, Study};
 use corner_impact::orbit::ending::Ending;
 use corner_impact::orbit::fate::Settling;
 use corner_impact::orbit::{Course, Search, search};
+use corner_impact::progress::Unwatched;
 use corner_impact::section::StroboscopicMap;
 use corner_impact::simulate::{Machine, angular_velocity};
 use corner_impact::study::attractors::Patience;
@@ -205,7 +206,7 @@ fn the_motion_leaves_where_the_acceleration_jumps_upwards() {
     let model = common::osorio();
     let cam = common::cam(&model);
     let range = Study { rpm_min: 276.0, rpm_max: 295.0 };
-    let found = range::find_corner_impacts(&model, &cam, range, 1).unwrap().found;
+    let found = range::find_corner_impacts(&model, &cam, range, 1, &Unwatched).unwrap().found;
     let at = found.iter().find(|at| (at.speed_rpm() - 277.022185).abs() < 1e-6).unwrap();
     let corner_map = variational::route(&model, &cam, at).map;
     let local = LocalMap::new(&corner_map, border_of_the_map(&model, &cam, at));

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 use std::path::Path;
+use std::sync::OnceLock;
 
 use crate::common;
 use corner_impact::known::Known;
@@ -19,6 +20,12 @@ fn held(model: &Model) -> Claims {
     let findings = verify(model, External::LeftOut).unwrap();
     let cam = common::cam(model);
     Claims::hold(&Context::new(model, &cam, &findings).unwrap(), &Unwatched).unwrap()
+}
+
+/// Of the paper's model, made once.
+fn papers() -> &'static Claims {
+    static MADE: OnceLock<Claims> = OnceLock::new();
+    MADE.get_or_init(|| held(&common::osorio()))
 }
 
 #[test]
@@ -57,7 +64,7 @@ fn every_equation_and_every_number_has_its_claim() {
 #[test]
 #[ignore = "slow"]
 fn every_check_comes_to_the_ledgers_verdict() {
-    for held in held(&common::osorio()).claims {
+    for held in &papers().claims {
         assert!(held.as_found, "{held:#?}");
         assert_eq!(held.verdict, held.listed, "{held:#?}");
         assert!(!held.evidence.is_empty(), "{held:#?}");
@@ -73,7 +80,7 @@ fn every_check_comes_to_the_ledgers_verdict() {
 #[test]
 #[ignore = "slow"]
 fn consequences_lead_to_the_slips_that_they_are_of() {
-    let found = held(&common::osorio());
+    let found = papers();
     let makes = |id: &str| found.claims.iter().any(|held| held.id == id && held.makes_a_slip());
     for claim in claims().unwrap() {
         let held = found.claims.iter().find(|held| held.id == claim.id).unwrap();
@@ -93,8 +100,8 @@ fn consequences_lead_to_the_slips_that_they_are_of() {
 /// What somebody read is known by reading, the others by what was proved, computed or sampled; and every word occurs.
 #[test]
 fn every_verdict_says_how_it_is_known() {
-    let claims = held(&common::osorio()).claims;
-    for held in &claims {
+    let claims = &papers().claims;
+    for held in claims {
         let check = find(&held.id).unwrap();
         assert_eq!(matches!(check, Check::Read(..)), held.known == Known::Read, "{held:#?}");
         let proof = matches!(check, Check::Equation(_) | Check::Proofs(..));
@@ -107,7 +114,7 @@ fn every_verdict_says_how_it_is_known() {
 /// What the ledger tells of the drawn cams, from the coordinates as a reader of the source finds them.
 #[test]
 fn the_drawn_cams_are_as_the_ledger_says() {
-    let claims = held(&common::osorio()).claims;
+    let claims = &papers().claims;
     let says = |id: &str, parts: &[&str]| {
         let evidence = &claims.iter().find(|held| held.id == id).unwrap().evidence;
         for part in parts {
@@ -170,8 +177,7 @@ fn another_model_leaves_the_papers_numbers_open() {
 #[test]
 #[ignore = "slow"]
 fn the_page_in_docs_is_fresh() {
-    let model = common::osorio();
-    let (lead, sections) = pages::claims::document(&held(&model)).unwrap();
+    let (lead, sections) = pages::claims::document(papers()).unwrap();
     let page = markdown::page(&lead, &sections).unwrap();
     let stored = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/claims.md")).unwrap();
     assert!(page == stored, "docs/claims.md is stale: `make claims` writes it");

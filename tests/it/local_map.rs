@@ -15,6 +15,7 @@ use corner_impact::diagram::growth;
 use corner_impact::estimate::Estimate;
 use corner_impact::flight::State;
 use corner_impact::model::Model;
+use corner_impact::progress::Unwatched;
 use corner_impact::section::StroboscopicMap;
 use corner_impact::show::Paged;
 use corner_impact::simulate::Machine;
@@ -235,7 +236,7 @@ fn sticking_is_refused_with_its_reason() {
     };
     let (one, other) = (after(1e-5), after(2e-5));
     assert!((one.position - other.position).abs() < 1e-12 && (one.velocity - other.velocity).abs() < 1e-10);
-    let listed = locate(&plastic, plastic.study().unwrap(), 1).unwrap();
+    let listed = locate(&plastic, plastic.study().unwrap(), 1, &Unwatched).unwrap();
     assert!(
         matches!(&listed.found[..], [one] if matches!(one.local, Happens::BorderCollision(Err(Refusal::Sticking { .. }))))
     );

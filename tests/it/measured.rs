@@ -354,7 +354,7 @@ fn a_measured_corner_impact() {
         document["uncertainty"]["minus"]["A"][1][0].is_number()
             && document["uncertainty"]["measured"]["step_m"] == json!(1e-6)
     );
-    let located = locate(&model, Study { rpm_min: 600.0, rpm_max: 760.0 }, 1).unwrap();
+    let located = locate(&model, Study { rpm_min: 600.0, rpm_max: 760.0 }, 1, &Unwatched).unwrap();
     let here = located.found.iter().find(|one| one.at.corner.angle == found.at.corner.angle).unwrap();
     let error = here.speed_error.unwrap();
     // The events of the paper's machine, to within what is said.

@@ -247,7 +247,7 @@ fn the_arcs_cam_is_that_of_the_paper() {
         assert_abs_diff_eq!(found[0], expected[0], epsilon = 1e-12);
         assert_abs_diff_eq!(found[1], expected[1], epsilon = 1e-12);
     }
-    for corner in &corners {
+    for corner in corners {
         assert_eq!(corner.jump_order, 2);
         assert_abs_diff_eq!(corner.minus.value, corner.plus.value, epsilon = 1e-15);
         assert_abs_diff_eq!(corner.minus.slope, corner.plus.slope, epsilon = 1e-15);

@@ -69,7 +69,7 @@ fn a_rounded_cam_meets_the_sharp_one() {
         for degrees in [1e-4, 0.01, 1.0] {
             let [sharp, round] =
                 [0.0, degrees].map(|degrees| Cam::new(&sharp.with_number(ROUNDING, degrees).unwrap()).unwrap());
-            let corners: Vec<_> = sharp.corners().into_iter().filter(|corner| corner.jump_order == 2).collect();
+            let corners: Vec<_> = sharp.corners().iter().copied().filter(|corner| corner.jump_order == 2).collect();
             assert!(
                 !corners.is_empty() && round.corners().iter().all(|corner| corner.jump_order > 2),
                 "{name} {degrees}"

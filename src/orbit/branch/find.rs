@@ -14,7 +14,7 @@ use super::{Branch, BranchPoint, Following, Kind, doubled::doubled};
 use crate::cam::Cam;
 use crate::model::Model;
 use crate::orbit::{Family, FamilyError, OrbitError, Parameter, PeriodicOrbit, Search, search};
-use crate::progress::{Unwatched, Watch};
+use crate::progress::{Pieces, Unwatched, Watch};
 use crate::simulate::{Machine, SimulateError, angular_velocity};
 use crate::tolerance;
 
@@ -103,14 +103,15 @@ struct Searched<'a> {
 impl<'a> Searched<'a> {
     /// At the speeds in `steps`, for the orbits that are wanted and those that they may have branched off from: of half as many
     /// revolutions, again and again.
-    fn at(model: &'a Model, steps: Range<i32>, wanted: &Search) -> Result<Self, FamilyError> {
+    fn at(model: &'a Model, steps: Range<i32>, wanted: &Search, watch: &dyn Watch) -> Result<Self, FamilyError> {
         let machine = Machine::new(Cam::new(model)?, &model.follower, angular_velocity(1.0));
         let speeds: Vec<f64> = steps.map(|step| grid(f64::from(step) + 0.5)).collect();
-        let at = |wanted: Search| {
-            let searches = speeds.par_iter().map(|rpm| search(&machine.at_speed(angular_velocity(*rpm)), &wanted));
-            (wanted, searches.collect())
-        };
         let halvings = wanted.revolutions.trailing_zeros();
+        let pieces = Pieces::new(watch, "periodic orbits at speeds of a grid", speeds.len() * (halvings as usize + 1));
+        let at = |wanted: Search| {
+            let one = |rpm: &f64| search(&machine.at_speed(angular_velocity(*rpm)), &wanted);
+            (wanted, speeds.par_iter().map(|rpm| pieces.each(|| one(rpm))).collect())
+        };
         let halved =
             (1..=halvings).rev().map(|times| Search { revolutions: wanted.revolutions >> times, impacts: None });
         let orbits = halved.chain([*wanted]).map(at).collect();
@@ -151,7 +152,7 @@ impl<'a> Searched<'a> {
 ///
 /// Found by searches at the speeds of the grid that are in the range: a branch that none of these meets is missing.
 pub fn find_branches(model: &Model, range: [f64; 2], wanted: &Search) -> Result<FoundBranches, FamilyError> {
-    Ok(Searched::at(model, step_at(range[0])..step_at(range[1]) + 1, wanted)?.branches(range))
+    Ok(Searched::at(model, step_at(range[0])..step_at(range[1]) + 1, wanted, &Unwatched)?.branches(range))
 }
 
 /// The special points of some kinds between two speeds, rpm, of orbits of `wanted.revolutions` that have `wanted.impacts` where
@@ -161,9 +162,11 @@ pub fn special_points(
     range: [f64; 2],
     wanted: &Search,
     is_wanted: impl Fn(Kind) -> bool + Sync,
+    watch: &dyn Watch,
 ) -> Result<MetPoints, FamilyError> {
     let [first, last] = range.map(|rpm| step_at(rpm).div_euclid(CELL));
-    let searched = Searched::at(model, CELL * first - MARGIN..CELL * (last + 1) + MARGIN, wanted)?;
+    let searched = Searched::at(model, CELL * first - MARGIN..CELL * (last + 1) + MARGIN, wanted, watch)?;
+    let pieces = Pieces::new(watch, "branches of these orbits", (last + 1 - first) as usize);
     let of_cell = |cell: i32| {
         let window = [CELL * cell - MARGIN, CELL * (cell + 1) + MARGIN];
         let found = searched.branches(window.map(|step| grid(f64::from(step))));
@@ -171,7 +174,7 @@ pub fn special_points(
         points.retain(|point| step_at(point.rpm).div_euclid(CELL) == cell);
         (points, found)
     };
-    let cells: Vec<_> = (first..=last).into_par_iter().map(of_cell).collect();
+    let cells: Vec<_> = (first..=last).into_par_iter().map(|cell| pieces.each(|| of_cell(cell))).collect();
     let mut all = MetPoints { speeds: searched.speeds, ..MetPoints::default() };
     for (points, found) in cells {
         all.points.extend(points.into_iter().filter(|point| range[0] <= point.rpm && point.rpm <= range[1]));

@@ -70,8 +70,8 @@ fn renamed(cycle: &Cycle, held: Held, here: &Machine, there: &Machine) -> Option
                 // At the start of the segment behind the same corner.
                 let segment = &from[impact.segment];
                 let corner = within_a_turn(if at_end { segment.end } else { segment.start });
-                let order = here.cam().corners().into_iter().find(|other| other.angle == corner)?.jump_order;
-                let alike = there.cam().corners().into_iter().filter(|other| other.jump_order == order);
+                let order = here.cam().corners().iter().copied().find(|other| other.angle == corner)?.jump_order;
+                let alike = there.cam().corners().iter().copied().filter(|other| other.jump_order == order);
                 let nearest = alike.min_by(|one, two| apart(one.angle, corner).total_cmp(&apart(two.angle, corner)));
                 impact.segment =
                     nearest.filter(|one| apart(one.angle, corner) <= tolerance::NEIGHBOURING.value)?.segment;

@@ -77,7 +77,7 @@ pub fn approach(
             state = map.apply(state)?.state;
             // Most are too far from all of the curve to be looked at closely.
             if revolution > leaving && bounds.distance(state) < found.distance {
-                let distance = curve.distance(state);
+                let distance = curve.distance_below(found.distance, state);
                 if distance < found.distance {
                     found = Approach { distance, nearest: state };
                 }

@@ -130,6 +130,8 @@ pub struct Curve {
     /// Its pieces: states in order.
     pub pieces: Vec<Vec<State>>,
     omega: f64,
+    /// The farthest that neighbours in a piece are apart, m.
+    finest: f64,
 }
 
 impl Curve {
@@ -169,7 +171,7 @@ impl Curve {
             let carried = (0..s as u32).try_fold(first, |state, _| carry(state))?;
             (carried.apart(saddle, omega) <= extent.farthest).then_some(carried)
         };
-        let mut curve = Self { pieces: vec![vec![saddle]], omega };
+        let mut curve = Self { pieces: vec![vec![saddle]], omega, finest: extent.finest.max(extent.first) };
         let total = extent.stretches * POINTS;
         let place = |index: u32| f64::from(index) / f64::from(POINTS);
         let mut last = (0.0, at(0.0));
@@ -225,19 +227,31 @@ impl Curve {
 
     /// The distance of a state from the curve, m.
     pub fn distance(&self, state: State) -> f64 {
+        self.distance_below(f64::INFINITY, state)
+    }
+
+    /// The same where it is less than `limit`, and `limit` where it is not.
+    pub fn distance_below(&self, limit: f64, state: State) -> f64 {
         let flat = |state: &State| Vector2::new(state.position, state.velocity / self.omega);
         let point = flat(&state);
-        let from = |piece: &Vec<State>| {
-            let alone = piece.first().map_or(f64::INFINITY, |first| (point - flat(first)).norm());
-            piece.windows(2).fold(alone, |nearest, pair| {
-                let (start, along) = (flat(&pair[0]), flat(&pair[1]) - flat(&pair[0]));
-                let share = ((point - start).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
-                // Two points in one place are no direction.
-                let foot = if share.is_finite() { start + share * along } else { start };
-                nearest.min((point - foot).norm())
-            })
-        };
-        self.pieces.iter().map(from).fold(f64::INFINITY, f64::min)
+        self.pieces.iter().fold(limit, |mut nearest, piece| {
+            let mut index = 0;
+            while let Some(start) = piece.get(index).map(flat) {
+                let away = (point - start).norm();
+                nearest = nearest.min(away);
+                // Neighbours are no farther apart than `finest`: those that cannot be nearer are passed over.
+                let passed = (away - nearest) / self.finest;
+                if let (true, Some(end)) = (passed < 1.0, piece.get(index + 1).map(flat)) {
+                    let along = end - start;
+                    let share = ((point - start).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+                    // Two points in one place are no direction.
+                    let foot = if share.is_finite() { start + share * along } else { start };
+                    nearest = nearest.min((point - foot).norm());
+                }
+                index += (passed as usize).max(1);
+            }
+            nearest
+        })
     }
 }
 

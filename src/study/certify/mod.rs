@@ -20,6 +20,7 @@ use crate::corner::range::{RangeError, Rejected, find_corner_impacts};
 use crate::corner::{CornerImpact, CornerMap, SideMap};
 use crate::known::Known;
 use crate::model::{Model, ModelError, Study};
+use crate::progress::Watch;
 use crate::python::{self, PythonError};
 use crate::simulate::Machine;
 pub use orbits::{
@@ -240,9 +241,16 @@ impl From<PythonError> for CertifyError {
 /// Proves every corner impact that a search of `range` finds for orbits of `revolutions`, and everything that it refuses.
 ///
 /// What is refused is handed on with its speed alone, so that a proof decides it again; it is told where the acceleration jumps.
-pub fn certify(model: &Model, range: Study, revolutions: u64, bits: u32) -> Result<Certified, CertifyError> {
+pub fn certify(
+    model: &Model,
+    range: Study,
+    revolutions: u64,
+    bits: u32,
+    watch: &dyn Watch,
+) -> Result<Certified, CertifyError> {
     let cam = Cam::new(model)?;
-    let looked_at = find_corner_impacts(model, &cam, range, revolutions)?;
+    let looked_at = find_corner_impacts(model, &cam, range, revolutions, watch)?;
+    watch.at("their proofs, in Python", 0, 0);
     let jumps = |angle: f64| looked_at.corners.iter().any(|corner| corner.angle == angle && corner.jump_order == 2);
     let refused = looked_at.rejected.iter().filter(|one| jumps(one.cam_angle)).map(|one| {
         let Rejected { cam_angle, speed_rpm, .. } = *one;

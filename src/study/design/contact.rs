@@ -75,7 +75,7 @@ impl Separation {
 impl<'a> Contact<'a> {
     /// A follower on a cam.
     pub fn new(cam: &'a Cam, follower: Follower) -> Self {
-        let kink = cam.corners().into_iter().find(|corner| corner.jump_order == 1).map(|corner| corner.angle);
+        let kink = cam.corners().iter().copied().find(|corner| corner.jump_order == 1).map(|corner| corner.angle);
         Self { cam, follower, kink }
     }
 

@@ -13,7 +13,7 @@ use crate::cam::{Cam, Least};
 use crate::known::Known;
 use crate::measured::{Likely, Measured};
 use crate::model::{CORNER_ROUNDING, Model, Units};
-use crate::progress::Watch;
+use crate::progress::{Pieces, Watch};
 use crate::simulate::angular_velocity;
 use contact::{Contact, Separation};
 use loads::{Load, Loads};
@@ -247,15 +247,12 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
     let forces: Vec<ForceAt> = if has_force { speeds.iter().map(force_at).collect() } else { Vec::new() };
     let round = if count == 1 && has_force { round(&contact, low, MOMENTS) } else { Vec::new() };
     let parted: Vec<f64> = speeds.iter().copied().filter(|rpm| *rpm > separation.speed()).collect();
-    let done = std::sync::atomic::AtomicU64::new(0);
+    let pieces = Pieces::new(watch, "what attracts where the follower leaves the cam", parted.len());
     let loads_at = |rpm: &f64| -> Result<Loads, StudyError> {
         // As it was asked for, and not as the angular velocity has it.
-        let loads = Loads { rpm: *rpm, ..Loads::at(model, &machine(model, *rpm)?)? };
-        let done = 1 + done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-        watch.at("what attracts where the follower leaves the cam", done, parted.len() as u64);
-        Ok(loads)
+        Ok(Loads { rpm: *rpm, ..Loads::at(model, &machine(model, *rpm)?)? })
     };
-    let loads = parted.par_iter().map(loads_at).collect::<Result<Vec<_>, _>>()?;
+    let loads = parted.par_iter().map(|rpm| pieces.each(|| loads_at(rpm))).collect::<Result<Vec<_>, _>>()?;
     let passed = |(limit, value): &(Load, f64)| Passed {
         limit: *limit,
         value: *value,
