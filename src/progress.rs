@@ -16,20 +16,26 @@ pub struct Pieces<'a> {
     watch: &'a dyn Watch,
     what: &'a str,
     done: AtomicU64,
-    total: u64,
+    total: AtomicU64,
 }
 
 impl<'a> Pieces<'a> {
     /// None of them done yet.
     pub fn new(watch: &'a dyn Watch, what: &'a str, total: usize) -> Self {
         watch.at(what, 0, total as u64);
-        Self { watch, what, done: AtomicU64::new(0), total: total as u64 }
+        Self { watch, what, done: AtomicU64::new(0), total: AtomicU64::new(total as u64) }
+    }
+
+    /// So many more have turned up.
+    pub fn more(&self, count: usize) {
+        self.total.fetch_add(count as u64, Ordering::Relaxed);
     }
 
     /// Does one of them, and says that it is done.
     pub fn each<T>(&self, piece: impl FnOnce() -> T) -> T {
         let result = piece();
-        self.watch.at(self.what, 1 + self.done.fetch_add(1, Ordering::Relaxed), self.total);
+        let total = self.total.load(Ordering::Relaxed);
+        self.watch.at(self.what, 1 + self.done.fetch_add(1, Ordering::Relaxed), total);
         result
     }
 }

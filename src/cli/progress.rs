@@ -18,8 +18,8 @@ pub(super) fn watched<T>(what: &str, work: impl FnOnce(&dyn Watch) -> T) -> T {
 /// How far a command has come: a bar where the total is known, a spinner where it is not, and what it is at.
 pub(super) struct Progress {
     bar: ProgressBar,
-    /// What the look of the bar was made for: the total.
-    total: Mutex<u64>,
+    /// What the look of the bar was made for: whether something is done, and the total.
+    looks: Mutex<(bool, u64)>,
     /// Ends when this does.
     shows: Option<(Sender<()>, JoinHandle<()>)>,
 }
@@ -31,12 +31,14 @@ impl Progress {
     const TICK: Duration = Duration::from_millis(120);
 
     const BAR: &'static str = "{bar:30} {percent:>3} %  {elapsed} of about {duration}  {wide_msg}";
+    /// How long nothing takes says nothing of the rest.
+    const BEGUN: &'static str = "{bar:30} {percent:>3} %  {elapsed}  {wide_msg}";
     const SPINNER: &'static str = "{spinner} {elapsed}  {wide_msg}";
 
     /// At something that takes as long as it takes, until it says more.
     pub(super) fn spinner(what: &str) -> Self {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
-        look(&bar, 0);
+        look(&bar, (false, 0));
         bar.set_message(what.to_owned());
         // Appears by itself: what is watched may have nothing to tell for longer than patience lasts.
         let shows = std::io::stderr().is_terminal().then(|| {
@@ -50,12 +52,16 @@ impl Progress {
             });
             (ended, thread)
         });
-        Self { bar, total: Mutex::new(0), shows }
+        Self { bar, looks: Mutex::new((false, 0)), shows }
     }
 }
 
-fn look(bar: &ProgressBar, total: u64) {
-    let template = if total == 0 { Progress::SPINNER } else { Progress::BAR };
+fn look(bar: &ProgressBar, (begun, total): (bool, u64)) {
+    let template = match (begun, total) {
+        (_, 0) => Progress::SPINNER,
+        (false, _) => Progress::BEGUN,
+        (true, _) => Progress::BAR,
+    };
     if let Ok(style) = ProgressStyle::with_template(template) {
         bar.set_style(style);
     }
@@ -66,10 +72,14 @@ fn look(bar: &ProgressBar, total: u64) {
 
 impl Watch for Progress {
     fn at(&self, what: &str, done: u64, total: u64) {
-        let mut known = self.total.lock().unwrap_or_else(PoisonError::into_inner);
-        if *known != total {
-            *known = total;
-            look(&self.bar, total);
+        let mut known = self.looks.lock().unwrap_or_else(PoisonError::into_inner);
+        if known.1 != total {
+            // Each kind of work has its own pace.
+            self.bar.reset_eta();
+        }
+        if *known != (done > 0, total) {
+            *known = (done > 0, total);
+            look(&self.bar, *known);
         }
         if self.bar.message() != what {
             self.bar.set_message(what.to_owned());

@@ -47,7 +47,7 @@ pub fn side_map(
     let parts = by_impacts(model, cam, at, side, varied);
     let whole = whole.and_then(|map| {
         let amplified = match &parts {
-            Ok(parts) => parts.amplify(map.rounding()),
+            Ok(parts) => parts.amplify(rounding(&map)),
             Err(_) => amplified_once(&map)?,
         };
         differences(&map, amplified)
@@ -119,10 +119,18 @@ impl Parts {
         (Differenced { map: all, gap }, Differenced { map: off, gap: gap_off })
     }
 
-    /// How far a rounding in every flight moves the end of the period.
-    fn amplify(&self, rounding: Vector2<f64>) -> Vector2<f64> {
+    /// How far a rounding in every flight moves the end of the period and the gap.
+    fn amplify(&self, rounding: Vector3<f64>) -> Vector3<f64> {
+        let flights = rounding.xy();
         let first = self.after.first().zip(self.parts.first()).map(|(after, (part, _))| after * part.map.a);
-        first.iter().chain(&self.after).map(|matrix| matrix.abs() * rounding).sum()
+        let end: Vector2<f64> = first.iter().chain(&self.after).map(|matrix| matrix.abs() * flights).sum();
+        let (mut by_state, mut gap) = (RowVector2::zeros(), rounding[2]);
+        // From the part that the corner is in back to the start.
+        for (part, _) in self.parts.iter().rev() {
+            by_state = by_state * part.map.a + RowVector2::new(part.gap[0], part.gap[1]);
+            gap += (by_state.abs() * flights)[0];
+        }
+        end.push(gap)
     }
 }
 
@@ -148,17 +156,21 @@ fn better<'a>(
     }
 }
 
-/// How far a rounding at the start and one at the end move the end.
-fn amplified_once(map: &OneSidedMap<'_>) -> Result<Vector2<f64>, SampleError> {
-    let (scales, rounding) = (map.scales(), map.rounding());
+/// How far rounding moves the end of a stretch, and the gap.
+fn rounding(map: &OneSidedMap<'_>) -> Vector3<f64> {
+    map.rounding().push(map.gap_rounding())
+}
+
+/// The same of a rounding at the start and one at the end.
+fn amplified_once(map: &OneSidedMap<'_>) -> Result<Vector3<f64>, SampleError> {
+    let (scales, rounding) = (map.scales(), rounding(map));
     (0..2).try_fold(rounding, |sum, direction| {
-        Ok(sum + difference(map, direction, scales[direction])?.xy().abs() * rounding[direction])
+        Ok(sum + difference(map, direction, scales[direction])?.abs() * rounding[direction])
     })
 }
 
-/// The map, with ends of stretches known to `rounding`.
-fn differences(map: &OneSidedMap<'_>, rounding: Vector2<f64>) -> Result<Known, SampleError> {
-    let rounding = Vector3::new(rounding[0], rounding[1], map.gap_rounding());
+/// The map, with ends of stretches and gaps known to `rounding`.
+fn differences(map: &OneSidedMap<'_>, rounding: Vector3<f64>) -> Result<Known, SampleError> {
     let mut columns = [(Vector3::zeros(), Vector3::zeros()); 3];
     for (direction, column) in columns.iter_mut().enumerate() {
         let step = widest(map, direction);

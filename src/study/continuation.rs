@@ -5,7 +5,7 @@ use crate::diagram::settled_impacts;
 use crate::model::Model;
 use crate::orbit::branch::{Branch, Following, FoundBranches, doubled};
 use crate::orbit::{Family, Parameter, Search, search};
-use crate::progress::Watch;
+use crate::progress::{Pieces, Watch};
 
 /// The branches through the orbits of one speed.
 #[derive(Clone, Debug)]
@@ -38,12 +38,16 @@ pub fn branches<'a>(
     }
     let family = Family::new(model, from_rpm, vec![following.parameter.clone()])?;
     let mut found = FoundBranches::default();
-    found.follow(&family, &following, orbits.into_iter().map(|orbit| (value, orbit)), watch);
+    let pieces = |count: usize| Pieces::new(watch, "following branches of orbits", count);
+    let orbits: Vec<_> = orbits.into_iter().map(|orbit| (value, orbit)).collect();
+    let count = orbits.len();
+    found.follow(&family, &following, orbits, &pieces(count));
     let mut before = 0;
     for _ in 0..doublings {
         let longer = doubled(&family, &following, &found.branches[before..]);
         before = found.branches.len();
-        found.follow(&family, &following, longer, watch);
+        let count = longer.len();
+        found.follow(&family, &following, longer, &pieces(count));
     }
     let FoundBranches { branches, failed } = found;
     failed.map_or(Ok(Branches { model, from_rpm, following, branches }), |error| Err(error.into()))

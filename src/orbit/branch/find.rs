@@ -40,23 +40,21 @@ pub struct FoundBranches {
 }
 
 impl FoundBranches {
-    /// Follows the branch through each orbit, at its value of what is followed, that is on none yet.
+    /// Follows the branch through each orbit, at its value of what is followed, that is on none yet; each is a piece of the work.
     pub fn follow(
         &mut self,
         family: &Family,
         following: &Following,
         orbits: impl IntoIterator<Item = (f64, impl Borrow<PeriodicOrbit>)>,
-        watch: &dyn Watch,
+        pieces: &Pieces<'_>,
     ) {
         for (value, orbit) in orbits {
             let orbit = orbit.borrow();
-            watch.at("following branches of orbits", self.branches.len() as u64, 0);
-            if self.branches.iter().any(|branch| branch.holds(value, orbit)) {
-                continue;
-            }
-            match Branch::at(family, value, orbit, following) {
-                Ok(branch) => self.branches.push(branch),
-                Err(error) => self.fail(error),
+            let is_new = !self.branches.iter().any(|branch| branch.holds(value, orbit));
+            match pieces.each(|| is_new.then(|| Branch::at(family, value, orbit, following))) {
+                Some(Ok(branch)) => self.branches.push(branch),
+                Some(Err(error)) => self.fail(error),
+                None => {}
             }
         }
     }
@@ -118,8 +116,15 @@ impl<'a> Searched<'a> {
         Ok(Self { model, speeds, orbits })
     }
 
+    /// How many orbits were found between two speeds, rpm.
+    fn count(&self, range: [f64; 2]) -> usize {
+        let all = self.orbits.iter().flat_map(|(_, orbits)| self.speeds.iter().zip(orbits));
+        let inside = all.filter(|(rpm, _)| (range[0]..=range[1]).contains(*rpm));
+        inside.map(|(_, orbits)| orbits.as_ref().map_or(0, Vec::len)).sum()
+    }
+
     /// The branches of the wanted orbits between two speeds, rpm.
-    fn branches(&self, range: [f64; 2]) -> FoundBranches {
+    fn branches(&self, range: [f64; 2], pieces: &Pieces<'_>) -> FoundBranches {
         let parameter = Parameter::Speed;
         let mut all = FoundBranches::default();
         let family = match Family::new(self.model, range[0], vec![parameter.clone()]) {
@@ -134,14 +139,16 @@ impl<'a> Searched<'a> {
                     _ if !(range[0]..=range[1]).contains(rpm) => {}
                     Ok(orbits) => {
                         let orbits = orbits.iter().map(|orbit| (*rpm, orbit));
-                        all.follow(&family, &following, orbits, &Unwatched);
+                        all.follow(&family, &following, orbits, pieces);
                     }
                     Err(error) => all.fail(*error),
                 }
             }
             let is_wanted = |orbit: &PeriodicOrbit| wanted.impacts.is_none_or(|count| orbit.impacts().count() == count);
             let doubled = doubled(&family, &following, &shorter).into_iter().filter(|(_, orbit)| is_wanted(orbit));
-            all.follow(&family, &following, doubled, &Unwatched);
+            let doubled: Vec<_> = doubled.collect();
+            pieces.more(doubled.len());
+            all.follow(&family, &following, doubled, pieces);
         }
         all
     }
@@ -152,7 +159,8 @@ impl<'a> Searched<'a> {
 ///
 /// Found by searches at the speeds of the grid that are in the range: a branch that none of these meets is missing.
 pub fn find_branches(model: &Model, range: [f64; 2], wanted: &Search) -> Result<FoundBranches, FamilyError> {
-    Ok(Searched::at(model, step_at(range[0])..step_at(range[1]) + 1, wanted, &Unwatched)?.branches(range))
+    Ok(Searched::at(model, step_at(range[0])..step_at(range[1]) + 1, wanted, &Unwatched)?
+        .branches(range, &Pieces::new(&Unwatched, "", 0)))
 }
 
 /// The special points of some kinds between two speeds, rpm, of orbits of `wanted.revolutions` that have `wanted.impacts` where
@@ -166,15 +174,16 @@ pub fn special_points(
 ) -> Result<MetPoints, FamilyError> {
     let [first, last] = range.map(|rpm| step_at(rpm).div_euclid(CELL));
     let searched = Searched::at(model, CELL * first - MARGIN..CELL * (last + 1) + MARGIN, wanted, watch)?;
-    let pieces = Pieces::new(watch, "branches of these orbits", (last + 1 - first) as usize);
+    let window = |cell: i32| [CELL * cell - MARGIN, CELL * (cell + 1) + MARGIN].map(|step| grid(f64::from(step)));
+    let count = (first..=last).map(|cell| searched.count(window(cell))).sum();
+    let pieces = Pieces::new(watch, "branches of these orbits", count);
     let of_cell = |cell: i32| {
-        let window = [CELL * cell - MARGIN, CELL * (cell + 1) + MARGIN];
-        let found = searched.branches(window.map(|step| grid(f64::from(step))));
+        let found = searched.branches(window(cell), &pieces);
         let mut points = points_on(&found.branches, &is_wanted);
         points.retain(|point| step_at(point.rpm).div_euclid(CELL) == cell);
         (points, found)
     };
-    let cells: Vec<_> = (first..=last).into_par_iter().map(|cell| pieces.each(|| of_cell(cell))).collect();
+    let cells: Vec<_> = (first..=last).into_par_iter().map(of_cell).collect();
     let mut all = MetPoints { speeds: searched.speeds, ..MetPoints::default() };
     for (points, found) in cells {
         all.points.extend(points.into_iter().filter(|point| range[0] <= point.rpm && point.rpm <= range[1]));
