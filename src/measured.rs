@@ -4,6 +4,7 @@
 //! likely as the table that was measured: what they differ by is how well anything is known that depends on the cam, and what they
 //! are off on the whole is what smoothing itself does.
 
+use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::cam::{Cam, Fit, fit};
@@ -111,13 +112,13 @@ impl Likely {
     pub fn error<const N: usize>(
         &self,
         numbers: [f64; N],
-        of: impl Fn(&Model, &Cam) -> Option<[f64; N]>,
+        of: impl Fn(&Model, &Cam) -> Option<[f64; N]> + Sync,
     ) -> Option<[f64; N]> {
         self.errors(&numbers, |model, cam| of(model, cam).map(Vec::from))?.try_into().ok()
     }
 
     /// The same of as many numbers as there are.
-    pub fn errors(&self, numbers: &[f64], of: impl Fn(&Model, &Cam) -> Option<Vec<f64>>) -> Option<Vec<f64>> {
+    pub fn errors(&self, numbers: &[f64], of: impl Fn(&Model, &Cam) -> Option<Vec<f64>> + Sync) -> Option<Vec<f64>> {
         /// How many of the tables may do without.
         const WITHOUT: usize = 2;
         let Some((best, cam)) = &self.best else { return Some(vec![0.0; numbers.len()]) };
@@ -128,7 +129,7 @@ impl Likely {
             Some((model, cam)) => of(model, cam)?,
             None => centre.clone(),
         };
-        let all: Vec<Vec<f64>> = self.others.iter().filter_map(|(model, cam)| of(model, cam)).collect();
+        let all: Vec<Vec<f64>> = self.others.par_iter().filter_map(|(model, cam)| of(model, cam)).collect();
         let error = |(index, number): (usize, &f64)| {
             let apart = all.iter().fold(0.0_f64, |most, one| most.max((one[index] - centre[index]).abs()));
             (centre[index] - number).abs() + 2.0 * apart + 6.0 * (closer[index] - centre[index]).abs()

@@ -1,5 +1,6 @@
 //! What a machine does at which speed: its attractors, where each begins and ends, and how many starts end on each.
 
+use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::estimate::Estimate;
@@ -226,8 +227,8 @@ pub fn speeds(
     let likely = Likely::of(model)?;
     let noisy = likely.as_ref().filter(|likely| likely.best.is_some());
     if let Some(likely) = noisy {
-        rows.iter_mut()
-            .flat_map(|row| row.ends.iter_mut().flatten())
+        rows.par_iter_mut()
+            .flat_map_iter(|row| row.ends.iter_mut().flatten())
             .for_each(|change| change.error = error(&lowest, likely, change));
     }
     let first = |rpm: f64| {

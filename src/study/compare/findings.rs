@@ -276,7 +276,7 @@ pub(super) fn differences(b: &Values, a: &Values) -> Numbers {
 }
 
 /// How far a measured cam leaves numbers open; not a number where that is not known.
-pub(super) fn open(likely: &Likely, numbers: &Numbers, of: impl Fn(&Model, &Cam) -> Option<Numbers>) -> Numbers {
+pub(super) fn open(likely: &Likely, numbers: &Numbers, of: impl Fn(&Model, &Cam) -> Option<Numbers> + Sync) -> Numbers {
     let of = |model: &Model, cam: &Cam| {
         let found = of(model, cam)?;
         Some(numbers.keys().map(|name| found.get(name).copied().unwrap_or(f64::NAN)).collect())
