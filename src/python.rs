@@ -12,7 +12,7 @@ use std::process::{Child, Command, Stdio};
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
-use crate::file::Scratch;
+use crate::file::{Scratch, Started};
 use crate::stop;
 
 /// The scripts, with the modules that they import and the file that they read, by their places in the project.
@@ -105,7 +105,8 @@ pub(crate) fn run<T: serde::de::DeserializeOwned>(script: &str, input: &serde_js
 /// and its standard error.
 fn talk(mut child: Child, input: Vec<u8>) -> std::io::Result<(String, Option<String>, String)> {
     let pipes = (child.stdin.take(), child.stdout.take(), child.stderr.take());
-    let mut child = Waited(child);
+    // Ends with whoever waits for it; its pipes are closed then, and those who read them end, too.
+    let mut child = Started::new(child);
     std::thread::scope(move |scope| {
         // A script that ends without reading closes the pipe: its own message says why.
         let feed = pipes.0.map(|mut stdin| scope.spawn(move || stdin.write_all(&input).is_ok()));
@@ -114,11 +115,11 @@ fn talk(mut child: Child, input: Vec<u8>) -> std::io::Result<(String, Option<Str
         let start = Instant::now();
         let (status, succeeded) = loop {
             stop::ask();
-            match child.0.try_wait()? {
+            match child.child().try_wait()? {
                 Some(status) => break (status.to_string(), status.success()),
                 None if start.elapsed() > TIME_LIMIT => {
-                    child.0.kill()?;
-                    child.0.wait()?;
+                    child.child().kill()?;
+                    child.child().wait()?;
                     break (format!("stopped after {} s", TIME_LIMIT.as_secs()), false);
                 }
                 None => std::thread::sleep(Duration::from_millis(5)),
@@ -131,16 +132,6 @@ fn talk(mut child: Child, input: Vec<u8>) -> std::io::Result<(String, Option<Str
         let stdout = text(stdout);
         Ok((status, succeeded.then_some(stdout), text(stderr)))
     })
-}
-
-/// A child that ends with whoever waits for it; its pipes are closed then, and those who read them end, too.
-struct Waited(Child);
-
-impl Drop for Waited {
-    fn drop(&mut self) {
-        // One that has ended already is neither killed nor waited for.
-        let _ = self.0.kill().and_then(|()| self.0.wait());
-    }
 }
 
 fn collect(mut pipe: impl Read) -> String {

@@ -16,6 +16,7 @@ use std::path::{Path, PathBuf};
 
 pub(crate) use read::text;
 pub(crate) use scratch::Scratch;
+pub(crate) use signals::Started;
 use unfinished::Unfinished;
 
 /// Why a file was not written.
@@ -137,7 +138,7 @@ impl Write for Output<'_> {
     }
 }
 
-/// Has signals that end the program wait while a file gets its name, and remove what is unfinished: for programs that are this
+/// Has signals that end the program wait while a file gets its name, remove what is unfinished and end what was started: for programs that are this
 /// library's from then on.
 pub fn clear_on_signals() -> io::Result<()> {
     signals::watch()

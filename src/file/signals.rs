@@ -1,4 +1,5 @@
-//! Signals that end the program: none of them while a file gets its name, and hidden files and private folders are removed before.
+//! Signals that end the program: none of them while a file gets its name, and hidden files and private folders are removed before,
+//! and programs that it has started are ended.
 //!
 //! Destructors do not run when a signal ends the program. A thread of its own waits for signals, removes what is
 //! unfinished and lets the signal do what it would have done: no loop has to poll a flag, and the shell sees the signal.
@@ -6,6 +7,7 @@
 use std::collections::BTreeSet;
 use std::io;
 use std::path::PathBuf;
+use std::process::Child;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Hidden files, and private folders, that a signal has to remove; held while one comes, goes or gets its name.
@@ -16,7 +18,39 @@ pub(super) fn held() -> MutexGuard<'static, BTreeSet<PathBuf>> {
     HIDDEN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// An entry among them.
+/// Numbers of the processes that a signal has to end.
+static STARTED: Mutex<BTreeSet<u32>> = Mutex::new(BTreeSet::new());
+
+fn started() -> MutexGuard<'static, BTreeSet<u32>> {
+    STARTED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A program that was started, and ends with this value or with a signal that ends this program.
+pub(crate) struct Started {
+    child: Child,
+}
+
+impl Started {
+    pub(crate) fn new(child: Child) -> Self {
+        started().insert(child.id());
+        Self { child }
+    }
+
+    pub(crate) fn child(&mut self) -> &mut Child {
+        &mut self.child
+    }
+}
+
+impl Drop for Started {
+    fn drop(&mut self) {
+        // Its number may soon be another's.
+        started().remove(&self.child.id());
+        // One that has ended already is neither killed nor waited for.
+        let _ = self.child.kill().and_then(|()| self.child.wait().map(drop));
+    }
+}
+
+/// A hidden file or folder among them.
 pub(super) struct Listed(pub(super) PathBuf);
 
 impl Drop for Listed {
@@ -53,6 +87,11 @@ pub(super) fn watch() -> io::Result<()> {
                     let held = held();
                     for path in held.iter() {
                         let _ = std::fs::remove_file(path).or_else(|_| std::fs::remove_dir_all(path));
+                    }
+                    for number in started().iter() {
+                        use rustix::process::{Pid, Signal, kill_process};
+                        let number = i32::try_from(*number).ok().and_then(Pid::from_raw);
+                        let _ = number.map(|number| kill_process(number, Signal::KILL));
                     }
                     let _ = emulate_default_handler(signal);
                 }

@@ -3,7 +3,7 @@
 #![cfg(target_os = "linux")]
 
 use std::fs;
-use std::os::unix::fs::symlink;
+use std::os::unix::fs::{PermissionsExt, symlink};
 use std::os::unix::process::{CommandExt, ExitStatusExt};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
@@ -135,6 +135,33 @@ fn ctrl_c_ends_every_command_at_once_and_leaves_nothing() {
         assert!(asked.elapsed() < AT_ONCE, "{line}: went on for {:?}", asked.elapsed());
         assert_eq!(written(), 0, "{line}: left its scripts");
         is_as_it_was(&folder, line);
+    }
+}
+
+/// A signal to the program alone, and none to what it has started, as `kill` and a scheduler send it.
+#[test]
+fn a_script_ends_with_the_program() {
+    let folder = TempDir::new().unwrap();
+    let (python, number) = (folder.path().join("python"), folder.path().join("number"));
+    // Whole as soon as it has its name.
+    let script = format!("#!/bin/sh\necho $$ > {0}.new\nmv {0}.new {0}\nexec sleep 6000\n", number.display());
+    fs::write(&python, script).unwrap();
+    fs::set_permissions(&python, fs::Permissions::from_mode(0o755)).unwrap();
+    let mut command = common::program(["verify"]);
+    let mut child =
+        command.env("CORNER_IMPACT_PYTHON", &python).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    wait_until(&mut child, |_| number.exists(), "verify");
+    let script = format!("/proc/{}", fs::read_to_string(&number).unwrap().trim());
+    assert!(Path::new(&script).exists());
+    let signal = Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap();
+    assert!(signal.success());
+    assert_eq!(child.wait().unwrap().signal(), Some(15));
+    let begun = Instant::now();
+    // Gone, or dead and not yet counted by whoever has inherited it.
+    let runs = || fs::read_to_string(format!("{script}/stat")).is_ok_and(|stat| !stat.contains(") Z "));
+    while runs() {
+        assert!(begun.elapsed() < common::PATIENCE, "it runs on");
+        std::thread::sleep(Duration::from_millis(10));
     }
 }
 
