@@ -259,7 +259,9 @@ impl Links {
             || tolerance::TABLE.iter().find(|row| row.name.eq_ignore_ascii_case(what)).map(Target::Tolerance);
         let is_claim = |claim: &&Claim| claim.id == what || claim.id.split_once(": ").is_some_and(|(_, id)| id == what);
         let claim = || self.claims.iter().find(is_claim).map(Target::Claim);
-        let field = || quantities(model).into_iter().find(|it| it.field == what).map(Target::Field);
+        // By its short name, too, as `--set` takes it.
+        let path = model.path_of(what, &[]).unwrap_or(what);
+        let field = || quantities(model).into_iter().find(|it| it.field == path).map(Target::Field);
         let found = link.or_else(by_label).or_else(tolerance).or_else(claim).or_else(field);
         // An entry of a matrix or a pair: what it is an entry of.
         let part = what.strip_suffix("_re").or_else(|| what.strip_suffix("_im")).unwrap_or(what);
@@ -333,6 +335,11 @@ impl Links {
         // What `compare` calls by this name is one number of those that the link is about.
         let own = findings.values.get(&plain.what).filter(|_| sided(&format!("{}_{{side}}", link.name)) != plain.what);
         let others = self.table.iter().filter(|other| other.name != link.name && other.labels.contains(&plain.what));
+        // A label of what has two sides is told for the one before the corner.
+        let is_label = link.labels.contains(&plain.what);
+        let plus = (is_label && link.sides).then(|| format!("{}_{}", link.name, Side::Plus));
+        let about = format!("equation: {}, ", plain.what);
+        let statements = self.claims.iter().filter(|claim| claim.id.starts_with(&about)).map(|claim| claim.id.clone());
         let of_input = |name: &str| {
             let (base, side) = match name.rsplit_once('_') {
                 Some((base, side @ ("minus" | "plus"))) => (base, side),
@@ -358,7 +365,7 @@ impl Links {
         Explanation {
             formula: link.formula.clone(),
             label: link.labels.first().cloned(),
-            also: others.map(|other| other.name.clone()).collect(),
+            also: others.map(|other| other.name.clone()).chain(plus).chain(statements).collect(),
             inputs,
             value: own.or_else(|| at(link.value.as_deref()?)).cloned().or_else(|| of_input(&link.name)),
             known: if is_proved { Known::Proved } else { link.known },

@@ -225,8 +225,12 @@ fn a_label_and_a_claim_tell_all() {
     let (links, model) = (Links::read().unwrap(), Model::built_in().unwrap());
     let found = verify(&model, External::LeftOut).unwrap();
     let findings = Findings::new(&model, Some(&found)).unwrap();
-    assert_eq!(links.explain("eq:pwlf", &findings).unwrap().also, ["D"]);
-    assert!(links.explain("C", &findings).unwrap().also.is_empty());
+    let also = |what: &str| links.explain(what, &findings).unwrap().also;
+    let statements = ["region", "acceleration", "continuity"].map(|which| format!("equation: eq:pwlf, {which}"));
+    assert_eq!(also("eq:pwlf"), [&["D".to_owned()], &statements[..]].concat());
+    assert_eq!(also("eq:PT"), ["B_plus"]);
+    assert!(also("C").is_empty() && also("B_minus").is_empty());
+    assert_eq!(links.explain("restitution", &findings).unwrap().value, Some(0.8.into()));
     let evidence = links.explain("odd count", &findings).unwrap().evidence.unwrap();
     let claims = corner_impact(["claims", "--json"]);
     let claims: Value = serde_json::from_str(&text(claims.stdout)).unwrap();
