@@ -115,7 +115,7 @@ pub fn find_corner_impacts(
         return Err(RangeError::NoRange { low, high });
     }
     let corners = cam.corners();
-    let (one_impact, undecided) = one_impact(model, cam, &corners, range, revolutions)?;
+    let (one_impact, undecided) = one_impact(model, cam, corners, range, revolutions)?;
     let known = if undecided.is_empty() { Known::Proved } else { Known::Sampled };
     let complete = vec![Complete { revolutions, impacts: 1, known }];
     let (on_branches, searched) = candidates(model, cam, range, revolutions, watch);

@@ -117,7 +117,7 @@ pub fn cam_figure(cam: &Cam, title: &str) -> Figure {
         String::new()
     };
     let panel = |name: &str, unit: &str, of: fn(&Lift) -> f64, order: usize| {
-        let line = Series::line("", Colour::Blue, Stroke::Solid, samples(cam, &corners, of, order));
+        let line = Series::line("", Colour::Blue, Stroke::Solid, samples(cam, corners, of, order));
         Panel::new(Axis::new(name, unit), 0.21, vec![line])
     };
     let panels = vec![

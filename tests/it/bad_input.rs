@@ -371,7 +371,7 @@ fn extreme_cams() {
         cams += 1;
         assert!(!cam.top().is_nan() && cam.lift(1.0).value.is_finite(), "{text}");
         for corner in cam.corners() {
-            let _ = cam.continued(&corner, Side::Minus, 1e-3).or(cam.continued(&corner, Side::Plus, 1e-3));
+            let _ = cam.continued(corner, Side::Minus, 1e-3).or(cam.continued(corner, Side::Plus, 1e-3));
         }
     }
     assert!(cams > 100, "{cams} of {}", texts.len());

@@ -167,7 +167,7 @@ fn laws_are_continued_past_any_corner() {
     for name in ["rectified-sine.toml", "polynomial.toml"] {
         let cam = law_cam(name);
         for corner in cam.corners() {
-            is_continued(&cam, &corner, 0.1);
+            is_continued(&cam, corner, 0.1);
         }
     }
     let cam = law_cam("program.toml");

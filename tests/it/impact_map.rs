@@ -6,6 +6,7 @@ use corner_impact::cam::Cam;
 use corner_impact::covering::{Frame, HSet, Image, ImpactMap, Strip, Unproved};
 use corner_impact::interval::Interval;
 use corner_impact::model::Model;
+use corner_impact::section::{next_impact, trace};
 use corner_impact::simulate::{Event, EventKind, Machine, angular_velocity};
 
 use crate::common;
@@ -102,6 +103,42 @@ fn check(model: &Model, rpm: f64, boxes: u32) -> u32 {
         }
     }
     proved
+}
+
+/// A cam that does not let go throws nobody; and what is no velocity leaves nothing.
+#[test]
+fn an_impact_that_never_comes_is_none() {
+    let machine =
+        |rpm: f64| Machine::new(common::cam(&common::osorio()), &common::osorio().follower, angular_velocity(rpm));
+    for angle in [0.0, 1.0, 2.79, 3.5, 6.0] {
+        assert_eq!(next_impact(&machine(50.0), angle, 0.0).unwrap(), None, "{angle}");
+        assert!(next_impact(&machine(50.0), angle, 1e-3).unwrap().is_some(), "{angle}");
+        assert!(next_impact(&machine(670.0), angle, 0.0).unwrap().is_some(), "{angle}");
+        for velocity in [-1e-3, f64::NAN] {
+            assert_eq!(next_impact(&machine(670.0), angle, velocity).unwrap(), None, "{angle} {velocity}");
+        }
+    }
+}
+
+/// Right before and right after each event of a trace: whether the follower touches the cam, and whether that presses.
+#[test]
+fn a_trace_presses_where_it_sticks() {
+    let machine = Machine::new(common::cam(&common::osorio()), &common::osorio().follower, angular_velocity(183.0));
+    let (samples, events) = trace(&machine, machine.start_on_cam(0.0, 0.0).unwrap(), 4, 360).unwrap();
+    assert!(samples.iter().all(|sample| sample.contact || sample.pressing == 0.0));
+    let mut met = [0; 3];
+    for event in &events {
+        let here: Vec<_> = samples.iter().filter(|sample| sample.turned == event.turned_since(0.0)).collect();
+        let told = |index: usize| (here[index].contact, here[index].pressing > 0.0);
+        let (which, expected) = match event.kind {
+            EventKind::Impact => (0, [(false, false), (false, false)]),
+            EventKind::Stick => (1, [(false, false), (true, true)]),
+            EventKind::Release => (2, [(true, false), (false, false)]),
+        };
+        assert_eq!([told(0), told(1)], expected, "{event:?}");
+        met[which] += 1;
+    }
+    assert!(met.iter().all(|count| *count > 2), "{met:?}");
 }
 
 #[test]

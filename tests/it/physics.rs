@@ -93,6 +93,39 @@ fn the_fall_to_a_level_keeps_its_digits() {
     }
 }
 
+/// With damping the way down is searched for: it is the first time that the flight, looked at every two milliseconds, is below
+/// the level after it has been above, and there is none where it never is.
+#[test]
+fn a_damped_fall_ends_where_the_level_is_passed_first() {
+    const STEP: f64 = 2e-3;
+    let (mut reached, mut never, mut risen) = (0, 0, 0);
+    for follower in followers().into_iter().filter(|follower| follower.damping > 0.0) {
+        let flight = Flight::new(&follower);
+        for level in [0.45, 0.4, 0.3, 0.29] {
+            for (position, velocity) in [(0.5, 0.0), (0.5, 3.0), (0.5, -3.0), (0.2, 0.0)] {
+                let start = State { position, velocity };
+                let at = |time: f64| flight.fly(start, time).1;
+                let times = || (0..60_000).map(|index| STEP * f64::from(index));
+                let Some(above) = times().find(|time| at(*time).position > level) else { continue };
+                let below = times().find(|time| *time > above && at(*time).position < level);
+                let case = format!("{follower:?} from {position}, {velocity} to {level}: {below:?}");
+                match (flight.fall_to(level, start), below) {
+                    (Some((time, state)), Some(below)) => {
+                        assert!(below - STEP <= time && time <= below, "{time}: {case}");
+                        let there = at(time);
+                        assert_abs_diff_eq!(there.position, level, epsilon = 1e-13);
+                        assert_abs_diff_eq!(there.velocity, state.velocity, epsilon = 1e-9);
+                        (reached, risen) = (reached + 1, risen + u32::from(position < level));
+                    }
+                    (None, None) => never += 1,
+                    (found, _) => panic!("{found:?}: {case}"),
+                }
+            }
+        }
+    }
+    assert!(reached > 40 && never > 10 && risen > 0, "{reached} {never} {risen}");
+}
+
 /// Two flights are one: the responses hold their digits through every switch of formula.
 #[test]
 fn flights_compose() {
@@ -160,6 +193,9 @@ fn the_jerk_and_its_bound() {
             let largest =
                 (0..1000).map(|k| flight.jerk(flight.fly(start, 2e-4 * f64::from(k)).1).abs()).fold(0.0, f64::max);
             assert_relative_eq!(flight.jerk_bound(start), largest, max_relative = 1e-4);
+            // Where squares overflow, too: w0 |a| with a = w0^2 q.
+            let far = State { position: 1e200, velocity: 0.0 };
+            assert_relative_eq!(flight.jerk_bound(far), 32.0 * 1024e200, max_relative = 1e-14);
         }
     }
 }
