@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::cam::{Cam, Side};
+use crate::corner::map::RouteName;
 use crate::known::Known;
 use crate::model::{Model, ModelError, Units, nearest};
 use crate::paper::checks::{self, Check};
@@ -41,7 +42,7 @@ pub struct Explanation {
     pub value: Option<Value>,
     /// The same by each route that knows it.
     pub routes: BTreeMap<String, Value>,
-    /// Those that did not run: on purpose, or because they failed.
+    /// Those that have none, since they did not run: on purpose, or because they failed.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub skipped: Vec<Skipped>,
     /// How it is known.
@@ -361,7 +362,19 @@ impl Links {
         let mut routes = each("/routes", link.routes.as_ref());
         routes.extend(each("/orbits", link.orbits.as_ref()));
         let is_proved = routes.contains_key("certificate");
-        let skipped = findings.found.filter(|_| !routes.is_empty()).map(|found| found.skipped.clone());
+        let ways = [
+            RouteName::Certificate,
+            RouteName::ClosedForm,
+            RouteName::FiniteDifference,
+            RouteName::LeastSquares,
+            RouteName::Scipy,
+            RouteName::Symbolic,
+            RouteName::Variational,
+        ];
+        let is_way = |skipped: &&Skipped| ways.iter().any(|way| way.to_string() == skipped.route);
+        let known = findings.found.filter(|_| !routes.is_empty());
+        let skipped = known.into_iter().flat_map(|found| &found.skipped).filter(is_way);
+        let skipped = skipped.filter(|skipped| !routes.contains_key(&skipped.route)).cloned().collect();
         Explanation {
             formula: link.formula.clone(),
             label: link.labels.first().cloned(),
@@ -370,7 +383,7 @@ impl Links {
             value: own.or_else(|| at(link.value.as_deref()?)).cloned().or_else(|| of_input(&link.name)),
             known: if is_proved { Known::Proved } else { link.known },
             routes,
-            skipped: skipped.unwrap_or_default(),
+            skipped,
             code: code(&link.code),
             derivation: link.derivation.as_deref().and_then(derivation),
             tests: tests(&link.tests),

@@ -92,6 +92,15 @@ fn routes_that_did_not_run_are_told() {
     }
     let page = it.text().unwrap();
     assert!(page.contains("not run   symbolic, scipy, certificate (`verify` says why)"), "{page}");
+    // What is no route to it, as the digits in print, misses from no other model.
+    let other = common::read("models/damped-light.toml".as_ref());
+    let found_there = verify(&other, External::LeftOut).unwrap();
+    assert!(found_there.skipped.iter().any(|one| one.route == "published"));
+    let there = links.explain("B_minus", &Findings::new(&other, Some(&found_there)).unwrap()).unwrap();
+    assert_eq!(
+        there.skipped.iter().map(|one| &one.route[..]).collect::<Vec<_>>(),
+        ["symbolic", "scipy", "certificate"]
+    );
     // One that no route computes misses none.
     let alone = links.explain("CAM_JUMP", &Findings::new(&model, Some(&found)).unwrap()).unwrap();
     assert!(alone.skipped.is_empty(), "{alone:?}");
