@@ -248,7 +248,7 @@ impl Curve {
                     let foot = if share.is_finite() { start + share * along } else { start };
                     nearest = nearest.min((point - foot).norm());
                 }
-                index += (passed as usize).max(1);
+                index = index.saturating_add((passed as usize).max(1));
             }
             nearest
         })
