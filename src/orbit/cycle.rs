@@ -119,21 +119,41 @@ impl Cycle {
         self.equations(machine).0
     }
 
-    /// [`Cycle::residual`] and its derivative by angle, rad, and velocity over omega, m/rad, of each impact in turn; those of
-    /// the first impact one period on are `next_period` times as much.
-    pub fn linear(&self, machine: &Machine, next_period: f64) -> (DVector<f64>, DMatrix<f64>) {
+    /// [`Cycle::residual`] and its derivative by angle, rad, and velocity over omega, m/rad, of each impact in turn.
+    pub fn linear(&self, machine: &Machine) -> (DVector<f64>, DMatrix<f64>) {
         let count = self.impacts.len();
         let (residual, links) = self.equations(machine);
         let mut rows = DMatrix::zeros(2 * count, 2 * count);
         for (index, link) in links.into_iter().enumerate() {
             let next = (index + 1) % count;
-            let coming = if next == 0 { link.coming * next_period } else { link.coming };
-            for (column, by) in [(index, link.leaving), (next, coming)] {
+            for (column, by) in [(index, link.leaving), (next, link.coming)] {
                 let mut block = rows.fixed_view_mut::<2, 2>(2 * index, 2 * column);
                 block += by;
             }
         }
         (residual, rows)
+    }
+
+    /// The determinant of that derivative where deviations are `multiplier` times as much one period on, with velocities over
+    /// omega by a unit, m/rad: 0 for a multiplier of the orbit. Each row has the length 1, so that it is 1 at most (Hadamard).
+    pub fn characteristic(&self, machine: &Machine, multiplier: f64, velocity: f64) -> f64 {
+        let (_, mut links) = self.equations(machine);
+        let is_alone = links.len() == 1;
+        if let Some(last) = links.last_mut() {
+            last.coming *= multiplier;
+        }
+        for Link { leaving, coming } in &mut links {
+            for block in [&mut *leaving, &mut *coming] {
+                block.column_mut(1).scale_mut(velocity);
+            }
+            for row in 0..2 {
+                let (from, to) = (leaving.row(row), coming.row(row));
+                let length = if is_alone { (from + to).norm() } else { from.norm().hypot(to.norm()) };
+                leaving.row_mut(row).unscale_mut(length);
+                coming.row_mut(row).unscale_mut(length);
+            }
+        }
+        chain::determinant(&links)
     }
 
     /// Both, flight by flight.

@@ -66,17 +66,8 @@ impl Held {
                 let segment = &machine.cam().segments()[segment];
                 cam_angle - if at_end { segment.end } else { segment.start }
             }
-            Self::Multiplier(multiplier) => {
-                // The equations of the next period, its deviations a multiple of this one's, have a solution where their
-                // determinant is 0. It has no pole at a graze, as that of 1 - M has; by Hadamard's bound it is 1 at most.
-                let (_, mut matrix) = cycle.linear(machine, multiplier);
-                matrix.column_iter_mut().skip(1).step_by(2).for_each(|mut column| column *= velocity);
-                for mut row in matrix.row_iter_mut() {
-                    let length = row.norm();
-                    row /= length;
-                }
-                matrix.determinant()
-            }
+            // It has no pole at a graze, as the determinant of the multiplier less M has.
+            Self::Multiplier(multiplier) => cycle.characteristic(machine, multiplier, velocity),
             Self::Touch(impact) => cycle.approach(machine, impact) / machine.angular_velocity() / velocity,
         }
     }

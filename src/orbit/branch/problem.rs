@@ -109,7 +109,7 @@ impl Equations for Problem<'_> {
         const DIFFERENCE: f64 = 1e-7;
         let count = 2 * self.pattern.impacts.len();
         let (cycle, machine, _) = self.unpack(unknowns)?;
-        let (residual, by_impacts) = cycle.linear(&machine, 1.0);
+        let (residual, by_impacts) = cycle.linear(&machine);
         let residual = self.with_held(residual, &cycle, &machine);
         let mut jacobian = DMatrix::zeros(residual.len(), unknowns.len());
         for column in 0..count {
