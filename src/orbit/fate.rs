@@ -222,6 +222,11 @@ impl<'a> Settling<'a> {
 
     /// What follows a release at `cam_angle`, rad.
     pub fn fate(&self, cam_angle: f64) -> Result<Fate, SimulateError> {
+        self.fate_beside(cam_angle, |_| None)
+    }
+
+    /// The same, as far as what follows is not `known` of a release that comes later.
+    pub fn fate_beside(&self, cam_angle: f64, known: impl Fn(f64) -> Option<Fate>) -> Result<Fate, SimulateError> {
         // Each release with the revolutions and what was met from it to the next.
         let mut releases: Vec<(f64, u64, Met)> = Vec::new();
         let mut release = cam_angle;
@@ -250,6 +255,9 @@ impl<'a> Settling<'a> {
                 let resting = Resting { releases, revolutions, impacts, impact_speed, growth };
                 let other = if resting.is_long() { self.by_chance(release)? } else { None };
                 return Ok(other.unwrap_or(Fate::Recurs(resting)));
+            }
+            if let Some(fate) = known(next) {
+                return Ok(fate);
             }
             release = next;
         }

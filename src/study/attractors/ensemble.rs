@@ -231,7 +231,11 @@ fn follow(settling: &Settling<'_>, ends: &[Option<End>], fates: &mut Fates) -> R
         if let Some(End { run: Run::Released(release), .. }) = end
             && ending_of(fates, *release).is_none()
         {
-            let fate = settling.fate(*release).map_err(|error| (index, error))?;
+            let known = |other: f64| {
+                let known = fates.iter().find(|(known, ..)| is_same_release(*known, other));
+                known.map(|(_, fate, _)| fate.clone())
+            };
+            let fate = settling.fate_beside(*release, known).map_err(|error| (index, error))?;
             let ending = settling.after(&fate).map_err(|error| (index, error))?;
             fates.push((*release, fate, ending));
         }
