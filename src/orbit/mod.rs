@@ -30,13 +30,13 @@ pub mod search;
 pub mod settle;
 pub(crate) mod sticking;
 
-use std::f64::consts::TAU;
-
 use nalgebra::Matrix2;
 
+use crate::cam::apart;
 use crate::flight::State;
 use crate::known::Known;
 use crate::simulate::{Event, EventKind, Machine, SimulateError};
+use crate::tolerance;
 pub use complete::Undecided;
 pub(crate) use cycle::{Cycle, Impact, NotClosed};
 pub(crate) use departure::Departure;
@@ -149,17 +149,11 @@ impl PeriodicOrbit {
             (Course::Impacts(one), Course::Impacts(other)) => one.is_same(other),
             (Course::Sticking(_), Course::Sticking(_)) => {
                 // One motion at most goes through a state in contact.
-                let angles = |orbit: &Self| {
-                    let mut angles: Vec<f64> = orbit.rests().map(|event| event.cam_angle).collect();
-                    angles.sort_by(f64::total_cmp);
-                    angles
-                };
-                let (one, two) = (angles(self), angles(other));
-                let near = |(one, two): (&f64, &f64)| {
-                    let apart = (one - two).abs();
-                    apart.min(TAU - apart) <= crate::tolerance::SAME_ORBIT.value
-                };
-                self.revolutions == other.revolutions && one.len() == two.len() && one.iter().zip(&two).all(near)
+                let [one, two] =
+                    [self, other].map(|orbit| orbit.rests().map(|event| event.cam_angle).collect::<Vec<_>>());
+                let is_known =
+                    |angle: &f64| two.iter().any(|other| apart(*angle, *other) <= tolerance::SAME_ORBIT.value);
+                self.revolutions == other.revolutions && one.len() == two.len() && one.iter().all(is_known)
             }
             (Course::Free, Course::Free) => true,
             _ => false,

@@ -75,16 +75,24 @@ impl Cycle {
         later.in_order()
     }
 
-    /// Whether two cycles are the same motion, whichever revolution they begin with.
+    /// The angle of an impact, rad, counted on through revolutions and, past the last impact, through periods.
+    fn angle(&self, index: usize) -> f64 {
+        let (period, index) = (index / self.impacts.len(), index % self.impacts.len());
+        self.impacts[index].turned() + TAU * period as f64 * self.revolutions as f64
+    }
+
+    /// Whether each impact is `turned` rad before that of another cycle, which is so many impacts further on.
+    fn is_before(&self, other: &Self, impacts: usize, turned: f64) -> bool {
+        let off = |index: usize| other.angle(index + impacts) - self.angle(index) - turned;
+        (0..self.impacts.len()).all(|index| off(index).abs() <= tolerance::SAME_ORBIT.value)
+    }
+
+    /// Whether two cycles are the same motion, whichever impact and revolution they begin with.
     pub fn is_same(&self, other: &Self) -> bool {
-        let near = |one: &Impact, other: &Impact| {
-            let turns = one.revolution as f64 - other.revolution as f64;
-            (one.cam_angle - other.cam_angle + TAU * turns).abs() <= tolerance::SAME_ORBIT.value
-        };
-        let same = |other: &Self| self.impacts.iter().zip(&other.impacts).all(|(one, other)| near(one, other));
+        let turned = |impacts: usize| TAU * ((other.angle(impacts) - self.angle(0)) / TAU).round();
         self.revolutions == other.revolutions
             && self.impacts.len() == other.impacts.len()
-            && (0..self.revolutions).any(|later| same(&other.begun_later(later)))
+            && (0..self.impacts.len()).any(|impacts| self.is_before(other, impacts, turned(impacts)))
     }
 
     /// Whether the motion repeats sooner than after `revolutions`.
@@ -94,12 +102,8 @@ impl Cycle {
     }
 
     fn repeats_after(&self, revolutions: u64) -> bool {
-        let later = self.begun_later(revolutions);
-        let near = |(one, other): (&Impact, &Impact)| {
-            one.revolution == other.revolution && (one.cam_angle - other.cam_angle).abs() <= tolerance::SAME_ORBIT.value
-        };
-        let itself = self.clone().in_order();
-        itself.impacts.iter().zip(&later.impacts).all(near)
+        let impacts = self.impacts.len() * revolutions as usize / self.revolutions as usize;
+        self.is_before(self, impacts, TAU * revolutions as f64)
     }
 
     /// The impact half a period after `impact`, if it is one on the same segment.
@@ -128,6 +132,46 @@ impl Cycle {
                 let impacts = cycle.impacts.iter().filter(|impact| impact.revolution < revolutions as i64);
                 Self { revolutions, impacts: impacts.copied().collect() }
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Impacts at these angles, rad, counted on over so many revolutions.
+    fn cycle(revolutions: u64, angles: &[f64]) -> Cycle {
+        let impact = |angle: &f64| Impact {
+            segment: 0,
+            cam_angle: angle - TAU * (angle / TAU).floor(),
+            revolution: (angle / TAU).floor() as i64,
+            velocity_before: -1.0,
+        };
+        Cycle { revolutions, impacts: angles.iter().map(impact).collect() }
+    }
+
+    #[test]
+    fn a_motion_is_itself_whichever_impact_comes_first() {
+        let one = cycle(2, &[0.0, 1.0, 5.0, 8.0]);
+        // Of an impact on the seam rounding decides which revolution it is in.
+        let seam = [-1e-13, 1e-13].map(|off| cycle(2, &[1.0, 5.0, 8.0, 2.0 * TAU + off]));
+        let later = cycle(2, &[5.0 - TAU, 8.0 - TAU, TAU, TAU + 1.0]);
+        for same in [&one, &seam[0], &seam[1], &later] {
+            assert!(one.is_same(same) && same.is_same(&one), "{same:?}");
+        }
+        for other in [cycle(2, &[0.0, 1.0, 5.0, 8.1]), cycle(2, &[0.0, 1.0, 5.0]), cycle(3, &[0.0, 1.0, 5.0, 8.0])] {
+            assert!(!one.is_same(&other), "{other:?}");
+        }
+    }
+
+    #[test]
+    fn a_motion_repeats_after_as_few_revolutions_as_it_does() {
+        let twice = cycle(4, &[-1e-13, 1.0, 2.0 * TAU, 2.0 * TAU + 1.0]);
+        assert!(twice.repeats_sooner());
+        assert_eq!(twice.shortest().revolutions, 2);
+        for once in [cycle(4, &[0.0, 1.0, 2.0 * TAU, 2.0 * TAU + 1.1]), cycle(2, &[0.0, 1.0, 5.0])] {
+            assert!(!once.repeats_sooner(), "{once:?}");
         }
     }
 }
