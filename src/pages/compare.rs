@@ -7,6 +7,8 @@ use crate::show::block::{Block, Column, Mark, Span, Table, Words, words};
 use crate::show::digits::Digits;
 use crate::study::compare::{Change, Comparison};
 
+/// So many times its error a difference is beyond doubt.
+const MANY: f64 = 1e6;
 /// The longest list of names that a page has.
 const LONGEST: usize = 40;
 
@@ -19,30 +21,32 @@ impl Paged for Comparison {
             false if others > 0 => words!["the same: ", a, format!("; but {others} findings are of another kind")],
             false => words!["the same: ", (Mark::Good, a.as_str())],
             true => {
-                words![(Mark::Bad, "changed"), Span::Break, "A: ", a, Span::Break, "B: ", b]
+                words![(Mark::Bad, "changed"), Span::Break, "first:  ", a, Span::Break, "second: ", b]
             }
         };
-        let entries = [("verdict", verdict), ("A", (&self.models.a.name).into()), ("B", (&self.models.b.name).into())];
+        let entries =
+            [("verdict", verdict), ("first", (&self.models.a.name).into()), ("second", (&self.models.b.name).into())];
         let entries = entries.into_iter().map(|(name, words)| (name.into(), words)).collect();
-        let mut page = vec![Block::Title("What moved from A to B".into()), Block::Entries(9, entries)];
+        let mut page =
+            vec![Block::Title("What moved from the first model to the second".into()), Block::Entries(9, entries)];
         page.extend(fields(self));
         let (alone, both): (Vec<&Change>, Vec<_>) =
             self.changes.iter().partition(|change| change.a.is_none() || change.b.is_none());
         let (numbers, words): (Vec<&Change>, Vec<_>) = both.into_iter().partition(|change| change.difference.is_some());
         page.extend(kinds(&words));
         let (known, unknown): (Vec<&Change>, Vec<_>) = numbers.into_iter().partition(|change| change.error.is_some());
-        page.extend(moved("Numbers that moved, speeds and then the most first", &known));
-        page.extend(moved("Numbers whose error is not known, speeds and then the most first", &unknown));
+        page.extend(moved("Numbers that moved", &known));
+        page.extend(moved("Numbers that moved, and whose error is not known", &unknown));
         if known.is_empty() && unknown.is_empty() {
             page.extend([Block::Gap, Block::paragraph("No number that both have moved by more than its error.")]);
         } else {
-            let note = "moved: what of B less A is more than its error, over the larger of both. times error: the difference \
-                        over its error, which is how far routes differ, or an estimate's own, and what a measured cam leaves open, \
-                        of both models. All computed.";
+            let note = "Speeds stand first, then what moved most. moved: the difference over the size of the first. times error: over how far it may be off, which is how \
+                        far routes differ, or an estimate's own, and what a measured cam leaves open, of both models. What has the \
+                        same digits in both stands in one line. All computed.";
             page.push(Block::Note(note.into()));
         }
-        page.extend(named("A alone has", alone.iter().copied().filter(|change| change.b.is_none())));
-        page.extend(named("B alone has", alone.iter().copied().filter(|change| change.a.is_none())));
+        page.extend(named("The first alone has", alone.iter().copied().filter(|change| change.b.is_none())));
+        page.extend(named("The second alone has", alone.iter().copied().filter(|change| change.a.is_none())));
         let (same, within): (Vec<&Change>, Vec<_>) =
             self.unchanged.iter().partition(|change| change.difference.is_none_or(|difference| difference == 0.0));
         page.extend(named("Different, but by no more than their errors", within.into_iter()));
@@ -67,7 +71,7 @@ fn fields(found: &Comparison) -> Vec<Block> {
     if found.fields.is_empty() {
         return vec![Block::Gap, Block::paragraph("The fields of both models are the same.")];
     }
-    let columns = [Column::words("field"), Column::words("A"), Column::words("B")];
+    let columns = [Column::words("field"), Column::words("first"), Column::words("second")];
     let mut table = Table::new("Fields that differ", columns);
     for field in &found.fields {
         table.row([field.field.as_str().into(), told(field.a.as_ref()), told(field.b.as_ref())]);
@@ -80,11 +84,31 @@ fn kinds(changes: &[&Change]) -> Vec<Block> {
     if changes.is_empty() {
         return Vec::new();
     }
-    let mut table = Table::new("Words", [Column::words("quantity"), Column::words("A"), Column::words("B")]);
+    let mut table = Table::new("Words", [Column::words("quantity"), Column::words("first"), Column::words("second")]);
     for change in changes {
         table.row([change.quantity.as_str().into(), told(change.a.as_ref()), told(change.b.as_ref())]);
     }
     vec![Block::Heading("What is of another kind".into()), Block::Table(table)]
+}
+
+/// In the order of the first of each, those of which both numbers have the same digits.
+fn alike<'a>(changes: &[&'a Change]) -> Vec<Vec<&'a Change>> {
+    let short = |value: &Option<Value>| value.as_ref().and_then(Value::as_f64).map(|number| Digits::Short.text(number));
+    let digits = |change: &Change| [&change.a, &change.b].map(short);
+    let mut all: Vec<([Option<String>; 2], Vec<&Change>)> = Vec::new();
+    for change in changes {
+        let digits = digits(change);
+        match all.iter_mut().find(|(known, _)| *known == digits) {
+            Some((_, alike)) => alike.push(change),
+            None => all.push((digits, vec![change])),
+        }
+    }
+    all.into_iter().map(|(_, alike)| alike).collect()
+}
+
+/// How many times its error a difference is, as far as that tells something.
+fn times(error: f64) -> Words {
+    if error > MANY { "> 1e6".into() } else { words![(error, Digits::Size)] }
 }
 
 fn moved(title: &str, changes: &[&Change]) -> Vec<Block> {
@@ -92,19 +116,25 @@ fn moved(title: &str, changes: &[&Change]) -> Vec<Block> {
         return Vec::new();
     }
     let number = |head: &str| Column { gap: 2, ..Column::number(head) };
-    let mut columns = vec![Column::words("quantity"), number("A"), number("B"), number("moved %")];
-    let has_errors = changes.iter().any(|change| change.times_error.is_some());
+    let mut columns = vec![number("first"), number("second"), number("moved %")];
+    // Where each is many times its error, a column of that tells nothing.
+    let errors = || changes.iter().filter_map(|change| change.times_error);
+    let has_errors = errors().any(|times| times <= MANY);
+    let many =
+        if errors().next().is_some() && !has_errors { ", each by more than a million times its error" } else { "" };
     columns.extend(has_errors.then(|| number("times error")));
+    columns.push(Column { gap: 2, ..Column::words("quantity") });
     let mut table = Table::new(title, columns);
-    for change in changes {
-        let sign = change.difference.map_or(1.0, f64::signum);
-        let percent = change.relative.map_or("".into(), |part| words![(sign * 100.0 * part, Digits::Significant(3))]);
-        let mut cells =
-            vec![change.quantity.as_str().into(), told(change.a.as_ref()), told(change.b.as_ref()), percent];
-        cells.extend(has_errors.then(|| change.times_error.map_or("".into(), |times| words![(times, Digits::Size)])));
+    for alike in alike(changes) {
+        let change = alike[0];
+        let percent = change.relative.map_or("".into(), |part| words![(100.0 * part, Digits::Significant(3))]);
+        let mut cells = vec![told(change.a.as_ref()), told(change.b.as_ref()), percent];
+        cells.extend(has_errors.then(|| change.times_error.map_or("".into(), times)));
+        let names: Vec<&str> = alike.iter().map(|change| change.quantity.as_str()).collect();
+        cells.push(names.join(", ").into());
         table.row(cells);
     }
-    vec![Block::Heading(format!("{title} ({})", changes.len()).into()), Block::Table(table)]
+    vec![Block::Heading(format!("{title}{many} ({})", changes.len()).into()), Block::Table(table)]
 }
 
 fn named<'a>(title: &str, changes: impl Iterator<Item = &'a Change>) -> Vec<Block> {

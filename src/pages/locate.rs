@@ -112,7 +112,7 @@ fn rejected(found: &Located) -> Vec<Block> {
     if all.is_empty() {
         return Vec::new();
     }
-    let title = format!("Speeds that solve the equations and are none ({})", all.len());
+    let title = format!("Not corner impacts, though the equations hold at these speeds ({})", all.len());
     let line = |words: Words| Block::Paragraph(4, words);
     let mut lines = vec![Block::Heading(title.into())];
     lines.extend(all.iter().take(LONGEST).map(|rejected| {
@@ -163,7 +163,12 @@ fn found_by(found: &Located) -> String {
     let recaptured = found.looked_at.recaptured();
     let sum = |count: fn(&Recaptured) -> usize| recaptured.values().map(count).sum::<usize>();
     let (branches, shots, both) = (sum(|it| it.branches), sum(|it| it.shots), sum(|it| it.both));
-    let missing = recaptured.values().map(Recaptured::missing).sum::<f64>();
+    let missing = match recaptured.values().map(Recaptured::missing).sum::<f64>() {
+        some if some >= 0.1 => {
+            format!("some {some:.1} more are to be expected, and the more the harder they are to find")
+        }
+        _ => "no more are to be expected, but for those that are hard to find both ways".to_owned(),
+    };
     let alone = |way: Way| {
         let numbers =
             (1..).zip(&found.found).filter(|(_, it)| it.at.ways == [way]).map(|(number, _)| number.to_string());
@@ -172,8 +177,7 @@ fn found_by(found: &Located) -> String {
     let on_branches = alone(Way::Branch).map_or_else(String::new, |numbers| format!(" On branches alone: {numbers}."));
     let by_shots = alone(Way::Shot).map_or_else(String::new, |numbers| format!(" By shots alone: {numbers}."));
     format!(
-        "The first found {branches}, the second {shots}, {both} of them the same: by that some {missing:.1} more are to be expected, \
-         and the more the harder they are to find.{on_branches}{by_shots}"
+        "The first found {branches}, the second {shots}, {both} of them the same: by that {missing}.{on_branches}{by_shots}"
     )
 }
 

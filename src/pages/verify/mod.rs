@@ -12,6 +12,7 @@ use crate::show::Paged;
 use crate::show::block::{Block, Column, Mark, Span, Table, Words, about, words};
 use crate::show::digits::Digits;
 use crate::show::words;
+use crate::study::compared::Skipped;
 use crate::study::verify::{Tally, Verification};
 pub(crate) use map::{agreement, map};
 
@@ -244,9 +245,12 @@ pub(crate) fn published(found: &Verification) -> Vec<Block> {
 /// What did not run, and whether everything agrees.
 pub(crate) fn verdict(found: &Verification) -> Vec<Block> {
     let mut blocks = Vec::new();
-    if !found.skipped.is_empty() {
-        let line = |skipped: &crate::study::compared::Skipped| format!("{}: {}", skipped.route, skipped.why).into();
-        blocks.extend([Block::Heading("NOT RUN".into()), Block::List(found.skipped.iter().map(line).collect())]);
+    let (failed, left_out): (Vec<&Skipped>, Vec<_>) = found.skipped.iter().partition(|skipped| skipped.failed);
+    for (heading, skipped) in [("NOT RUN", failed), ("Left out", left_out)] {
+        let line = |skipped: &&Skipped| format!("{}: {}", skipped.route, skipped.why).into();
+        if !skipped.is_empty() {
+            blocks.extend([Block::Heading(heading.into()), Block::List(skipped.iter().map(line).collect())]);
+        }
     }
     blocks.push(Block::Heading("Verdict".into()));
     blocks.extend(tally(found).into_iter().map(Block::paragraph));

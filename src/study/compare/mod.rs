@@ -145,8 +145,11 @@ pub struct Change {
     pub error: Option<f64>,
     /// The size of the difference, over its error.
     pub times_error: Option<f64>,
-    /// What of the difference is more than its error, over the larger of both numbers.
+    /// The difference over the size of the first number; none where that is 0.
     pub relative: Option<f64>,
+    /// Whether the two differ by more than their error; without one by more than rounding.
+    #[serde(skip)]
+    pub is_one: bool,
 }
 
 impl Change {
@@ -154,14 +157,11 @@ impl Change {
     fn new(quantity: &str, [a, b]: [Option<&Value>; 2], errors: [Option<f64>; 2], open: f64) -> Self {
         let numbers = a.and_then(Value::as_f64).zip(b.and_then(Value::as_f64));
         let difference = numbers.map(|(a, b)| b - a);
-        let size = numbers.map_or(0.0, |(a, b)| a.abs().max(b.abs()));
-        let rounding = tolerance::ULP.value * size;
+        let rounding = tolerance::ULP.value * numbers.map_or(0.0, |(a, b)| a.abs().max(b.abs()));
         let both = errors[0].zip(errors[1]).filter(|_| difference.is_some());
         let error = both.map(|(a, b)| a + b + open + rounding).filter(|error| !error.is_nan());
-        let relative = difference.map(|difference| {
-            let beyond = difference.abs() - error.unwrap_or(rounding);
-            if beyond > 0.0 { beyond / size } else { 0.0 }
-        });
+        let relative = numbers.filter(|(a, _)| *a != 0.0).map(|(a, b)| (b - a) / a.abs());
+        let is_one = difference.map_or(a != b, |difference| difference.abs() > error.unwrap_or(rounding));
         let times_error = difference.zip(error).filter(|(_, error)| *error > 0.0);
         Self {
             quantity: quantity.to_owned(),
@@ -171,12 +171,8 @@ impl Change {
             error,
             times_error: times_error.map(|(difference, error)| difference.abs() / error),
             relative,
+            is_one,
         }
-    }
-
-    /// Whether the two differ by more than their error.
-    pub fn is_one(&self) -> bool {
-        self.relative.map_or(self.a != self.b, |relative| relative > 0.0)
     }
 
     /// Words first, then numbers with an error, then those without, then what one model has alone; of numbers the speeds in front that
@@ -184,7 +180,7 @@ impl Change {
     fn rank(&self) -> (bool, bool, bool, bool, f64) {
         const SPEEDS: [&str; 2] = ["speed_rpm", "separation_speed_rpm"];
         let is_alone = self.a.is_none() || self.b.is_none();
-        let relative = self.relative.unwrap_or(f64::INFINITY);
+        let relative = self.relative.map_or(f64::INFINITY, f64::abs);
         let is_unknown = self.difference.is_some() && self.error.is_none();
         let is_speed = SPEEDS.contains(&self.quantity.as_str());
         (is_alone, is_unknown, self.difference.is_some(), !is_speed, -relative)
@@ -254,7 +250,7 @@ pub fn compare(a: &Model, b: &Model, external: External, watch: &dyn Watch) -> R
         let open = opens.iter().filter_map(|open| open.get(name)).sum();
         Change::new(name, [of_a.value(name), of_b.value(name)], [error(&of_a), error(&of_b)], open)
     });
-    let (mut changes, unchanged): (Vec<Change>, Vec<Change>) = all.partition(Change::is_one);
+    let (mut changes, unchanged): (Vec<Change>, Vec<Change>) = all.partition(|change| change.is_one);
     changes.sort_by(|one, other| one.rank().partial_cmp(&other.rank()).unwrap_or(Ordering::Equal));
     let verdict = Pair { a: of_a.verdict, b: of_b.verdict };
     Ok(Comparison { models, verdict, fields, changes, unchanged })
@@ -271,14 +267,14 @@ mod tests {
 
     #[test]
     fn a_difference_within_the_errors_of_both_is_none() {
-        assert!(!change([1.0, 1.3], [Some(0.1), Some(0.2)]).is_one());
+        assert!(!change([1.0, 1.3], [Some(0.1), Some(0.2)]).is_one);
         let moved = change([1.0, 1.5], [Some(0.1), Some(0.2)]);
-        assert!(moved.is_one() && (moved.times_error.unwrap() - 5.0 / 3.0).abs() < 1e-12);
-        assert!((moved.relative.unwrap() - 0.2 / 1.5).abs() < 1e-12);
+        assert!(moved.is_one && (moved.times_error.unwrap() - 5.0 / 3.0).abs() < 1e-12);
+        assert!((moved.relative.unwrap() - 0.5).abs() < 1e-12);
         // Without an error every difference but rounding is told.
-        assert!(change([1.0, 1.3], [Some(10.0), None]).is_one());
-        assert!(!change([1.0, 1.0 + f64::EPSILON], [None; 2]).is_one());
-        assert!(!change([0.0, 0.0], [Some(0.0); 2]).is_one());
+        assert!(change([1.0, 1.3], [Some(10.0), None]).is_one);
+        assert!(!change([1.0, 1.0 + f64::EPSILON], [None; 2]).is_one);
+        assert!(!change([0.0, 0.0], [Some(0.0); 2]).is_one);
     }
 
     #[test]
