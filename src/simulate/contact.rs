@@ -75,30 +75,36 @@ fn polish(gap_at: impl Fn(f64) -> Gap, time: f64, gap: &Gap, end: f64) -> f64 {
 
 /// A time ahead, at most `end`, before which the gap is certainly open.
 fn free_time(gap: &Gap, third_bound: impl Fn(f64) -> f64, end: f64) -> f64 {
+    /// So many times a reach its root is, where the reach is too short.
+    const FAR: f64 = 16.0;
     // Down to a depth of its rounding the gap is open: a flight that leaves a tangency gets a first step out of it.
     let value = (gap.value + gap.rounding).max(0.0);
     // Over [0, reach] the cubic minorant lies above the parabola with curvature g'' - M reach/3.
-    let open = |reach: f64, bound: f64| first_root(value, gap.rate, gap.curvature - bound * reach / 3.0).min(reach);
+    let root = |reach: f64, bound: f64| first_root(value, gap.rate, gap.curvature - bound * reach / 3.0);
     let mut reach = end;
     // A shorter reach bends the parabola less: three rounds bring it within a part in eight of the cubic's own root.
     for _ in 0..4 {
-        let root = open(reach, gap.third);
-        if root >= 0.5 * reach {
+        let first = root(reach, gap.third);
+        if first >= 0.5 * reach {
             break;
         }
         // Leaving a tangency the parabola opens upwards for a time that its curvature sets.
         let upwards = if gap.curvature > 0.0 { gap.curvature / gap.third } else { 0.0 };
-        reach = reach.min((2.0 * root).max(upwards));
+        let shorter = reach.min((2.0 * first).max(upwards));
+        // Where its rate alone keeps the gap open, the root is the shorter the longer the reach, as R^2/reach: what is tried next
+        // is too short by as much as this was too long, and R is between the two.
+        let overshoots = root(shorter, gap.third) > FAR * shorter;
+        reach = if overshoots { (shorter * reach).sqrt() } else { shorter };
     }
     let mut best: f64 = 0.0;
     // What was a guess becomes certain: the bound over the reach, which shrinks until the bound lets a good part of it pass.
     for _ in 0..24 {
-        let root = open(reach, third_bound(reach));
-        best = best.max(root);
-        if root >= 0.5 * reach {
+        let open = root(reach, third_bound(reach)).min(reach);
+        best = best.max(open);
+        if open >= 0.5 * reach {
             break;
         }
-        reach = (2.0 * root).max(0.25 * reach);
+        reach = (2.0 * open).max(0.25 * reach);
     }
     best
 }
@@ -114,4 +120,29 @@ fn first_root(g: f64, b: f64, c: f64) -> f64 {
     }
     // Each form adds numbers of one sign only.
     if b > 0.0 { (b + discriminant.sqrt()) / -c } else { 2.0 * g / (discriminant.sqrt() - b) }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::Cell;
+
+    use super::*;
+
+    /// Damping stops a follower within 1e-12 s of an impact, far above the cam by its digits, and the cam comes up to it in the end.
+    #[test]
+    fn a_flight_that_is_stopped_at_once_takes_few_steps() {
+        let (rate, stops, cam) = (17.0, 1e12, 1e-9);
+        let looks = Cell::new(0);
+        let gap_at = |time: f64| {
+            looks.set(looks.get() + 1);
+            let left = (-stops * time).exp();
+            let (value, third) = (-rate * (-stops * time).exp_m1() / stops - cam * time, rate * stops * stops * left);
+            let (rate, curvature) = (rate * left - cam, -rate * stops * left);
+            Gap { value, rounding: 1e-25, rate, rate_rounding: 1e-14, curvature, third }
+        };
+        let third_bound = |time: f64, _| rate * stops * stops * (-stops * time).exp();
+        let Outcome::Contact(time) = first_contact(gap_at, third_bound, 0.1) else { panic!("no contact") };
+        approx::assert_relative_eq!(time, rate / stops / cam, max_relative = 1e-12);
+        assert!(looks.get() < 200, "{}", looks.get());
+    }
 }
