@@ -5,8 +5,29 @@
 pub fn nearest<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let plain = |word: &str| word.to_lowercase().replace('-', "_");
     let word = plain(word);
-    let length = word.chars().count();
-    let distances = names.into_iter().map(|name| (strsim::osa_distance(&word, &plain(name)), name));
-    let near = distances.filter(|(distance, name)| *distance <= 1.max(length.min(name.chars().count()) / 3));
+    let distances = names.into_iter().map(|name| {
+        let plain = plain(name);
+        // That both are in one table says nothing about their names.
+        let (one, other) = match (word.rsplit_once('.'), plain.rsplit_once('.')) {
+            (Some((table, one)), Some((its, other))) if table == its => (one, other),
+            _ => (&word[..], &plain[..]),
+        };
+        let most = 1.max(one.chars().count().min(other.chars().count()) / 3);
+        (strsim::osa_distance(one, other), most, name)
+    });
+    let near = distances.filter(|(distance, most, _)| distance <= most).map(|(distance, _, name)| (distance, name));
     near.min_by_key(|(distance, _)| *distance).map(|(_, name)| name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_one_table_are_near_by_themselves_alone() {
+        let names = ["follower.mass", "cam.base_radius"];
+        assert_eq!(nearest("follower.mas", names), Some("follower.mass"));
+        assert_eq!(nearest("folower.mass", names), Some("follower.mass"));
+        assert_eq!(nearest("follower.bogus", names), None);
+    }
 }

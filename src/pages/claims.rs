@@ -64,7 +64,7 @@ pub fn document(found: &Claims) -> Result<(Vec<Block>, Vec<Section>), ExplainErr
         format!("; a test keeps it fresh. All of it is about {}; the printed article was not at hand. ", found.source),
         "Statements are in words of this project. ",
         term("Misprint"),
-        ": a slip that nothing was built on; ",
+        ": a slip in what is written, on which no result rests; ",
         term("refuted"),
         ": what is said is wrong; ",
         term("in part"),

@@ -136,7 +136,7 @@ fn searched(found: &Located) -> String {
              nothing of each other: on branches through what a search finds at {} speeds, each {:.0} % faster than the one before, and \
              through what branches off there with twice the period ({} stretches of branches); and by {VELOCITIES} shots from each \
              corner at speeds {:.1} % apart. {} Of up to {MOST_IMPACTS} impacts a revolution, none of them within {:.2} deg of the one on \
-             the corner. A part of the range has the same. Orbits on which the follower sticks forget where they hit: they are left \
+             the corner. A search of a part of the range finds the same there. Orbits on which the follower sticks forget where they hit: they are left \
              out.",
             if undecided.is_empty() { "all, which is proved" } else { "all but for what is not decided" },
             searched.speeds.len(),
@@ -163,11 +163,14 @@ fn found_by(found: &Located) -> String {
     let recaptured = found.looked_at.recaptured();
     let sum = |count: fn(&Recaptured) -> usize| recaptured.values().map(count).sum::<usize>();
     let (branches, shots, both) = (sum(|it| it.branches), sum(|it| it.shots), sum(|it| it.both));
+    /// Fewer that both find tell too little.
+    const TELLING: usize = 10;
     let missing = match recaptured.values().map(Recaptured::missing).sum::<f64>() {
+        _ if both < TELLING => "too few to tell how many more there may be".to_owned(),
         some if some >= 0.1 => {
-            format!("some {some:.1} more are to be expected, and the more the harder they are to find")
+            format!("by that some {some:.1} more are to be expected, and the more the harder they are to find")
         }
-        _ => "no more are to be expected, but for those that are hard to find both ways".to_owned(),
+        _ => "by that no more are to be expected, but for those that are hard to find both ways".to_owned(),
     };
     let alone = |way: Way| {
         let numbers =
@@ -177,7 +180,7 @@ fn found_by(found: &Located) -> String {
     let on_branches = alone(Way::Branch).map_or_else(String::new, |numbers| format!(" On branches alone: {numbers}."));
     let by_shots = alone(Way::Shot).map_or_else(String::new, |numbers| format!(" By shots alone: {numbers}."));
     format!(
-        "The first found {branches}, the second {shots}, {both} of them the same: by that {missing}.{on_branches}{by_shots}"
+        "The first found {branches}, the second {shots}, {both} of them the same: {missing}.{on_branches}{by_shots}"
     )
 }
 

@@ -40,7 +40,7 @@ pub(crate) fn section(report: &Report) -> Result<Option<Section>, HtmlError> {
     let body = html! {
         p {
             "Every displayed equation, number, statement and figure of the paper, in words of this project, with a verdict and the "
-            "evidence for it. All of it is about " (ledger.source) ". A " em { "misprint" } " is a slip that nothing was built on; what "
+            "evidence for it. All of it is about " (ledger.source) ". A " em { "misprint" } " is a slip in what is written, on which no result rests; what "
             "is " em { "refuted" } " is wrong; what holds " em { "in part" } " says what does not; a " em { "definition" } " is nothing to "
             "check; " em { "open" } " is not decided here. What is refuted is " (slips(ledger.slips_and_consequences(Verdict::Refuted)))
             " of them, what is misprinted " (slips(ledger.slips_and_consequences(Verdict::Misprint))) "."
