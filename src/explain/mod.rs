@@ -276,7 +276,16 @@ impl Links {
             let links = self.table.iter().filter_map(|link| Some((length(link)?, link)));
             links.max_by_key(|(length, _)| *length).map(|(_, link)| Target::Link(link, None))
         };
-        found.or_else(by_start).or_else(entry).or_else(condition).ok_or_else(|| {
+        // As a page has it: with a blank or a hyphen between the words of a name.
+        let plain = |name: &str| name.to_lowercase().replace([' ', '-'], "_");
+        let as_spoken = || {
+            // Also without the side that a name of the table has there.
+            let names = self.names().into_iter().map(|(name, _)| name);
+            let mut all = names.chain(self.table.iter().map(|link| link.name.clone()));
+            let name = all.find(|name| name != what && plain(name) == plain(what))?;
+            self.find(&name, model).ok()
+        };
+        found.or_else(by_start).or_else(entry).or_else(condition).or_else(as_spoken).ok_or_else(|| {
             let names = self.names();
             let meant = nearest(what, names.iter().map(|(name, _)| name.as_str())).map(str::to_owned);
             ExplainError::Unknown { what: what.into(), meant }

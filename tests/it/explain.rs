@@ -205,6 +205,9 @@ fn entries_and_symbols_lead_to_what_they_are_of() {
         ("x*", "x_star"),
         ("eigenvalues_plus_1_re", "eigenvalues_plus"),
         ("lambda", "eigenvalues_minus"),
+        ("A-bar", "A_bar_minus"),
+        ("v before", "velocity_before"),
+        ("Linear range", "linear_range"),
     ] {
         assert_eq!(formula(name), formula(of), "{name}");
     }
