@@ -179,6 +179,9 @@ fn found_by(found: &Located) -> String {
     };
     let on_branches = alone(Way::Branch).map_or_else(String::new, |numbers| format!(" On branches alone: {numbers}."));
     let by_shots = alone(Way::Shot).map_or_else(String::new, |numbers| format!(" By shots alone: {numbers}."));
+    if branches + shots == 0 {
+        return "Neither found any.".into();
+    }
     format!(
         "The first found {branches}, the second {shots}, {both} of them the same: {missing}.{on_branches}{by_shots}"
     )
