@@ -40,9 +40,14 @@ impl Paged for Comparison {
         if known.is_empty() && unknown.is_empty() {
             page.extend([Block::Gap, Block::paragraph("No number that both have moved by more than its error.")]);
         } else {
-            let note = "Speeds stand first, then what moved most. moved: the difference over the size of the first. times error: over how far it may be off, which is how \
-                        far routes differ, or an estimate's own, and what a measured cam leaves open, of both models. What has the \
-                        same digits in both stands in one line. All computed.";
+            // The column is there where it tells something.
+            let is_told = known.iter().filter_map(|change| change.times_error).any(|times| times <= MANY);
+            let times = if is_told { "times error: the difference over how far it may be off. " } else { "" };
+            let note = format!(
+                "The speeds of the corner impact and of separation stand first, then what moved most. moved: the difference over \
+                 the size of the first. {times}Errors are how far routes differ, or an estimate's own, and what a measured cam \
+                 leaves open, of both models. What has the same digits in both stands in one line. All computed."
+            );
             page.push(Block::Note(note.into()));
         }
         page.extend(named("The first alone has", alone.iter().copied().filter(|change| change.b.is_none())));
@@ -127,7 +132,11 @@ fn moved(title: &str, changes: &[&Change]) -> Vec<Block> {
     let mut table = Table::new(title, columns);
     for alike in alike(changes) {
         let change = alike[0];
-        let percent = change.relative.map_or("".into(), |part| words![(100.0 * part, Digits::Significant(3))]);
+        let percent = change.relative.map_or("".into(), |part| {
+            // Less than the places that a column has would be 0.
+            let digits = if part.abs() < 0.001 { Digits::Size } else { Digits::Significant(3) };
+            words![(100.0 * part, digits)]
+        });
         let mut cells = vec![told(change.a.as_ref()), told(change.b.as_ref()), percent];
         cells.extend(has_errors.then(|| change.times_error.map_or("".into(), times)));
         let names: Vec<&str> = alike.iter().map(|change| change.quantity.as_str()).collect();
