@@ -7,7 +7,7 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::cam::{Cam, Fit, fit};
+use crate::cam::{Cam, Fit, Stray, fit, strays};
 use crate::model::{Model, ModelError, Reading, Smoothing};
 use crate::tolerance;
 
@@ -20,6 +20,8 @@ pub struct Measured {
     pub step_m: Option<f64>,
     /// The standard deviation of the rows about a smooth motion, m, by generalised cross-validation.
     pub noise_m: f64,
+    /// Rows that are far from where the rows beside them say.
+    pub strays: Vec<FarRow>,
     /// How far the cam is from a row at most, m.
     pub largest_distance_m: f64,
     /// Whether the rows have noise that moves what depends on the second derivative.
@@ -38,6 +40,17 @@ pub struct Measured {
     pub largest_curvature: f64,
     /// How far that may be off, m/rad^2.
     pub curvature_error: f64,
+}
+
+/// A row of a table that is far from where the rows beside it say.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct FarRow {
+    /// Where it stands in the file of the table, or of the model; of rows that came without a file, which one it is.
+    pub line: usize,
+    /// Its angle, degrees.
+    pub cam_angle_deg: f64,
+    /// How far it is above what those say, m.
+    pub off_m: f64,
 }
 
 impl Measured {
@@ -101,8 +114,14 @@ impl Likely {
         };
         let count = if is_noisy { TABLES } else { 0 };
         let others = (0..count).map(table).collect::<Result<Vec<_>, _>>()?;
-        let measured =
-            measured((Reading::clone(&profile.reading), &own_cam), &fitted, (own, noise), (best.as_ref(), &others));
+        let far = |Stray { row, off }| FarRow { line: row.line, cam_angle_deg: row.angle_deg, off_m: off };
+        let strays = strays(profile).into_iter().map(far).collect();
+        let measured = measured(
+            (Reading::clone(&profile.reading), &own_cam),
+            &fitted,
+            (own, noise, strays),
+            (best.as_ref(), &others),
+        );
         Ok(Some(Self { measured, best, closer, others }))
     }
 
@@ -150,7 +169,7 @@ fn even(table: u64, row: u64) -> f64 {
 fn measured(
     (reading, own_cam): (Reading, &Cam),
     fitted: &Fit,
-    (own, noise_m): (Option<&Smoothing>, f64),
+    (own, noise_m, strays): (Option<&Smoothing>, f64, Vec<FarRow>),
     (best, others): (Option<&LikelyCam>, &[LikelyCam]),
 ) -> Measured {
     /// Angles at which second derivatives are compared: four to a degree, and none at a row of whole degrees.
@@ -177,6 +196,7 @@ fn measured(
         step_m: reading.step.map(|step| reading.in_model.inside(step)),
         reading,
         noise_m,
+        strays,
         largest_distance_m: if own.is_some() { fitted.distance() } else { 0.0 },
         is_noisy: best.is_some(),
         is_smoothed: own.is_some(),

@@ -74,25 +74,26 @@ impl Model {
         const GRAVITY: f64 = 9.81;
         /// From N/m to N/mm.
         const THOUSAND: f64 = 1000.0;
-        if self.units.are_given {
-            return Ok(None);
-        }
+        let units = &self.units;
+        let [says_length, says_mass, says_stiffness] = units.says;
         let cam = Cam::new(self)?;
         let Follower { mass, stiffness, rest_position, .. } = self.follower;
         let lowest = cam.lowest().value;
         let (rise, compressed) = (cam.top() - lowest, lowest - rest_position);
-        let weights = stiffness * compressed / (mass * GRAVITY);
+        let weights = stiffness * compressed / (mass * units.length.told(GRAVITY));
         let own = (stiffness / mass).sqrt() / TAU * 60.0;
         let slowest = rpm.or(self.study.map(|study| [study.rpm_min, study.rpm_max])).map(|[low, _]| low);
         let too_soft = |speed: f64| speed > MOST_TIMES * own && speed < MOST_TIMES * THOUSAND.sqrt() * own;
-        let meant = if rise > LARGEST_RISE {
+        let is_soft = stiffness > 0.0 && (compressed > MOST_RISES * rise || slowest.is_some_and(too_soft));
+        let written = units.mass.told(mass);
+        let meant = if !says_length && rise > LARGEST_RISE {
             format!("the lift rises by {rise:.4} m: did you mean mm?")
-        } else if stiffness > 0.0 && (compressed > MOST_RISES * rise || slowest.is_some_and(too_soft)) {
-            format!("stiffness {stiffness} with mass {mass}: did you mean N/mm?")
-        } else if weights > MOST_WEIGHTS && weights.is_finite() {
+        } else if !says_stiffness && is_soft {
+            format!("stiffness {stiffness} with mass {written}: did you mean N/mm?")
+        } else if !says_mass && weights > MOST_WEIGHTS && weights.is_finite() {
+            let (force, unit) = (units.force.told(stiffness * compressed), units.force.name());
             format!(
-                "the spring presses with {:.0} N, {weights:.0} times the weight of mass {mass}: is it in kg?",
-                stiffness * compressed
+                "the spring presses with {force:.0} {unit}, {weights:.0} times the weight of mass {written}: is it in kg?"
             )
         } else {
             return Ok(None);

@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 use nalgebra::{DMatrix, DVector};
 
 pub(super) use super::smoothing::Features;
-use crate::model::Smoothing;
+use crate::model::{Row, Smoothing, TableProfile};
 use crate::tolerance;
 
 /// Rows at rising angles, once round.
@@ -57,6 +57,55 @@ pub(super) fn of(smoothing: &Smoothing, angles: &[f64], lifts: &[f64], half_step
     Features { corners: corners.unwrap_or_default(), dwells: dwells.unwrap_or_default() }
 }
 
+/// A row of a table that is far from where the rows beside it say.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stray {
+    pub row: Row,
+    /// How far it is above that, m.
+    pub off: f64,
+}
+
+/// What a slip of a hand or a gauge leaves in a table, in order: a spline follows it, or half follows where it smooths. A cam that turns
+/// sharply between two rows has such, too.
+pub(crate) fn strays(profile: &TableProfile) -> Vec<Stray> {
+    /// More than noise makes of any row, in its standard deviations.
+    const FAR: f64 = 8.0;
+    /// Of what the largest second derivative bends from one row to the next: at a jump of it, which is at most twice as large,
+    /// a polynomial through both sides is off by a tenth of that.
+    const BENT: f64 = 0.25;
+    /// How often rows are looked at again.
+    const ROUNDS: usize = 20;
+    if !profile.may_be_smoothed() {
+        return Vec::new();
+    }
+    let (angles, mut lifts): (Vec<f64>, Vec<f64>) =
+        profile.rows.iter().map(|row| (row.angle_deg.to_radians(), row.lift)).unzip();
+    let mut is_far = vec![false; lifts.len()];
+    // One that is far off hides others until it stands where the rows beside it say.
+    for _ in 0..ROUNDS {
+        let rows = Rows::new(&angles, &lifts, profile.reading.half_step());
+        let misses: Vec<(f64, f64)> = (0..angles.len() as isize).map(|row| rows.miss(row)).collect();
+        let is_stray = |row: &usize| {
+            let (off, by_noise) = misses[*row];
+            // The rows beside a stray one are missed as well, by less.
+            let beside = [1, 2, 3].into_iter().flat_map(|away| [row + away, row + misses.len() - away]);
+            off.abs() > BENT * rows.curvature * rows.gap * rows.gap
+                && by_noise.abs() > FAR * rows.noise
+                && beside.map(|other| misses[other % misses.len()].0).all(|other| other.abs() < off.abs())
+        };
+        let found: Vec<usize> = (0..misses.len()).filter(is_stray).filter(|row| !is_far[*row]).collect();
+        if found.is_empty() {
+            break;
+        }
+        for row in found {
+            lifts[row] -= misses[row].0;
+            is_far[row] = true;
+        }
+    }
+    let stray = |row: usize| Stray { row: profile.rows[row], off: profile.rows[row].lift - lifts[row] };
+    (0..lifts.len()).filter(|row| is_far[*row]).map(stray).collect()
+}
+
 impl<'a> Rows<'a> {
     fn new(angles: &'a [f64], lifts: &'a [f64], half_step: f64) -> Self {
         /// Over which angle curvatures are taken, rad.
@@ -66,7 +115,7 @@ impl<'a> Rows<'a> {
         let reach = ((REACH / gap) as isize).clamp(1, angles.len() as isize / 4);
         let all = || 0..angles.len() as isize;
         rows.curvature = all().map(|row| rows.bend(row, reach).abs()).fold(0.0, f64::max);
-        let mut misses: Vec<f64> = all().map(|row| rows.miss(row).abs()).filter(|miss| *miss > 0.0).collect();
+        let mut misses: Vec<f64> = all().map(|row| rows.miss(row).1.abs()).filter(|miss| *miss > 0.0).collect();
         let middle = misses.len() / 2;
         let median = if misses.is_empty() { 0.0 } else { *misses.select_nth_unstable_by(middle, f64::total_cmp).1 };
         /// The standard deviation over the median of what is normally distributed.
@@ -90,8 +139,8 @@ impl<'a> Rows<'a> {
         2.0 * (slope(here, after) - slope(before, here)) / (after.0 - before.0)
     }
 
-    /// How far a row is from the polynomial of fifth degree through three rows on either side, by how far noise of 1 would be.
-    fn miss(&self, row: isize) -> f64 {
+    /// How far a row is from the polynomial of fifth degree through three rows on either side, m; and by how far noise of 1 would be.
+    fn miss(&self, row: isize) -> (f64, f64) {
         let (at, lift) = self.row(row);
         let others = [-3, -2, -1, 1, 2, 3].map(|away| self.row(row + away));
         let weight = |index: usize| {
@@ -100,7 +149,8 @@ impl<'a> Rows<'a> {
         };
         let weights: [f64; 6] = std::array::from_fn(weight);
         let told: f64 = weights.iter().zip(others).map(|(weight, other)| weight * other.1).sum();
-        (lift - told) / (1.0 + weights.iter().map(|weight| weight * weight).sum::<f64>()).sqrt()
+        let off = lift - told;
+        (off, off / (1.0 + weights.iter().map(|weight| weight * weight).sum::<f64>()).sqrt())
     }
 
     /// Stretches of one lift, and where they end; `corners` are where one may end at once.

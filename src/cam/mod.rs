@@ -33,6 +33,7 @@ use crate::tolerance;
 pub use arc::Arc;
 pub(crate) use bounds::Bounds;
 pub use corners::{Corner, Side};
+pub(crate) use features::{Stray, strays};
 pub(crate) use fit::{Fit, fit, fitted};
 pub use harmonics::Harmonics;
 pub(crate) use jet::Jet;

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::{CommandError, progress::watched, session::Session, start::finite};
 use crate::model::Model;
+use crate::show::words;
 
 /// Which model a command is about.
 #[derive(clap::Args)]
@@ -51,8 +52,9 @@ impl ModelArgument {
         };
         let model = model.changed(&self.changes.numbers)?;
         session.units = model.units.clone();
-        if let Some(words) = model.doubt(session.rpm)? {
-            session.note(&words);
+        let strays = model.table().map(words::strays).unwrap_or_default();
+        for words in model.doubt(session.rpm)?.iter().chain(&strays) {
+            session.note(words);
         }
         Ok(model)
     }

@@ -28,6 +28,7 @@ pub(crate) use profile::{
     ArcsProfile, MOST_COEFFICIENTS, MotionSegment, PolynomialSegment, ProgramProfile, RectifiedSineProfile,
 };
 pub use profile::{CamProfile, HarmonicProfile, Motion};
+pub(crate) use rows::Row;
 pub use rows::{Layout, Separator};
 pub use table::Reading;
 pub(crate) use table::{Smoothing, Spline, TableProfile, Tolerance};

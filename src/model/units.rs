@@ -77,6 +77,8 @@ const FORCES: [Unit; 5] = [
 pub struct Units {
     /// Whether the file says any of them.
     pub are_given: bool,
+    /// Whether it says that of lengths, masses and stiffness, in this order.
+    pub(crate) says: [bool; 3],
     /// The unit of length, as a part of a metre: lengths are in it inside, too.
     pub length: Unit,
     /// As a part of a kilogram.
@@ -149,7 +151,8 @@ impl Units {
         fields.may_hold("units.angle");
         let degrees = fields.has("units.angle") && fields.choice("units.angle", &[("rad", false), ("deg", true)])?;
         let (force, gravity) = (of_length(force), of_length(gravity));
-        Ok(Self { are_given: fields.has("units"), length, mass, force, stiffness, damping, gravity, degrees })
+        let says = ["units.length", "units.mass", "units.stiffness"].map(|path| fields.has(path));
+        Ok(Self { are_given: fields.has("units"), says, length, mass, force, stiffness, damping, gravity, degrees })
     }
 
     /// The unit of a number of the follower, or none of a pure number or a length.
@@ -218,6 +221,6 @@ impl Default for Units {
     fn default() -> Self {
         let [length, mass, force] = [&LENGTHS[0], &MASSES[0], &FORCES[0]].map(Unit::clone);
         let [stiffness, damping, gravity] = ["N/m", "N s/m", "m/s^2"].map(|name| Unit::new(name, 1.0, 1.0));
-        Self { are_given: false, length, mass, force, stiffness, damping, gravity, degrees: false }
+        Self { are_given: false, says: [false; 3], length, mass, force, stiffness, damping, gravity, degrees: false }
     }
 }

@@ -7,12 +7,12 @@ use crate::border_collision::conditions::Decides;
 use crate::border_collision::feigin::{Scenario, Speeds};
 use crate::border_collision::long_run::{Chaos, End};
 use crate::border_collision::validity::{Compared, Ends};
-use crate::cam::Side;
+use crate::cam::{self, Side, Stray};
 use crate::corner::map::RouteName;
 use crate::covering::Unproved;
 use crate::covering::prove::Relation;
 use crate::measured::Measured;
-use crate::model::{Reading, Separator};
+use crate::model::{Reading, Separator, TableProfile};
 use crate::orbit::branch::{self, Bifurcation};
 use crate::orbit::ending::{Ending, Kind};
 use crate::published::Verdict;
@@ -305,6 +305,29 @@ pub(crate) fn range(ends: [f64; 2], digits: Digits) -> String {
         [from, to] if from == to => from,
         [from, to] => format!("{from} to {to}"),
     }
+}
+
+/// Rows of a table that are far from where the rows beside them say, each in a sentence; only the first are named.
+pub(crate) fn strays(profile: &TableProfile) -> Vec<String> {
+    /// How many are named.
+    const NAMED: usize = 3;
+    let reading = &profile.reading;
+    let told = |Stray { row, off }: &Stray| {
+        let place = profile.file.as_ref().map_or("cam.rows".into(), |file| format!("{file}, line {}", row.line));
+        let (lift, off, unit) = (reading.in_model.told(row.lift), reading.in_model.told(*off), &reading.unit);
+        let side = if off < 0.0 { "below" } else { "above" };
+        let (angle, off) = (row.angle_deg, Digits::Aligned(2).text(off.abs()));
+        format!(
+            "{place}: lift {lift} at {angle} deg is {off} {unit} {side} what the rows beside it tell: a slip, or does the cam turn \
+             sharply there?"
+        )
+    };
+    let strays = cam::strays(profile);
+    let mut told: Vec<String> = strays.iter().take(NAMED).map(told).collect();
+    if strays.len() > NAMED {
+        told.push(format!("{} more rows are off as well: `cam --json` lists them", strays.len() - NAMED));
+    }
+    told
 }
 
 /// What a table of lifts is not exact for.

@@ -401,3 +401,67 @@ fn a_new_measured_machine() {
     let known = located.iter().filter(|end| end["error_rpm"].as_f64().is_some_and(|error| error > 0.0)).count();
     assert!(known >= 2 && 3 * known >= 2 * located.len(), "{known} of {}", located.len());
 }
+
+/// A slip in one row is found with the row and how far it is off, whatever the spline and wherever it is; noise, rounding, corners,
+/// dwells and coarse rows are none.
+#[test]
+fn a_slip_in_one_row_is_told() {
+    let strays = |rows: &[(f64, f64)], spline: &str| {
+        let mut cam = smoothing(rows, &json!({}));
+        cam["spline"] = json!(spline);
+        Likely::of(&machine(cam).unwrap()).unwrap().unwrap().measured.strays
+    };
+    for motion in ["cycloidal", "poly345", "modified-trapezoid", "harmonic"] {
+        let cam = Cam::new(&machine(program(motion, 63.7, 13.71, 40.3)).unwrap()).unwrap();
+        for places in [2, 3, 4, 9] {
+            let rows = rounded(&cam, places);
+            let noisy = |index: usize| 0.004 * (977.0 * (index as f64).sin()).sin();
+            let noise: Vec<_> = rows.iter().enumerate().map(|(index, row)| (row.0, row.1 + noisy(index))).collect();
+            let coarse: Vec<_> = rows.iter().copied().step_by(5).collect();
+            for rows in [&rows, &noise, &coarse] {
+                let found = strays(rows, "cubic");
+                assert!(found.is_empty(), "{motion} to {places} places, {} rows: {found:?}", rows.len());
+            }
+        }
+        // On the flank, at the top, in the dwell and at the seam.
+        for (row, slip) in [(0, 0.5), (60, -0.2), (95, 0.03), (300, -0.05), (359, 0.5)] {
+            let mut rows = rounded(&cam, 3);
+            rows[row].1 += slip;
+            for spline in ["smoothing", "cubic", "quintic"] {
+                let found = strays(&rows, spline);
+                let [one] = found[..] else { panic!("{slip} at {row}: {found:?}") };
+                assert_eq!((one.line, one.cam_angle_deg), (row + 1, row as f64));
+                assert_abs_diff_eq!(one.off_m, slip, epsilon = 0.003);
+            }
+        }
+    }
+}
+
+/// A slip in the rows of a measured machine, as its user is told of it, by each command that reads it.
+#[test]
+fn a_slip_is_told_with_its_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |words: &[&str]| crate::common::program(words).current_dir(folder.path()).output().unwrap();
+    run(&["new", "valve.toml", "--law", "table"]);
+    let (rows, lines) =
+        (folder.path().join("valve.csv"), |text: &str| text.lines().map(str::to_owned).collect::<Vec<_>>());
+    let mut written = lines(&std::fs::read_to_string(&rows).unwrap());
+    for (line, lift) in [(60, "6.514"), (100, "0.050"), (120, "0.050"), (140, "0.050"), (160, "-0.050")] {
+        let angle = written[line - 1].split(',').next().unwrap().to_owned();
+        written[line - 1] = format!("{angle},{lift}");
+    }
+    std::fs::write(&rows, written.join("\n")).unwrap();
+    let told = lines(&crate::common::text(run(&["cam", "valve.toml"]).stderr));
+    assert_eq!(told.len(), 4, "{told:?}");
+    assert!(told[0].starts_with("note: valve.csv, line 60: lift 6.514 at 114 deg is 3.0 mm below what"), "{told:?}");
+    assert!(told[2].starts_with("note: valve.csv, line 120: lift 0.05 at 234 deg is 0.05"), "{told:?}");
+    assert_eq!(told[3], "note: 2 more rows are off as well: `cam --json` lists them");
+    assert_eq!(
+        told,
+        lines(&crate::common::text(run(&["simulate", "valve.toml", "--rpm", "100", "--revolutions", "1"]).stderr))
+    );
+    let sheet: Value = serde_json::from_slice(&run(&["cam", "valve.toml", "--json"]).stdout).unwrap();
+    let strays = sheet["measured"]["strays"].as_array().unwrap();
+    assert_eq!(strays.iter().map(|one| &one["line"]).collect::<Vec<_>>(), [60, 100, 120, 140, 160]);
+    assert_abs_diff_eq!(strays[4]["off_mm"].as_f64().unwrap(), -0.05, epsilon = 1e-3);
+}

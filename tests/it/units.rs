@@ -204,6 +204,14 @@ fn numbers_that_are_odd_are_asked_about() {
         spoken(["0.11", "30", "preload = 220", "10"], "[units]\nlength = \"mm\"\nstiffness = \"N/mm\"\n", "3000"),
         ""
     );
+    // What one unit says of the others: nothing.
+    let spring = spoken(["0.11", "30", "preload = 220", "10"], "[units]\nlength = \"mm\"\n", "3000");
+    assert_eq!(spring, soft);
+    let mass = spoken(["110", "30", "preload = 22", "10"], "[units]\nlength = \"mm\"\nstiffness = \"N/mm\"\n", "3000");
+    assert_eq!(mass, "");
+    let heavy = ["0.11", "30", "preload = 22000", "10"];
+    let mass = spoken(heavy, "[units]\nlength = \"mm\"\nstiffness = \"N/mm\"\nforce = \"N\"\n", "3000");
+    assert!(mass.contains("22000 N, 20387 times the weight of mass 0.11: is it in kg?"), "{mass}");
     for file in common::model_files() {
         assert_eq!(common::read(&file).doubt(None).unwrap(), None, "{}", file.display());
     }

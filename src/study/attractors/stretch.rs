@@ -31,7 +31,9 @@ impl Stretch {
         let [mut backward, mut forward] = [Vec::new(), Vec::new()];
         let middle = &after[..after.len().min(1)];
         let first = walk(middle, before.iter().rev(), &branch.ends[0], &mut backward);
-        let last = walk(middle, after.iter().skip(1), &branch.ends[1], &mut forward);
+        // What comes back to its start was followed backward alone, all the way round.
+        let onward = if branch.ends[0] == End::Closed { before } else { after.get(1..).unwrap_or_default() };
+        let last = walk(middle, onward.iter(), &branch.ends[1], &mut forward);
         backward.reverse();
         let mut points = [backward, middle.to_vec(), forward].concat();
         let mut ends = [first, last];
