@@ -188,7 +188,7 @@ impl<'a> PeriodEquation<'a> {
         match self.one_period(&machine, self.corner.angle, state, from_corner) {
             // Adding 0 takes the sign off a zero.
             Ok(_) => Verdict::Grazing(velocity + 0.0),
-            Err(why) => Verdict::Rejected(format!("a graze, v = c' = {velocity:.6} m/s, and no orbit: {why}")),
+            Err(why) => Verdict::Rejected(format!("a graze, v = c', and no orbit: {why}")),
         }
     }
 

@@ -210,10 +210,8 @@ impl FoundCornerImpacts {
         let why = match verdict {
             Verdict::Orbit(orbit) => return Some(*orbit),
             Verdict::Rejected(why) => why,
-            Verdict::Grazing(velocity) => {
-                format!(
-                    "a graze, v = c' = {velocity:.6} m/s: the corner is touched, not hit, and the map has no linear part"
-                )
+            Verdict::Grazing(_) => {
+                "a graze, v = c': the corner is touched, not hit, and the map has no linear part".into()
             }
         };
         let again = |other: &Rejected| other.cam_angle == cam_angle && is_same_speed(other.speed_rpm, speed_rpm);

@@ -25,7 +25,14 @@ fn ball() -> Model {
 }
 
 fn found(model: &Model, range: [f64; 2], step: f64, starts: usize) -> Speeds {
-    speeds(model, range, Resolution { step: Step::at_most(step), starts }, &Unwatched).unwrap()
+    let found = speeds(model, range, Resolution { step: Step::at_most(step), starts }, &Unwatched).unwrap();
+    for attractor in &found.attractors {
+        let ends = [(attractor.rpm[0], &attractor.birth), (attractor.rpm[1], &attractor.death)];
+        // What ends inside of the range does so for a reason.
+        let for_nothing = ends.iter().find(|(rpm, end)| end.is_none() && range[0] < *rpm && *rpm < range[1]);
+        assert!(for_nothing.is_none(), "{}: {attractor:?}", model.name);
+    }
+    found
 }
 
 fn machine(model: &Model, rpm: f64) -> Machine {
@@ -304,6 +311,32 @@ fn a_part_of_a_range_has_its_part_of_the_answer() {
             resolutions_agree(&model, &whole, step);
         }
         println!("{} {range:?}: {} events, {:.1} s", model.name, events(&whole).len(), clock.elapsed().as_secs_f64());
+    }
+}
+
+/// Orbits that live between few speeds, at two resolutions: one of five revolutions whose branch comes back to its own start, and those of
+/// twice the period that begin in flips, one of them over a twentieth of a revolution a minute. None is there twice.
+#[test]
+fn orbits_between_two_speeds_are_found() {
+    let model = common::read(&std::path::Path::new(common::ROOT).join("models/nonsmooth-flip.toml"));
+    for step in [2.0, 1.0] {
+        let found = found(&model, [880.0, 884.0], step, 8);
+        for (numbers, causes, rpm) in [
+            ((5, 5), ["corner-impact", "flip"], [881.009_343_574, 883.652_699]),
+            ((4, 4), ["", "flip"], [880.0, 881.772_288_078]),
+            ((8, 8), ["flip", "corner-impact"], [881.772_288_078, 881.825_084_122]),
+        ] {
+            let one = periodic(&found, numbers).unwrap_or_else(|| panic!("no {numbers:?} at {step}: {found:?}"));
+            let named = [&one.birth, &one.death].map(|end| end.as_ref().map_or("", |end| end.cause.name()));
+            assert_eq!(named, causes, "{numbers:?} at {step}");
+            assert_abs_diff_eq!(one.rpm[0], rpm[0], epsilon = 1e-6);
+            assert_abs_diff_eq!(one.rpm[1], rpm[1], epsilon = 1e-6);
+            let same = found
+                .attractors
+                .iter()
+                .filter(|other| (other.revolutions, other.impacts) == (one.revolutions, one.impacts));
+            assert_eq!(same.count(), 1, "{numbers:?} at {step}");
+        }
     }
 }
 

@@ -151,7 +151,8 @@ fn beyond(model: &Model, machine: &Machine, rows: &mut Vec<Row>, step: f64) {
     let mut fresh = 0;
     for _ in 0..DEPTH {
         let ended = rows[fresh..].par_iter().filter_map(|row| row.stretch.as_ref());
-        let found: Vec<(f64, PeriodicOrbit)> = ended.flat_map_iter(|stretch| stretch.beyond(machine, step)).collect();
+        let found: Vec<(f64, PeriodicOrbit)> =
+            ended.flat_map_iter(|stretch| stretch.beyond(model, machine, step)).collect();
         fresh = rows.len();
         for (rpm, orbit) in found {
             let here = machine.at_speed(angular_velocity(rpm));

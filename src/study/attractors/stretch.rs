@@ -2,9 +2,9 @@
 
 use super::change::{Cause, Change};
 use crate::model::Model;
-use crate::orbit::branch::{Branch, BranchPoint, End, Following, Kind};
+use crate::orbit::branch::{self, Branch, BranchPoint, End, Following, Kind};
 use crate::orbit::fate::{Run, Settling};
-use crate::orbit::{OrbitError, Parameter, PeriodicOrbit};
+use crate::orbit::{Family, OrbitError, Parameter, PeriodicOrbit};
 use crate::simulate::{Machine, SimulateError, angular_velocity};
 use crate::tolerance;
 
@@ -17,14 +17,22 @@ pub struct Stretch {
     pub ends: [Option<Change>; 2],
 }
 
+/// How far branches are followed beyond where their orbits are known, of the speed, and in steps of the grid.
+const BEYOND: (f64, f64) = (0.02, 3.0);
+
+/// How branches are followed over a range, rpm.
+fn following(range: [f64; 2]) -> Following {
+    /// The longest step, of the range or of a radian of an impact's angle.
+    const STEP: f64 = 0.05;
+    /// Points in either direction.
+    const MOST: usize = 400;
+    Following { parameter: Parameter::Speed, range, longest_step: STEP, most_points: MOST }
+}
+
 impl Stretch {
     /// Through a stable orbit at `rpm`, followed between `range`, rpm.
     fn through(model: &Model, rpm: f64, orbit: &PeriodicOrbit, range: [f64; 2]) -> Result<Self, OrbitError> {
-        /// The longest step, of the range or of a radian of an impact's angle.
-        const STEP: f64 = 0.05;
-        /// Points in either direction.
-        const MOST: usize = 400;
-        let following = Following { parameter: Parameter::Speed, range, longest_step: STEP, most_points: MOST };
+        let following = following(range);
         let branch = Branch::through(model, rpm, orbit, &following)?;
         let here = branch.points.iter().position(|point| point.rpm == rpm && point.orbit == *orbit).unwrap_or_default();
         let (before, after) = branch.points.split_at(here);
@@ -53,8 +61,6 @@ impl Stretch {
         [low, high]: [f64; 2],
         step: f64,
     ) -> Result<Self, OrbitError> {
-        /// How far beyond, of the speed, and in steps.
-        const BEYOND: (f64, f64) = (0.02, 3.0);
         /// How many times that is made longer by a factor of four, where nothing ends the orbit.
         const LONGER: i32 = 3;
         let mut longer = 0;
@@ -68,8 +74,28 @@ impl Stretch {
         }
     }
 
-    /// The stable orbits that runs from this one's ends come to right beyond them, each at a speed, rpm.
-    pub fn beyond(&self, machine: &Machine, step: f64) -> Vec<(f64, PeriodicOrbit)> {
+    /// The stable orbits next to this one's ends, each at a speed, rpm: those of twice the period that branch off, and those that runs come to
+    /// right beyond.
+    pub fn beyond(&self, model: &Model, machine: &Machine, step: f64) -> Vec<(f64, PeriodicOrbit)> {
+        let mut found = self.doubled(model);
+        found.extend(self.run_to(machine, step));
+        found
+    }
+
+    /// The stable orbits of twice the period that branch off at the ends: runs pass over one that lives between few speeds.
+    fn doubled(&self, model: &Model) -> Vec<(f64, PeriodicOrbit)> {
+        let points = self.ends.iter().flatten().filter_map(|change| change.point.as_deref());
+        let at = |point: &BranchPoint| {
+            let family = Family::new(model, point.rpm, vec![Parameter::Speed]).ok()?;
+            let alone = Branch { points: vec![point.clone()], ends: [End::Range, End::Range] };
+            let range = [(1.0 - BEYOND.0) * point.rpm, (1.0 + BEYOND.0) * point.rpm];
+            Some(branch::doubled(&family, &following(range), &[alone]))
+        };
+        points.filter_map(at).flatten().filter(|(_, orbit)| orbit.is_stable()).collect()
+    }
+
+    /// Those that runs from the ends come to right beyond.
+    fn run_to(&self, machine: &Machine, step: f64) -> Vec<(f64, PeriodicOrbit)> {
         /// How far beyond, in steps.
         const FAR: [f64; 3] = [1e-1, 1e-2, 1e-3];
         /// Revolutions in which a run has come to an orbit.
