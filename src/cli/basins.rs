@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
-use super::start::{finite, range, rpm};
+use super::start::{angle, range, rpm};
 use super::threads::threads;
 use super::{CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::watched};
 use crate::cam::within_a_turn;
@@ -30,8 +30,8 @@ pub(super) struct Arguments {
     /// Cells along the positions and along the velocities.
     #[arg(long, value_name = "NxM", value_parser = cells)]
     grid: [usize; 2],
-    /// The section: the cam angle at which the starts are, rad.
-    #[arg(long, value_name = "RAD", value_parser = finite, default_value_t = 0.0, allow_hyphen_values = true)]
+    /// The section: the cam angle at which the starts are, rad or as 90deg.
+    #[arg(long, value_name = "RAD", value_parser = angle, default_value_t = 0.0, allow_hyphen_values = true)]
     strobe: f64,
     /// Positions [default: from the cam to twice as far from it as any orbit of one impact a revolution].
     #[arg(long, value_name = "LO:HI", value_parser = range, allow_hyphen_values = true)]

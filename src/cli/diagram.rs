@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 
-use super::start::{StartArguments, count, finite, speeds};
+use super::start::{StartArguments, angle, count, speeds};
 use super::threads::threads;
 use super::{
     CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::Progress, progress::watched,
@@ -42,8 +42,8 @@ pub(super) struct Arguments {
     /// Record what happens at the cam, or the state at one cam angle.
     #[arg(long, value_enum, default_value = "impact")]
     section: SectionName,
-    /// That angle, rad [default: 0].
-    #[arg(long, value_name = "RAD", value_parser = finite, allow_hyphen_values = true)]
+    /// That angle, rad or as 90deg [default: 0].
+    #[arg(long, value_name = "RAD", value_parser = angle, allow_hyphen_values = true)]
     strobe: Option<f64>,
     /// Start every speed alike, or go on from the next lower (up) or next higher speed (down).
     #[arg(long = "start", value_enum, default_value = "fixed")]

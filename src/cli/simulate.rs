@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::ArgGroup;
 
 use super::picture::{self, Canvas, PictureArguments, is_standard, picture as drawn_only, picture_or_table};
-use super::start::{StartArguments, count, finite, rpm};
+use super::start::{StartArguments, angle, count, rpm};
 use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::cam::within_a_turn;
 use crate::figures::{self, phase_plane as phase_plane_figure, time_trace, with_force};
@@ -40,8 +40,8 @@ pub(super) struct Arguments {
     /// Write impacts, sticks and releases as CSV; - is standard output.
     #[arg(long, value_name = "FILE")]
     events: Option<PathBuf>,
-    /// Write the state each time the cam passes this angle, rad, to the file of --strobe-out.
-    #[arg(long, value_name = "RAD", value_parser = finite, requires = "strobe_out", allow_hyphen_values = true)]
+    /// Write the state each time the cam passes this angle, rad or as 90deg, to the file of --strobe-out.
+    #[arg(long, value_name = "RAD", value_parser = angle, requires = "strobe_out", allow_hyphen_values = true)]
     strobe: Option<f64>,
     /// Where the states go, as CSV; - is standard output.
     #[arg(long, value_name = "FILE", requires = "strobe")]

@@ -8,8 +8,8 @@ use crate::foreign;
 /// Where the run starts.
 #[derive(clap::Args)]
 pub(super) struct StartArguments {
-    /// Cam angle at the start, rad.
-    #[arg(long, value_name = "RAD", default_value_t = 0.0, value_parser = finite, allow_hyphen_values = true)]
+    /// Cam angle at the start, rad or as 90deg.
+    #[arg(long, value_name = "RAD", default_value_t = 0.0, value_parser = angle, allow_hyphen_values = true)]
     pub(super) start_angle: f64,
     /// Position and velocity at the start, m and m/s.
     #[arg(long, value_name = "Q,V", value_parser = state, allow_hyphen_values = true, conflicts_with = "relative_velocity")]
@@ -29,6 +29,14 @@ impl StartArguments {
 pub(super) fn finite(text: &str) -> Result<f64, String> {
     let number: f64 = text.trim().parse().map_err(|_| format!("\"{}\" is not a number", foreign::value(text)))?;
     if number.is_finite() { Ok(number) } else { Err("must be a finite number".into()) }
+}
+
+/// An angle, rad: `1.57`, or `90deg`.
+pub(super) fn angle(text: &str) -> Result<f64, String> {
+    match text.trim().strip_suffix("deg") {
+        Some(degrees) => finite(degrees).map(f64::to_radians),
+        None => finite(text),
+    }
 }
 
 pub(super) fn positive(text: &str) -> Result<f64, String> {

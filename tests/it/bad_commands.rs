@@ -101,6 +101,7 @@ fn numbers_that_cannot_be() {
     place.refuses(&diagram("--rpm 600:700:3 --threads 4000"), &["--threads <N>", "1 to 256"]);
     for number in ["nan", "inf", "-inf", "up"] {
         place.refuses(&simulate(&format!("--rpm 700 --start-angle={number}")), &["--start-angle <RAD>", number]);
+        place.refuses(&simulate(&format!("--rpm 700 --start-angle={number}deg")), &["--start-angle <RAD>", number]);
         place.refuses(&simulate(&format!("--rpm 700 --strobe={number} --strobe-out s.csv")), &["--strobe <RAD>"]);
         let strobe = format!("--rpm 600:700:3 --section strobe --strobe={number}");
         place.refuses(&diagram(&strobe), &["--strobe <RAD>", number]);

@@ -179,6 +179,19 @@ fn the_lowest_lift_is_found() {
     }
 }
 
+/// An angle on the command line is in radians, or says that it is in degrees.
+#[test]
+fn angles_may_be_given_in_degrees() {
+    let model = valve("", ["0.11", "30000", "preload = 220", "0.01"]);
+    let after = |angle: &str| {
+        let strobe = format!("--strobe={angle}");
+        printed(&model, "simulate", &["--rpm", "4500", "--revolutions", "2", &strobe, "--strobe-out", "-"])
+    };
+    let quarter = std::f64::consts::FRAC_PI_2.to_string();
+    assert_eq!(after("90deg"), after(&quarter));
+    assert_ne!(after("90deg"), after("90"));
+}
+
 /// One note for each machine that nobody has, and none for those that somebody has.
 #[test]
 fn numbers_that_are_odd_are_asked_about() {
