@@ -13,7 +13,7 @@ use crate::study::certify::{BITS, CertifyError, certify, proved_counts, proved_o
     \x20 corner-impact certify models/osorio-2008.toml --rpm 600:760 --bits 400 --json\n\
     \x20 corner-impact certify --orbits --rpm 700\n\
     \x20 corner-impact certify --orbits --rpm 600:760\n\
-    \x20 corner-impact certify --resting --rpm 663\n\
+    \x20 corner-impact certify --resting --rpm 450\n\
     \n\
     Needs Python with the packages that `make verify` sets up.\n\
     Exit code: 0 every border collision that `locate` finds is proved, 1 one is not, 2 bad model file or usage, or no Python.")]

@@ -18,7 +18,7 @@ use crate::study::verify::External;
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact report\n\
-    \x20 corner-impact report models/ballistic.toml --rpm 100:400 --out page.html\n\
+    \x20 corner-impact report models/sharp-nose.toml --rpm 200:300 --out page.html\n\
     \n\
     The page needs no network and no other file; its name is printed. It opens with the answer: where the follower\n\
     separates from the cam, how hard it hits, where motions coexist, what is proved.\n\

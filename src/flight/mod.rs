@@ -279,12 +279,17 @@ impl Flight {
                 }
                 high *= 2.0;
             }
-        } else if at(valley).position >= level {
-            // Later valleys are shallower.
+        } else if !(self.force(level) < 0.0) && at(valley).position >= level {
+            // Valleys lie below the equilibrium, and later ones are shallower.
             return None;
         }
+        // As if it fell with the acceleration that it has where it begins to.
+        let begin = if rising { at(peak) } else { start };
+        let drop = begin.position - level;
+        let fastest = (begin.velocity * begin.velocity - 2.0 * self.acceleration(begin) * drop).sqrt();
+        let guess = peak + 2.0 * drop / (fastest - begin.velocity);
         let mut low = peak;
-        let mut time = 0.5 * (low + high);
+        let mut time = if low < guess && guess < high { guess } else { 0.5 * (low + high) };
         while high - low > tolerance::ROOT_WIDTH.value * high {
             let state = at(time);
             if state.position >= level {
@@ -292,12 +297,18 @@ impl Flight {
             } else {
                 high = time
             }
-            let newton = time + (level - state.position) / state.velocity;
-            let better = if low < newton && newton < high { newton } else { 0.5 * (low + high) };
-            if (better - time).abs() <= tolerance::ULP.value * time {
-                break;
+            // Halley's method: of the third order, and the acceleration is known with the state.
+            let (acceleration, newton) = (self.acceleration(state), (level - state.position) / state.velocity);
+            let bend = 0.5 * newton * acceleration / state.velocity;
+            let step = newton / (1.0 + bend);
+            // What is left after the step is at most the part bend^2 + (w0^2 + 4 zeta^2) step^2 of it.
+            let rates = self.omega0_squared + 4.0 * self.zeta * self.zeta;
+            if (bend * bend + rates * step * step) * step.abs() <= tolerance::ULP.value * time {
+                let velocity = state.velocity + step * (acceleration + 0.5 * step * self.jerk(state));
+                return Some((time + step, State { position: level, velocity }));
             }
-            time = better;
+            let better = time + step;
+            time = if low < better && better < high { better } else { 0.5 * (low + high) };
         }
         Some((time, State { position: level, ..at(time) }))
     }

@@ -101,7 +101,7 @@ fn routes_agree_at_every_corner_impact() {
         (common::osorio(), 600.0, 760.0, 1, 2),
         (common::osorio(), 600.0, 760.0, 2, 2),
         (common::read(law("polynomial").as_ref()), 300.0, 800.0, 1, 7),
-        (common::read(law("rectified-sine").as_ref()), 4.0, 20.0, 1, 4),
+        (common::read(law("rectified-sine").as_ref()), 13.0, 20.0, 1, 2),
         (common::read(law("table-cubic").as_ref()), 672.0, 674.0, 1, 10),
         // Rounding in early flights moves the gap of the corner, which comes late.
         (common::read(law("program").as_ref()), 1141.0, 1142.0, 1, 2),
@@ -348,21 +348,30 @@ fn a_range_around_one_corner_impact_has_it_by_the_same_ways() {
     }
 }
 
-/// One model of each kind of cam that has corners, and orbits that repeat after two revolutions.
+/// One model of each kind of cam that has corners, and orbits that repeat after two revolutions; `make properties` has wider ranges of
+/// the three that take longest.
 #[test]
 #[ignore = "slow"]
 fn parts_of_ranges_have_their_parts_of_the_corner_impacts() {
-    for (name, range, revolutions, least) in [
+    let mut ranges = vec![
         ("osorio-2008", [690.0, 760.0], 4, 8),
         ("damped-light", [560.0, 760.0], 1, 2),
         ("persistence", [450.0, 600.0], 2, 2),
         ("nonsmooth-flip", [800.0, 950.0], 4, 4),
         ("laws/program", [1700.0, 2500.0], 1, 10),
         ("laws/polynomial", [300.0, 800.0], 1, 20),
-        ("laws/rectified-sine", [4.0, 20.0], 1, 4),
-        ("laws/table-quintic", [650.0, 700.0], 1, 40),
-        ("ballistic", [300.0, 400.0], 2, 1),
-    ] {
+        ("laws/rectified-sine", [13.0, 20.0], 1, 2),
+        ("laws/table-quintic", [690.0, 700.0], 1, 8),
+        ("ballistic", [370.0, 400.0], 2, 10),
+    ];
+    if std::env::var_os("PROPERTIES").is_some() {
+        ranges.extend([
+            ("laws/rectified-sine", [4.0, 13.0], 1, 4),
+            ("laws/table-quintic", [650.0, 690.0], 1, 40),
+            ("ballistic", [300.0, 370.0], 2, 40),
+        ]);
+    }
+    for (name, range, revolutions, least) in ranges {
         let file = format!("{}/models/{name}.toml", env!("CARGO_MANIFEST_DIR"));
         parts_are_the_whole(&common::read(file.as_ref()), range, revolutions, least);
     }

@@ -181,7 +181,7 @@ fn a_models_name_is_text_whatever_it_holds() {
     let text = text.replacen("source = \"\"\"", &format!("source = \"\"\"{} ", evil.replace("\\\"", "'")), 1);
     let model = Model::parse("<b>evil</b>.toml", &text).unwrap();
     assert!(model.name.contains("<script>"));
-    let dossier = Report::of(&model, External::LeftOut, None, &Unwatched).unwrap();
+    let dossier = Report::of(&model, External::LeftOut, Some([690.0, 700.0]), &Unwatched).unwrap();
     assert!(dossier.through.is_ok() && dossier.claims.is_some());
     let page = html::render(&dossier).unwrap();
     for raw in ["<script>alert", "<img src=x", "<b>evil"] {
