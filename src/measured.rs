@@ -21,7 +21,7 @@ pub struct Measured {
     /// The standard deviation of the rows about a smooth motion, m, by generalised cross-validation.
     pub noise_m: f64,
     /// Rows that are far from where the rows beside them say.
-    pub strays: Vec<FarRow>,
+    pub strays: Vec<Stray>,
     /// How far the cam is from a row at most, m.
     pub largest_distance_m: f64,
     /// Whether the rows have noise that moves what depends on the second derivative.
@@ -40,17 +40,6 @@ pub struct Measured {
     pub largest_curvature: f64,
     /// How far that may be off, m/rad^2.
     pub curvature_error: f64,
-}
-
-/// A row of a table that is far from where the rows beside it say.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct FarRow {
-    /// Where it stands in the file of the table, or of the model; of rows that came without a file, which one it is.
-    pub line: usize,
-    /// Its angle, degrees.
-    pub cam_angle_deg: f64,
-    /// How far it is above what those say, m.
-    pub off_m: f64,
 }
 
 impl Measured {
@@ -114,12 +103,10 @@ impl Likely {
         };
         let count = if is_noisy { TABLES } else { 0 };
         let others = (0..count).map(table).collect::<Result<Vec<_>, _>>()?;
-        let far = |Stray { row, off }| FarRow { line: row.line, cam_angle_deg: row.angle_deg, off_m: off };
-        let strays = strays(profile).into_iter().map(far).collect();
         let measured = measured(
             (Reading::clone(&profile.reading), &own_cam),
             &fitted,
-            (own, noise, strays),
+            (own, noise, strays(profile)),
             (best.as_ref(), &others),
         );
         Ok(Some(Self { measured, best, closer, others }))
@@ -169,7 +156,7 @@ fn even(table: u64, row: u64) -> f64 {
 fn measured(
     (reading, own_cam): (Reading, &Cam),
     fitted: &Fit,
-    (own, noise_m, strays): (Option<&Smoothing>, f64, Vec<FarRow>),
+    (own, noise_m, strays): (Option<&Smoothing>, f64, Vec<Stray>),
     (best, others): (Option<&LikelyCam>, &[LikelyCam]),
 ) -> Measured {
     /// Angles at which second derivatives are compared: four to a degree, and none at a row of whole degrees.

@@ -10,6 +10,7 @@
 use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector};
+use serde::Serialize;
 
 pub(super) use super::smoothing::Features;
 use crate::model::{Row, Smoothing, TableProfile};
@@ -58,11 +59,16 @@ pub(super) fn of(smoothing: &Smoothing, angles: &[f64], lifts: &[f64], half_step
 }
 
 /// A row of a table that is far from where the rows beside it say.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Stray {
-    pub row: Row,
-    /// How far it is above that, m.
-    pub off: f64,
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Stray {
+    /// Where it stands in the file of the table, or of the model; of rows that came without a file, which one it is.
+    pub line: usize,
+    /// Its angle, degrees.
+    pub cam_angle_deg: f64,
+    /// Its lift, m.
+    pub lift_m: f64,
+    /// How far that is above what the rows beside it say, m.
+    pub off_m: f64,
 }
 
 /// What a slip of a hand or a gauge leaves in a table, in order: a spline follows it, or half follows where it smooths. A cam that turns
@@ -102,7 +108,10 @@ pub(crate) fn strays(profile: &TableProfile) -> Vec<Stray> {
             is_far[row] = true;
         }
     }
-    let stray = |row: usize| Stray { row: profile.rows[row], off: profile.rows[row].lift - lifts[row] };
+    let stray = |row: usize| {
+        let Row { line, angle_deg, lift } = profile.rows[row];
+        Stray { line, cam_angle_deg: angle_deg, lift_m: lift, off_m: lift - lifts[row] }
+    };
     (0..lifts.len()).filter(|row| is_far[*row]).map(stray).collect()
 }
 

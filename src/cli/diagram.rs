@@ -184,7 +184,7 @@ fn loads(
     let (start, threads) = (arguments.start.start(), arguments.threads.map(usize::from));
     let found = watched("", |watch| swept::loads(model, sweep, start, lengths, threads, watch))?;
     let table = || csv::loads(&found);
-    let title = format!("{}: {} by speed", model.name, load.to_string().replace('-', " "));
+    let title = format!("{}: {} against cam speed", model.name, load.to_string().replace('-', " "));
     target.fill(&model.units, table, || Ok(loads_diagram(&title, &found, load, &model.units)))?;
     Ok(Exit::Agrees)
 }

@@ -6,6 +6,8 @@ use super::picture::{PictureArguments, Target, is_standard, picture_or_table};
 use super::start::{positive, rpm_range};
 use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::cam::Cam;
+use crate::draw::Look;
+use crate::draw::layout::WIDTH;
 use crate::figures::{corner_marks, speeds_figure};
 use crate::show::csv;
 use crate::study::attractors::{Resolution, Step};
@@ -53,8 +55,10 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let found = watched("", |watch| speeds(&model, rpm, resolution, watch))?;
     if let Some(path) = &arguments.out {
         let table = || csv::speeds(&found);
-        Target::create(path, &mut *session.out, arguments.picture.look()?)?
-            .fill(&model.units, table, || Ok(speeds_figure(&found, &corners)))?;
+        let look = arguments.picture.look()?;
+        let across = look.as_ref().map_or(WIDTH, Look::across);
+        Target::create(path, &mut *session.out, look)?
+            .fill(&model.units, table, || Ok(speeds_figure(&found, &corners, across)))?;
     }
     if is_standard(arguments.out.as_ref()) { Ok(Exit::Agrees) } else { session.answer(&found, arguments.json) }
 }

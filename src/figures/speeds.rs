@@ -1,5 +1,6 @@
 //! Attractors over speeds: where their impacts fall, over which speeds each is there, and how many starts end on it.
 
+use crate::draw::layout::{TEXT, WIDTH, width};
 use crate::draw::{Axis, BREAK, Beside, Colour, Data, Density, Figure, Marker, Panel, Series, Spacing, Stroke, Word};
 use crate::figures::SPEED;
 use crate::figures::cam::CornerMark;
@@ -26,7 +27,9 @@ const BARS: [(Kind, Stroke); 5] = [
 ];
 
 /// What `speeds` finds: impact phases in degrees, a bar for each attractor, and shares of starts, against the speed.
-pub fn speeds_figure(found: &Speeds, corners: &[CornerMark]) -> Figure {
+///
+/// The page is `across` units wide, of which a letter is [`TEXT`] high: names of attractors that would touch there stand in lanes of their own.
+pub fn speeds_figure(found: &Speeds, corners: &[CornerMark], across: f64) -> Figure {
     let colours = colours(found);
     let colour = |index: usize| colours[index];
     let each = || found.attractors.iter().enumerate();
@@ -56,7 +59,7 @@ pub fn speeds_figure(found: &Speeds, corners: &[CornerMark]) -> Figure {
     let shares = Panel::new(Axis::new("share of starts", "%").over(SHARES), 0.14, shares);
     let title = format!("{}: attractors from {} to {} rpm", found.model, found.rpm[0], found.rpm[1]);
     let axis = Axis::new(SPEED[0], SPEED[1]).over(found.rpm);
-    let mut figure = Figure::new(&title, axis, vec![impacts, bars(found, &colours), shares]);
+    let mut figure = Figure::new(&title, axis, vec![impacts, bars(found, &colours, across), shares]);
     if !found.coexistence.is_empty() {
         figure.note = "grey: several attractors, each reached by runs".into();
     }
@@ -65,7 +68,7 @@ pub fn speeds_figure(found: &Speeds, corners: &[CornerMark]) -> Figure {
 
 /// Its first panel alone: where impacts are on the cam.
 pub fn impacts_by_speed(found: &Speeds, corners: &[CornerMark]) -> Figure {
-    let mut figure = speeds_figure(found, corners);
+    let mut figure = speeds_figure(found, corners, WIDTH);
     figure.panels.truncate(1);
     Figure { title: format!("{}: impacts from {} to {} rpm", found.model, found.rpm[0], found.rpm[1]), ..figure }
 }
@@ -89,11 +92,14 @@ fn colours(found: &Speeds) -> Vec<Colour> {
 const SHARES: [f64; 2] = [-5.0, 105.0];
 
 /// The range of speeds of each attractor as a bar, stroked by its kind, in as few lanes as they fit into.
-fn bars(found: &Speeds, colours: &[Colour]) -> Panel {
-    /// Of the range: what a name takes, and what is left between two bars of a lane.
-    const NAME: f64 = 0.03;
+fn bars(found: &Speeds, colours: &[Colour], across: f64) -> Panel {
+    /// Of the range: what is left between two bars of a lane.
     const APART: f64 = 0.004;
+    /// Of the page's width: what labels take on either side of the frame.
+    const LABELS: f64 = 130.0;
     let span = found.rpm[1] - found.rpm[0];
+    // What a name takes of the range, with half a letter's room.
+    let name = |id: &str| (width(id, TEXT) + 0.5 * TEXT) / (across - LABELS).max(LABELS);
     let mut lanes: Vec<f64> = Vec::new();
     let placed: Vec<(&Attractor, f64)> = found
         .attractors
@@ -102,7 +108,7 @@ fn bars(found: &Speeds, colours: &[Colour]) -> Panel {
             let [from, to] = attractor.rpm;
             let lane = lanes.iter().position(|end| *end + APART * span < from).unwrap_or(lanes.len());
             lanes.resize(lanes.len().max(lane + 1), f64::NEG_INFINITY);
-            lanes[lane] = to.max(from + NAME * span);
+            lanes[lane] = to.max(from + name(&attractor.id) * span);
             (attractor, -(lane as f64))
         })
         .collect();
@@ -119,10 +125,11 @@ fn bars(found: &Speeds, colours: &[Colour]) -> Panel {
         Series::points("", *colour, if cloud { Marker::Dot } else { marker(*colour) }, [middle]).if_any()
     });
     // At the right edge there is no room beside the bar's beginning but on the left.
-    let beside = |from: f64| if from + NAME * span > found.rpm[1] { Beside::AboveLeft } else { Beside::AboveRight };
-    let names = placed
-        .iter()
-        .map(|(attractor, lane)| Word::new([attractor.rpm[0], *lane], &attractor.id, beside(attractor.rpm[0])));
+    let names = placed.iter().map(|(attractor, lane)| {
+        let is_last = attractor.rpm[0] + name(&attractor.id) * span > found.rpm[1];
+        let beside = if is_last { Beside::AboveLeft } else { Beside::AboveRight };
+        Word::new([attractor.rpm[0], *lane], &attractor.id, beside)
+    });
     let series = bars.chain(marks).chain(Series::words(names).if_any()).collect();
     let lanes = [-(lanes.len() as f64) + 0.5, 0.9];
     let axis = Axis { spacing: Spacing::Nothing, ..Axis::new("attractor", "").over(lanes) };

@@ -68,30 +68,34 @@ impl Flight {
         }
     }
 
-    /// `p(t) = sum p_n`, with `(n+2)(n+1) p_{n+2} = -2 zeta t (n+1) p_{n+1} - w0^2 t^2 p_n`, `p_2 = t^2/2`.
+    /// `p(t) = sum d_n/n!`, with `d_n = t^n` times the n-th derivative at 0: `d_2 = t^2`, `d_{n+2} = -2 zeta t d_{n+1} - w0^2 t^2 d_n`.
+    ///
+    /// No step of this recurrence waits for a division.
     fn response_by_series<N: Number>(&self, t: N) -> Response<N> {
         let damping = t * (2.0 * self.zeta);
         let spring = t * self.omega0_squared * t;
         // In units of t^2 for p, t for s and 1 for s': s = p', s' = p''.
-        let (mut before, mut term) = (N::from(0.0), N::from(0.5));
+        let (mut before, mut last, mut factorial) = (N::from(0.0), N::from(1.0), N::from(2.0));
         let (mut step, mut impulse, mut impulse_rate) = (N::from(0.5), N::from(1.0), N::from(1.0));
-        let mut largest = f64::INFINITY;
+        let (mut size, mut largest) = (1.0, f64::INFINITY);
         // 2 zeta t < 2 and w0^2 t^2 < 4: the terms fall below an ulp of the sums before the 32nd.
         for n in 1..32 {
             let n = f64::from(n);
-            let next = (-damping * (n + 1.0) * term - spring * before) / ((n + 2.0) * (n + 1.0));
-            step = step + next;
-            impulse = impulse + next * (n + 2.0);
-            let last = next * ((n + 2.0) * (n + 1.0));
-            impulse_rate = impulse_rate + last;
+            (before, last) = (last, -damping * last - spring * before);
+            factorial = factorial * (n + 2.0);
+            let term = last / factorial;
+            step = step + term;
+            impulse = impulse + term * (n + 2.0);
+            let of_rate = term * ((n + 2.0) * (n + 1.0));
+            impulse_rate = impulse_rate + of_rate;
             // Two in a row, since one may vanish by chance; s' has the largest terms.
-            largest = last.magnitude().max((n + 1.0) * n * term.magnitude());
+            largest = of_rate.magnitude().max(size);
+            size = of_rate.magnitude();
             // Of the larger of the two before it a term of s' is this part at most.
             let part = || (damping.magnitude() + spring.magnitude() / n) / (n + 1.0);
             if largest < tolerance::SERIES_END.value && part() < 0.5 {
                 break;
             }
-            (before, term) = (term, next);
         }
         // With parts q <= 1/2 all that are left out are less than 2 q/(1 - q) = 2 times the larger of the last two; those of p and s
         // are smaller.

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use crate::agreement::by_quantity;
 use crate::cam::{Cam, Jet, Side};
+use crate::draw::layout::WIDTH;
 use crate::figures::{Drawn, Plate, Subject, corner_marks, impacts_by_speed, plates, speeds_figure, through_corner};
 use crate::measured::{Likely, Measured};
 use crate::model::{Model, ModelError, Units};
@@ -284,7 +285,7 @@ fn overview(model: &Model, cam: &Cam, found: &Speeds) -> Plate {
 
 /// What runs end on, drawn.
 fn attractors(model: &Model, cam: &Cam, found: &Speeds) -> Plate {
-    let figure = speeds_figure(found, &corner_marks(cam));
+    let figure = speeds_figure(found, &corner_marks(cam), WIDTH);
     let title = figure.title.clone();
     let caption = "What runs end on against the speed: where its impacts are on the cam, a bar for each attractor, and the share of \
                    the starts that end on it."

@@ -312,13 +312,13 @@ pub(crate) fn strays(profile: &TableProfile) -> Vec<String> {
     /// How many are named.
     const NAMED: usize = 3;
     let reading = &profile.reading;
-    let told = |Stray { row, off }: &Stray| {
-        let place = profile.file.as_ref().map_or("cam.rows".into(), |file| format!("{file}, line {}", row.line));
-        let (lift, off, unit) = (reading.in_model.told(row.lift), reading.in_model.told(*off), &reading.unit);
+    let told = |Stray { line, cam_angle_deg, lift_m, off_m }: &Stray| {
+        let place = profile.file.as_ref().map_or("cam.rows".into(), |file| format!("{file}, line {line}"));
+        let (lift, off, unit) = (reading.in_model.told(*lift_m), reading.in_model.told(*off_m), &reading.unit);
         let side = if off < 0.0 { "below" } else { "above" };
-        let (angle, off) = (row.angle_deg, Digits::Aligned(2).text(off.abs()));
+        let off = Digits::Aligned(2).text(off.abs());
         format!(
-            "{place}: lift {lift} at {angle} deg is {off} {unit} {side} what the rows beside it tell: a slip, or does the cam turn \
+            "{place}: lift {lift} at {cam_angle_deg} deg is {off} {unit} {side} what the rows beside it tell: a slip, or does the cam turn \
              sharply there?"
         )
     };

@@ -8,7 +8,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use corner_impact::cam::Cam;
 use corner_impact::draw::font::Fonts;
-use corner_impact::draw::layout::{Layout, TEXT, Text, width};
+use corner_impact::draw::layout::{Layout, TEXT, Text, WIDTH, width};
 use corner_impact::draw::{
     Axis, Beside, Colour, Data, Density, Figure, Look, Marker, Panel, Series, Stroke, Theme, Word, pdf, png, svg,
 };
@@ -289,7 +289,7 @@ fn attractors_are_told_apart_by_shapes() {
     let model = common::osorio();
     let resolution = Resolution { step: Step::for_speeds([738.8, 739.4], 12), starts: 8 };
     let found = speeds(&model, [738.8, 739.4], resolution, &Unwatched).unwrap();
-    let figure = speeds_figure(&found, &[]);
+    let figure = speeds_figure(&found, &[], WIDTH);
     let shapes = |panel: &Panel| {
         let of = |series: &Series| match &series.data {
             Data::Points { marker, .. } => Some((format!("{:?}", series.colour), format!("{marker:?}"))),
