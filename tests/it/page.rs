@@ -234,8 +234,8 @@ fn a_model_without_a_corner_impact_has_a_page_that_says_why() {
     let model = model.to_str().unwrap();
     // One that does not bounce has few motions to look for.
     let (code, out, _) = report(folder.path(), &[model, "--set", "restitution=0"]);
-    assert_eq!((code, out.as_str()), (0, "harmonic-report.html\n"));
-    let page = std::fs::read_to_string(folder.path().join("harmonic-report.html")).unwrap();
+    assert_eq!((code, out.as_str()), (0, "harmonic-follower.restitution-0-report.html\n"));
+    let page = std::fs::read_to_string(folder.path().join(out.trim_end())).unwrap();
     assert!(page.contains("There is no corner impact to verify"));
     assert!(page.contains("[study] says where to look for the corner impact"));
     let sections: Vec<&str> = between(&page, "<section id=\"", "\"").into_iter().collect();

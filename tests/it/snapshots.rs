@@ -25,7 +25,10 @@ fn settings() -> insta::Settings {
 /// Entries as text with ten digits of the largest.
 fn kept(entries: &[f64]) -> Value {
     let largest = entries.iter().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
-    let places = if largest > 0.0 { (DIGITS - 1 - largest.log10().floor() as i32).max(0) as usize } else { 0 };
+    // Of the largest as it is written: what rounds up to 1 has a digit in front of its point.
+    let written = format!("{largest:.*e}", DIGITS as usize - 1);
+    let exponent: i32 = written.split_once('e').unwrap().1.parse().unwrap();
+    let places = if largest > 0.0 { (DIGITS - 1 - exponent).max(0) as usize } else { 0 };
     let text = |entry: &f64| {
         let text = format!("{entry:.places$}");
         // Rounding decides the sign of a zero.
