@@ -261,6 +261,20 @@ impl Cycle {
         (state, machine.flight().propagator(since) * matrix)
     }
 
+    /// The determinant of that matrix, `r^(2 n) e^(-b T/m)` with n impacts in a period T: of the matrix itself, where a small
+    /// deviation grows a millionfold on the way, rounding leaves none of it.
+    pub fn determinant(&self, machine: &Machine) -> f64 {
+        let period = self.revolutions as f64 * TAU / machine.angular_velocity();
+        let struck = machine.restitution().powi(2 * self.impacts.len() as i32);
+        struck * (-2.0 * machine.flight().zeta() * period).exp()
+    }
+
+    /// `det(mu I - M) = mu^2 - mu tr M + det M` of that matrix M, for the multiplier `mu` 1 or -1: 0 where the orbit has it.
+    pub(super) fn missing(&self, machine: &Machine, multiplier: f64) -> f64 {
+        let (_, matrix) = self.at_section(machine, 0.0);
+        1.0 - multiplier * matrix.trace() + self.determinant(machine)
+    }
+
     /// What an impact's saltation matrix is made of.
     pub fn rates(&self, machine: &Machine, index: usize) -> ImpactRates {
         let struck = self.struck(machine, index);

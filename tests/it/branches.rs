@@ -278,6 +278,12 @@ fn of_parameter(model: &Model, point: &BranchPoint, parameter: &str) -> Model {
     model.with_number(&path, point.value).unwrap()
 }
 
+/// The turn of the shortest hop, at most 1 rad: the speed of a hop is known to the rounding of the lift over it.
+fn shortest_turn(orbit: &PeriodicOrbit) -> f64 {
+    let angles: Vec<f64> = orbit.impacts().map(|event| event.turned_since(0.0)).collect();
+    angles.windows(2).map(|pair| pair[1] - pair[0]).fold(1.0, f64::min)
+}
+
 /// One simulated period leads back to the state, with the multipliers that are given.
 fn is_an_orbit(model: &Model, point: &BranchPoint) {
     let map = StroboscopicMap { machine: machine(model, point.rpm), cam_angle: 0.0 };
@@ -288,10 +294,7 @@ fn is_an_orbit(model: &Model, point: &BranchPoint) {
     let [one, two] = eigenvalues(&matrix);
     // What rounding of the state grows by on the way.
     let growth = 1.0 + one.modulus().max(two.modulus());
-    // The speed of a hop is known to the rounding of the lift over the hop's turn.
-    let angles: Vec<f64> = point.orbit.impacts().map(|event| event.turned_since(0.0)).collect();
-    let shortest = angles.windows(2).map(|pair| pair[1] - pair[0]).fold(1.0, f64::min);
-    let rounding = 16.0 * f64::EPSILON * growth / shortest * size;
+    let rounding = 16.0 * f64::EPSILON * growth / shortest_turn(&point.orbit) * size;
     assert!(missed <= 1e-10 * size + rounding, "{missed:e} of {size}: {point:?}");
     // The saltation matrix of a slow impact moves with its speed.
     let approach = |event: &Event| event.cam_velocity - event.velocity_before;
@@ -302,6 +305,9 @@ fn is_an_orbit(model: &Model, point: &BranchPoint) {
         // Near a double one they have half the digits.
         assert!(apart(given, &simulated) <= allowed || (apart(&one, &two) < 1e-4), "{given:?} {simulated:?} {point:?}");
     }
+    let Course::Impacts(cycle) = &point.orbit.course else { return };
+    let (given, simulated) = (cycle.determinant(&map.machine), matrix.determinant());
+    assert!((given - simulated).abs() <= allowed * matrix.norm(), "{given} {simulated} {point:?}");
 }
 
 /// At a special point rounding decides which of two motions the simulator sees.
@@ -326,14 +332,48 @@ fn every_point_of_a_branch_is_an_orbit_of_the_simulator() {
             for (index, point) in branch.points.iter().enumerate() {
                 let Some(special) = point.special else { continue };
                 let [low, high] = special.bracket;
-                assert!(low <= high && high - low <= 1e-9 * point.value, "{file:?} {special:?}");
-                let rounding = 1e-12 * point.value.abs();
-                assert!(low - rounding <= point.value && point.value <= high + rounding, "{index} {point:?}");
+                let known = (256.0 * f64::EPSILON / shortest_turn(&point.orbit)).max(1e-9);
+                assert!(low <= high && high - low <= known * point.value.abs(), "{file:?} {special:?}");
+                assert!(low <= point.value && point.value <= high, "{index} {point:?}");
                 assert!(special.residual <= 1e-7, "{file:?} {special:?}");
             }
         }
     }
     assert!(seen > 1000, "{seen}");
+}
+
+/// Two walks along a branch stop at other points on their way to a special point, and round otherwise there.
+#[test]
+#[ignore = "slow"]
+fn the_bracket_of_a_special_point_holds_it_from_wherever_it_is_reached() {
+    let (mut met, mut apart) = (0, Vec::new());
+    for (file, rpm, parameter, range) in models() {
+        let model = common::read(&file);
+        for orbit in orbits(&model, rpm, 1).iter().filter(|orbit| matches!(orbit.course, Course::Impacts(_))) {
+            let branch = follow(&model, rpm, orbit, parameter, range);
+            let from = &branch.points[branch.points.len() / 3];
+            if from.special.is_some() {
+                continue;
+            }
+            let again = follow(&of_parameter(&model, from, parameter), from.rpm, &from.orbit, parameter, range);
+            for point in &branch.points {
+                let Some(one) = point.special else { continue };
+                let brackets = again.points.iter().filter_map(|point| point.special);
+                let near = brackets.filter(|two| {
+                    two.kind.name() == one.kind.name()
+                        && (two.bracket[0] - point.value).abs() <= 1e-6 * point.value.abs()
+                });
+                let gap = |two: [f64; 2]| (two[0] - one.bracket[1]).max(one.bracket[0] - two[1]);
+                let Some(gap) = near.map(|two| gap(two.bracket)).min_by(f64::total_cmp) else { continue };
+                met += 1;
+                if gap > 8.0 * f64::EPSILON * point.value.abs() {
+                    apart.push(format!("{} {parameter} {gap:e} {one:?}", file.display()));
+                }
+            }
+        }
+    }
+    assert!(apart.is_empty(), "{} of {met}:\n{}", apart.len(), apart.join("\n"));
+    assert!(met > 40, "{met}");
 }
 
 /// What runs settle on at a speed: an orbit of so many revolutions.

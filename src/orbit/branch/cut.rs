@@ -177,18 +177,11 @@ impl Stride<'_> {
             Cut::Fold => at.tangent[at.tangent.len() - 1],
             // Its own equations are singular there: `halved` locates it.
             Cut::Halved => return Err(NoPoint::NotClosed),
-            Cut::Branching => {
-                let (_, matrix) = cycle.at_section(&machine, 0.0);
-                1.0 - matrix.trace() + matrix.determinant()
-            }
-            Cut::Flip => {
-                let (_, matrix) = cycle.at_section(&machine, 0.0);
-                1.0 + matrix.trace() + matrix.determinant()
-            }
+            Cut::Branching => cycle.missing(&machine, 1.0),
+            Cut::Flip => cycle.missing(&machine, -1.0),
             Cut::Type { side, multiplier } => {
                 let sides = self.held.map(|held| held.sides(&cycle, &machine)).unwrap_or_default();
-                let matrix = sides.get(side).ok_or(NoPoint::NotClosed)?;
-                1.0 - multiplier * matrix.trace() + matrix.determinant()
+                sides.get(side).ok_or(NoPoint::NotClosed)?.missing(&machine, multiplier)
             }
             Cut::Cusp => {
                 // The two numbers go one way along the curve, more slowly towards the cusp, and back from there.
@@ -217,12 +210,10 @@ impl Stride<'_> {
         };
         let (ends, best) = regula_falsi([start, end], tolerance::ROOT_WIDTH.value * step, value)?;
         let residual = best.value.abs();
-        let mut bracket = ends.map(|end| self.value(&end.with.unknowns));
-        // Met exactly, while the other end of the bracket is still far.
-        if residual == 0.0 {
-            bracket = [self.value(&best.with.unknowns); 2];
-        }
-        bracket.sort_by(f64::total_cmp);
+        // Along the curve the parameter rounds as well.
+        let [low, high] = ends.map(|end| self.value(&end.with.unknowns));
+        let between = self.value(&best.with.unknowns);
+        let bracket = [low.min(high).min(between), low.max(high).max(between)];
         Ok(Located { step: best.at, cut, point: best.with, bracket, residual })
     }
 
@@ -235,8 +226,11 @@ impl Stride<'_> {
     ) -> Result<BranchPoint, NoPoint<FamilyError>> {
         let (cycle, machine, rpm) = problem.unpack(&point.unknowns)?;
         let residual = problem.residual(&point.unknowns)?.amax();
-        let held =
-            self.held.map(|held| OnCurve { cam_angle: held.cam_angle(&cycle), sides: held.sides(&cycle, &machine) });
+        let held = self.held.map(|held| {
+            let sides = held.sides(&cycle, &machine);
+            let sides = sides.iter().map(|side| side.at_section(&machine, 0.0).1).collect();
+            OnCurve { cam_angle: held.cam_angle(&cycle), sides }
+        });
         let cycle = self.held.map_or_else(|| cycle.clone(), |held| held.orbit(&cycle));
         let orbit = PeriodicOrbit::of_cycle(&machine, cycle, residual);
         Ok(BranchPoint { held, rpm, value: self.value(&point.unknowns), orbit, special })

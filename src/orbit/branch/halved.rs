@@ -49,8 +49,8 @@ pub(super) fn flip(machine_at: impl Fn(f64) -> Option<Machine>, ends: [(f64, &Cy
     let at = |value: f64, guess: &Cycle| -> Option<(Cycle, f64)> {
         let machine = machine_at(value)?;
         let (cycle, _) = guess.closed(&machine).ok()?;
-        let (_, matrix) = cycle.at_section(&machine, 0.0);
-        Some((cycle, 1.0 + matrix.trace() + matrix.determinant()))
+        let left = cycle.missing(&machine, -1.0);
+        Some((cycle, left))
     };
     // The parameter turns round at the flip: it is as far from it as the halves are apart, squared.
     let span = (second - first).abs().max(tolerance::SPECIAL_POINT.value * first.abs());

@@ -11,8 +11,6 @@
 
 use std::f64::consts::TAU;
 
-use nalgebra::Matrix2;
-
 use crate::orbit::{Cycle, Impact};
 use crate::simulate::Machine;
 
@@ -81,15 +79,14 @@ impl Held {
         orbit
     }
 
-    /// The matrices at angle 0, 2x2: with the law before a corner and with the law after it; of others the orbit's.
-    pub(super) fn sides(self, cycle: &Cycle, machine: &Machine) -> Vec<Matrix2<f64>> {
-        let of = |cycle: &Cycle| cycle.at_section(machine, 0.0).1;
+    /// The orbit with the law before a corner and with the law after it; of others the one orbit.
+    pub(super) fn sides(self, cycle: &Cycle, machine: &Machine) -> Vec<Cycle> {
         match self {
             Self::Corner(pinned) => {
-                let sides = [cycle.clone(), pinned.other_side(cycle, machine)].map(|side| of(&side));
-                if pinned.at_end { sides.into() } else { sides.into_iter().rev().collect() }
+                let (this, other) = (cycle.clone(), pinned.other_side(cycle, machine));
+                if pinned.at_end { vec![this, other] } else { vec![other, this] }
             }
-            _ => vec![of(&self.orbit(cycle))],
+            _ => vec![self.orbit(cycle)],
         }
     }
 
