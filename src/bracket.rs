@@ -12,8 +12,6 @@
 
 use std::ops::RangeInclusive;
 
-use crate::tolerance;
-
 /// When a bracket is narrow enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Width {
@@ -63,9 +61,8 @@ pub(crate) struct Seen<P> {
 
 /// Secants that keep the bracket `ends`, in rising order; where an end stays twice its weight is halved, so that both come in.
 ///
-/// Ends at a bracket of `width`, where `value` gives nothing, or where rounding hides the root: near it, at a value that is no
-/// less than one farther out. Signs mean nothing there, so that the bracket goes out again from the least value to where the
-/// values are above their rounding. The ends as they are then, and the point nearest to a root of all but the first end.
+/// Ends at a root, at a bracket of `width`, or where `value` gives nothing. Where rounding decides the signs the bracket goes
+/// out again from the point nearest to a root. Its ends, and that point, of all but the first end.
 pub(crate) fn regula_falsi<P: Clone, E>(
     ends: [Seen<P>; 2],
     width: f64,
@@ -73,40 +70,34 @@ pub(crate) fn regula_falsi<P: Clone, E>(
 ) -> Result<([Seen<P>; 2], Seen<P>), E> {
     /// Bisection would take fifty.
     const STEPS: usize = 60;
-    /// Near a root a function is a line: so many times as far it is so many times as large, but for what rounding adds.
-    const FARTHER: f64 = 4.0;
-    const LARGER: RangeInclusive<f64> = 3.0..=6.0;
+    /// Near a root a function is a line: twice as far it is twice as large, but for what rounding adds.
+    const LARGER: RangeInclusive<f64> = 1.5..=3.0;
     let outer = ends.clone();
     let [mut low, mut high] = ends;
-    let near = tolerance::ROUNDING_SEEN.value * low.value.abs().max(high.value.abs());
     let (sign, mut best, mut moved_high) = (high.value < 0.0, high.clone(), None);
-    let (mut weights, mut hidden) = ([1.0, 1.0], 0.5 * width);
     for _ in 0..STEPS {
         if best.value == 0.0 || high.at - low.at <= width {
             break;
         }
-        let [at_low, at_high] = [weights[0] * low.value, weights[1] * high.value];
-        let secant = low.at + (high.at - low.at) * at_low / (at_low - at_high);
+        let secant = low.at + (high.at - low.at) * low.value / (low.value - high.value);
         let at = if secant > low.at && secant < high.at { secant } else { 0.5 * (low.at + high.at) };
         let Some((value, with)) = value(at)? else { return Ok(([low, high], best)) };
         let seen = Seen { at, value, with };
         if value.abs() < best.value.abs() {
             best = seen.clone();
         }
-        let is_high = (value < 0.0) == sign;
-        let (end, kept) = if is_high { (&mut high, &mut weights[0]) } else { (&mut low, &mut weights[1]) };
-        let is_hidden = value.abs() <= near && value.abs() >= end.value.abs();
-        if is_hidden {
-            hidden = hidden.max((end.at - at).abs());
-            break;
+        if (value < 0.0) == sign {
+            high = seen;
+            low.value *= if moved_high == Some(true) { 0.5 } else { 1.0 };
+            moved_high = Some(true);
+        } else {
+            low = seen;
+            high.value *= if moved_high == Some(false) { 0.5 } else { 1.0 };
+            moved_high = Some(false);
         }
-        *kept *= if moved_high == Some(is_high) { 0.5 } else { 1.0 };
-        *end = seen;
-        weights[usize::from(is_high)] = 1.0;
-        moved_high = Some(is_high);
     }
     let mut sure = |end: &Seen<P>, direction: f64| -> Result<Seen<P>, E> {
-        let mut reach = hidden;
+        let mut reach = 0.5 * width;
         let mut nearer: Option<Seen<P>> = None;
         loop {
             let at = best.at + direction * reach;
@@ -119,7 +110,7 @@ pub(crate) fn regula_falsi<P: Clone, E>(
                 Some(nearer) => return Ok(nearer),
                 None => nearer = Some(Seen { at, value, with }),
             }
-            reach *= FARTHER;
+            reach *= 2.0;
         }
     };
     Ok(([sure(&outer[0], -1.0)?, sure(&outer[1], 1.0)?], best))

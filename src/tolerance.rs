@@ -101,9 +101,6 @@ table! {
         that are left out allow";
     /// Width at which a bracket around a root is closed.
     ROOT_WIDTH = 4.0 * f64::EPSILON, "of the root: T* is asked for to 1e-14, and a bracket cannot close below two ulps";
-    /// When a value near a root may be one that rounding has made.
-    ROUNDING_SEEN = 1e-3, "of the value at the ends of the bracket: below it a smooth function is a line to three digits, and each \
-        secant brings more";
     /// The width at which a box that neither holds a root for certain nor none is left undecided.
     NARROWEST_BOX = 1e-9, "of the box that is looked through: rounding hides a double root at the root of an ulp, 1e-8, and \
         narrower boxes would only be more about it";

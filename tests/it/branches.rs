@@ -332,7 +332,8 @@ fn every_point_of_a_branch_is_an_orbit_of_the_simulator() {
             for (index, point) in branch.points.iter().enumerate() {
                 let Some(special) = point.special else { continue };
                 let [low, high] = special.bracket;
-                let known = (256.0 * f64::EPSILON / shortest_turn(&point.orbit)).max(1e-9);
+                // Hops of less than 1.4e-5 rad, at the end of a chattering sequence, leave no nine digits.
+                let known = (64.0 * f64::EPSILON / shortest_turn(&point.orbit)).max(1e-9);
                 assert!(low <= high && high - low <= known * point.value.abs(), "{file:?} {special:?}");
                 assert!(low <= point.value && point.value <= high, "{index} {point:?}");
                 assert!(special.residual <= 1e-7, "{file:?} {special:?}");
