@@ -8,7 +8,7 @@
 
 use std::io::{Read, Write};
 use std::path::PathBuf;
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
@@ -61,6 +61,8 @@ pub(crate) enum PythonError {
         remedy("`make verify` sets it up")
     )]
     Failed { command: String, status: String, stderr: String },
+    #[error("`{command}` did not end within {} s and was stopped: a narrower range of speeds takes less", TIME_LIMIT.as_secs())]
+    TooLong { command: String },
     #[error("`{command}` printed something else than its result: {error}")]
     Output { command: String, error: String },
 }
@@ -94,16 +96,29 @@ pub(crate) fn run<T: serde::de::DeserializeOwned>(script: &str, input: &serde_js
         .stderr(Stdio::piped())
         .spawn()
         .map_err(not_started)?;
-    let (status, stdout, stderr) = talk(child, input.to_string().into_bytes()).map_err(not_started)?;
-    let Some(stdout) = stdout else {
-        return Err(PythonError::Failed { command, status, stderr: stderr.trim().into() });
+    let Talk { status, stdout, stderr } =
+        talk(child, input.to_string().into_bytes(), TIME_LIMIT).map_err(not_started)?;
+    let stdout = match status {
+        None => return Err(PythonError::TooLong { command }),
+        Some(status) if !status.success() => {
+            let (status, stderr) = (status.to_string(), stderr.trim().into());
+            return Err(PythonError::Failed { command, status, stderr });
+        }
+        Some(_) => stdout,
     };
     serde_json::from_str(&stdout).map_err(|error| PythonError::Output { command, error: error.to_string() })
 }
 
-/// Feeds `input`, collects both streams, and stops a child that does not end: its end in words, its output if it succeeded,
-/// and its standard error.
-fn talk(mut child: Child, input: Vec<u8>) -> std::io::Result<(String, Option<String>, String)> {
+/// What came of a child.
+struct Talk {
+    /// How it ended; nothing where it had to be stopped.
+    status: Option<ExitStatus>,
+    stdout: String,
+    stderr: String,
+}
+
+/// Feeds `input`, collects both streams, and stops a child that does not end within a time.
+fn talk(mut child: Child, input: Vec<u8>, limit: Duration) -> std::io::Result<Talk> {
     let pipes = (child.stdin.take(), child.stdout.take(), child.stderr.take());
     // Ends with whoever waits for it; its pipes are closed then, and those who read them end, too.
     let mut child = Started::new(child);
@@ -113,14 +128,14 @@ fn talk(mut child: Child, input: Vec<u8>) -> std::io::Result<(String, Option<Str
         let stdout = pipes.1.map(|pipe| scope.spawn(|| collect(pipe)));
         let stderr = pipes.2.map(|pipe| scope.spawn(|| collect(pipe)));
         let start = Instant::now();
-        let (status, succeeded) = loop {
+        let status = loop {
             stop::ask();
             match child.child().try_wait()? {
-                Some(status) => break (status.to_string(), status.success()),
-                None if start.elapsed() > TIME_LIMIT => {
+                Some(status) => break Some(status),
+                None if start.elapsed() > limit => {
                     child.child().kill()?;
                     child.child().wait()?;
-                    break (format!("stopped after {} s", TIME_LIMIT.as_secs()), false);
+                    break None;
                 }
                 None => std::thread::sleep(Duration::from_millis(5)),
             }
@@ -129,8 +144,7 @@ fn talk(mut child: Child, input: Vec<u8>) -> std::io::Result<(String, Option<Str
             reader.and_then(|reader| reader.join().ok()).unwrap_or_default()
         };
         drop(feed);
-        let stdout = text(stdout);
-        Ok((status, succeeded.then_some(stdout), text(stderr)))
+        Ok(Talk { status, stdout: text(stdout), stderr: text(stderr) })
     })
 }
 
@@ -158,4 +172,23 @@ fn interpreter() -> PathBuf {
     });
     let of_the_build = || Some(PathBuf::from(OF_THE_BUILD)).filter(|path| path.is_file());
     chosen.or_else(|| HOST.get().cloned()).or_else(of_the_build).unwrap_or_else(|| "python3".into())
+}
+
+#[cfg(test)]
+#[cfg(unix)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_does_not_end_is_stopped_and_told_from_what_failed() {
+        let told = |script: &str| {
+            let mut command = Command::new("sh");
+            let child =
+                command.args(["-c", script]).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+            talk(child.spawn().unwrap(), Vec::new(), Duration::from_millis(300)).unwrap()
+        };
+        assert!(told("exec sleep 60").status.is_none());
+        let failed = told("echo no >&2; exit 3");
+        assert_eq!((failed.status.and_then(|status| status.code()), failed.stderr.as_str()), (Some(3), "no\n"));
+    }
 }
