@@ -13,6 +13,7 @@ use crate::study::chaos::{chaos, portrait};
 #[command(after_help = "Examples:\n\
     \x20 corner-impact chaos --rpm 670 --out chaos.svg\n\
     \x20 corner-impact chaos models/osorio-2008.toml --rpm 673:673.5 --json\n\
+    \x20 corner-impact chaos models/overdamped.toml --rpm 668 --trapping\n\
     \n\
     A proof is by enclosures that leave no case out; that other motions come to the set is not said.\n\
     Exit code: 0 done, also where nothing is proved, 2 bad model file, usage or file, or a run that cannot go on.")]
@@ -22,6 +23,9 @@ pub(super) struct Arguments {
     /// Speed of the cam, or lowest and highest.
     #[arg(long, value_name = "R|LO:HI", value_parser = rpm_or_range, allow_hyphen_values = true)]
     rpm: [f64; 2],
+    /// Look for a region that traps as well, at the lowest speed: impacts that are followed by impacts in it for ever.
+    #[arg(long)]
+    trapping: bool,
     /// Print one JSON document instead of the page.
     #[arg(long)]
     json: bool,
@@ -35,7 +39,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let model = arguments.model.read(session)?;
     let canvas = arguments.out.as_ref().map(|path| Canvas::create(path, arguments.picture.look()?)).transpose()?;
-    let found = watched("", |watch| chaos(&model, arguments.rpm, watch))?;
+    let found = watched("", |watch| chaos(&model, arguments.rpm, arguments.trapping, watch))?;
     match (canvas, found.theorems.first()) {
         (Some(canvas), Some(theorem)) => {
             let rpm = theorem.set.rpm[0];

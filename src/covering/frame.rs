@@ -50,6 +50,23 @@ impl Frame {
         Impact { angle: along(0) * degree(), velocity: along(1), turns: 0 }
     }
 
+    /// Rectangles of the cam's angle, rad, and the velocity, m/s, that a strip of an h-set lies in.
+    pub fn rectangles(&self, set: &HSet, strip: &Strip) -> Vec<[Interval; 2]> {
+        /// Parts of either side: the rectangles reach beyond the strip by a part at most.
+        const PARTS: usize = 64;
+        let part = |[low, high]: [f64; 2], part: usize| {
+            let at = |part: usize| low + (high - low) * part as f64 / PARTS as f64;
+            Interval::new(at(part), if part + 1 == PARTS { high } else { at(part + 1) })
+        };
+        let parts = (0..PARTS).flat_map(|x| (0..PARTS).map(move |y| [x, y]));
+        let rectangle = |[x, y]: [usize; 2]| {
+            let (x, y) = (part(strip.x, x), part(set.y, y));
+            let along = |side: usize| x * self.unstable[side] + y * self.stable[side] + self.centre[side];
+            [along(0) * degree(), along(1)]
+        };
+        parts.map(rectangle).collect()
+    }
+
     /// x and y of an impact, so many turns on.
     fn coordinates<'a>(&self, impact: &Impact<'a>, revolutions: u64) -> [Over<'a>; 2] {
         let turns = (impact.turns - revolutions as i64) as f64;

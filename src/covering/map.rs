@@ -40,6 +40,9 @@ pub enum Unproved {
 
 named!(Unproved);
 
+/// Turns of the cam that a flight may take.
+const MOST_TURNS: u64 = 20;
+
 /// An impact, over a box.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Impact<'a> {
@@ -102,17 +105,7 @@ impl<'a> ImpactMap<'a> {
         if !from.velocity.value().is_positive() {
             return Err(Unproved::NoImpact);
         }
-        let ([lift, slope], _) = self.lift(from.angle);
-        let spring = -self.machine.flight().omega0_squared();
-        let force = |lift: Interval| self.machine.flight().force(lift);
-        let launch = Launch {
-            map: self,
-            angle: from.angle,
-            omega,
-            lift,
-            velocity: omega * slope + from.velocity,
-            force: lift.of(force(lift.centre), force(lift.value()), spring.into()),
-        };
+        let launch = self.launch(from, omega);
         let guess = self.guess(from, omega).ok_or(Unproved::NoImpact)?;
         let time = launch.landing(guess)?;
         if !launch.is_first(time.value(), from.velocity.value()) {
@@ -128,10 +121,79 @@ impl<'a> ImpactMap<'a> {
         })
     }
 
+    fn launch<'b, 'c>(&'c self, from: &Impact<'b>, omega: Over<'b>) -> Launch<'b, 'c> {
+        let ([lift, slope], _) = self.lift(from.angle);
+        let spring = -self.machine.flight().omega0_squared();
+        let force = |lift: Interval| self.machine.flight().force(lift);
+        Launch {
+            map: self,
+            angle: from.angle,
+            omega,
+            lift,
+            velocity: omega * slope + from.velocity,
+            force: lift.of(force(lift.centre), force(lift.value()), spring.into()),
+        }
+    }
+
+    /// Every angle and velocity that the impact after one may have, where flights of the box may graze the cam: rectangles, each of
+    /// a stretch of time of the flight in which the gap may come down to 0. From a graze, which takes nothing from the motion, both
+    /// the touch and what comes after it are among them.
+    ///
+    /// `shortest`, s: no stretch is halved below it. A velocity of 0 in the box is one that the follower leaves the cam with.
+    pub(super) fn contacts<'b>(
+        &self,
+        from: &Impact<'b>,
+        omega: Over<'b>,
+        shortest: f64,
+    ) -> Result<Vec<[Interval; 2]>, Unproved> {
+        /// Steps that a flight begins with, of the shortest.
+        const STEPS: f64 = 64.0;
+        // What is below 0 came of rounding: cells have none.
+        let velocity = from.velocity.value();
+        let velocity = Interval::new(velocity.low().max(0.0), velocity.high());
+        let launch = self.launch(from, omega);
+        let most = MOST_TURNS as f64 * TAU / omega.centre.middle();
+        let mut found = Vec::new();
+        let (mut time, mut step) = (0.0, STEPS * shortest);
+        while time < most {
+            let times = Interval::new(time, time + step);
+            let whole = launch.over(times);
+            // g = t (u + t/2 g''(...)) is above 0 for u = 0 as well where g'' is.
+            let is_clear = if time == 0.0 {
+                whole.bend.is_positive() || Launch::leaves(times, &whole, velocity)
+            } else {
+                launch.is_clear(times, &whole)
+            };
+            if is_clear {
+                (time, step) = (times.high(), 1.5 * step);
+                continue;
+            }
+            if step > shortest {
+                step *= 0.5;
+                continue;
+            }
+            if time == 0.0 {
+                return Err(Unproved::NoImpact);
+            }
+            let away = times - times.middle();
+            let middle = launch.over(times.middle().into());
+            let rate = (middle.rate.value() + away * whole.bend).and(whole.rate.value());
+            // The gap comes down to 0 from above.
+            if rate.low() <= 0.0 {
+                // u = -r g'
+                let after = rate * Interval::from(-self.machine.restitution());
+                found.push([whole.angle.value(), Interval::new(after.low().max(0.0), after.high())]);
+                if launch.over(times.high().into()).value.value().is_negative() {
+                    return Ok(found);
+                }
+            }
+            time = times.high();
+        }
+        Err(Unproved::NoImpact)
+    }
+
     /// The time to the next impact from the centre, s, as simulated: where the proof begins to look.
     fn guess(&self, from: &Impact<'_>, omega: Over<'_>) -> Option<f64> {
-        /// Turns of the cam that a flight may take.
-        const MOST_TURNS: u64 = 20;
         let omega = omega.centre.middle();
         let machine = self.machine.at_speed(omega);
         let angle = from.angle.centre.middle();
@@ -194,6 +256,22 @@ impl<'a> Launch<'a, '_> {
         Ok(gap.value.solved(centre, whole, by))
     }
 
+    /// Whether the gap is above 0 in a stretch from the launch on, with a velocity, but at the launch itself.
+    fn leaves(times: Interval, whole: &Gap<'_>, velocity: Interval) -> bool {
+        // g = t (u + t/2 g''(...))
+        (velocity + times * whole.bend.half()).is_positive()
+    }
+
+    /// Whether the gap is above 0 all over a stretch.
+    fn is_clear(&self, times: Interval, whole: &Gap<'_>) -> bool {
+        // g(m + x) = g(m) + x g'(m) + x^2/2 g''(...)
+        whole.value.value().is_positive() || {
+            let away = times - times.middle();
+            let Gap { value, rate, .. } = self.over(times.middle().into());
+            (value.value() + away * rate.value() + away.squared().half() * whole.bend).is_positive()
+        }
+    }
+
     /// Whether the gap is above 0 from after the launch, with a velocity, to the landing at a time.
     fn is_first(&self, landing: Interval, velocity: Interval) -> bool {
         /// Parts of the flight: the step that it begins with, and one too short to go on.
@@ -206,19 +284,14 @@ impl<'a> Launch<'a, '_> {
             // Up to where the first start of the box lands: from there on the gap of each falls to 0, as Newton's method has shown.
             let is_last = times.high() == end;
             let whole = self.over(times);
-            let away = times - times.middle();
-            let middle = || self.over(times.middle().into());
             let is_clear = if times.low() == 0.0 {
-                // g = t (u + t/2 g''(...))
-                (velocity + times * whole.bend.half()).is_positive()
+                Self::leaves(times, &whole, velocity)
             } else if is_last {
-                whole.rate.value().is_negative() || (middle().rate.value() + away * whole.bend).is_negative()
+                let away = times - times.middle();
+                whole.rate.value().is_negative()
+                    || (self.over(times.middle().into()).rate.value() + away * whole.bend).is_negative()
             } else {
-                // g(m + x) = g(m) + x g'(m) + x^2/2 g''(...)
-                whole.value.value().is_positive() || {
-                    let Gap { value, rate, .. } = middle();
-                    (value.value() + away * rate.value() + away.squared().half() * whole.bend).is_positive()
-                }
+                self.is_clear(times, &whole)
             };
             if is_clear {
                 (time, step) = (times.high(), 1.5 * step);

@@ -3,7 +3,7 @@
 //! An h-set N is a parallelogram of impacts, with a direction that the map stretches and one that it shrinks. Strips of N, over its
 //! whole height, are each carried across N by a number of impacts. Then every sequence of strips, in both directions, is followed by a
 //! motion (covering relations: Zgliczynski and Gidea 2004), and where cones are kept as well by no more than one. That is a set of chaotic
-//! motions; it is not said that others come to it.
+//! motions. That others come to it is not said by that; where a region is found that the map sends into itself, all motions in it stay there.
 //!
 //! | module | what it holds |
 //! |---|---|
@@ -13,6 +13,7 @@
 //! | `entropy` | how many motions there are by that, a revolution |
 //! | `base`, `sample` | saddles that an h-set may begin at; impacts along a line, by simulation |
 //! | [`mod@find`] | an h-set for any machine, sought and then proved |
+//! | [`region`] | impacts that are followed by impacts among them for ever |
 //! | `known` | h-sets that are kept |
 
 mod base;
@@ -22,6 +23,7 @@ mod frame;
 mod known;
 mod map;
 pub mod prove;
+pub mod region;
 pub(crate) mod sample;
 
 use serde::{Deserialize, Serialize};

@@ -1,10 +1,11 @@
 //! The page of `chaos`: the theorem first, then what it rests on, then where nothing is proved.
 
 use crate::covering::prove::Refused;
+use crate::covering::region::{Escape, Region};
 use crate::show::block::{Block, Column, Mark, Table, words};
 use crate::show::digits::Digits;
 use crate::show::{Paged, words};
-use crate::study::chaos::{Chaos, Open, Theorem};
+use crate::study::chaos::{Chaos, Open, Theorem, Trapping};
 
 impl Paged for Chaos {
     fn blocks(&self) -> Vec<Block> {
@@ -23,6 +24,11 @@ impl Paged for Chaos {
             self.theorems.iter().flat_map(|theorem| &theorem.refused).map(|why| Block::paragraph(refused(why))),
         );
         page.extend(self.open.iter().map(open));
+        match &self.trapping {
+            Some(Ok(trapping)) => page.extend([Block::Gap, Block::paragraph(trapped(trapping, low))]),
+            Some(Err(escapes)) => page.extend([Block::Gap, Block::paragraph(escaped(escapes, low))]),
+            None => {}
+        }
         page
     }
 }
@@ -74,6 +80,40 @@ pub(crate) fn statement(found: &Chaos) -> String {
         entropy(least),
         more.collect::<String>()
     )
+}
+
+/// What is proved of a region.
+pub(crate) fn trapped(found: &Trapping, rpm: f64) -> String {
+    let Region { cells, highest_m_s, part, .. } = found.region;
+    let chaos = match found.holds_chaos {
+        true => " All strips lie in it, and so the set of chaotic motions does.",
+        false => "",
+    };
+    format!(
+        "Proved: a region traps motions at {rpm} rpm. After an impact in one of its {}, all impacts are in them: the follower flies and hits          for ever, and never rests on the cam. No impact in it leaves faster than {} m/s relative to the cam; the cells cover {} % of all          angles and velocities up to there.{chaos}",
+        words::many(cells as u64, "cell"),
+        Digits::UpTo(4).text(highest_m_s),
+        Digits::Significant(2).text(100.0 * part),
+    )
+}
+
+/// How far it came.
+fn escaped(escapes: &[Escape], rpm: f64) -> String {
+    let each = escapes.iter().map(|escape| {
+        let [angle, velocity] = escape.at;
+        let why = match escape.flight {
+            Some(flight) => {
+                format!(
+                    "from an impact at {angle:.3} deg that leaves with {velocity:.4} m/s {}",
+                    words::unproved(flight)
+                )
+            }
+            None => "there were too many".to_owned(),
+        };
+        let size = words::many(escape.squares_per_degree.into(), "square");
+        format!("with {size} a degree, after {}, {why}", words::many(escape.cells as u64, "cell"))
+    });
+    format!("No region that traps is proved at {rpm} rpm: {}.", each.collect::<Vec<_>>().join("; "))
 }
 
 /// The strips, with what is proved of each.

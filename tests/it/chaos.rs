@@ -1,13 +1,17 @@
 //! Is chaos proved where it is, and not where it is not?
 
+use std::ops::ControlFlow;
+use std::path::Path;
+
 use corner_impact::cam::Cam;
 use corner_impact::covering::find::{Wanted, find};
 use corner_impact::covering::prove::{Relation, prove};
-use corner_impact::covering::{HSet, Image, entropy, known};
+use corner_impact::covering::region::{Escape, Region, trap};
+use corner_impact::covering::{HSet, Image, Unproved, entropy, known};
 use corner_impact::interval::Interval;
 use corner_impact::model::Model;
 use corner_impact::progress::Unwatched;
-use corner_impact::simulate::{Machine, angular_velocity};
+use corner_impact::simulate::{Event, EventKind, Machine, angular_velocity};
 
 use crate::common;
 
@@ -208,4 +212,79 @@ fn the_command_keeps_its_fields() {
     let entropy = theorem["entropy_per_revolution"].as_f64().unwrap();
     assert!((0.609377..0.609378).contains(&entropy), "{entropy}");
     assert_eq!(document["open"], serde_json::json!([]));
+}
+
+fn heavy() -> Model {
+    common::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("models/damped-heavy.toml"))
+}
+
+/// The region that the impacts of a run begin, in squares of a degree.
+fn region(model: &Model, rpm: f64, start: [f64; 2], most: usize) -> Result<Region, Escape> {
+    let machine = machine(model, rpm);
+    let run = impacts(&machine, start, 2500);
+    let run: Vec<[Interval; 2]> = run
+        .iter()
+        .skip(500.min(run.len() / 2))
+        .map(|[angle, velocity]| [angle.to_radians().into(), (*velocity).into()])
+        .collect();
+    trap(&machine, &run, 1, most, &Unwatched)
+}
+
+/// Impacts after one: the cam's angle, degrees, and the velocity relative to the cam, m/s.
+fn impacts(machine: &Machine, [degrees, velocity]: [f64; 2], count: usize) -> Vec<[f64; 2]> {
+    let mut found = Vec::new();
+    let mut motion = machine.start_on_cam(f64::to_radians(degrees), velocity).unwrap();
+    let goal = motion.after(count as u64);
+    let mut see = |event: &Event| {
+        if event.kind == EventKind::Impact {
+            found.push([event.cam_angle.to_degrees(), event.velocity_after - event.cam_velocity]);
+        }
+        if event.kind == EventKind::Stick || found.len() == count {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    };
+    let _ = machine.advance(&mut motion, goal, &mut see).unwrap();
+    found
+}
+
+/// By the simulator, from anywhere in it: near grazes are among them.
+#[test]
+#[ignore = "slow"]
+fn runs_do_not_leave_a_region_that_traps() {
+    let model = heavy();
+    let region = region(&model, 706.6, [151.0, 2.0], 20_000).unwrap();
+    let machine = machine(&model, 706.6);
+    let mut lowest = f64::INFINITY;
+    for place in region.places.iter().step_by(20) {
+        // Off the middle: low enough, where a cell begins at 0.
+        let start = place.map(|[low, high]| low + 0.4 * (high - low));
+        let run = impacts(&machine, start, 200);
+        assert_eq!(run.len(), 200, "from {start:?} it rests");
+        for impact in run {
+            assert!(region.holds(impact), "{impact:?}, from {start:?}");
+            lowest = lowest.min(impact[1]);
+        }
+    }
+    // They graze, or this would tell nothing of grazes.
+    assert!(lowest < region.square_m_s, "{lowest}");
+}
+
+#[test]
+#[ignore = "slow"]
+fn a_region_is_not_closed_where_motions_rest_or_cells_run_out() {
+    let rests = region(&common::osorio(), 183.0, [200.0, 0.1], 20_000).unwrap_err();
+    assert_eq!(rests.flight, Some(Unproved::NoImpact), "{rests:?}");
+    let many = region(&heavy(), 706.6, [151.0, 2.0], 1000).unwrap_err();
+    assert_eq!(many.flight, None, "{many:?}");
+    assert!(many.cells > 1000, "{many:?}");
+}
+
+/// About a stable orbit a few cells are enough, and the saddle beside it is not among them.
+#[test]
+fn a_region_about_a_stable_orbit_is_small() {
+    let region = region(&common::osorio(), 700.0, [155.3, 72.0], 20_000).unwrap();
+    assert!(region.cells < 100 && region.highest_m_s < 80.0, "{region:?}");
+    assert!(region.places.iter().all(|[[low, high], _]| 154.0 < *low && *high < 157.0), "{:?}", region.places);
 }

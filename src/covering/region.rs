@@ -1,0 +1,265 @@
+//! A trapping region: impacts that are followed by impacts among them, for ever.
+//!
+//! The plane of impacts is cut into cells. From the cells of some impacts on, the image of each cell is enclosed, and each cell that the
+//! image may touch is taken in, until no new one comes. Then whatever starts in one of them goes on in them: it flies and hits, and never
+//! rests on the cam. The first cells are squares of a size that the whole plane has in common. Where the image of one is larger than such a
+//! square, or its flights do not all end with one transversal impact, it is cut in two across what the image is long by, and so on: so
+//! cells are small where the map stretches much, and the region is a little larger than it needs to be by one square everywhere.
+//!
+//! Flights that may graze the cam are followed to each place where they may touch it: an impact there leaves with any velocity from 0 to
+//! what the slope of the gap allows. From a velocity of 0 the follower must be let go by the cam, or the region is not closed. So each
+//! cell has a least time to the next impact, and impacts cannot follow upon each other ever faster, as they do before a rest.
+
+use std::collections::HashMap;
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::map::{Impact, ImpactMap, Unproved};
+use crate::interval::centred::Centred;
+use crate::interval::{Interval, Number};
+use crate::orbit::search::velocity_scale;
+use crate::progress::Watch;
+use crate::simulate::Machine;
+
+/// A rectangle of impacts, in squares of the plane across (the cam's angle) and up (the velocity relative to the cam).
+type Place = [Interval; 2];
+
+/// A square of the plane that is halved so many times across and up, the `at`-th of its size.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+struct Cell {
+    at: [u64; 2],
+    halved: [u8; 2],
+}
+
+impl Cell {
+    fn side(&self, side: usize) -> Interval {
+        let size = 0.5_f64.powi(self.halved[side].into());
+        Interval::new(self.at[side] as f64 * size, (self.at[side] + 1) as f64 * size)
+    }
+
+    fn meets(&self, place: &Place) -> bool {
+        [0, 1].into_iter().all(|side| self.side(side).common(place[side]).is_some())
+    }
+
+    fn halves(mut self, side: usize) -> [Self; 2] {
+        self.halved[side] += 1;
+        self.at[side] *= 2;
+        let mut other = self;
+        other.at[side] += 1;
+        [self, other]
+    }
+}
+
+/// What is known of a cell.
+enum Look {
+    /// Its impacts are followed by impacts in these.
+    Whole(Vec<Place>),
+    /// Its halves across that side are to be looked at.
+    Halved(usize),
+}
+
+/// A region that the impact map of a machine carries into itself.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Region {
+    /// Squares of a degree.
+    pub squares_per_degree: u32,
+    /// The height of a square, m/s.
+    pub square_m_s: f64,
+    /// How many cells it has.
+    pub cells: usize,
+    /// Enclosures of images that it took.
+    pub looks: usize,
+    /// The part of all angles and all velocities up to the highest that it covers.
+    pub part: f64,
+    /// The highest velocity in it, m/s.
+    pub highest_m_s: f64,
+    /// The cells: degrees of the cam, and m/s, each from one number to another.
+    #[serde(skip)]
+    pub places: Vec<[[f64; 2]; 2]>,
+}
+
+impl Region {
+    /// Whether an impact is in it, at the cam's angle, degrees in a turn, and the velocity relative to the cam, m/s.
+    pub fn holds(&self, impact: [f64; 2]) -> bool {
+        self.places.iter().any(|place| place.iter().zip(impact).all(|([low, high], at)| *low <= at && at <= *high))
+    }
+}
+
+/// A region that is not closed.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Escape {
+    /// Squares of a degree.
+    pub squares_per_degree: u32,
+    /// Cells so far.
+    pub cells: usize,
+    /// The impact whose cell is not carried on: degrees of the cam, and m/s.
+    pub at: [f64; 2],
+    /// What is not proved of the flight from there; nothing where there were too many cells.
+    pub flight: Option<Unproved>,
+}
+
+/// The plane of impacts of a machine, in squares.
+struct Plane<'a> {
+    map: ImpactMap<'a>,
+    omega: Interval,
+    per_degree: u32,
+    height: f64,
+}
+
+/// A cell is halved so often at most, and so often where a graze is to be told from an impact.
+const HALVINGS: u8 = 24;
+const GRAZING: u8 = 12;
+
+/// Closes the region that some rectangles of impacts begin, each the cam's angle, rad, and the velocity relative to it, m/s: in squares
+/// of so many a degree, with so many cells at most.
+pub fn trap(
+    machine: &Machine,
+    impacts: &[[Interval; 2]],
+    squares_per_degree: u32,
+    most: usize,
+    watch: &dyn Watch,
+) -> Result<Region, Escape> {
+    /// So many squares on top of each other reach to what few impacts are faster than.
+    const SQUARES: f64 = 512.0;
+    let height = (velocity_scale(machine) / SQUARES).log2().floor().exp2() / f64::from(squares_per_degree);
+    let omega = Interval::from(machine.angular_velocity());
+    let plane = Plane { map: ImpactMap::new(machine), omega, per_degree: squares_per_degree, height };
+    let mut cover = Cover { known: HashMap::new(), pending: HashMap::new(), turn: 360 * i64::from(squares_per_degree) };
+    let escape = |cells, place: Place, flight| {
+        let at = [place[0].middle() / f64::from(squares_per_degree), place[1].middle() * height];
+        Escape { squares_per_degree, cells, at, flight }
+    };
+    impacts.iter().for_each(|place| cover.touch(&plane.squares(*place)));
+    let (mut cells, mut looks) = (0, 0);
+    while !cover.pending.is_empty() {
+        watch.at("cells of a region that is carried into itself", cells as u64, 0);
+        let wave: Vec<(Cell, Vec<Place>)> = cover.pending.drain().collect();
+        looks += wave.len();
+        let looked: Vec<_> = wave.par_iter().map(|(cell, _)| plane.look(cell)).collect();
+        // Of the cells that are not carried on the first one in the plane is told, however threads take turns.
+        let stuck = wave.iter().zip(&looked).filter_map(|((cell, _), look)| Some((*cell, *look.as_ref().err()?)));
+        if let Some((cell, flight)) = stuck.min_by_key(|(cell, _)| *cell) {
+            return Err(escape(cells, [cell.side(0), cell.side(1)], Some(flight)));
+        }
+        for ((cell, touched), look) in wave.into_iter().zip(looked) {
+            match look {
+                Ok(Look::Whole(images)) => {
+                    cells += 1;
+                    cover.known.insert(cell, None);
+                    images.iter().for_each(|image| cover.touch(image));
+                }
+                Ok(Look::Halved(side)) => {
+                    cover.known.insert(cell, Some(side));
+                    for half in cell.halves(side) {
+                        touched.iter().for_each(|place| cover.reach(half, place));
+                    }
+                }
+                Err(_) => {}
+            }
+        }
+        if cells > most {
+            let last = cover.pending.keys().min().map_or([Interval::from(0.0); 2], |cell| [cell.side(0), cell.side(1)]);
+            return Err(escape(cells, last, None));
+        }
+    }
+    Ok(plane.region(&cover, looks))
+}
+
+/// Which cells are in it.
+struct Cover {
+    /// Nothing for a cell that is whole, and the side that it is halved across.
+    known: HashMap<Cell, Option<usize>>,
+    /// Cells that are not looked at yet, with what touches them.
+    pending: HashMap<Cell, Vec<Place>>,
+    /// Squares of a turn.
+    turn: i64,
+}
+
+impl Cover {
+    /// Takes in all cells that a place touches.
+    fn touch(&mut self, place: &Place) {
+        let ends = |side: usize| place[side].low().floor() as i64..=place[side].high().floor() as i64;
+        for across in ends(0) {
+            let at = across.rem_euclid(self.turn);
+            // A place that goes beyond a turn is the same one turn on.
+            let shifted = [place[0] + (at - across) as f64, place[1]];
+            for up in ends(1).filter(|up| *up >= 0) {
+                self.reach(Cell { at: [at as u64, up as u64], halved: [0; 2] }, &shifted);
+            }
+        }
+    }
+
+    fn reach(&mut self, cell: Cell, place: &Place) {
+        if cell.meets(place) {
+            match self.known.get(&cell) {
+                Some(None) => {}
+                Some(Some(side)) => cell.halves(*side).into_iter().for_each(|half| self.reach(half, place)),
+                None => self.pending.entry(cell).or_default().push(*place),
+            }
+        }
+    }
+}
+
+impl Plane<'_> {
+    /// An angle, rad, and a velocity, m/s, in squares.
+    fn squares(&self, [angle, velocity]: [Interval; 2]) -> Place {
+        [angle * (Interval::from(360.0) / Interval::TURN) * f64::from(self.per_degree), velocity / self.height]
+    }
+
+    /// Where the impacts of a cell are followed by impacts.
+    fn look(&self, cell: &Cell) -> Result<Look, Unproved> {
+        let angle = cell.side(0) / f64::from(self.per_degree) * (Interval::TURN / 360.0);
+        let place = [angle, cell.side(1) * self.height, self.omega];
+        let centre = place.map(|side| Interval::from(side.middle()));
+        let over = std::array::from_fn(|side| place[side] - centre[side]);
+        let [angle, velocity, omega] = std::array::from_fn(|side| Centred::unknown(side, centre[side], &over));
+        let from = Impact { angle, velocity, turns: 0 };
+        let halved = cell.halved[0] + cell.halved[1];
+        match self.map.next(&from, omega) {
+            Ok(next) => {
+                let image = self.squares([next.angle.value(), next.velocity.value()]);
+                if image.iter().all(|side| side.width() <= 1.0) || halved >= HALVINGS {
+                    return Ok(Look::Whole(vec![image]));
+                }
+                let long = |side: usize| {
+                    let by = [next.angle, next.velocity].map(|part| part.whole.by[side].magnitude().into());
+                    let [across, up] = self.squares(by);
+                    across.high().max(up.high()) * place[side].width()
+                };
+                Ok(Look::Halved(usize::from(long(1) > long(0))))
+            }
+            Err(_) if halved < GRAZING => Ok(Look::Halved(usize::from(cell.halved[1] < cell.halved[0]))),
+            Err(_) => {
+                // As long as half a square takes to pass.
+                let shortest = 0.5 / f64::from(360 * self.per_degree) * (Interval::TURN / self.omega).middle();
+                let contacts = self.map.contacts(&from, omega, shortest)?;
+                Ok(Look::Whole(contacts.into_iter().map(|contact| self.squares(contact)).collect()))
+            }
+        }
+    }
+
+    fn region(&self, cover: &Cover, looks: usize) -> Region {
+        let mut cells: Vec<&Cell> =
+            cover.known.iter().filter(|(_, side)| side.is_none()).map(|(cell, _)| cell).collect();
+        cells.sort();
+        let degree = f64::from(self.per_degree);
+        let place = |cell: &&Cell| {
+            let [across, up] = [cell.side(0), cell.side(1)];
+            [[across.low() / degree, across.high() / degree], [up.low() * self.height, up.high() * self.height]]
+        };
+        let places: Vec<[[f64; 2]; 2]> = cells.iter().map(place).collect();
+        let highest_m_s = places.iter().fold(0.0_f64, |most, [_, [_, high]]| most.max(*high));
+        let area: f64 =
+            places.iter().map(|[angle, velocity]| (angle[1] - angle[0]) * (velocity[1] - velocity[0])).sum();
+        Region {
+            squares_per_degree: self.per_degree,
+            square_m_s: self.height,
+            cells: places.len(),
+            looks,
+            part: area / (360.0 * highest_m_s),
+            highest_m_s,
+            places,
+        }
+    }
+}
