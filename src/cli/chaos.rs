@@ -13,7 +13,6 @@ use crate::study::chaos::{chaos, portrait};
 #[command(after_help = "Examples:\n\
     \x20 corner-impact chaos --rpm 670 --out chaos.svg\n\
     \x20 corner-impact chaos models/osorio-2008.toml --rpm 673:673.5 --json\n\
-    \x20 corner-impact chaos models/overdamped.toml --rpm 668 --trapping\n\
     \n\
     A proof is by enclosures that leave no case out; that other motions come to the set is not said.\n\
     Exit code: 0 done, also where nothing is proved, 2 bad model file, usage or file, or a run that cannot go on.")]
@@ -23,7 +22,7 @@ pub(super) struct Arguments {
     /// Speed of the cam, or lowest and highest.
     #[arg(long, value_name = "R|LO:HI", value_parser = rpm_or_range, allow_hyphen_values = true)]
     rpm: [f64; 2],
-    /// Look for a region that traps as well, at the lowest speed: impacts that are followed by impacts in it for ever.
+    /// Look for regions that trap as well, at the lowest speed: impacts that are followed by impacts among them for ever.
     #[arg(long)]
     trapping: bool,
     /// Print one JSON document instead of the page.

@@ -119,17 +119,7 @@ impl Frame {
 impl Image {
     /// What differences within `|dy| <= L |dx|` are stretched by at least, where such cones are kept, with L the slope.
     pub fn stretched(&self, slope: f64) -> Option<f64> {
-        let [[a, b, _], [c, d, _]] = self.by;
-        if !(slope > 0.0) {
-            return None;
-        }
-        let size = |number: Interval| Interval::from(number.magnitude());
-        // Not above 0 where a may be 0.
-        let least = if a.is_positive() { a.low() } else { -a.high() };
-        // |a| - L |b| > 1 and |c| + L |d| <= L (|a| - L |b|)
-        let growth = Interval::from(least) - size(b) * slope;
-        let is_kept = (growth * slope - size(c) - size(d) * slope).low() >= 0.0;
-        (growth.low() > 1.0 && is_kept).then_some(growth.low())
+        stretched(self.by.map(|[x, y, _]| [x, y]), slope)
     }
 
     /// Whether cones cannot be kept at any point of the box.
@@ -140,4 +130,18 @@ impl Image {
         let most = a.magnitude() - slope * least(b);
         most <= 1.0 || least(c) + slope * least(d) > slope * most
     }
+}
+
+/// What a derivative, by rows, stretches differences within `|dy| <= L |dx|` by at least, where it keeps such cones, with L the slope.
+pub(super) fn stretched([[a, b], [c, d]]: [[Interval; 2]; 2], slope: f64) -> Option<f64> {
+    if !(slope > 0.0) {
+        return None;
+    }
+    let size = |number: Interval| Interval::from(number.magnitude());
+    // Not above 0 where a may be 0.
+    let least = if a.is_positive() { a.low() } else { -a.high() };
+    // |a| - L |b| > 1 and |c| + L |d| <= L (|a| - L |b|)
+    let growth = Interval::from(least) - size(b) * slope;
+    let is_kept = (growth * slope - size(c) - size(d) * slope).low() >= 0.0;
+    (growth.low() > 1.0 && is_kept).then_some(growth.low())
 }

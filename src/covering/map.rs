@@ -17,7 +17,7 @@ use std::ops::ControlFlow;
 
 use serde::Serialize;
 
-use crate::cam::Lift;
+use crate::cam::{Lift, Segment};
 use crate::interval::Interval;
 use crate::interval::centred::Centred;
 use crate::interval::roots::falls_to_zero;
@@ -54,6 +54,13 @@ pub(super) struct Impact<'a> {
     pub turns: i64,
 }
 
+/// Lift and slope at an angle, of a cam that tells what holds both and the curvature over a range of angles.
+fn lift_of<'a>(angle: Over<'a>, over: impl Fn(Interval) -> Lift<Interval>) -> ([Over<'a>; 2], Interval) {
+    let (whole, centre) = (over(angle.value()), over(angle.centre));
+    let lift = angle.of(centre.value, whole.value, whole.slope);
+    ([lift, angle.of(centre.slope, whole.slope, whole.curvature)], whole.curvature)
+}
+
 /// Follower and cam at some time of a flight.
 struct Gap<'a> {
     /// theta + omega t.
@@ -62,6 +69,8 @@ struct Gap<'a> {
     value: Over<'a>,
     /// g'.
     rate: Over<'a>,
+    /// The follower's own velocity.
+    velocity: Over<'a>,
     /// What holds g''.
     bend: Interval,
 }
@@ -95,9 +104,7 @@ impl<'a> ImpactMap<'a> {
     /// Lift and slope of the cam at an angle, and what holds the curvature.
     fn lift<'b>(&self, angle: Over<'b>) -> ([Over<'b>; 2], Interval) {
         let over = |angles: Interval| -> Lift<Interval> { self.machine.cam().lift_over(angles, &self.sharp) };
-        let (whole, centre) = (over(angle.value()), over(angle.centre));
-        let lift = angle.of(centre.value, whole.value, whole.slope);
-        ([lift, angle.of(centre.slope, whole.slope, whole.curvature)], whole.curvature)
+        lift_of(angle, over)
     }
 
     /// The impact after one, at the cam's speed, rad/s.
@@ -105,13 +112,7 @@ impl<'a> ImpactMap<'a> {
         if !from.velocity.value().is_positive() {
             return Err(Unproved::NoImpact);
         }
-        let launch = self.launch(from, omega);
-        let guess = self.guess(from, omega).ok_or(Unproved::NoImpact)?;
-        let time = launch.landing(guess)?;
-        if !launch.is_first(time.value(), from.velocity.value()) {
-            return Err(Unproved::NotFirst);
-        }
-        let landing = launch.gap(time);
+        let landing = self.land(from, &self.launch(from, omega))?;
         let turns = (landing.angle.centre.middle() / TAU).floor();
         Ok(Impact {
             angle: landing.angle + -(Interval::TURN * turns),
@@ -121,8 +122,50 @@ impl<'a> ImpactMap<'a> {
         })
     }
 
+    /// How the map changes with the angle and with the follower's own velocity before an impact, both of the impact after: by rows, over
+    /// a rectangle of angles, rad, on one segment of the cam, and velocities after the impact relative to the cam, m/s.
+    ///
+    /// The next impact is where g = 0, and neither its angle nor the follower's velocity there asks for c'': at a corner this derivative
+    /// jumps only with the angle that the flight begins at, and each segment has one of its own.
+    pub(super) fn derivative_before(
+        &self,
+        segment: &Segment,
+        place: [Interval; 2],
+        omega: Interval,
+    ) -> Result<[[Interval; 2]; 2], Unproved> {
+        let restitution = Interval::from(self.machine.restitution());
+        // v- = c' - u/r
+        let before = omega * segment.law.lift_over(place[0]).slope - place[1] / restitution;
+        let place = [place[0], before, omega];
+        let centre = place.map(|side| Interval::from(side.middle()));
+        let over = std::array::from_fn(|side| place[side] - centre[side]);
+        let [angle, before, omega] = std::array::from_fn(|side| Centred::unknown(side, centre[side], &over));
+        let ([lift, slope], _) = lift_of(angle, |angles| segment.law.lift_over(angles));
+        let velocity = (omega * slope - before) * restitution;
+        let from = Impact { angle, velocity, turns: 0 };
+        if !velocity.value().is_positive() {
+            return Err(Unproved::NoImpact);
+        }
+        let landing = self.land(&from, &self.launched(&from, omega, [lift, slope]))?;
+        Ok([landing.angle, landing.velocity].map(|row| [row.whole.by[0], row.whole.by[1]]))
+    }
+
+    /// The flight to the first impact, which is transversal, as it is there.
+    fn land<'b>(&self, from: &Impact<'b>, launch: &Launch<'b, '_>) -> Result<Gap<'b>, Unproved> {
+        let guess = self.guess(from, launch.omega).ok_or(Unproved::NoImpact)?;
+        let time = launch.landing(guess)?;
+        if !launch.is_first(time.value(), from.velocity.value()) {
+            return Err(Unproved::NotFirst);
+        }
+        Ok(launch.gap(time))
+    }
+
     fn launch<'b, 'c>(&'c self, from: &Impact<'b>, omega: Over<'b>) -> Launch<'b, 'c> {
-        let ([lift, slope], _) = self.lift(from.angle);
+        let (lift, _) = self.lift(from.angle);
+        self.launched(from, omega, lift)
+    }
+
+    fn launched<'b, 'c>(&'c self, from: &Impact<'b>, omega: Over<'b>, [lift, slope]: [Over<'b>; 2]) -> Launch<'b, 'c> {
         let spring = -self.machine.flight().omega0_squared();
         let force = |lift: Interval| self.machine.flight().force(lift);
         Launch {
@@ -230,6 +273,7 @@ impl<'a> Launch<'a, '_> {
             angle,
             value: displacement - (lift - self.lift),
             rate: velocity - self.omega * slope,
+            velocity,
             bend: acceleration - self.omega.value().squared() * curvature,
         }
     }

@@ -15,6 +15,7 @@ use std::collections::HashMap;
 use rayon::prelude::*;
 use serde::Serialize;
 
+use super::frame::stretched;
 use super::map::{Impact, ImpactMap, Unproved};
 use crate::interval::centred::Centred;
 use crate::interval::{Interval, Number};
@@ -72,8 +73,10 @@ pub struct Region {
     pub looks: usize,
     /// The part of all angles and all velocities up to the highest that it covers.
     pub part: f64,
-    /// The highest velocity in it, m/s.
-    pub highest_m_s: f64,
+    /// The lowest and the highest velocity in it, m/s.
+    pub velocities_m_s: [f64; 2],
+    /// The lowest and the highest angle in it, from 0 to 360 degrees.
+    pub angles_deg: [f64; 2],
     /// The cells: degrees of the cam, and m/s, each from one number to another.
     #[serde(skip)]
     pub places: Vec<[[f64; 2]; 2]>,
@@ -84,6 +87,43 @@ impl Region {
     pub fn holds(&self, impact: [f64; 2]) -> bool {
         self.places.iter().any(|place| place.iter().zip(impact).all(|([low, high], at)| *low <= at && at <= *high))
     }
+}
+
+/// How much a motion in a region parts from its neighbours at each impact, at least: a factor above 1, where that is proved.
+///
+/// With the follower's own velocity v before an impact beside the angle theta, a cone `|dv - s dtheta| <= L |dtheta|` is sent into itself
+/// by the derivative in each cell, on each side of a corner by that of its side, and |dtheta| grows. Then no orbit in the region is
+/// stable, and no motion has a Lyapunov exponent below the logarithm of that, an impact.
+pub fn parted(machine: &Machine, region: &Region) -> Option<f64> {
+    /// L is looked for among powers of two, as parts of s.
+    const SLOPES: std::ops::RangeInclusive<i32> = -12..=0;
+    if !(machine.restitution() > 0.0) {
+        return None;
+    }
+    let (map, omega) = (ImpactMap::new(machine), Interval::from(machine.angular_velocity()));
+    let degree = Interval::TURN / 360.0;
+    let of_cell = |[angle, velocity]: &[[f64; 2]; 2]| {
+        let place = [Interval::new(angle[0], angle[1]) * degree, Interval::new(velocity[0], velocity[1])];
+        // The angles of a cell at the end of a turn go on in the next by rounding alone: what they are there stands at its beginning.
+        let on = machine.cam().segments().iter().filter_map(|segment| {
+            let angles = place[0].common(Interval::new(segment.start, segment.end))?;
+            Some(map.derivative_before(segment, [angles, place[1]], omega))
+        });
+        on.collect::<Result<Vec<_>, _>>().ok().filter(|sides| !sides.is_empty())
+    };
+    let derivatives: Vec<Vec<[[Interval; 2]; 2]>> = region.places.par_iter().map(of_cell).collect::<Option<_>>()?;
+    // The derivative has nearly one direction that it sends all to, where impacts take much from the motion.
+    let [[_, b], [_, d]] = *derivatives.get(derivatives.len() / 2)?.first()?;
+    let s = d.middle() / b.middle();
+    let least = |slope: f64| {
+        let grown = derivatives.iter().flatten().map(|[[a, b], [c, d]]| {
+            // In x = dtheta and y = dv - s dtheta.
+            let (x, across) = (*a + *b * s, *d - *b * s);
+            stretched([[x, *b], [*c - *a * s + across * s, across]], slope)
+        });
+        grown.reduce(|one, two| Some(one?.min(two?)))?
+    };
+    SLOPES.filter_map(|power| least(s.abs() * 2.0_f64.powi(power))).reduce(f64::max)
 }
 
 /// A region that is not closed.
@@ -249,7 +289,12 @@ impl Plane<'_> {
             [[across.low() / degree, across.high() / degree], [up.low() * self.height, up.high() * self.height]]
         };
         let places: Vec<[[f64; 2]; 2]> = cells.iter().map(place).collect();
-        let highest_m_s = places.iter().fold(0.0_f64, |most, [_, [_, high]]| most.max(*high));
+        let ends = |side: usize| {
+            let hull =
+                |[least, most]: [f64; 2], place: &[[f64; 2]; 2]| [least.min(place[side][0]), most.max(place[side][1])];
+            places.iter().fold([f64::INFINITY, 0.0], hull)
+        };
+        let [angles_deg, velocities_m_s] = [ends(0), ends(1)];
         let area: f64 =
             places.iter().map(|[angle, velocity]| (angle[1] - angle[0]) * (velocity[1] - velocity[0])).sum();
         Region {
@@ -257,8 +302,9 @@ impl Plane<'_> {
             square_m_s: self.height,
             cells: places.len(),
             looks,
-            part: area / (360.0 * highest_m_s),
-            highest_m_s,
+            part: area / (360.0 * velocities_m_s[1]),
+            velocities_m_s,
+            angles_deg,
             places,
         }
     }

@@ -5,7 +5,8 @@ use crate::covering::region::{Escape, Region};
 use crate::show::block::{Block, Column, Mark, Table, words};
 use crate::show::digits::Digits;
 use crate::show::{Paged, words};
-use crate::study::chaos::{Chaos, Open, Theorem, Trapping};
+use crate::study::chaos::{Chaos, Open, Theorem};
+use crate::study::trapping::Trapped;
 
 impl Paged for Chaos {
     fn blocks(&self) -> Vec<Block> {
@@ -24,10 +25,10 @@ impl Paged for Chaos {
             self.theorems.iter().flat_map(|theorem| &theorem.refused).map(|why| Block::paragraph(refused(why))),
         );
         page.extend(self.open.iter().map(open));
-        match &self.trapping {
-            Some(Ok(trapping)) => page.extend([Block::Gap, Block::paragraph(trapped(trapping, low))]),
-            Some(Err(escapes)) => page.extend([Block::Gap, Block::paragraph(escaped(escapes, low))]),
-            None => {}
+        if let Some(trapping) = &self.trapping {
+            let told = trapping.regions.iter().map(|trapped| self::trapped(trapped, low));
+            let open = (!trapping.escapes.is_empty()).then(|| escaped(&trapping.escapes, low));
+            page.extend(told.chain(open).flat_map(|told| [Block::Gap, Block::paragraph(told)]));
         }
         page
     }
@@ -83,17 +84,30 @@ pub(crate) fn statement(found: &Chaos) -> String {
 }
 
 /// What is proved of a region.
-pub(crate) fn trapped(found: &Trapping, rpm: f64) -> String {
-    let Region { cells, highest_m_s, part, .. } = found.region;
+fn trapped(found: &Trapped, rpm: f64) -> String {
+    let Region { cells, velocities_m_s, part, angles_deg, .. } = found.region;
     let chaos = match found.holds_chaos {
         true => " All strips lie in it, and so the set of chaotic motions does.",
         false => "",
     };
+    let parted = found.parted.map_or_else(String::new, |growth| {
+        format!(
+            " Each motion in it parts from its neighbours, by a factor of at least {:.4} an impact: no orbit in it is stable, and no motion has a \
+             Lyapunov exponent below {:.4} an impact.",
+            // Rounded down, as bounds from below must be.
+            (1e4 * growth).floor() / 1e4,
+            (1e4 * growth.ln()).floor() / 1e4
+        )
+    });
+    let percent = 100.0 * part;
     format!(
-        "Proved: a region traps motions at {rpm} rpm. After an impact in one of its {}, all impacts are in them: the follower flies and hits          for ever, and never rests on the cam. No impact in it leaves faster than {} m/s relative to the cam; the cells cover {} % of all          angles and velocities up to there.{chaos}",
+        "Proved: a region traps motions at {rpm} rpm. After an impact in one of its {}, all impacts are in them: the follower flies and hits \
+         for ever, and never rests on the cam. They are from {} deg and {} m/s relative to the cam, {} % of all \
+         angles and velocities up to there.{chaos}{parted}",
         words::many(cells as u64, "cell"),
-        Digits::UpTo(4).text(highest_m_s),
-        Digits::Significant(2).text(100.0 * part),
+        words::range(angles_deg, Digits::UpTo(4)),
+        words::range(velocities_m_s, Digits::UpTo(4)),
+        if percent < 0.01 { Digits::Size } else { Digits::Significant(2) }.text(percent),
     )
 }
 

@@ -5,14 +5,13 @@ use std::ops::ControlFlow;
 use crate::cam::Cam;
 use crate::covering::find::{Proved, Short, Wanted, find};
 use crate::covering::prove::{Covered, Refused, prove};
-use crate::covering::region::{Escape, Region, trap};
 use crate::covering::sample::Line;
-use crate::covering::{Frame, HSet, known};
-use crate::interval::Interval;
+use crate::covering::{HSet, known};
 use crate::known::Known;
 use crate::model::Model;
 use crate::progress::Watch;
 use crate::simulate::{Event, EventKind, Machine};
+use crate::study::trapping::{Trapping, trapping};
 use crate::study::{StudyError, machine};
 
 /// What is proved of a model's chaos: the document of `chaos --json`.
@@ -26,24 +25,9 @@ pub struct Chaos {
     pub theorems: Vec<Theorem>,
     /// Where nothing is proved.
     pub open: Vec<Open>,
-    /// A region that traps, at the lowest speed, where one was asked for: how far it came in squares of each size, if none is closed.
-    pub trapping: Option<Result<Trapping, Vec<Escape>>>,
+    /// Regions that trap, at the lowest speed, where they were asked for.
+    pub trapping: Option<Trapping>,
 }
-
-/// A region that the impact map carries into itself.
-#[derive(Clone, Debug)]
-pub struct Trapping {
-    /// The region.
-    pub region: Region,
-    /// Whether the strips of the last theorem lie in it, and with them its set of chaotic motions.
-    pub holds_chaos: bool,
-}
-
-document!(Trapping as it {
-    proved: true,
-    holds_chaos: it.holds_chaos,
-    region: it.region,
-});
 
 document!(Chaos as it {
     schema: "corner-impact/chaos/1",
@@ -52,8 +36,7 @@ document!(Chaos as it {
     known: Known::Proved,
     theorems: it.theorems,
     open: it.open,
-    trapping if_any: it.trapping.as_ref().and_then(|trapping| trapping.as_ref().ok()),
-    escapes if_any: it.trapping.as_ref().and_then(|trapping| trapping.as_ref().err()),
+    trapping if_any: it.trapping,
 });
 
 /// A set of chaotic motions at every speed of a range.
@@ -110,52 +93,18 @@ fn hypotheses(cam: &Cam) -> Vec<&'static str> {
 const WIDEST: f64 = 0.5;
 const NARROWEST: f64 = 0.03;
 
-/// Looks for sets of chaotic motions at a speed, or at every speed of a range, rpm; and at the lowest for a region that traps, where
-/// that is wanted.
-pub fn chaos(model: &Model, rpm: [f64; 2], wants_region: bool, watch: &dyn Watch) -> Result<Chaos, StudyError> {
+/// Looks for sets of chaotic motions at a speed, or at every speed of a range, rpm; and at the lowest for regions that trap, where
+/// those are wanted.
+pub fn chaos(model: &Model, rpm: [f64; 2], wants_regions: bool, watch: &dyn Watch) -> Result<Chaos, StudyError> {
     let mut found = sets(model, rpm, watch)?;
-    if wants_region {
+    if wants_regions {
         found.trapping = Some(trapping(model, rpm[0], found.theorems.last().map(|theorem| &theorem.set), watch)?);
     }
     Ok(found)
 }
 
-/// Looks for a region that traps at a speed, rpm, about the strips of an h-set and the impacts of a run from there, or of one from rest.
-fn trapping(
-    model: &Model,
-    rpm: f64,
-    set: Option<&HSet>,
-    watch: &dyn Watch,
-) -> Result<Result<Trapping, Vec<Escape>>, StudyError> {
-    /// Impacts of the run, those that are left out before, and how many cells there may be: some ten seconds of work each.
-    const SHOWN: usize = 5_000;
-    const SETTLING: usize = 500;
-    const CELLS: usize = 30_000;
-    let machine = machine(model, rpm)?;
-    let start = set.map_or([0.0; 2], |set| [set.centre[0].to_radians(), set.centre[1]]);
-    let point = |[angle, velocity]: [f64; 2]| [Interval::from(angle.to_radians()), velocity.into()];
-    let run: Vec<[Interval; 2]> = impacts(&machine, start, SETTLING, SHOWN)?.into_iter().map(point).collect();
-    let strips: Vec<[Interval; 2]> = set.map_or_else(Vec::new, |set| {
-        let frame = Frame::new(set);
-        set.strips.iter().flat_map(|strip| frame.rectangles(set, strip)).collect()
-    });
-    let mut escapes = Vec::new();
-    for squares_per_degree in [1, 2] {
-        if !strips.is_empty()
-            && let Ok(region) = trap(&machine, &strips, squares_per_degree, CELLS, watch)
-        {
-            return Ok(Ok(Trapping { region, holds_chaos: true }));
-        }
-        match trap(&machine, &run, squares_per_degree, CELLS, watch) {
-            Ok(region) => return Ok(Ok(Trapping { region, holds_chaos: false })),
-            Err(escape) => escapes.push(escape),
-        }
-    }
-    Ok(Err(escapes))
-}
-
 /// The impacts of a run, degrees of the cam and m/s relative to it, that starts with one at an angle, rad, and a velocity.
-fn impacts(
+pub(super) fn impacts(
     machine: &Machine,
     [angle, velocity]: [f64; 2],
     settling: usize,
