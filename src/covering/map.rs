@@ -322,6 +322,9 @@ impl<'a> Launch<'a, '_> {
         const STEP: f64 = 0.125;
         const SHORTEST: f64 = 1.0 / 8192.0;
         let end = landing.low();
+        if !(end > 0.0) {
+            return false;
+        }
         let (mut time, mut step) = (0.0, STEP * end);
         while time < end {
             let times = Interval::new(time, end.min(time + step));

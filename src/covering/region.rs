@@ -15,7 +15,7 @@ use std::collections::HashMap;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::frame::stretched;
+use super::frame::{angular_velocities, stretched};
 use super::map::{Impact, ImpactMap, Unproved};
 use crate::interval::centred::Centred;
 use crate::interval::{Interval, Number};
@@ -89,24 +89,26 @@ impl Region {
     }
 }
 
-/// How much a motion in a region parts from its neighbours at each impact, at least: a factor above 1, where that is proved.
+/// By what factor above 1 some deviations of every motion in a region grow at each impact, at least, where that is proved.
 ///
-/// With the follower's own velocity v before an impact beside the angle theta, a cone `|dv - s dtheta| <= L |dtheta|` is sent into itself
-/// by the derivative in each cell, on each side of a corner by that of its side, and |dtheta| grows. Then no orbit in the region is
-/// stable, and no motion has a Lyapunov exponent below the logarithm of that, an impact.
-pub fn parted(machine: &Machine, region: &Region) -> Option<f64> {
+/// In the coordinates theta, the angle of an impact, and v, the follower's velocity before it, each derivative in the region, at a corner that of
+/// either side, sends a cone `|dv - s dtheta| <= L |dtheta|` into itself, and |dtheta| grows in it. So no periodic orbit in the region is stable
+/// (one on a corner has all its neighbours on one side), and the largest Lyapunov exponent of no motion is below the logarithm of that, an impact.
+pub fn parted(machine: &Machine, rpm: f64, region: &Region) -> Option<f64> {
     /// L is looked for among powers of two, as parts of s.
     const SLOPES: std::ops::RangeInclusive<i32> = -12..=0;
     if !(machine.restitution() > 0.0) {
         return None;
     }
-    let (map, omega) = (ImpactMap::new(machine), Interval::from(machine.angular_velocity()));
+    let (map, omega) = (ImpactMap::new(machine), angular_velocities([rpm; 2]));
     let degree = Interval::TURN / 360.0;
     let of_cell = |[angle, velocity]: &[[f64; 2]; 2]| {
         let place = [Interval::new(angle[0], angle[1]) * degree, Interval::new(velocity[0], velocity[1])];
-        // The angles of a cell at the end of a turn go on in the next by rounding alone: what they are there stands at its beginning.
-        let on = machine.cam().segments().iter().filter_map(|segment| {
-            let angles = place[0].common(Interval::new(segment.start, segment.end))?;
+        let segments = machine.cam().segments();
+        let on = segments.iter().enumerate().filter_map(|(index, segment)| {
+            // The last one goes on to where the turn ends, which no double is.
+            let end = if index + 1 == segments.len() { Interval::TURN.high() } else { segment.end };
+            let angles = place[0].common(Interval::new(segment.start, end))?;
             Some(map.derivative_before(segment, [angles, place[1]], omega))
         });
         on.collect::<Result<Vec<_>, _>>().ok().filter(|sides| !sides.is_empty())
@@ -135,7 +137,7 @@ pub struct Escape {
     pub cells: usize,
     /// The impact whose cell is not carried on: degrees of the cam, and m/s.
     pub at: [f64; 2],
-    /// What is not proved of the flight from there; nothing where there were too many cells.
+    /// What is not proved of the flight from there; nothing where there were too many cells, or no impacts to begin with.
     pub flight: Option<Unproved>,
 }
 
@@ -147,23 +149,27 @@ struct Plane<'a> {
     height: f64,
 }
 
-/// A cell is halved so often at most, and so often where a graze is to be told from an impact.
+/// A cell whose image is large is halved so often at most.
 const HALVINGS: u8 = 24;
+/// A cell whose flights do not all end with one transversal impact is halved so often; those of the last may graze, and are followed.
 const GRAZING: u8 = 12;
 
 /// Closes the region that some rectangles of impacts begin, each the cam's angle, rad, and the velocity relative to it, m/s: in squares
 /// of so many a degree, with so many cells at most.
 pub fn trap(
     machine: &Machine,
+    rpm: f64,
     impacts: &[[Interval; 2]],
     squares_per_degree: u32,
     most: usize,
     watch: &dyn Watch,
 ) -> Result<Region, Escape> {
+    // Ends of cells are doubles.
+    let squares_per_degree = squares_per_degree.next_power_of_two();
     /// So many squares on top of each other reach to what few impacts are faster than.
     const SQUARES: f64 = 512.0;
     let height = (velocity_scale(machine) / SQUARES).log2().floor().exp2() / f64::from(squares_per_degree);
-    let omega = Interval::from(machine.angular_velocity());
+    let omega = angular_velocities([rpm; 2]);
     let plane = Plane { map: ImpactMap::new(machine), omega, per_degree: squares_per_degree, height };
     let mut cover = Cover { known: HashMap::new(), pending: HashMap::new(), turn: 360 * i64::from(squares_per_degree) };
     let escape = |cells, place: Place, flight| {
@@ -171,6 +177,9 @@ pub fn trap(
         Escape { squares_per_degree, cells, at, flight }
     };
     impacts.iter().for_each(|place| cover.touch(&plane.squares(*place)));
+    if cover.pending.is_empty() {
+        return Err(escape(0, [Interval::from(0.0); 2], None));
+    }
     let (mut cells, mut looks) = (0, 0);
     while !cover.pending.is_empty() {
         watch.at("cells of a region that is carried into itself", cells as u64, 0);
@@ -182,23 +191,23 @@ pub fn trap(
         if let Some((cell, flight)) = stuck.min_by_key(|(cell, _)| *cell) {
             return Err(escape(cells, [cell.side(0), cell.side(1)], Some(flight)));
         }
+        // All of them are known before any image touches one, so that none is looked at twice.
+        for ((cell, _), look) in wave.iter().zip(&looked) {
+            let side = match look {
+                Ok(Look::Halved(side)) => Some(*side),
+                _ => None,
+            };
+            cells += usize::from(side.is_none());
+            cover.known.insert(*cell, side);
+        }
         for ((cell, touched), look) in wave.into_iter().zip(looked) {
             match look {
-                Ok(Look::Whole(images)) => {
-                    cells += 1;
-                    cover.known.insert(cell, None);
-                    images.iter().for_each(|image| cover.touch(image));
-                }
-                Ok(Look::Halved(side)) => {
-                    cover.known.insert(cell, Some(side));
-                    for half in cell.halves(side) {
-                        touched.iter().for_each(|place| cover.reach(half, place));
-                    }
-                }
+                Ok(Look::Whole(images)) => images.iter().for_each(|image| cover.touch(image)),
+                Ok(Look::Halved(_)) => touched.iter().for_each(|place| cover.reach(cell, place)),
                 Err(_) => {}
             }
         }
-        if cells > most {
+        if cells > most && !cover.pending.is_empty() {
             let last = cover.pending.keys().min().map_or([Interval::from(0.0); 2], |cell| [cell.side(0), cell.side(1)]);
             return Err(escape(cells, last, None));
         }
@@ -259,6 +268,9 @@ impl Plane<'_> {
         match self.map.next(&from, omega) {
             Ok(next) => {
                 let image = self.squares([next.angle.value(), next.velocity.value()]);
+                if !image.iter().all(|side| side.width().is_finite()) {
+                    return Err(Unproved::NoImpact);
+                }
                 if image.iter().all(|side| side.width() <= 1.0) || halved >= HALVINGS {
                     return Ok(Look::Whole(vec![image]));
                 }

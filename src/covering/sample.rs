@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use super::HSet;
-use crate::simulate::{Event, EventKind, Machine};
+use crate::simulate::{Event, EventKind, Machine, SimulateError};
 
 /// Impacts that are looked at after a start.
 pub(super) const MOST_IMPACTS: usize = 8;
@@ -126,4 +126,25 @@ impl Line {
         }
         found
     }
+}
+
+/// The impacts of a run, degrees of the cam and m/s relative to it, that starts with one at an angle, rad, and a velocity.
+pub(crate) fn impacts(
+    machine: &Machine,
+    [angle, velocity]: [f64; 2],
+    settling: usize,
+    shown: usize,
+) -> Result<Vec<[f64; 2]>, SimulateError> {
+    let mut impacts = Vec::new();
+    let mut motion = machine.start_on_cam(angle, velocity)?;
+    let mut see = |event: &Event| {
+        if event.kind == EventKind::Impact {
+            impacts.push([event.cam_angle.to_degrees(), event.velocity_after - event.cam_velocity]);
+        }
+        if impacts.len() < shown { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    };
+    let goal = motion.after(shown as u64);
+    let _ = machine.advance(&mut motion, goal, &mut see)?;
+    impacts.drain(..settling.min(impacts.len()));
+    Ok(impacts)
 }

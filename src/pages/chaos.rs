@@ -20,7 +20,10 @@ impl Paged for Chaos {
             all if low == high => page.extend(all.iter().map(|theorem| Block::Table(strips(theorem)))),
             _ => page.push(Block::Table(ranges(self))),
         }
-        page.extend(self.theorems.first().map(hypotheses));
+        let is_region_proved = self.trapping.as_ref().is_some_and(|trapping| !trapping.regions.is_empty());
+        if !self.theorems.is_empty() || is_region_proved {
+            page.push(Block::paragraph(format!("Taken for granted: {}.", self.hypotheses.join("; "))));
+        }
         page.extend(
             self.theorems.iter().flat_map(|theorem| &theorem.refused).map(|why| Block::paragraph(refused(why))),
         );
@@ -92,8 +95,8 @@ fn trapped(found: &Trapped, rpm: f64) -> String {
     };
     let parted = found.parted.map_or_else(String::new, |growth| {
         format!(
-            " Each motion in it parts from its neighbours, by a factor of at least {:.4} an impact: no orbit in it is stable, and no motion has a \
-             Lyapunov exponent below {:.4} an impact.",
+            " Some deviations of every motion in it grow at each impact, by a factor of at least {:.4}: no periodic orbit in it is stable, and \
+             the largest Lyapunov exponent of no motion is below {:.4} an impact.",
             // Rounded down, as bounds from below must be.
             (1e4 * growth).floor() / 1e4,
             (1e4 * growth.ln()).floor() / 1e4
@@ -105,10 +108,15 @@ fn trapped(found: &Trapped, rpm: f64) -> String {
          for ever, and never rests on the cam. They are from {} deg and {} m/s relative to the cam, {} % of all \
          angles and velocities up to there.{chaos}{parted}",
         words::many(cells as u64, "cell"),
-        words::range(angles_deg, Digits::UpTo(4)),
-        words::range(velocities_m_s, Digits::UpTo(4)),
+        words::range(outwards(angles_deg), Digits::UpTo(4)),
+        words::range(outwards(velocities_m_s), Digits::UpTo(4)),
         if percent < 0.01 { Digits::Size } else { Digits::Significant(2) }.text(percent),
     )
+}
+
+/// Ends to four places, such that nothing between them is left out.
+fn outwards([low, high]: [f64; 2]) -> [f64; 2] {
+    [(1e4 * low).floor() / 1e4, (1e4 * high).ceil() / 1e4]
 }
 
 /// How far it came.
@@ -122,6 +130,7 @@ fn escaped(escapes: &[Escape], rpm: f64) -> String {
                     words::unproved(flight)
                 )
             }
+            None if escape.cells == 0 => "there was no impact to begin with".to_owned(),
             None => "there were too many".to_owned(),
         };
         let size = words::many(escape.squares_per_degree.into(), "square");
@@ -170,10 +179,6 @@ fn ranges(found: &Chaos) -> Table {
         ]);
     }
     table
-}
-
-fn hypotheses(theorem: &Theorem) -> Block {
-    Block::paragraph(format!("Taken for granted: {}.", theorem.hypotheses.join("; ")))
 }
 
 /// Why a strip was given up.

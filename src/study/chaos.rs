@@ -1,16 +1,13 @@
 //! Is there a set of chaotic motions, at a speed or at every speed of a range? Proved, or how far it came.
 
-use std::ops::ControlFlow;
-
 use crate::cam::Cam;
 use crate::covering::find::{Proved, Short, Wanted, find};
 use crate::covering::prove::{Covered, Refused, prove};
-use crate::covering::sample::Line;
+use crate::covering::sample::{Line, impacts};
 use crate::covering::{HSet, known};
 use crate::known::Known;
 use crate::model::Model;
 use crate::progress::Watch;
-use crate::simulate::{Event, EventKind, Machine};
 use crate::study::trapping::{Trapping, trapping};
 use crate::study::{StudyError, machine};
 
@@ -21,6 +18,8 @@ pub struct Chaos {
     pub model: String,
     /// From which speed to which, rpm.
     pub rpm: [f64; 2],
+    /// What is taken for granted of the machine where anything is proved.
+    pub hypotheses: Vec<&'static str>,
     /// By rising speed.
     pub theorems: Vec<Theorem>,
     /// Where nothing is proved.
@@ -34,6 +33,7 @@ document!(Chaos as it {
     model: it.model,
     rpm: it.rpm,
     known: Known::Proved,
+    hypotheses: it.hypotheses,
     theorems: it.theorems,
     open: it.open,
     trapping if_any: it.trapping,
@@ -98,41 +98,30 @@ const NARROWEST: f64 = 0.03;
 pub fn chaos(model: &Model, rpm: [f64; 2], wants_regions: bool, watch: &dyn Watch) -> Result<Chaos, StudyError> {
     let mut found = sets(model, rpm, watch)?;
     if wants_regions {
-        found.trapping = Some(trapping(model, rpm[0], found.theorems.last().map(|theorem| &theorem.set), watch)?);
+        // Of a range the strips of another speed lie elsewhere.
+        let is_there = |set: &&HSet| set.rpm[0] <= rpm[0] && rpm[0] <= set.rpm[1];
+        let strips = found.theorems.iter().map(|theorem| &theorem.set).filter(is_there).next_back();
+        found.trapping = Some(trapping(model, rpm[0], strips, watch)?);
     }
     Ok(found)
 }
 
-/// The impacts of a run, degrees of the cam and m/s relative to it, that starts with one at an angle, rad, and a velocity.
-pub(super) fn impacts(
-    machine: &Machine,
-    [angle, velocity]: [f64; 2],
-    settling: usize,
-    shown: usize,
-) -> Result<Vec<[f64; 2]>, StudyError> {
-    let mut impacts = Vec::new();
-    let mut motion = machine.start_on_cam(angle, velocity)?;
-    let mut see = |event: &Event| {
-        if event.kind == EventKind::Impact {
-            impacts.push([event.cam_angle.to_degrees(), event.velocity_after - event.cam_velocity]);
-        }
-        if impacts.len() < shown { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
-    };
-    let goal = motion.after(shown as u64);
-    let _ = machine.advance(&mut motion, goal, &mut see)?;
-    impacts.drain(..settling.min(impacts.len()));
-    Ok(impacts)
-}
-
 fn sets(model: &Model, rpm: [f64; 2], watch: &dyn Watch) -> Result<Chaos, StudyError> {
-    let mut found = Chaos { model: model.name.clone(), rpm, theorems: Vec::new(), open: Vec::new(), trapping: None };
+    let hypotheses = hypotheses(&Cam::new(model)?);
+    let mut found = Chaos {
+        model: model.name.clone(),
+        rpm,
+        hypotheses: hypotheses.clone(),
+        theorems: Vec::new(),
+        open: Vec::new(),
+        trapping: None,
+    };
     let is_one = |[low, high]: [f64; 2]| high - low <= NARROWEST;
     let wanted = match is_one(rpm) {
         true => Wanted { strips: 8, cones: true },
         false => Wanted { strips: 3, cones: false },
     };
     let kept: Vec<HSet> = known(&model.name).into_iter().filter(|set| is_one(set.rpm) == is_one(rpm)).collect();
-    let hypotheses = hypotheses(&Cam::new(model)?);
     let (mut from, mut width) = (rpm[0], WIDEST);
     loop {
         watch.at("h-sets that cover themselves: rpm", (from - rpm[0]) as u64, (rpm[1] - rpm[0]) as u64);

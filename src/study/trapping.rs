@@ -5,11 +5,11 @@ use serde::Serialize;
 use crate::cam::Cam;
 use crate::corner::locate;
 use crate::covering::region::{Escape, Region, parted, trap};
+use crate::covering::sample::impacts;
 use crate::covering::{Frame, HSet};
 use crate::interval::Interval;
 use crate::model::Model;
 use crate::progress::Watch;
-use crate::study::chaos::impacts;
 use crate::study::{StudyError, machine};
 
 /// Regions that trap, and how far it came where none is proved.
@@ -26,9 +26,9 @@ pub struct Trapping {
 pub struct Trapped {
     /// The region.
     pub region: Region,
-    /// Whether the strips of the last theorem lie in it, and with them its set of chaotic motions.
+    /// Whether the strips of the last theorem at the speed lie in it, and with them its set of chaotic motions.
     pub holds_chaos: bool,
-    /// By what factor motions in it part from their neighbours at each impact, at least; nothing where that is not proved.
+    /// By what factor some deviations of every motion in it grow at each impact, at least; nothing where that is not proved.
     pub parted: Option<f64>,
 }
 
@@ -50,8 +50,8 @@ pub(super) fn trapping(model: &Model, rpm: f64, set: Option<&HSet>, watch: &dyn 
     let machine = machine(model, rpm)?;
     let mut found = Trapping::default();
     let closed = |impacts: &[[Interval; 2]], squares_per_degree, holds_chaos| {
-        let region = trap(&machine, impacts, squares_per_degree, CELLS, watch)?;
-        Ok(Trapped { parted: parted(&machine, &region), region, holds_chaos })
+        let region = trap(&machine, rpm, impacts, squares_per_degree, CELLS, watch)?;
+        Ok(Trapped { parted: parted(&machine, rpm, &region), region, holds_chaos })
     };
     let point = |[angle, velocity]: [f64; 2]| [Interval::from(angle.to_radians()), velocity.into()];
     if let Some(run) = beside_the_corner_impact(model, rpm)? {
