@@ -100,7 +100,7 @@ pub fn chaos(model: &Model, rpm: [f64; 2], wants_regions: bool, watch: &dyn Watc
     if wants_regions {
         // Of a range the strips of another speed lie elsewhere.
         let is_there = |set: &&HSet| set.rpm[0] <= rpm[0] && rpm[0] <= set.rpm[1];
-        let strips = found.theorems.iter().map(|theorem| &theorem.set).filter(is_there).next_back();
+        let strips = found.theorems.iter().map(|theorem| &theorem.set).rfind(is_there);
         found.trapping = Some(trapping(model, rpm[0], strips, watch)?);
     }
     Ok(found)
