@@ -256,6 +256,13 @@ impl Plane<'_> {
         [angle * (Interval::from(360.0) / Interval::TURN) * f64::from(self.per_degree), velocity / self.height]
     }
 
+    /// The same of impacts that follow those of a cell. As wide as a turn, or without an end, it says nothing of where they are.
+    fn image(&self, contact: [Interval; 2]) -> Result<Place, Unproved> {
+        let image = self.squares(contact);
+        let turn = f64::from(360 * self.per_degree);
+        if image.iter().all(|side| side.width() < turn) { Ok(image) } else { Err(Unproved::NoImpact) }
+    }
+
     /// Where the impacts of a cell are followed by impacts.
     fn look(&self, cell: &Cell) -> Result<Look, Unproved> {
         let angle = cell.side(0) / f64::from(self.per_degree) * (Interval::TURN / 360.0);
@@ -267,10 +274,7 @@ impl Plane<'_> {
         let halved = cell.halved[0] + cell.halved[1];
         match self.map.next(&from, omega) {
             Ok(next) => {
-                let image = self.squares([next.angle.value(), next.velocity.value()]);
-                if !image.iter().all(|side| side.width().is_finite()) {
-                    return Err(Unproved::NoImpact);
-                }
+                let image = self.image([next.angle.value(), next.velocity.value()])?;
                 if image.iter().all(|side| side.width() <= 1.0) || halved >= HALVINGS {
                     return Ok(Look::Whole(vec![image]));
                 }
@@ -286,7 +290,7 @@ impl Plane<'_> {
                 // As long as half a square takes to pass.
                 let shortest = 0.5 / f64::from(360 * self.per_degree) * (Interval::TURN / self.omega).middle();
                 let contacts = self.map.contacts(&from, omega, shortest)?;
-                Ok(Look::Whole(contacts.into_iter().map(|contact| self.squares(contact)).collect()))
+                Ok(Look::Whole(contacts.into_iter().map(|contact| self.image(contact)).collect::<Result<_, _>>()?))
             }
         }
     }

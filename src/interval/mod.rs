@@ -1,8 +1,8 @@
 //! Intervals of doubles that certainly hold what a formula gives for every number of the intervals it is fed with.
 //!
 //! Each operation is rounded to nearest and its ends moved outwards by one ulp, which is more than rounding took. Sine and cosine
-//! are alternating series, summed in doubles and widened by what rounding and the terms left out can make of them. What has no bound, or is no number, is everything: no
-//! comparison then holds, so nothing is concluded from it.
+//! are alternating series, summed in doubles and widened by what rounding and the terms left out can make of them. What has no
+//! bound, or is no number, is everything: no comparison then holds, so nothing is concluded from it.
 
 pub mod centred;
 pub mod roots;
