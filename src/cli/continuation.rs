@@ -46,8 +46,8 @@ pub(super) struct Arguments {
     /// Orbits after which a branch is given up, in either direction.
     #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     points: u32,
-    /// Follow also what branches off with twice the period at flips, grazes and corner impacts, and from that again, so many
-    /// times in all.
+    /// Follow also what branches off with twice the period at flips, grazes and corner impacts, and branches that cross, and from
+    /// these again, so many times in all.
     #[arg(long, value_name = "DOUBLINGS", num_args = 0..=1, require_equals = true, default_value_t = 0, default_missing_value = "3", value_parser = clap::value_parser!(u32).range(0..=10))]
     all: u32,
     /// A table (.csv, or - for standard output) or a picture (.svg, .png, .pdf).

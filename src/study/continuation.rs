@@ -3,7 +3,7 @@
 use super::{StudyError, inside, machine};
 use crate::diagram::settled_impacts;
 use crate::model::Model;
-use crate::orbit::branch::{Branch, Following, FoundBranches, doubled};
+use crate::orbit::branch::{Branch, Following, FoundBranches, crossing, doubled};
 use crate::orbit::{Family, Parameter, Search, search};
 use crate::progress::{Pieces, Watch};
 
@@ -18,8 +18,8 @@ pub struct Branches<'a> {
     pub branches: Vec<Branch>,
 }
 
-/// Follows the orbits that a search finds at `from_rpm`, and what branches off from them with twice the period, so many times
-/// over.
+/// Follows the orbits that a search finds at `from_rpm`, and what branches off from them with twice the period or crosses them, so
+/// many times over.
 pub fn branches<'a>(
     model: &'a Model,
     from_rpm: f64,
@@ -44,10 +44,11 @@ pub fn branches<'a>(
     found.follow(&family, &following, orbits, &pieces(count));
     let mut before = 0;
     for _ in 0..doublings {
-        let longer = doubled(&family, &following, &found.branches[before..]);
+        let fresh = &found.branches[before..];
+        let met = [doubled(&family, &following, fresh), crossing(&family, &following, fresh)].concat();
         before = found.branches.len();
-        let count = longer.len();
-        found.follow(&family, &following, longer, &pieces(count));
+        let count = met.len();
+        found.follow(&family, &following, met, &pieces(count));
     }
     let FoundBranches { branches, failed } = found;
     failed.map_or(Ok(Branches { model, from_rpm, following, branches }), |error| Err(error.into()))

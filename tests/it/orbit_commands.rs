@@ -166,6 +166,18 @@ fn a_crossing_of_branches_is_marked() {
         found["orbits"].as_array().unwrap().iter().filter(|orbit| orbit["stable"] == true).count()
     };
     assert_eq!([orbits(crossing - 0.05), orbits(crossing + 0.05)], [1, 2], "{crossing}");
+    // With --all the branch of both is followed, through the crossing, where the two are one.
+    let (all, account) = done(&["continue", model, "--from-rpm", "12", "--parameter", "rpm=10:20", "--all=1"]);
+    let all = Table::new(&all, BRANCH);
+    let beyond = |row: &&Vec<String>| {
+        let is_other = all.cell(row, "branch") != "1" && all.cell(row, "revolutions") == "1";
+        is_other && all.cell(row, "stable") == "true" && (all.number(row, "rpm") - crossing - 0.05).abs() < 0.05
+    };
+    assert!(all.rows.iter().filter(beyond).count() >= 4, "{account}");
+    let slowest = all.rows.iter().filter(|row| all.cell(row, "branch") != "1" && all.cell(row, "revolutions") == "1");
+    let slowest = slowest.map(|row| all.number(row, "rpm")).fold(f64::INFINITY, f64::min);
+    // As well as the equations, which are singular there, say where that is: the bracket's width.
+    assert_relative_eq!(slowest, crossing, max_relative = 5e-6);
 }
 
 #[test]

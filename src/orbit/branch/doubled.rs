@@ -1,5 +1,5 @@
-//! Orbits of twice the period that branch off: at a flip, and at a corner impact or a graze, where the second period may go
-//! on otherwise than the first.
+//! Orbits on other branches next to special points: of twice the period at a flip, and at a corner impact or a graze, where the
+//! second period may go on otherwise than the first; and of the branch that crosses where a symmetry is lost.
 
 use nalgebra::DVector;
 
@@ -19,6 +19,22 @@ const FIRST: f64 = 0.1;
 pub fn doubled(family: &Family, following: &Following, branches: &[Branch]) -> Vec<(f64, PeriodicOrbit)> {
     let points = branches.iter().flat_map(|branch| (0..branch.points.len()).map(move |index| (branch, index)));
     points.flat_map(|(branch, index)| at(family, following, branch, index)).collect()
+}
+
+/// The orbits on the branches that cross others next to their crossings, and the values of what is followed.
+pub fn crossing(family: &Family, following: &Following, branches: &[Branch]) -> Vec<(f64, PeriodicOrbit)> {
+    let pairs = branches.iter().flat_map(|branch| branch.points.windows(2));
+    let met = pairs.filter_map(|pair| {
+        let [before, point] = pair else { return None };
+        let (Kind::Branching, Course::Impacts(cycle)) = (point.special?.kind, &point.orbit.course) else { return None };
+        let Course::Impacts(last) = &before.orbit.course else { return None };
+        let (machine, _) = family.machine(&[before.value]).ok()?;
+        let start = |problem: &Problem<'_>, at: &DVector<f64>| {
+            across(problem, at, &(at - problem.unknowns(last, &machine, &[before.value])))
+        };
+        stepped(family, following, point.value, cycle, start)
+    });
+    met.collect()
 }
 
 /// Those next to one point.
@@ -49,15 +65,27 @@ fn beyond(
         None => twice.clone(),
         Some(exit) => switch::beyond(exit, twice, &machine)?,
     };
+    stepped(family, following, value, &pattern, |problem, from| match exit {
+        None => apart(problem, from),
+        Some(exit) => switch::direction(exit, twice, problem, from),
+    })
+}
+
+/// The orbit a step along a direction from a cycle at a value.
+fn stepped(
+    family: &Family,
+    following: &Following,
+    value: f64,
+    cycle: &Cycle,
+    direction: impl Fn(&Problem<'_>, &DVector<f64>) -> Result<DVector<f64>, NoPoint<FamilyError>>,
+) -> Option<(f64, PeriodicOrbit)> {
+    let (machine, _) = family.machine(&[value]).ok()?;
     let spans = [following.range[1] - following.range[0]];
-    let problem = Problem::new(family, &pattern, Units::of(&pattern, &machine), &spans, None);
-    let from = problem.unknowns(&pattern, &machine, &[value]);
-    let along = match exit {
-        None => apart(&problem, &from),
-        Some(exit) => switch::direction(exit, twice, &problem, &from),
-    };
-    let point = curve::step(&problem, &from, &along.ok()?, FIRST * following.longest_step).ok()?;
-    // At this value alone Newton's method would as well lead back to the shorter orbit.
+    let problem = Problem::new(family, cycle, Units::of(cycle, &machine), &spans, None);
+    let from = problem.unknowns(cycle, &machine, &[value]);
+    let along = direction(&problem, &from).ok()?;
+    let point = curve::step(&problem, &from, &along, FIRST * following.longest_step).ok()?;
+    // At this value alone Newton's method would as well lead back to the orbit that is known.
     let (cycle, machine, _) = problem.unpack(&point.unknowns).ok()?;
     let residual = cycle.residual(&machine).amax() / lift_size(&machine);
     let is_orbit = matches!(cycle.departure(&machine), Ok(None)) && !cycle.repeats_sooner();
@@ -97,6 +125,26 @@ fn apart(problem: &Problem<'_>, at: &DVector<f64>) -> Result<DVector<f64>, NoPoi
         _ => 0.0,
     };
     let direction = DVector::from_fn(at.len(), |index, _| entry(index));
+    let length = direction.norm();
+    if length.is_finite() && length > 0.0 { Ok(direction / length) } else { Err(NoPoint::NotClosed) }
+}
+
+/// The unit direction from where branches cross across the branch that is known, which goes on `along`: of the two directions that the
+/// equations see least.
+fn across(
+    problem: &Problem<'_>,
+    at: &DVector<f64>,
+    along: &DVector<f64>,
+) -> Result<DVector<f64>, NoPoint<FamilyError>> {
+    let (_, jacobian) = problem.linear(at)?;
+    // A row of zeros makes the matrix square.
+    let svd = jacobian.insert_row(at.len() - 1, 0.0).svd(false, true);
+    let rows = svd.v_t.ok_or(NoPoint::NotClosed)?;
+    let mut least: Vec<(usize, &f64)> = svd.singular_values.iter().enumerate().collect();
+    least.sort_by(|one, two| one.1.total_cmp(two.1));
+    let [(one, _), (two, _), ..] = least[..] else { return Err(NoPoint::NotClosed) };
+    let [one, two] = [one, two].map(|row| rows.row(row).transpose());
+    let direction = &one * two.dot(along) - &two * one.dot(along);
     let length = direction.norm();
     if length.is_finite() && length > 0.0 { Ok(direction / length) } else { Err(NoPoint::NotClosed) }
 }

@@ -10,7 +10,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::{Branch, BranchPoint, Following, Kind, doubled::doubled};
+use super::{Branch, BranchPoint, Following, Kind, crossing, doubled};
 use crate::cam::Cam;
 use crate::model::Model;
 use crate::orbit::{Family, FamilyError, OrbitError, Parameter, PeriodicOrbit, Search, search};
@@ -146,9 +146,9 @@ impl<'a> Searched<'a> {
             }
             let is_wanted = |orbit: &PeriodicOrbit| wanted.impacts.is_none_or(|count| orbit.impacts().count() == count);
             let doubled = doubled(&family, &following, &shorter).into_iter().filter(|(_, orbit)| is_wanted(orbit));
-            let doubled: Vec<_> = doubled.collect();
-            pieces.more(doubled.len());
-            all.follow(&family, &following, doubled, pieces);
+            let found: Vec<_> = doubled.chain(crossing(&family, &following, &all.branches)).collect();
+            pieces.more(found.len());
+            all.follow(&family, &following, found, pieces);
         }
         all
     }

@@ -8,7 +8,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | `find` | the branches through given orbits and what branches off; those of a range of speeds, and its corner impacts |
-//! | `doubled` | orbits of twice the period next to a special point |
+//! | `doubled` | orbits of twice the period next to a special point, and those of a branch that crosses |
 //! | `follow` | one direction of a branch, step by step; `chatter` where the follower sticks |
 //! | `problem`, `held` | the equations, with numbers of the model free; what holds besides along a curve in two of them |
 //! | `cut`, `gap`, `halved` | what a step passes, and where: corners, folds, flips; grazes; the end of a doubled period |
@@ -37,7 +37,7 @@ use nalgebra::Matrix2;
 use super::{Family, FamilyError, OrbitError, Parameter, PeriodicOrbit};
 use crate::model::Model;
 use crate::tolerance;
-pub(crate) use doubled::doubled;
+pub(crate) use doubled::{crossing, doubled};
 pub(crate) use find::{FoundBranches, GRID_RATIO, MetPoints, find_branches, special_points};
 pub(crate) use moved::Event;
 pub(crate) use special::Special;
