@@ -102,7 +102,7 @@ impl Likely {
             None => Some(smoothed(&rows, fitted.weight)?),
         };
         let count = if is_noisy { TABLES } else { 0 };
-        let others = (0..count).map(table).collect::<Result<Vec<_>, _>>()?;
+        let others = (0..count).into_par_iter().map(table).collect::<Result<Vec<_>, _>>()?;
         let measured = measured(
             (Reading::clone(&profile.reading), &own_cam),
             &fitted,

@@ -418,9 +418,9 @@ impl Model {
     }
 
     /// The attractors over a range of speeds, (lowest, highest) rpm, or over the one that `corner-impact speeds` takes: at `speeds`
-    /// speeds or more, or from one to the next at most `step` rpm, with `starts` starts at each: the document of
-    /// `corner-impact speeds --json`.
-    #[pyo3(signature = (rpm=None, *, speeds=300, step=None, starts=64))]
+    /// speeds or more, or from one to the next at most `step` rpm, with `starts` starts at each, and on every stable orbit of two
+    /// impacts in one revolution with `two_impacts`: the document of `corner-impact speeds --json`.
+    #[pyo3(signature = (rpm=None, *, speeds=300, step=None, starts=64, two_impacts=false))]
     fn speeds<'py>(
         &self,
         py: Python<'py>,
@@ -428,6 +428,7 @@ impl Model {
         #[pyo3(from_py_with = count)] speeds: u64,
         step: Option<f64>,
         #[pyo3(from_py_with = count)] starts: u64,
+        two_impacts: bool,
     ) -> PyResult<Bound<'py, PyDict>> {
         let rpm = rpm.map_or_else(|| usual_range(&self.model).or_raise(), values::speed_range)?;
         let step = match step {
@@ -435,7 +436,8 @@ impl Model {
             Some(step) if step > 0.0 && step.is_finite() => Step::at_most(step),
             Some(step) => return refused(format!("step = {step} must be a finite number above 0")),
         };
-        let resolution = Resolution { step, starts: within("starts", starts, [1, 1_000_000])? as usize };
+        let starts = within("starts", starts, [1, 1_000_000])? as usize;
+        let resolution = Resolution { step, starts, two_impacts };
         document(
             py,
             &spread(py, || self::speeds(&self.model, rpm, resolution, &Unwatched))?.or_raise()?,

@@ -30,12 +30,15 @@ pub(super) struct Arguments {
     /// The least number of speeds that are run.
     #[arg(long, value_name = "N", default_value_t = 300, value_parser = clap::value_parser!(u32).range(2..=100_000))]
     speeds: u32,
-    /// From one speed to the next, at most: 1, 2 or 5 times a power of ten is taken [default: what puts as many speeds into the range as asked for].
+    /// From one speed to the next, at most: 1, 2, 3 or 5 times a power of ten is taken [default: what puts as many speeds into the range as asked for].
     #[arg(long, value_name = "RPM", value_parser = positive, allow_hyphen_values = true, conflicts_with = "speeds")]
     step: Option<f64>,
     /// Starts that are run at each speed.
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     starts: u32,
+    /// Begin at each speed on every stable orbit of two impacts in one revolution, too: a search by intervals finds them all, in a fifth of a second to some seconds a speed.
+    #[arg(long)]
+    two_impacts: bool,
     /// Print one JSON document instead of the page.
     #[arg(long)]
     json: bool,
@@ -51,7 +54,8 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let corners = corner_marks(&Cam::new(&model)?);
     let rpm = arguments.rpm.map_or_else(|| usual_range(&model), Ok)?;
     let step = arguments.step.map_or_else(|| Step::for_speeds(rpm, arguments.speeds), Step::at_most);
-    let resolution = Resolution { step, starts: arguments.starts as usize };
+    let Arguments { starts, two_impacts, .. } = *arguments;
+    let resolution = Resolution { step, starts: starts as usize, two_impacts };
     let found = watched("", |watch| speeds(&model, rpm, resolution, watch))?;
     if let Some(path) = &arguments.out {
         let table = || csv::speeds(&found);

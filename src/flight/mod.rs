@@ -129,10 +129,22 @@ impl Flight {
     /// The acceleration obeys the same damped equation as the position, so `j^2 + w0^2 a^2` never grows.
     #[inline]
     pub fn jerk_bound(&self, state: State) -> f64 {
+        self.never_above(self.acceleration(state), self.jerk(state))
+    }
+
+    /// The same on `|q''''|`, m/s^4: the jerk obeys that equation, too.
+    #[inline]
+    pub fn fourth_bound(&self, state: State) -> f64 {
         let (acceleration, jerk) = (self.acceleration(state), self.jerk(state));
-        let bound = (jerk * jerk + self.omega0_squared * acceleration * acceleration).sqrt();
+        self.never_above(jerk, -2.0 * self.zeta * jerk - self.omega0_squared * acceleration)
+    }
+
+    /// What the rate of anything that obeys the damped equation never exceeds, from its value and its rate.
+    #[inline]
+    fn never_above(&self, value: f64, rate: f64) -> f64 {
+        let bound = (rate * rate + self.omega0_squared * value * value).sqrt();
         // Squares leave a double's range long before their root does.
-        if bound.is_normal() { bound } else { jerk.hypot(self.omega0_squared.sqrt() * acceleration) }
+        if bound.is_normal() { bound } else { rate.hypot(self.omega0_squared.sqrt() * value) }
     }
 
     /// Displacement `q(t) - q0` and the state after flying for `t` from `start`.

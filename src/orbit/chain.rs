@@ -7,10 +7,11 @@
 //! ```
 //!
 //! The pass around the cycle keeps two equations `F x_0 + G x_i = h`. Together with the equations of the next flight these
-//! are four, and a QR factorization of the columns of `x_i` leaves two without `x_i`. It is orthogonal, so that no number
-//! grows over an unstable orbit. The work is proportional to the number of impacts.
+//! are four, and rotations of two of them at a time leave two without `x_i`. They are orthogonal, so that no number grows over an
+//! unstable orbit. The work is proportional to the number of impacts.
 
-use nalgebra::{DVector, Matrix2, Matrix4, Matrix4x2, QR, SMatrix, U2, U4, Vector2};
+use nalgebra::linalg::givens::GivensRotation;
+use nalgebra::{DVector, Matrix2, SMatrix, Vector2};
 
 /// The equations of one flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,9 +22,9 @@ pub(super) struct Link {
     pub coming: Matrix2<f64>,
 }
 
-/// `R x_i + A x_0 + B x_{i+1} = h`, with R upper triangular, and the factorization that it is of.
+/// `R x_i + A x_0 + B x_{i+1} = h`, with R upper triangular.
 struct Row {
-    factors: QR<f64, U4, U2>,
+    upper: Matrix2<f64>,
     first: Matrix2<f64>,
     next: Matrix2<f64>,
     right: Vector2<f64>,
@@ -42,26 +43,29 @@ fn eliminate(links: &[Link], right: &DVector<f64>) -> Option<Eliminated> {
     let mut left = of(0);
     let mut rows = Vec::with_capacity(links.len() - 1);
     for (index, link) in links.iter().enumerate().skip(1) {
-        let mut columns = Matrix4x2::zeros();
-        columns.fixed_view_mut::<2, 2>(0, 0).copy_from(&coming);
-        columns.fixed_view_mut::<2, 2>(2, 0).copy_from(&link.leaving);
-        // What stands beside them: x_0, x_{i+1}, and the right sides.
-        let mut beside = SMatrix::<f64, 4, 5>::zeros();
-        beside.fixed_view_mut::<2, 2>(0, 0).copy_from(&leaving);
-        beside.fixed_view_mut::<2, 2>(2, 2).copy_from(&link.coming);
-        beside.fixed_view_mut::<2, 1>(0, 4).copy_from(&left);
-        beside.fixed_view_mut::<2, 1>(2, 4).copy_from(&of(index));
-        let factors = columns.qr();
-        factors.q_tr_mul(&mut beside);
+        // Of x_i, x_0, x_{i+1}, and the right sides.
+        let mut four = SMatrix::<f64, 4, 7>::zeros();
+        four.fixed_view_mut::<2, 2>(0, 0).copy_from(&coming);
+        four.fixed_view_mut::<2, 2>(2, 0).copy_from(&link.leaving);
+        four.fixed_view_mut::<2, 2>(0, 2).copy_from(&leaving);
+        four.fixed_view_mut::<2, 2>(2, 4).copy_from(&link.coming);
+        four.fixed_view_mut::<2, 1>(0, 6).copy_from(&left);
+        four.fixed_view_mut::<2, 1>(2, 6).copy_from(&of(index));
+        for (column, row) in [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3)] {
+            let pair = Vector2::new(four[(column, column)], four[(row, column)]);
+            if let Some((rotation, _)) = GivensRotation::cancel_y(&pair) {
+                rotation.rotate(&mut four.fixed_rows_with_step_mut::<2>(column, row - column - 1));
+            }
+        }
         rows.push(Row {
-            factors,
-            first: beside.fixed_view::<2, 2>(0, 0).into(),
-            next: beside.fixed_view::<2, 2>(0, 2).into(),
-            right: beside.fixed_view::<2, 1>(0, 4).into(),
+            upper: four.fixed_view::<2, 2>(0, 0).upper_triangle(),
+            first: four.fixed_view::<2, 2>(0, 2).into(),
+            next: four.fixed_view::<2, 2>(0, 4).into(),
+            right: four.fixed_view::<2, 1>(0, 6).into(),
         });
-        leaving = beside.fixed_view::<2, 2>(2, 0).into();
-        coming = beside.fixed_view::<2, 2>(2, 2).into();
-        left = beside.fixed_view::<2, 1>(2, 4).into();
+        leaving = four.fixed_view::<2, 2>(2, 2).into();
+        coming = four.fixed_view::<2, 2>(2, 4).into();
+        left = four.fixed_view::<2, 1>(2, 6).into();
     }
     Some(Eliminated { rows, last: leaving + coming, left })
 }
@@ -69,13 +73,8 @@ fn eliminate(links: &[Link], right: &DVector<f64>) -> Option<Eliminated> {
 /// The determinant of the equations; of none at all 1.
 pub(super) fn determinant(links: &[Link]) -> f64 {
     let Some(Eliminated { rows, last, .. }) = eliminate(links, &DVector::zeros(2 * links.len())) else { return 1.0 };
-    // Q^T has the determinant 1 or -1, and to bring x_0 to the end moves two columns past pairs of others.
-    let of = |Row { factors, .. }: &Row| {
-        let mut turned = Matrix4::identity();
-        factors.q_tr_mul(&mut turned);
-        factors.unpack_r().determinant() * turned.determinant()
-    };
-    rows.iter().map(of).product::<f64>() * last.determinant()
+    // Rotations have the determinant 1, and to bring x_0 to the end moves two columns past pairs of others.
+    rows.iter().map(|row| row.upper[(0, 0)] * row.upper[(1, 1)]).product::<f64>() * last.determinant()
 }
 
 /// The unknowns, two for each impact in turn; `None` where the equations do not determine them.
@@ -86,8 +85,7 @@ pub(super) fn solve(links: &[Link], right: &DVector<f64>) -> Option<DVector<f64>
     unknowns.fixed_rows_mut::<2>(0).copy_from(&first);
     let mut next = first;
     for (index, row) in rows.iter().enumerate().rev() {
-        let upper = row.factors.unpack_r();
-        next = upper.solve_upper_triangular(&(row.right - row.first * first - row.next * next))?;
+        next = row.upper.solve_upper_triangular(&(row.right - row.first * first - row.next * next))?;
         unknowns.fixed_rows_mut::<2>(2 * (index + 1)).copy_from(&next);
     }
     Some(unknowns)

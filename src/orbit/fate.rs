@@ -5,13 +5,14 @@
 
 use std::ops::ControlFlow;
 
-use super::complete::near_one_impact;
+use super::complete::{Standing, near_one_impact, of_two_impacts};
 use super::cycle::lift_size;
 use super::ending::{Ending, Kind, Resting, is_same_release};
 use super::settle::{close, free, near_run};
 use super::{Course, PeriodicOrbit};
 use crate::diagram::{Exponent, Record, exponent};
 use crate::flight::State;
+use crate::progress::Unwatched;
 use crate::simulate::{Event, EventKind, Goal, Machine, Met, Motion, SimulateError};
 use crate::tolerance;
 
@@ -77,7 +78,15 @@ impl<'a> Settling<'a> {
         Ok(new)
     }
 
-    /// The same for a run or two: without any orbit that is known beforehand, as a search for them takes as long as thousands of
+    /// Takes note of all stable orbits of two impacts in one revolution, the search for which takes up to seconds.
+    pub fn know_two_impacts(&mut self) -> Result<(), SimulateError> {
+        let solved = of_two_impacts(self.machine, &Unwatched).into_iter();
+        let may_be = solved.filter(|solved| solved.standing != Standing::NoOrbit);
+        let orbits: Vec<PeriodicOrbit> = may_be.filter_map(|solved| close(self.machine, &solved.guess)).collect();
+        orbits.iter().try_for_each(|orbit| self.know(orbit))
+    }
+
+    /// As [`Self::new`] for a run or two: without any orbit that is known beforehand, as a search for them takes as long as thousands of
     /// revolutions. The next rest is waited for as long as `rest` revolutions.
     pub fn unaided(machine: &'a Machine, longest: u64, rest: u64) -> Self {
         Self { machine, longest, rest, size: lift_size(machine), top: machine.cam().top(), known: Vec::new() }

@@ -72,10 +72,12 @@ pub(crate) fn measured_speed(rpm: f64, digits: Digits, error: Option<f64>, cam: 
 
 /// How it was found out, and what that can miss.
 pub(crate) fn how(found: &Speeds) -> String {
+    let listed = if found.two_impacts { ", and of two in one that a search by intervals finds" } else { "" };
     format!(
         "Sampled: {} starts at each of the speeds {} rpm apart, on the cam at any angle and up to the velocity that impacts keep \
-         up. A basin of less than {:.1} % of them may be missed at a speed, and what is there between two speeds only. A speed with six \
-         decimals was located by the equations of what happens there; others are known from runs alone, to the digits shown.",
+         up; rest on the cam wherever that lets go; and the stable orbits of one impact in up to three revolutions{listed}. Another \
+         attractor with a basin of less than {:.1} % of the starts may be missed at a speed, and what is there between two speeds only. \
+         A speed with six decimals was located by the equations of what happens there; others are known from runs alone, to the digits shown.",
         found.starts,
         found.step,
         100.0 * found.missed()

@@ -11,50 +11,89 @@ use crate::cam::Segment;
 pub(super) struct Chord {
     /// Where it ends, rad.
     end: f64,
-    /// The lift at either end, m.
-    lift: [f64; 2],
-    /// The lift is at most so far above the straight line between its ends, m.
+    /// The lift there, m, and the slope of the straight line to it from where the chord begins, m/rad.
+    lift: f64,
+    slope: f64,
+    /// The lift is at most so far above that line, m.
     rise: f64,
     /// An eighth of the square of its width, rad^2.
     square: f64,
 }
 
-/// The chords of a cam of so many segments that going over them one by one is slow: of each, and of ever larger groups of them.
+/// The chords of a cam of so many segments that going over them one by one is slow: from the start of each segment over 1, 4, 16 and
+/// 64 of them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Chords {
-    levels: Vec<Vec<Chord>>,
+    from: Vec<[Chord; LEVELS]>,
 }
 
-/// Groups of one level that make one of the next.
+const LEVELS: usize = 4;
+/// So many chords of one level, one after the other, are one of the next.
 const GROUP: usize = 4;
 
+/// Segments from one to another that no chord has been laid over yet.
+#[derive(Clone, Copy)]
+struct Stretch {
+    start: f64,
+    end: f64,
+    /// The lift at either end, m.
+    lift: [f64; 2],
+    /// No `c''` is less, m/rad^2; minus infinity where the slope falls from one segment to the next, or the lift steps: a slope that
+    /// rises keeps the lift below its chord.
+    curvature: f64,
+}
+
 impl Chords {
-    /// None where there are few segments; `kinks` is whether the lift's slope falls, or the lift steps, where each begins: a
-    /// slope that rises keeps the lift below its chord.
+    /// None where there are few segments; `kinks` is whether the lift's slope falls, or the lift steps, where each begins.
     pub fn of_many(segments: &[Segment], kinks: &[bool]) -> Self {
         /// Of fewer, most flights pass a handful.
         const MANY: usize = 64;
         if segments.len() < MANY {
             return Self::default();
         }
-        let chord =
-            |(segments, kinks): (&[Segment], &[bool])| Chord::of(segments, kinks.iter().skip(1).any(|kink| *kink));
-        let of = |size: usize| segments.chunks_exact(size).zip(kinks.chunks_exact(size)).filter_map(chord).collect();
-        /// Of one segment, of 4, of 16 and of 64.
-        const LEVELS: u32 = 4;
-        Self { levels: (0..LEVELS).map(|level| of(GROUP.pow(level))).collect() }
+        let of_one = |segment: &Segment| Stretch {
+            start: segment.start,
+            end: segment.end,
+            lift: [segment.start, segment.end].map(|angle| segment.law.lift(angle).value),
+            curvature: segment.bounds.curvature[0],
+        };
+        let mut stretches: Vec<Stretch> = segments.iter().map(of_one).collect();
+        let mut from = vec![[Chord::NONE; LEVELS]; segments.len()];
+        for level in 0..LEVELS {
+            for (chords, stretch) in from.iter_mut().zip(&stretches) {
+                chords[level] = stretch.chord();
+            }
+            let size = GROUP.pow(level as u32);
+            // The last ones have none after them.
+            let longer = stretches.iter().enumerate().map_while(|(first, stretch)| {
+                (1..GROUP)
+                    .map(|part| first + part * size)
+                    .try_fold(*stretch, |all, next| Some(all.and(stretches.get(next)?, kinks[next])))
+            });
+            stretches = longer.collect();
+        }
+        Self { from }
     }
 }
 
 impl Chord {
-    fn of(segments: &[Segment], kinks: bool) -> Option<Self> {
-        let (first, last) = (segments.first()?, segments.last()?);
-        let square = (last.end - first.start).powi(2) / 8.0;
+    /// What is never cleared.
+    const NONE: Self = Self { end: f64::INFINITY, lift: 0.0, slope: 0.0, rise: f64::INFINITY, square: 0.0 };
+}
+
+impl Stretch {
+    fn and(self, next: &Self, kink: bool) -> Self {
+        let curvature = if kink { f64::NEG_INFINITY } else { self.curvature.min(next.curvature) };
+        Self { end: next.end, lift: [self.lift[0], next.lift[1]], curvature, ..self }
+    }
+
+    fn chord(&self) -> Chord {
+        let width = self.end - self.start;
+        let square = width * width / 8.0;
         // c <= chord + (-min c'') h^2/8
-        let least = segments.iter().map(|segment| segment.bounds.curvature[0]).fold(0.0, f64::min);
-        let rise = if kinks { f64::INFINITY } else { square * -least };
-        let lift = [first.law.lift(first.start).value, last.law.lift(last.end).value];
-        Some(Self { end: last.end, lift, rise, square })
+        let rise = square * (-self.curvature).max(0.0);
+        let [from, lift] = self.lift;
+        Chord { end: self.end, lift, slope: (lift - from) / width, rise, square }
     }
 }
 
@@ -64,51 +103,61 @@ pub(super) struct Leap {
     pub segment: usize,
     /// When it comes to that segment's end, s.
     pub time: f64,
+    /// Whether it meets the cam on the next one.
+    pub lands: bool,
 }
 
 impl Machine {
-    /// Two or more segments that a flight from the start of one certainly clears, up to `left` rad from there.
+    /// The segments that a flight off the cam certainly clears, from where it is to the end of one of them, up to `left` rad on.
     #[inline]
     pub(super) fn leap(&self, motion: &Motion, left: f64) -> Option<Leap> {
-        let levels = &self.terrain.chords.levels;
-        let begins = self.cam().segments()[motion.segment].start == motion.cam_angle;
-        if levels.is_empty() || !begins || motion.gap == Some(0.0) {
+        let chords = &self.terrain.chords.from;
+        if chords.is_empty() || motion.gap == Some(0.0) {
+            return None;
+        }
+        // Nothing is gained where a contact is expected.
+        let end = self.cam().segments()[motion.segment].end;
+        if motion.expected.is_some_and(|angle| motion.cam_angle <= angle && angle < end) {
             return None;
         }
         let (state, omega) = (motion.state, self.angular_velocity);
-        let (acceleration, jerk) = (self.flight.acceleration(state), self.flight.jerk_bound(state));
-        // By the cam's angle: q >= q0 + q' x + q'' x^2/2 - J x^3/6
+        // By the cam's angle: q >= q0 + q' x + q'' x^2/2 + q''' x^3/6 - |q''''| x^4/24
         let by_angle = 1.0 / omega;
-        let (first, half, sixth) =
-            (state.velocity * by_angle, 0.5 * acceleration * by_angle * by_angle, jerk * by_angle.powi(3) / 6.0);
-        // The bound is bent upwards by q'' at most, so that it is no further below its chords than q'' h^2/8.
-        let hollow = (2.0 * half).max(0.0);
+        let square = by_angle * by_angle;
+        let first = state.velocity * by_angle;
+        let half = 0.5 * self.flight.acceleration(state) * square;
+        let sixth = self.flight.jerk(state) * (by_angle * square / 6.0);
+        let last = self.flight.fourth_bound(state) * (square * square / 24.0);
         let rounding = self.gap_rounding(state.position);
         let (mut segment, mut before, mut turned) = (motion.segment, state.position, 0.0);
-        let mut clear = |chord: &Chord| {
+        // Up to here the bound is bent downwards, and above its chords.
+        let bent = if sixth > 0.0 { -half / (3.0 * sixth) } else { -half * f64::INFINITY };
+        /// Chords that most leaps begin with.
+        const FIRST: usize = 2;
+        // Ever more segments as long as they are cleared, and then ever fewer.
+        let (mut level, mut rises) = (FIRST, true);
+        let mut lands = false;
+        while let Some(chord) = chords.get(segment).map(|from| &from[level]) {
             let turn = chord.end - motion.cam_angle;
-            let after = state.position + turn * (first + turn * (half - turn * sixth));
-            let open = (before - chord.lift[0]).min(after - chord.lift[1]);
-            let clears = turn < left && open > rounding + chord.rise + hollow * chord.square;
-            if clears {
+            let after = state.position + turn * (first + turn * (half + turn * (sixth - turn * last)));
+            let gaps = [before - chord.lift + chord.slope * (turn - turned), after - chord.lift];
+            let mut least = rounding + chord.rise;
+            if !(turn <= bent) {
+                // By q'' + q''' x at most it is bent upwards, so that it is no further below its chord than that h^2/8.
+                least += (2.0 * half + 6.0 * sixth.max(0.0) * turn).max(0.0) * chord.square;
+            }
+            if turn < left && gaps[0] > least && gaps[1] > least {
+                segment += 1 << (level * GROUP.trailing_zeros() as usize);
                 (before, turned) = (after, turn);
+                level += usize::from(rises && level + 1 < LEVELS);
+            } else if level > 0 {
+                (level, rises) = (level - 1, false);
+            } else {
+                // The flight is above its bound by no more than |q''''| x^4/24 with either sign makes.
+                lands = gaps[1] + 2.0 * last * turn.powi(4) < 0.0;
+                break;
             }
-            clears
-        };
-        // The largest group that begins here; where that is not cleared, a smaller one, and after it no larger one before its end.
-        let (mut level, mut size) = (0, 1);
-        'over: loop {
-            while level + 1 < levels.len() && segment % (GROUP * size) == 0 {
-                (level, size) = (level + 1, GROUP * size);
-            }
-            while !levels[level].get(segment / size).is_some_and(&mut clear) {
-                if level == 0 {
-                    break 'over;
-                }
-                (level, size) = (level - 1, size / GROUP);
-            }
-            segment += size;
         }
-        (segment > motion.segment + 1).then(|| Leap { segment: segment - 1, time: turned / omega })
+        (segment > motion.segment).then(|| Leap { segment: segment - 1, time: turned / omega, lands })
     }
 }

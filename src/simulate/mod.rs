@@ -340,6 +340,9 @@ impl Machine {
             (motion.state, motion.gap) = (self.flight.fly(start, leap.time).1, None);
             motion.segment = leap.segment;
             self.enter_next(motion);
+            if leap.lands {
+                motion.expected = Some(motion.cam_angle);
+            }
             return Ok(Step::Moved);
         }
         let segment = &self.cam().segments()[motion.segment];

@@ -21,7 +21,8 @@ pub struct Motion {
     pub(super) gap: Option<f64>,
     /// The lift under the follower, where it is known.
     pub(super) lift: Option<Lift>,
-    /// Where the last impact was, rad, if the one before it was close by: the next is looked for there first.
+    /// Where the last impact was, rad, if the one before it was close by, or where a leap found that there is one: the next is
+    /// looked for there first.
     pub(super) expected: Option<f64>,
     /// Whether the last two impacts were at the same place to within the step that again takes.
     pub(super) settled: bool,

@@ -1,5 +1,8 @@
 //! Following the cam: where infinitely many impacts end, and where the cam lets go.
 
+use std::f64::consts::TAU;
+
+use super::terrain::Entry;
 use super::{EventKind, MOST_STEPS, Machine, Motion, Observer, SimulateError, Step, no_progress};
 use crate::cam::{Lift, Segment};
 use crate::flight::State;
@@ -89,7 +92,9 @@ impl Machine {
         let segment = &self.cam().segments()[motion.segment];
         let within = segment.end - motion.cam_angle;
         let (last, span) = if left < within { (true, left) } else { (false, within) };
-        if let Some(turn) = self.release(motion, segment, span)? {
+        if let Some(turn) =
+            self.turn_to_sign(1.0, motion.cam_angle, segment, span).map_err(|turn| no_progress(motion, turn))?
+        {
             motion.cam_angle += turn;
             let lift = segment.law.lift(motion.cam_angle);
             return Ok(self.let_go(motion, &lift, on_cam(&lift, omega), observer));
@@ -137,7 +142,52 @@ impl Machine {
         self.report(motion, EventKind::Release, observer)
     }
 
-    /// The turn, rad, after which the cam lets go within `span`, rad, of a segment, or `None` if it does not.
+    /// Where a follower can rest on the cam: stretches of cam angle, rad, from where it begins to be pressed against the cam to
+    /// where that lets go of it or strikes it. One that goes on through angle 0 begins below it; a whole turn is all there is.
+    pub fn rests(&self) -> Result<Vec<[f64; 2]>, SimulateError> {
+        let mut rests: Vec<[f64; 2]> = Vec::new();
+        let mut from = None;
+        let lifts = |segment: &Segment| self.lifting(&segment.law.lift(segment.start)) > 0.0;
+        let ends =
+            |segment: &Segment, entry: &Entry| entry.slope_jump != 0.0 || entry.lift_step != 0.0 || lifts(segment);
+        let segments = self.cam().segments();
+        for (segment, entry) in segments.iter().zip(&self.terrain.entries) {
+            let mut angle = segment.start;
+            if let Some(begun) = from
+                && ends(segment, entry)
+            {
+                rests.push([begun, angle]);
+                from = None;
+            }
+            // No force at all is enough to stay.
+            from = from.or((!lifts(segment)).then_some(angle));
+            loop {
+                let sign = if from.is_some() { 1.0 } else { -1.0 };
+                let given_up = |turn: f64| {
+                    let cam_angle = angle + turn;
+                    SimulateError::NoProgress { events: MOST_STEPS, revolution: 0, cam_angle }
+                };
+                let turn = self.turn_to_sign(sign, angle, segment, segment.end - angle).map_err(given_up)?;
+                let Some(turn) = turn else { break };
+                angle += turn;
+                match from.take() {
+                    Some(begun) => rests.push([begun, angle]),
+                    None => from = Some(angle),
+                }
+            }
+        }
+        if let Some(begun) = from {
+            let seam = segments.first().zip(self.terrain.entries.first());
+            match rests.first_mut().filter(|first| first[0] == 0.0) {
+                Some(first) if seam.is_some_and(|(segment, entry)| !ends(segment, entry)) => first[0] = begun - TAU,
+                _ => rests.push([begun, TAU]),
+            }
+        }
+        Ok(rests)
+    }
+
+    /// The turn, rad, after which [`Machine::lifting`] has the sign of `sign`, 1 or -1, within `span`, rad, from an angle of a segment, or
+    /// `None` if it does not get it: with 1, where the cam lets go. The error is after which turn the search was given up.
     ///
     /// With `|d lifting/dt| <= L` over a stretch, `lifting` stays below 0 for `-lifting/L`: marching so never passes a
     /// release, and as the stretches shrink, L becomes the slope itself. The slope's terms may cancel, all round where cam
@@ -146,15 +196,15 @@ impl Machine {
     /// ```text
     /// |d^2 lifting/dt^2| <= 2 zeta w^3 |c'''| + w0^2 w^2 |c''| + w^4 |c''''|
     /// ```
-    fn release(&self, motion: &Motion, segment: &Segment, span: f64) -> Result<Option<f64>, SimulateError> {
-        let angle = motion.cam_angle;
+    fn turn_to_sign(&self, sign: f64, angle: f64, segment: &Segment, span: f64) -> Result<Option<f64>, f64> {
         let omega = self.angular_velocity;
         let (w, zeta) = (self.flight.omega0_squared(), self.flight.zeta());
         let bounds = &segment.bounds;
         // The whole segment at once: each term at its largest.
-        let largest = self.flight.force(bounds.lift[0]).max(self.flight.force(bounds.lift[1]))
-            - 2.0 * zeta * omega * bounds.slope[0]
-            - omega * omega * bounds.curvature[0];
+        let end = usize::from(sign < 0.0);
+        let forces = bounds.lift.map(|lift| sign * self.flight.force(lift));
+        let largest = forces[0].max(forces[1])
+            - sign * (2.0 * zeta * omega * bounds.slope[end] + omega * omega * bounds.curvature[end]);
         if largest < 0.0 {
             return Ok(None);
         }
@@ -165,7 +215,7 @@ impl Machine {
                 return Ok(None);
             }
             let lift = segment.law.lift(angle + omega * time);
-            let lifting = self.lifting(&lift);
+            let lifting = sign * self.lifting(&lift);
             let (rate, rounding) = self.lifting_rate(&lift);
             let steepest = |reach: f64| {
                 let turn = omega * reach;
@@ -210,7 +260,7 @@ impl Machine {
             widest = 4.0 * reach;
             time += safe.max(tolerance::ULP.value * end);
         }
-        Err(no_progress(motion, omega * time))
+        Err(omega * time)
     }
 }
 

@@ -29,6 +29,8 @@ pub struct Speeds {
     pub step: f64,
     /// Starts of the sample at each speed.
     pub starts: usize,
+    /// Whether runs began on the stable orbits of two impacts in one revolution, too.
+    pub two_impacts: bool,
     /// Where the follower first leaves the cam, rpm; `None` where it never does, or does so at the lowest speed already.
     pub detachment: Option<f64>,
     /// How far a measured cam may have moved that, rpm.
@@ -50,6 +52,7 @@ document!(Speeds as it {
     known: Known::Sampled,
     step_rpm: it.step,
     starts: it.starts,
+    two_impacts: it.two_impacts,
     missed_below_share: it.missed(),
     detachment_rpm: it.detachment,
     detachment_error_rpm if_any: it.detachment_error,
@@ -265,10 +268,11 @@ pub fn speeds(
         rpm: range,
         step: resolution.step.rpm(),
         starts: resolution.starts,
+        two_impacts: resolution.two_impacts,
         detachment,
         detachment_error: detachment.and_then(first),
         measured: likely.map(|likely| likely.measured),
-        attractors: rows.iter().enumerate().map(attractor).collect(),
+        attractors: rows.par_iter().enumerate().map(attractor).collect(),
         coexistence: coexistence
             .iter()
             .map(|over| Coexistence {

@@ -25,7 +25,8 @@ fn ball() -> Model {
 }
 
 fn found(model: &Model, range: [f64; 2], step: f64, starts: usize) -> Speeds {
-    let found = speeds(model, range, Resolution { step: Step::at_most(step), starts }, &Unwatched).unwrap();
+    let found =
+        speeds(model, range, Resolution { step: Step::at_most(step), starts, two_impacts: false }, &Unwatched).unwrap();
     for attractor in &found.attractors {
         let ends = [(attractor.rpm[0], &attractor.birth), (attractor.rpm[1], &attractor.death)];
         // What ends inside of the range does so for a reason.
@@ -208,15 +209,39 @@ fn a_run_arrives_where_its_distance_shrinks() {
     assert_eq!(settling.run(&mut passing, 8).unwrap(), Run::Wanders);
 }
 
+/// Of the paper's cam at 355.5 rpm an orbit of two impacts in one revolution draws one start of eight to sixteen: a start that is none of
+/// them does not find it, and the list of all of them does; a run from a neighbouring speed comes to it.
+#[test]
+fn runs_begin_on_all_orbits_of_two_impacts_where_that_is_asked_for() {
+    let paper = common::osorio();
+    let at = |rpm: f64, two_impacts: bool| {
+        let resolution = Resolution { step: Step::at_most(0.5), starts: 1, two_impacts };
+        speeds(&paper, [rpm, rpm + 0.1], resolution, &Unwatched).unwrap()
+    };
+    let machine = machine(&paper, 356.0);
+    let here = Here::new(&machine, 356.0, 1).unwrap();
+    let is_orbit = |part: &corner_impact::study::attractors::Part| matches!(part.ending, Ending::Orbit(_));
+    assert!(!here.parts.iter().any(is_orbit), "{:?}", here.parts);
+    let mut settling = Settling::new(&machine, 32).unwrap();
+    assert_eq!(settling.known().count(), 0);
+    settling.know_two_impacts().unwrap();
+    let known: Vec<(u64, usize)> = settling.known().map(|orbit| (orbit.revolutions, orbit.impacts().count())).collect();
+    assert_eq!(known, [(1, 2)]);
+    let found = at(356.0, true);
+    assert!(periodic(&found, (1, 2)).is_some(), "{found:?}");
+    assert_eq!(found.coexistence.len(), 1, "{:?}", found.coexistence);
+}
+
 #[test]
 fn speeds_of_a_grid_are_the_same_for_every_range() {
     assert_eq!(Step::for_speeds([50.0, 760.0], 300).rpm(), 2.0);
-    assert_eq!(Step::for_speeds([500.0, 1400.0], 300).rpm(), 2.0);
+    assert_eq!(Step::for_speeds([500.0, 1400.0], 300).rpm(), 3.0);
+    assert_eq!(Step::at_most(0.3).rpm(), 0.3);
     assert_eq!(Step::at_most(0.5).rpm(), 0.5);
     assert_eq!(Step::at_most(0.001).rpm(), 0.001);
     assert_eq!(Step::at_most(19.9).rpm(), 10.0);
     let refused = |range, step| {
-        let resolution = Resolution { step: Step::at_most(step), starts: 1 };
+        let resolution = Resolution { step: Step::at_most(step), starts: 1, two_impacts: false };
         speeds(&common::osorio(), range, resolution, &Unwatched).unwrap_err()
     };
     assert!(matches!(refused([0.0, 700.0], 1.0), AttractorsError::NoRange { .. }));
@@ -389,7 +414,10 @@ fn plain_runs_end_on_what_is_listed() {
         }
         let step = Step::at_most(0.2 * case.rpm);
         let range = [0.8 * case.rpm, 1.2 * case.rpm];
-        let Ok(found) = speeds(&case.model, range, Resolution { step, starts: 32 }, &Unwatched) else { return Ok(()) };
+        let Ok(found) = speeds(&case.model, range, Resolution { step, starts: 32, two_impacts: false }, &Unwatched)
+        else {
+            return Ok(());
+        };
         let listed = found.attractors.iter().flat_map(|attractor| &attractor.at);
         let mut all: BTreeMap<u64, Vec<&At>> = BTreeMap::new();
         listed.for_each(|at| all.entry(at.rpm.to_bits()).or_default().push(at));

@@ -358,7 +358,7 @@ fn a_measured_corner_impact() {
     let here = located.found.iter().find(|one| one.at.corner.angle == found.at.corner.angle).unwrap();
     let error = here.speed_error.unwrap();
     // The events of the paper's machine, to within what is said.
-    let resolution = Resolution { step: Step::at_most(20.0), starts: 8 };
+    let resolution = Resolution { step: Step::at_most(20.0), starts: 8, two_impacts: false };
     let survey = speeds(&model, [665.0, 755.0], resolution, &Unwatched).unwrap();
     let ends: Vec<&Change> = survey.attractors.iter().flat_map(|one| one.birth.iter().chain(&one.death)).collect();
     for (name, rpm) in [("corner-impact", 673.234_445), ("flip", 739.319_780)] {

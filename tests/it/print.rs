@@ -287,7 +287,7 @@ fn a_font_of_a_file_is_taken_or_refused() {
 #[test]
 fn attractors_are_told_apart_by_shapes() {
     let model = common::osorio();
-    let resolution = Resolution { step: Step::for_speeds([738.8, 739.4], 12), starts: 8 };
+    let resolution = Resolution { step: Step::for_speeds([738.8, 739.4], 12), starts: 8, two_impacts: false };
     let found = speeds(&model, [738.8, 739.4], resolution, &Unwatched).unwrap();
     let figure = speeds_figure(&found, &[], WIDTH);
     let shapes = |panel: &Panel| {

@@ -2,12 +2,16 @@
 
 use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use crate::common;
+use crate::random::check;
 use approx::{assert_abs_diff_eq, assert_relative_eq};
+use corner_impact::cam::{apart, within_a_turn};
 use corner_impact::flight::State;
 use corner_impact::model::Model;
-use corner_impact::simulate::{Event, EventKind, Machine, Motion, angular_velocity};
+use corner_impact::simulate::{Event, EventKind, Machine, Motion, SimulateError, angular_velocity};
+use proptest::prelude::*;
 
 fn machine(model: &Model, rpm: f64) -> Machine {
     Machine::new(common::cam(model), &model.follower, angular_velocity(rpm))
@@ -195,4 +199,53 @@ fn a_force_near_zero_all_round_is_followed_and_its_end_found() {
     let machine = near_zero(preload * 0.999 / 3.0, preload);
     let (end, events) = run(&machine, machine.start_on_cam(0.5 * PI, 0.0).unwrap(), 1);
     assert!(end.contact && events.is_empty(), "{events:?}");
+}
+
+/// On a turn of angles a follower that is put on the cam stays there inside of a stretch of rest, and flies outside; where each stretch
+/// ends, the cam lets go of it or strikes it.
+#[test]
+fn a_follower_rests_on_the_cam_in_the_stretches_of_rest_and_nowhere_else() {
+    static LEFT: AtomicU32 = AtomicU32::new(0);
+    check(300, |case| {
+        let machine = &case.machine;
+        let rests = machine.rests().unwrap();
+        for index in 0..360 {
+            let angle = TAU * f64::from(index) / 360.0;
+            if rests.iter().flatten().any(|end| apart(*end, angle) < 1e-7) {
+                continue;
+            }
+            let inside =
+                rests.iter().any(|[from, to]| [angle - TAU, angle].iter().any(|angle| from < angle && angle < to));
+            let start = machine.start_on_cam(angle, 0.0).unwrap();
+            prop_assert_eq!(start.contact, inside, "at {} deg: {:?}", index, rests);
+        }
+        for [from, to] in &rests {
+            if to - from < 1e-6 {
+                continue;
+            }
+            let mut motion = machine.start_on_cam(within_a_turn(0.5 * (from + to)), 0.0).unwrap();
+            let mut first: Option<Event> = None;
+            let goal = motion.after(1);
+            let run = machine.advance(&mut motion, goal, &mut |event: &Event| {
+                first.get_or_insert(*event);
+                ControlFlow::Break(())
+            });
+            LEFT.fetch_add(u32::from(first.is_some()), Ordering::Relaxed);
+            match (run, first) {
+                (Ok(_), Some(event)) => prop_assert!(
+                    event.kind != EventKind::Stick && apart(event.cam_angle, *to) < 1e-9,
+                    "{:?} {:?}",
+                    [from, to],
+                    event
+                ),
+                (Ok(_), None) => prop_assert!(to - from == TAU, "{:?} is not left", [from, to]),
+                // The lift steps up through the follower.
+                (Err(SimulateError::BelowCam { cam_angle, .. }), _) => prop_assert!(apart(cam_angle, *to) < 1e-9),
+                (Err(error), _) => prop_assert!(false, "{error}"),
+            }
+        }
+        Ok(())
+    });
+    let left = LEFT.load(Ordering::Relaxed);
+    assert!(left >= 200, "{left} stretches with an end");
 }

@@ -95,6 +95,7 @@ class Model:
         speeds: int = 300,
         step: float | None = None,
         starts: int = 64,
+        two_impacts: bool = False,
     ) -> _Document: ...
     def design(
         self, rpm: tuple[float, float] | None = None, *, speeds: int = 21, needs: Sequence[str] = ()

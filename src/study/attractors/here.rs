@@ -2,6 +2,7 @@
 
 use super::ensemble::{Ensemble, Part, Patience, Wandering};
 use super::starts::Starts;
+use crate::cam::within_a_turn;
 use crate::orbit::ending::Ending;
 use crate::orbit::fate::{Run, Settling};
 use crate::progress::Unwatched;
@@ -16,44 +17,55 @@ pub struct Here {
     pub parts: Vec<Part>,
     /// How many starts of the sample were run.
     pub sampled: usize,
+    /// How many were from rest on the cam, one for each place where that lets go of the follower; they follow the sample's.
+    pub rests: usize,
     /// The runs that were waited for longest.
     pub wandering: Wandering,
 }
 
-/// Angles at which a follower is put on the cam, to rest there.
-const RESTS: usize = 36;
-
 impl Here {
-    /// At `rpm`, from `sampled` starts of [`Starts`], from rest on the cam, and with the stable orbits that a search finds.
+    /// At `rpm`, from `sampled` starts of [`Starts`], from rest on the cam at each of its releases, and with the stable orbits
+    /// that a search finds.
     pub fn new(machine: &Machine, rpm: f64, sampled: usize) -> Result<Self, SimulateError> {
+        Self::seeded(machine, rpm, sampled, false)
+    }
+
+    /// The same, on all of two impacts in one revolution, too, if `two_impacts`.
+    pub(super) fn seeded(
+        machine: &Machine,
+        rpm: f64,
+        sampled: usize,
+        two_impacts: bool,
+    ) -> Result<Self, SimulateError> {
         let machine = machine.at_speed(angular_velocity(rpm));
         let patience = Patience::default();
-        let settling = Settling::new(&machine, patience.longest)?;
+        let mut settling = Settling::new(&machine, patience.longest)?;
+        if two_impacts {
+            settling.know_two_impacts()?;
+        }
         let known: Vec<Motion> =
             settling.known().map(|orbit| machine.start(0.0, orbit.state)).collect::<Result<_, _>>()?;
+        let rests = machine.rests()?;
         let starts = Starts::of(&machine);
         let start = |index: usize| {
             if index < sampled {
                 return starts.motion(&machine, index).map(Some);
             }
-            match index - sampled {
-                rest if rest < RESTS => {
-                    let angle = std::f64::consts::TAU * rest as f64 / RESTS as f64;
-                    machine.start_on_cam(angle, 0.0).map(|motion| motion.contact.then_some(motion))
-                }
-                orbit => Ok(known.get(orbit - RESTS).copied()),
-            }
+            let rest = index - sampled;
+            let Some([from, to]) = rests.get(rest) else { return Ok(known.get(rest - rests.len()).copied()) };
+            let angle = within_a_turn(0.5 * (from + to));
+            machine.start_on_cam(angle, 0.0).map(|motion| motion.contact.then_some(motion))
         };
-        let count = sampled + RESTS + known.len();
+        let count = sampled + rests.len() + known.len();
         let Ensemble { parts, wandering } =
             Ensemble::of(&settling, patience, count, start, &Unwatched).map_err(|(_, error)| error)?;
-        Ok(Self { rpm, parts, sampled, wandering })
+        Ok(Self { rpm, parts, sampled, rests: rests.len(), wandering })
     }
 
     /// Whether a run has come to a part, from the sample, from rest on the cam or from a neighbouring speed, and not only one
     /// that began on it.
     pub fn is_reached(&self, part: &Part) -> bool {
-        part.starts.is_empty() || part.starts.iter().any(|start| *start < self.sampled + RESTS)
+        part.starts.is_empty() || part.starts.iter().any(|start| *start < self.sampled + self.rests)
     }
 
     /// How many of the sample's starts end on a part.
@@ -61,10 +73,21 @@ impl Here {
         part.starts.iter().filter(|start| **start < self.sampled).count()
     }
 
-    /// What the motion of another speed comes to at this one, if that is an attractor which was not found here.
-    pub fn follow(&self, machine: &Machine, motion: &Motion) -> Result<Option<Part>, SimulateError> {
-        let is_new = |part: &Part| !self.parts.iter().any(|known| known.ending.is_same(&part.ending));
-        Ok(self.come_to(machine, motion)?.filter(is_new))
+    /// Takes note of what the motion of another speed has come to at this one; false where that is known.
+    pub(super) fn take(&mut self, part: Part) -> bool {
+        match self.parts.iter().position(|known| known.ending.is_same(&part.ending)) {
+            Some(known) => {
+                // A run has come to what was only begun on.
+                if !self.is_reached(&self.parts[known]) {
+                    self.parts[known].starts.clear();
+                }
+                false
+            }
+            None => {
+                self.parts.push(part);
+                true
+            }
+        }
     }
 
     /// What the motion of another speed comes to at this one, if that is an attractor.

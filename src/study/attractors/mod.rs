@@ -41,7 +41,7 @@ pub use starts::Starts;
 /// A grid of speeds that no range has a say in: whole multiples of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Step {
-    /// 1, 2 or 5.
+    /// 1, 2, 3 or 5, so that the step is no shorter than half of what was asked for.
     digit: u64,
     /// Of ten.
     power: i32,
@@ -57,8 +57,8 @@ impl Step {
     pub fn at_most(longest: f64) -> Self {
         let power = longest.log10().floor();
         let digits = longest / 10.0_f64.powf(power);
-        // A step of exactly 2 or 5 is not to be lost to rounding.
-        let digit = [5, 2]
+        // A step of exactly one of them is not to be lost to rounding.
+        let digit = [5, 3, 2]
             .into_iter()
             .find(|digit| digits * (1.0 + 8.0 * crate::tolerance::ULP.value) >= *digit as f64)
             .unwrap_or(1);
@@ -98,6 +98,9 @@ pub struct Resolution {
     pub step: Step,
     /// How many starts of the sample are run at each.
     pub starts: usize,
+    /// Whether runs begin on every stable orbit of two impacts in one revolution, too: a search at each speed that takes up to
+    /// seconds.
+    pub two_impacts: bool,
 }
 
 /// Two or more attractors at the same speeds.
@@ -176,7 +179,7 @@ pub fn attractors(
         // Work that is to end does not begin at each of the speeds that are left.
         stop::ask();
         watch.at("what runs end on", done.fetch_add(1, Ordering::Relaxed), total);
-        Here::new(&machine, *rpm, resolution.starts).map_err(|error| (*rpm, error))
+        Here::seeded(&machine, *rpm, resolution.starts, resolution.two_impacts).map_err(|error| (*rpm, error))
     };
     let mut grid: Vec<_> = speeds.par_iter().map(at).collect();
     if let Some(Err((rpm, error))) = grid.first()
@@ -208,17 +211,16 @@ fn exchange(machine: &Machine, grid: &mut [Result<Here, (f64, SimulateError)>]) 
             .par_iter()
             .flat_map_iter(|(from, to)| {
                 let (Some(Ok(from)), Some(Ok(here))) = (grid.get(*from), grid.get(*to)) else { return Vec::new() };
-                let missing = from.parts.iter().filter(|part| !rows::has_like(here, &part.ending));
-                let found = missing.filter_map(|part| here.follow(machine, &part.motion).ok().flatten());
+                let missing = from.parts.iter().filter(|part| !rows::has_reached(here, &part.ending));
+                let found = missing.filter_map(|part| here.come_to(machine, &part.motion).ok().flatten());
                 found.map(|part| (*to, part)).collect()
             })
             .collect();
         fresh.clear();
         for (index, part) in found {
             if let Ok(here) = &mut grid[index]
-                && !here.parts.iter().any(|known| known.ending.is_same(&part.ending))
+                && here.take(part)
             {
-                here.parts.push(part);
                 fresh.push(index);
             }
         }

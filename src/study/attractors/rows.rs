@@ -148,25 +148,37 @@ fn at_speed(machine: &Machine, orbit: &PeriodicOrbit) -> Option<PeriodicOrbit> {
 fn beyond(model: &Model, machine: &Machine, rows: &mut Vec<Row>, step: f64) {
     /// How often that is done.
     const DEPTH: usize = 3;
+    let holds = |rows: &[Row], (rpm, orbit): &(f64, PeriodicOrbit)| {
+        let here = machine.at_speed(angular_velocity(*rpm));
+        rows.iter().any(|row| {
+            let near = row.stretch.as_ref().and_then(|stretch| stretch.near(*rpm));
+            near.and_then(|near| at_speed(&here, near)).is_some_and(|known| known.is_same(orbit))
+        })
+    };
     let mut fresh = 0;
     for _ in 0..DEPTH {
-        let ended = rows[fresh..].par_iter().filter_map(|row| row.stretch.as_ref());
-        let found: Vec<(f64, PeriodicOrbit)> =
-            ended.flat_map_iter(|stretch| stretch.beyond(model, machine, step)).collect();
-        fresh = rows.len();
-        for (rpm, orbit) in found {
-            let here = machine.at_speed(angular_velocity(rpm));
-            let holds = |row: &Row| {
-                let near = row.stretch.as_ref().and_then(|stretch| stretch.near(rpm));
-                near.and_then(|near| at_speed(&here, near)).is_some_and(|known| known.is_same(&orbit))
-            };
-            if rows.iter().any(holds) {
-                continue;
+        let next = |stretch: &Stretch| {
+            let mut found: Vec<((f64, PeriodicOrbit), Row)> = Vec::new();
+            for (rpm, orbit) in stretch.beyond(model, machine, step) {
+                let seen = (rpm, orbit);
+                if holds(rows, &seen) || found.iter().any(|(_, row)| holds(std::slice::from_ref(row), &seen)) {
+                    continue;
+                }
+                let class = Class::of(&Ending::Orbit(seen.1.clone()));
+                let mut row = Row { class, at: BTreeMap::new(), ends: [None, None], rpm: [rpm; 2], stretch: None };
+                if let Ok(stretch) = Stretch::all(model, rpm, &seen.1, row.rpm, step) {
+                    row.take(stretch);
+                    found.push((seen, row));
+                }
             }
-            let class = Class::of(&Ending::Orbit(orbit.clone()));
-            let mut row = Row { class, at: BTreeMap::new(), ends: [None, None], rpm: [rpm; 2], stretch: None };
-            if let Ok(stretch) = Stretch::all(model, rpm, &orbit, row.rpm, step) {
-                row.take(stretch);
+            found
+        };
+        let ended = rows[fresh..].par_iter().filter_map(|row| row.stretch.as_ref());
+        let found: Vec<_> = ended.map(next).collect();
+        fresh = rows.len();
+        // What is beyond the end of one may be beyond that of another.
+        for (seen, row) in found.into_iter().flatten() {
+            if !holds(&rows[fresh..], &seen) {
                 rows.push(row);
             }
         }
@@ -239,12 +251,16 @@ impl Row {
         let [Some(first), Some(last)] = [self.at.keys().next().copied(), self.at.keys().last().copied()] else {
             return;
         };
-        for (side, index) in [(0, first), (1, last)] {
-            let beyond = if side == 0 { index.checked_sub(1) } else { Some(index + 1) };
-            let Some(next) = beyond.and_then(|beyond| grid.get(beyond)) else { continue };
-            let change = self.ended(machine, grid, index, speed(next));
-            self.rpm[side] = change.rpm;
-            self.ends[side] = Some(change);
+        let changed = |(side, index): (usize, usize)| {
+            let next = if side == 0 { index.checked_sub(1) } else { Some(index + 1) };
+            Some(self.ended(machine, grid, index, speed(grid.get(next?)?)))
+        };
+        let (lower, upper) = rayon::join(|| changed((0, first)), || changed((1, last)));
+        for ((end, own), change) in self.ends.iter_mut().zip(&mut self.rpm).zip([lower, upper]) {
+            if let Some(change) = change {
+                *own = change.rpm;
+                *end = Some(change);
+            }
         }
     }
 
@@ -323,7 +339,7 @@ impl Row {
     }
 }
 
-/// Whether a motion of the same class as `ending` was found.
-pub(super) fn has_like(here: &Here, ending: &Ending) -> bool {
-    here.parts.iter().any(|part| Class::of(&part.ending) == Class::of(ending))
+/// Whether runs have come to a motion of the same class as `ending`.
+pub(super) fn has_reached(here: &Here, ending: &Ending) -> bool {
+    here.parts.iter().any(|part| Class::of(&part.ending) == Class::of(ending) && here.is_reached(part))
 }
