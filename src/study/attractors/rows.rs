@@ -275,13 +275,16 @@ impl Row {
         let part = grid[index].as_ref().ok().and_then(|here| here.parts.get(*self.at.get(&index)?));
         let Some(part) = part else { return Change::by_runs(sorted([rpm, gone])) };
         let (mut motion, kind) = (part.motion, part.ending.kind());
+        let of_class = |part: &Part| Class::of(&part.ending) == self.class;
+        // One long motion may be chaotic at one speed and be seen to rest at the next; where there are both, the one is not the other.
+        let both = grid[index].iter().any(|here| here.parts.iter().filter(|part| of_class(part)).count() > 1);
         let found = halve([rpm, gone], Width::Halvings(HALVINGS), |rpm| -> Result<bool, SimulateError> {
             let here = Here::new(machine, rpm, STARTS)?;
-            let of_class = |part: &Part| Class::of(&part.ending) == self.class;
             let alike = |part: &&Part| of_class(part) && part.ending.kind() == kind;
+            let goes_on = |part: &Part| if both { alike(&part) } else { of_class(part) };
             let there = match here.parts.iter().find(alike) {
                 Some(part) => Some(part.clone()),
-                None => here.come_to(machine, &motion)?.filter(of_class),
+                None => here.come_to(machine, &motion)?.filter(goes_on),
             };
             if let Some(part) = &there {
                 motion = part.motion;
