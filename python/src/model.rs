@@ -418,7 +418,7 @@ impl Model {
     }
 
     /// The attractors over a range of speeds, (lowest, highest) rpm, or over the one that `corner-impact speeds` takes: at `speeds`
-    /// speeds or more, or from one to the next at most `step` rpm, with `starts` starts at each, and on every stable orbit of two
+    /// speeds or more, or from one to the next at most `step` rpm, with `starts` starts at each, and on the stable orbits of two
     /// impacts in one revolution with `two_impacts`: the document of `corner-impact speeds --json`.
     #[pyo3(signature = (rpm=None, *, speeds=300, step=None, starts=64, two_impacts=false))]
     fn speeds<'py>(

@@ -36,7 +36,7 @@ pub(super) struct Arguments {
     /// Starts that are run at each speed.
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     starts: u32,
-    /// Begin at each speed on every stable orbit of two impacts in one revolution, too: a search by intervals finds them all, in a fifth of a second to some seconds a speed.
+    /// Begin at each speed on the stable orbits of two impacts in one revolution, too: a search by intervals finds all of them but next to a fold, a graze or a corner, in up to some seconds a speed.
     #[arg(long)]
     two_impacts: bool,
     /// Print one JSON document instead of the page.

@@ -47,15 +47,18 @@ pub struct CurvePoint {
 /// A tangent at `unknowns` where none is known, of either sign.
 pub fn first_tangent<E: Equations>(equations: &E, unknowns: &DVector<f64>) -> Result<DVector<f64>, NoPoint<E::Error>> {
     let (_, jacobian) = equations.linear(unknowns)?;
-    let count = unknowns.len();
-    // The direction that the equations see least; a row of zeros makes the matrix square.
-    let square = jacobian.insert_row(count - 1, 0.0);
-    let svd = square.svd(false, true);
-    let rows = svd.v_t.ok_or(NoPoint::NotClosed)?;
-    let least =
-        svd.singular_values.iter().enumerate().min_by(|one, two| one.1.total_cmp(two.1)).map(|(index, _)| index);
-    let direction = rows.row(least.unwrap_or(count - 1)).transpose();
-    if direction.iter().all(|entry| entry.is_finite()) { Ok(direction) } else { Err(NoPoint::NotClosed) }
+    let [direction] = least_seen(jacobian).ok_or(NoPoint::NotClosed)?;
+    Ok(direction)
+}
+
+/// The `N` unit directions that a matrix makes least of, the least first; none where it is not finite or has fewer columns.
+pub fn least_seen<const N: usize>(matrix: DMatrix<f64>) -> Option<[DVector<f64>; N]> {
+    let [rows, columns] = [matrix.nrows(), matrix.ncols()];
+    // As many rows as columns, of zeros where there are fewer: a direction for each column, from most to least.
+    let directions = matrix.resize_vertically(rows.max(columns), 0.0).svd(false, true).v_t?;
+    let row = |back: usize| Some(directions.row(columns.checked_sub(back)?).transpose());
+    let least: Vec<DVector<f64>> = (1..=N).map(row).collect::<Option<_>>()?;
+    least.iter().flatten().all(|entry| entry.is_finite()).then(|| least.try_into().ok())?
 }
 
 /// The point of the curve in the plane across `along` at a distance `step` from `from`.

@@ -78,7 +78,8 @@ impl<'a> Settling<'a> {
         Ok(new)
     }
 
-    /// Takes note of all stable orbits of two impacts in one revolution, the search for which takes up to seconds.
+    /// Takes note of the stable orbits of two impacts in one revolution: of all but next to a fold, a graze or a corner. It takes up to
+    /// seconds.
     pub fn know_two_impacts(&mut self) -> Result<(), SimulateError> {
         let solved = of_two_impacts(self.machine, &Unwatched).into_iter();
         let may_be = solved.filter(|solved| solved.standing != Standing::NoOrbit);

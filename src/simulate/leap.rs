@@ -24,12 +24,11 @@ pub(super) struct Chord {
 /// 64 of them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Chords {
-    from: Vec<[Chord; LEVELS]>,
+    from: Vec<[Chord; SIZES.len()]>,
 }
 
-const LEVELS: usize = 4;
-/// So many chords of one level, one after the other, are one of the next.
-const GROUP: usize = 4;
+/// Segments that chords go over.
+const SIZES: [usize; 4] = [1, 4, 16, 64];
 
 /// Segments from one to another that no chord has been laid over yet.
 #[derive(Clone, Copy)]
@@ -58,19 +57,19 @@ impl Chords {
             curvature: segment.bounds.curvature[0],
         };
         let mut stretches: Vec<Stretch> = segments.iter().map(of_one).collect();
-        let mut from = vec![[Chord::NONE; LEVELS]; segments.len()];
-        for level in 0..LEVELS {
+        let mut from = vec![[Chord::NONE; SIZES.len()]; segments.len()];
+        let mut size = 1;
+        for (level, longer) in SIZES.into_iter().enumerate() {
+            // Of as many of the level before as there are, one after the other; the last ones have none after them.
+            let joined = stretches.iter().enumerate().map_while(|(first, stretch)| {
+                let mut others = (first..first + longer).step_by(size).skip(1);
+                others.try_fold(*stretch, |all, next| Some(all.and(stretches.get(next)?, kinks[next])))
+            });
+            stretches = joined.collect();
+            size = longer;
             for (chords, stretch) in from.iter_mut().zip(&stretches) {
                 chords[level] = stretch.chord();
             }
-            let size = GROUP.pow(level as u32);
-            // The last ones have none after them.
-            let longer = stretches.iter().enumerate().map_while(|(first, stretch)| {
-                (1..GROUP)
-                    .map(|part| first + part * size)
-                    .try_fold(*stretch, |all, next| Some(all.and(stretches.get(next)?, kinks[next])))
-            });
-            stretches = longer.collect();
         }
         Self { from }
     }
@@ -147,9 +146,9 @@ impl Machine {
                 least += (2.0 * half + 6.0 * sixth.max(0.0) * turn).max(0.0) * chord.square;
             }
             if turn < left && gaps[0] > least && gaps[1] > least {
-                segment += 1 << (level * GROUP.trailing_zeros() as usize);
+                segment += SIZES[level];
                 (before, turned) = (after, turn);
-                level += usize::from(rises && level + 1 < LEVELS);
+                level += usize::from(rises && level + 1 < SIZES.len());
             } else if level > 0 {
                 (level, rises) = (level - 1, false);
             } else {

@@ -3,6 +3,7 @@
 //! simulator slower is seen whatever the machine is doing.
 
 use std::ops::ControlFlow;
+use std::path::Path;
 
 use corner_impact::simulate::{Event, Machine, Observer, Work, angular_velocity};
 use serde_json::json;
@@ -53,4 +54,18 @@ fn finding_contacts_takes_what_it_took() {
     settings.set_prepend_module_to_snapshot(false);
     settings.set_omit_expression(true);
     settings.bind(|| insta::assert_json_snapshot!("work", counts));
+}
+
+/// Over the 360 segments of a table a flight leaps to the segment that it comes down on, from wherever it is: a window of its own for what is
+/// left of the segment that it begins on would take more than four evaluations for each contact.
+#[test]
+fn a_flight_over_many_segments_is_looked_at_where_it_comes_down() {
+    let model = common::read(Path::new("models/laws/table-cubic.toml"));
+    let machine = Machine::new(common::cam(&model), &model.follower, angular_velocity(670.0));
+    let mut motion = machine.start_on_cam(0.0, 1.0).unwrap();
+    let goal = motion.after(1000);
+    let mut counted = Counted::default();
+    let _ = machine.advance(&mut motion, goal, &mut counted).unwrap();
+    let each = counted.work.gaps as f64 / counted.events as f64;
+    assert!(each < 3.5, "{each} evaluations for each of {} contacts", counted.events);
 }

@@ -60,10 +60,9 @@ fn beyond(
     twice: &Cycle,
     exit: Option<Exit>,
 ) -> Option<(f64, PeriodicOrbit)> {
-    let (machine, _) = family.machine(&[value]).ok()?;
     let pattern = match exit {
         None => twice.clone(),
-        Some(exit) => switch::beyond(exit, twice, &machine)?,
+        Some(exit) => switch::beyond(exit, twice, &family.machine(&[value]).ok()?.0)?,
     };
     stepped(family, following, value, &pattern, |problem, from| match exit {
         None => apart(problem, from),
@@ -114,11 +113,7 @@ fn apart(problem: &Problem<'_>, at: &DVector<f64>) -> Result<DVector<f64>, NoPoi
     let half = (at.len() - 1) / 2;
     // J on halves that move against each other: (J_1 - J_2) d = 0 for d of the first half.
     let against = jacobian.columns(0, half) - jacobian.columns(half, half);
-    let svd = against.svd(false, true);
-    let rows = svd.v_t.ok_or(NoPoint::NotClosed)?;
-    let values = svd.singular_values.iter().enumerate();
-    let least = values.min_by(|one, two| one.1.total_cmp(two.1)).map_or(0, |(index, _)| index);
-    let first = rows.row(least);
+    let [first] = curve::least_seen(against).ok_or(NoPoint::NotClosed)?;
     let entry = |index: usize| match index {
         _ if index < half => first[index],
         _ if index < 2 * half => -first[index - half],
@@ -137,13 +132,7 @@ fn across(
     along: &DVector<f64>,
 ) -> Result<DVector<f64>, NoPoint<FamilyError>> {
     let (_, jacobian) = problem.linear(at)?;
-    // A row of zeros makes the matrix square.
-    let svd = jacobian.insert_row(at.len() - 1, 0.0).svd(false, true);
-    let rows = svd.v_t.ok_or(NoPoint::NotClosed)?;
-    let mut least: Vec<(usize, &f64)> = svd.singular_values.iter().enumerate().collect();
-    least.sort_by(|one, two| one.1.total_cmp(two.1));
-    let [(one, _), (two, _), ..] = least[..] else { return Err(NoPoint::NotClosed) };
-    let [one, two] = [one, two].map(|row| rows.row(row).transpose());
+    let [one, two] = curve::least_seen(jacobian).ok_or(NoPoint::NotClosed)?;
     let direction = &one * two.dot(along) - &two * one.dot(along);
     let length = direction.norm();
     if length.is_finite() && length > 0.0 { Ok(direction / length) } else { Err(NoPoint::NotClosed) }

@@ -53,7 +53,7 @@ impl Wandering {
 pub struct Part {
     /// The motion.
     pub ending: Ending,
-    /// The starts that end on it, in order.
+    /// The starts that end on it, in order; none where only the motion of another speed came to it.
     pub starts: Vec<usize>,
     /// Where the first of these was when that was told.
     pub motion: Motion,

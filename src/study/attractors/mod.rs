@@ -98,8 +98,8 @@ pub struct Resolution {
     pub step: Step,
     /// How many starts of the sample are run at each.
     pub starts: usize,
-    /// Whether runs begin on every stable orbit of two impacts in one revolution, too: a search at each speed that takes up to
-    /// seconds.
+    /// Whether runs begin on the stable orbits of two impacts in one revolution, too: a search at each speed that takes up to
+    /// seconds, and finds all of them but next to a fold, a graze or a corner.
     pub two_impacts: bool,
 }
 
