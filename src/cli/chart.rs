@@ -47,7 +47,7 @@ pub(super) struct Arguments {
     record: u64,
     #[command(flatten)]
     start: StartArguments,
-    /// What the colours of a picture tell.
+    /// What the colours of a picture tell; a table and a store have all of it.
     #[arg(long, value_enum, default_value = "period")]
     show: ShowName,
     /// Draw over a picture the curves of corner impacts, folds, flips, grazes, detachment and the onset of resting of motions
@@ -66,7 +66,7 @@ pub(super) struct Arguments {
     /// Run the part I of N of a store's blocks; the others are for other processes, at the same time or later.
     #[arg(long, value_name = "I/N", value_parser = shard, requires = "out")]
     shard: Option<Shard>,
-    /// Say how much of a store is done, instead.
+    /// Say how much of a store is done, instead; with --summary as JSON.
     #[arg(long, value_name = "STORE", conflicts_with_all = ["x", "y", "out"])]
     status: Option<PathBuf>,
     /// Print a summary as one JSON document.
@@ -131,6 +131,14 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     // Neither is missing where it is not the state of a store that is asked for.
     let (Some(x), Some(y)) = (&arguments.x, &arguments.y) else { return Ok(Exit::BadInput) };
     let (x, y) = (named(x)?, named(y)?);
+    for (axis, option) in [(&x, "--x"), (&y, "--y")] {
+        if arguments.model.sets(&model, axis.parameter.name())? {
+            let name = axis.parameter.name();
+            return Err(CommandError::Words(format!(
+                "--set {name}: no point would have that value, as {option} goes through others"
+            )));
+        }
+    }
     let lengths = Lengths { transient: arguments.transient, record: arguments.record };
     let chart = Chart::new(&model, arguments.rpm, [x, y], arguments.start.start(), lengths)?;
     let drawn = arguments.out.as_deref().is_some_and(|path| picture::kind(path).is_some());

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::{CommandError, progress::watched, session::Session, start::finite};
 use crate::model::Model;
+use crate::orbit::Parameter;
 use crate::show::words;
 
 /// Which model a command is about.
@@ -35,6 +36,12 @@ impl ModelArgument {
     /// The model in a file, or the one that is built in, with some numbers changed.
     pub(super) fn of(file: Option<&Path>, changes: &Changes) -> Self {
         Self { file: file.map(Path::to_path_buf), changes: changes.clone() }
+    }
+
+    /// Whether a number, by its whole path, is one of those that were changed.
+    pub(super) fn sets(&self, model: &Model, path: &str) -> Result<bool, CommandError> {
+        let is_it = |(name, _): &(String, f64)| Parameter::named(model, name).map(|set| set.name() == path);
+        Ok(self.changes.numbers.iter().map(is_it).collect::<Result<Vec<_>, _>>()?.contains(&true))
     }
 
     /// Reads the model; says on standard error which one it is where none is named.

@@ -36,8 +36,13 @@ pub enum Fate {
     Recurs(Resting),
     /// A stable periodic orbit, and the run at it.
     Arrives(PeriodicOrbit, Motion),
-    /// Neither within [`LONGEST_REST`] revolutions from one rest to the next; and where the run was when it had settled.
-    Wanders(Motion),
+    /// Neither in the revolutions that are waited from one rest to the next.
+    Wanders {
+        /// As the cam let go of it.
+        released: Motion,
+        /// After those revolutions.
+        end: Motion,
+    },
 }
 
 /// Revolutions that are waited for the next rest of a follower that has rested.
@@ -61,6 +66,8 @@ pub struct Settling<'a> {
     /// The size of the cam's lift and its top, m.
     size: f64,
     top: f64,
+    /// Whether a flight may stay above the top: nothing draws the follower down to it from there.
+    floats: bool,
     /// With the states as the cam passes angle 0.
     known: Vec<(PeriodicOrbit, Vec<State>)>,
 }
@@ -90,7 +97,9 @@ impl<'a> Settling<'a> {
     /// As [`Self::new`] for a run or two: without any orbit that is known beforehand, as a search for them takes as long as thousands of
     /// revolutions. The next rest is waited for as long as `rest` revolutions.
     pub fn unaided(machine: &'a Machine, longest: u64, rest: u64) -> Self {
-        Self { machine, longest, rest, size: lift_size(machine), top: machine.cam().top(), known: Vec::new() }
+        let top = machine.cam().top();
+        let floats = !(machine.flight().force(top) < 0.0);
+        Self { machine, longest, rest, size: lift_size(machine), top, floats, known: Vec::new() }
     }
 
     /// The orbits known.
@@ -142,7 +151,8 @@ impl<'a> Settling<'a> {
             if motion.contact && self.stays(*motion)? {
                 return Ok(Run::Stays);
             }
-            if motion.state.position > self.top
+            if self.floats
+                && motion.state.position > self.top
                 && self.machine.flight().fall_to(self.top, motion.state).is_none()
                 && let Some(orbit) = free(self.machine, motion.state)
             {
@@ -187,7 +197,7 @@ impl<'a> Settling<'a> {
         match fate {
             Fate::Recurs(resting) => Ok(Ending::Resting(resting.clone())),
             Fate::Arrives(orbit, _) => Ok(Ending::Orbit(orbit.clone())),
-            Fate::Wanders(motion) => Ok(Ending::by_growth(self.growth(*motion)?.growth)),
+            Fate::Wanders { released, .. } => Ok(Ending::by_growth(self.growth(self.settled(*released)?)?.growth)),
         }
     }
 
@@ -245,12 +255,7 @@ impl<'a> Settling<'a> {
             let (mut motion, mut met) = (begun, Met::default());
             let next = match self.counted(&mut motion, self.rest, &mut met)? {
                 Run::Arrives(orbit) => return Ok(Fate::Arrives(orbit, motion)),
-                Run::Stays | Run::Wanders => {
-                    // Long before the end, where the follower may be about to rest.
-                    motion = begun;
-                    self.machine.revolve(&mut motion, SETTLED)?;
-                    return Ok(Fate::Wanders(motion));
-                }
+                Run::Stays | Run::Wanders => return Ok(Fate::Wanders { released: begun, end: motion }),
                 Run::Released(next) => next,
             };
             releases.push((release, motion.revolution - begun.revolution, met));
@@ -306,6 +311,13 @@ impl<'a> Settling<'a> {
             self.to_release(&mut motion, goal, &mut Met::default())?;
         }
         Ok(motion)
+    }
+
+    /// A run that wanders from a release, when it has forgotten that: long before the end of what is waited for, where the follower may be
+    /// about to rest.
+    pub fn settled(&self, mut released: Motion) -> Result<Motion, SimulateError> {
+        self.machine.revolve(&mut released, SETTLED)?;
+        Ok(released)
     }
 
     /// Chaotic or undecided, by the growth of a small deviation of `motion`; or what it ends on if it rests before that is known.

@@ -16,23 +16,25 @@ use crate::impact::ImpactRates;
 pub struct Variation<'a> {
     machine: &'a Machine,
     matrix: Matrix2<f64>,
+    /// Flown since then, s: a flight over several segments is one.
+    flown: f64,
 }
 
 impl<'a> Variation<'a> {
     /// The identity at the start of `motion`; 0 if that sticks to the cam.
     pub fn new(machine: &'a Machine, motion: &Motion) -> Self {
         let matrix = if motion.contact { Matrix2::zeros() } else { Matrix2::identity() };
-        Self { machine, matrix }
+        Self { machine, matrix, flown: 0.0 }
     }
 
     /// `d(q, v)/d(q0, v0)` since the start, or since [`Variation::reset`]; 2x2.
     pub fn matrix(&self) -> Matrix2<f64> {
-        self.matrix
+        if self.flown == 0.0 { self.matrix } else { self.machine.flight().propagator(self.flown) * self.matrix }
     }
 
     /// Starts again from `matrix`.
     pub fn reset(&mut self, matrix: Matrix2<f64>) {
-        self.matrix = matrix;
+        (self.matrix, self.flown) = (matrix, 0.0);
     }
 }
 
@@ -40,6 +42,7 @@ impl Observer for Variation<'_> {
     fn event(&mut self, event: &Event) -> ControlFlow<()> {
         match event.kind {
             EventKind::Impact => {
+                self.reset(self.matrix());
                 let segment = &self.machine.cam().segments()[event.segment];
                 let angle = if event.cam_angle < segment.start { event.cam_angle + TAU } else { event.cam_angle };
                 let omega = self.machine.angular_velocity();
@@ -55,13 +58,13 @@ impl Observer for Variation<'_> {
                 };
                 self.matrix = rates.saltation() * self.matrix;
             }
-            EventKind::Stick => self.matrix = Matrix2::zeros(),
+            EventKind::Stick => self.reset(Matrix2::zeros()),
             EventKind::Release => {}
         }
         ControlFlow::Continue(())
     }
 
-    fn flight(&mut self, flight: &Flight, _from: State, time: f64) {
-        self.matrix = flight.propagator(time) * self.matrix;
+    fn flight(&mut self, _flight: &Flight, _from: State, time: f64) {
+        self.flown += time;
     }
 }

@@ -166,13 +166,62 @@ fn a_store_is_the_table_in_blocks() {
         compared += one.len();
     }
     assert!(compared > 100_000);
-    // Another chart does not go there.
-    let other = ["--x", "rpm=90:190:120", "--y", "restitution=0:0.9:110", "--out", &whole];
-    assert!(refused(&other).contains("holds another chart"));
+    // Another chart does not go there, and is told by what.
+    let longer = [&axes[..4], &["--transient", "5", "--record", "3"]].concat();
+    let ([fewer, elsewhere], upwards) = (["rpm=90:190:119", "rpm=90:191:120"], axes[3]);
+    let lengths = &axes[4..];
+    for (other, how) in [
+        (longer.clone(), "its record is 2, and not 3"),
+        ([&["--x", fewer, "--y", upwards], lengths].concat(), "its number of rows and columns is [110,120], and not [110,119]"),
+        ([&["--x", elsewhere, "--y", upwards], lengths].concat(), "other values of rpm"),
+        ([&["--x", upwards, "--y", axes[1]], lengths].concat(), "its pair of axes, upwards and across, is"),
+        ([&axes[..], &["--set", "mass=2"]].concat(), "its model is \"osorio-2008\", and not \"osorio-2008 with follower.mass = 2\""),
+        ([&axes[..], &["--start-angle", "1"]].concat(), "its start is {\"cam_angle_rad\":0.0"),
+    ] {
+        let said = refused(&[&other[..], &["--out", &whole]].concat());
+        assert!(said.contains("holds another chart: ") && said.contains(how), "{how}: {said}");
+    }
     let none = common::corner_impact(["chart", "--status", "nowhere.zarr"]);
     assert!(none.status.code() == Some(2) && common::text(none.stderr).contains("no store of a chart"));
     assert!(refused(&[&axes[..], &["--shard", "3/2"]].concat()).contains("must be I/N"));
     assert!(refused(&[&axes[..], &["--shard", "1/2", "--out", "a.csv"]].concat()).contains("must end in .zarr"));
+}
+
+/// Where a block cannot be written, none of it counts as done, and what was done stays; whoever can write goes on.
+#[test]
+#[cfg(unix)]
+fn a_store_that_cannot_be_written_loses_nothing() {
+    use std::fs::{Permissions, set_permissions};
+    use std::os::unix::fs::{MetadataExt, PermissionsExt};
+    use std::os::unix::process::CommandExt;
+    fn each_folder(folder: &Path, mode: u32) {
+        set_permissions(folder, Permissions::from_mode(mode)).unwrap();
+        let inside = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+        inside.filter(|path| path.is_dir()).for_each(|path| each_folder(&path, mode));
+    }
+    let folder = tempfile::TempDir::new().unwrap();
+    let [store, model, program] = ["c.zarr", "model.toml", "corner-impact"].map(|name| folder.path().join(name));
+    // The superuser may write everywhere: another user tries, with copies of what that user may not come to.
+    std::fs::copy(Path::new(common::ROOT).join(MODEL), &model).unwrap();
+    std::fs::copy(common::PROGRAM, &program).unwrap();
+    let [store, model] = [&store, &model].map(|path| path.to_str().unwrap());
+    let axes = ["--x", "rpm=90:190:120", "--y", "restitution=0:0.9:3", "--transient", "5", "--record", "2"];
+    let whole = [&["chart", model], &axes[..], &["--out", store]].concat();
+    prints(&[&whole[..], &["--shard", "2/2"]].concat());
+    each_folder(folder.path(), 0o555);
+    let mut other = std::process::Command::new(&program);
+    if std::fs::metadata(folder.path()).unwrap().uid() == 0 {
+        other.uid(65_534);
+    }
+    let output = other.current_dir("/").args(&whole).output().unwrap();
+    each_folder(folder.path(), 0o755);
+    let complaint = common::text(output.stderr);
+    assert!(output.status.code() == Some(2) && complaint.contains("c.zarr/revolutions/c/0"), "{complaint}");
+    assert!(complaint.contains("Permission denied"), "{complaint}");
+    let status = ["chart", "--status", store];
+    assert_eq!(prints(&status).trim(), "1 of 2 blocks are done");
+    prints(&whole);
+    assert_eq!(prints(&status).trim(), "2 of 2 blocks are done");
 }
 
 #[test]
@@ -186,6 +235,10 @@ fn what_is_no_chart_is_refused_with_a_reason() {
     assert!(refused(&["--x", "rpm=760:600:3", "--y", y]).contains("is below the lowest"));
     assert!(refused(&["--x", "rpm=-5:600:3", "--y", y]).contains("above 0"));
     assert!(refused(&["--x", "rpm=600:760:100000", "--y", "mass=1:2:100000"]).contains("1 to 100000000"));
+    for sides in [["--x", x, "--y", y], ["--x", y, "--y", x]] {
+        let said = refused(&[&sides[..], &["--set", "follower.restitution=0.7"]].concat());
+        assert!(said.contains("--set follower.restitution: no point would have that value, as --"), "{said}");
+    }
     assert!(refused(&["--x", x, "--y", y, "--out", "a.eps"]).contains(".csv, .zarr, .svg, .png or .pdf"));
 }
 

@@ -129,8 +129,12 @@ impl Ensemble {
                 Run::Released(release) => match fates.iter().find(|(known, ..)| is_same_release(*known, release)) {
                     Some((.., ending)) if wanders_on(ending) => wanderers.next().cloned(),
                     Some((_, fate, ending)) => {
-                        if let Fate::Arrives(_, end) | Fate::Wanders(end) = fate {
-                            motion = *end;
+                        match fate {
+                            Fate::Recurs(_) => {}
+                            Fate::Arrives(_, end) => motion = *end,
+                            Fate::Wanders { released, .. } => {
+                                motion = settling.settled(*released).map_err(|error| (index, error))?;
+                            }
                         }
                         Some(ending.clone())
                     }
@@ -175,7 +179,7 @@ fn wait(
     const LEAST: u64 = 32;
     let (mut all, mut round, mut soon) = (None::<Wandering>, SLOW, Wandering::default());
     // Those that a release was followed by count as well.
-    let followed = fates.iter().filter(|(_, fate, _)| matches!(fate, Fate::Wanders(_))).count() as u64;
+    let followed = fates.iter().filter(|(_, fate, _)| matches!(fate, Fate::Wanders { .. })).count() as u64;
     let released = Wandering { revolutions: (followed * LONGEST_REST).min(POOL / 2), ..Wandering::default() };
     loop {
         let wanderers = ends.iter().flatten().filter(|end| end.run == Run::Wanders).count() as u64;

@@ -53,10 +53,11 @@ impl Point {
         const BLOCK: u64 = 25;
         /// Revolutions from one record to the next, with a look for an orbit.
         const LOOK: u64 = 8;
-        let rest = lengths.transient.saturating_add(lengths.record);
-        let settling = Settling::unaided(machine, Patience::default().longest, rest);
-        let mut record = Record::over((lengths.record / PARTS).clamp(1, BLOCK));
+        let waiting = |rest| Settling::unaided(machine, Patience::default().longest, rest);
+        let fresh = || Record::over((lengths.record / PARTS).clamp(1, BLOCK));
+        let (mut settling, mut record) = (waiting(lengths.transient), fresh());
         let mut run = settling.run(&mut motion, lengths.transient)?;
+        let mut wandered_from = None;
         for _ in 0..RECORDS {
             match run {
                 Run::Arrives(orbit) => return Ok(Self::on(&orbit)),
@@ -64,15 +65,27 @@ impl Point {
                 Run::Released(cam_angle) => match settling.fate(cam_angle)? {
                     Fate::Recurs(resting) => return Ok(Self::resting(&resting)),
                     Fate::Arrives(orbit, _) => return Ok(Self::on(&orbit)),
-                    Fate::Wanders(wandering) => motion = wandering,
+                    Fate::Wanders { end, .. } => (motion, wandered_from) = (end, Some(cam_angle)),
                 },
                 Run::Wanders => {}
             }
-            record.take(machine, &mut motion, lengths.record)?;
-            if Ending::by_growth(record.growth()).kind() == Kind::Chaotic {
-                return Ok(Self::wandering(Kind::Chaotic, &record));
+            if record.rests() {
+                record = fresh();
             }
-            run = settling.run(&mut motion, if record.rests() { rest } else { LOOK })?;
+            record.take(machine, &mut motion, lengths.record)?;
+            if record.rests() {
+                // From one rest to the next it takes longer than the transient: what comes of that is seen from the release.
+                let rest = lengths.transient.saturating_add(lengths.record);
+                settling = waiting(rest);
+                run = match wandered_from.take() {
+                    Some(release) => Run::Released(release),
+                    None => settling.run(&mut motion, rest)?,
+                };
+            } else if Ending::by_growth(record.growth()).kind() == Kind::Chaotic {
+                return Ok(Self::wandering(Kind::Chaotic, &record));
+            } else {
+                run = settling.run(&mut motion, LOOK)?;
+            }
         }
         Ok(Self::wandering(Kind::Undecided, &record))
     }

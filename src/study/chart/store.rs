@@ -31,8 +31,8 @@ pub struct Store<'a> {
 #[expect(missing_docs, reason = "the message says what each is")]
 pub enum StoreError {
     /// It is another chart's.
-    #[error("{folder}: holds another chart: other axes, blocks, model or version, or other lengths")]
-    Another { folder: String },
+    #[error("{folder}: holds another chart: {how}")]
+    Another { folder: String, how: String },
     /// There is none.
     #[error("{folder}: no store of a chart: {why}")]
     None { folder: String, why: String },
@@ -231,16 +231,20 @@ impl<'a> Store<'a> {
             read => Some(read.map_err(|error| none(folder, error.to_string()))?),
         };
         if let Some(text) = there {
-            let is_there = |(file, bytes): &(PathBuf, Vec<u8>)| {
+            let there = serde_json::from_str(&text).map_err(|error| none(folder, error.to_string()))?;
+            let is_other = |(file, bytes): &&(PathBuf, Vec<u8>)| {
                 let file = folder.join(file);
                 // Of another length it is another's, and need not be read.
-                std::fs::metadata(&file).is_ok_and(|there| there.len() == bytes.len() as u64)
-                    && std::fs::read(file).is_ok_and(|there| there == *bytes)
+                !std::fs::metadata(&file).is_ok_and(|there| there.len() == bytes.len() as u64)
+                    || !std::fs::read(file).is_ok_and(|there| there == *bytes)
             };
-            let same =
-                serde_json::from_str::<Value>(&text).is_ok_and(|there| there == whole) && grid.iter().all(is_there);
-            let another = || StoreError::Another { folder: folder.display().to_string() };
-            return same.then_some(store).ok_or_else(another);
+            let other = grid.iter().zip([&chart.x, &chart.y]).find(|(file, _)| is_other(file));
+            let how = difference(&there, &whole)
+                .or_else(|| other.map(|(_, axis)| format!("other values of {}", axis.parameter.name())));
+            return match how {
+                None => Ok(store),
+                Some(how) => Err(StoreError::Another { folder: folder.display().to_string(), how }),
+            };
         }
         for (file, bytes) in &grid {
             store.write(file, bytes)?;
@@ -373,6 +377,27 @@ fn start(start: &Start) -> Value {
         }
         Placed::OnCam(velocity) => json!({ "cam_angle_rad": angle, "relative_velocity_m_s": velocity }),
     }
+}
+
+/// What tells the chart of a store from the one that is asked for, by their documents: the first that does.
+fn difference(there: &Value, asked: &Value) -> Option<String> {
+    const CLASSES: &str = "/consolidated_metadata/metadata/class";
+    let one = |name: &str, pointer: &str| {
+        let [there, asked] = [there, asked].map(|document| document.pointer(pointer).unwrap_or(&Value::Null));
+        (there != asked).then(|| format!("its {name} is {there}, and not {asked}"))
+    };
+    let long = |words: String, pointer: &str| (there.pointer(pointer) != asked.pointer(pointer)).then_some(words);
+    one("version", "/attributes/corner_impact_version")
+        .or_else(|| one("model", "/attributes/model"))
+        .or_else(|| long("numbers of its model are others".into(), "/attributes/model_toml"))
+        .or_else(|| one("speed, rpm,", "/attributes/rpm"))
+        .or_else(|| one("start", "/attributes/start"))
+        .or_else(|| one("transient", "/attributes/transient"))
+        .or_else(|| one("record", "/attributes/record"))
+        .or_else(|| one("pair of axes, upwards and across,", &format!("{CLASSES}/dimension_names")))
+        .or_else(|| one("number of rows and columns", &format!("{CLASSES}/shape")))
+        .or_else(|| one("number of rows and columns of a block", &format!("{CLASSES}/chunk_grid/configuration/chunk_shape")))
+        .or_else(|| long("what is said of its arrays is something else".into(), ""))
 }
 
 /// Whether every file of a block is there, with its length.
