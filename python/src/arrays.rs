@@ -24,11 +24,11 @@ fn code(kind: EventKind) -> i8 {
     EVENTS.iter().position(|known| *known == kind).map_or(FAILED, |code| code as i8)
 }
 
-/// A dict of columns that are handed over, not copied.
+/// A dict of columns that are handed over, not copied; their names are made once.
 macro_rules! columns {
     ($py:expr, $($name:literal: $column:expr),+ $(,)?) => {{
         let columns = PyDict::new($py);
-        $(columns.set_item($name, PyArray1::from_vec($py, $column))?;)+
+        $(columns.set_item(pyo3::intern!($py, $name), PyArray1::from_vec($py, $column))?;)+
         columns
     }};
 }
@@ -55,15 +55,17 @@ impl Events {
         Self { start_angle, angular_velocity, ..Self::default() }
     }
 
-    pub(crate) fn push(&mut self, event: &Event) {
-        self.revolution.push(event.revolution as i64);
-        self.time_s.push(event.turned_since(self.start_angle) / self.angular_velocity);
-        self.cam_angle_rad.push(event.cam_angle);
-        self.event.push(code(event.kind));
-        self.position_m.push(event.position);
-        self.velocity_before_m_s.push(event.velocity_before);
-        self.velocity_after_m_s.push(event.velocity_after);
-        self.cam_velocity_m_s.push(event.cam_velocity);
+    /// Column by column: each then grows once for many.
+    pub(crate) fn extend(&mut self, events: &[Event]) {
+        let (start_angle, angular_velocity) = (self.start_angle, self.angular_velocity);
+        self.revolution.extend(events.iter().map(|event| event.revolution as i64));
+        self.time_s.extend(events.iter().map(|event| event.turned_since(start_angle) / angular_velocity));
+        self.cam_angle_rad.extend(events.iter().map(|event| event.cam_angle));
+        self.event.extend(events.iter().map(|event| code(event.kind)));
+        self.position_m.extend(events.iter().map(|event| event.position));
+        self.velocity_before_m_s.extend(events.iter().map(|event| event.velocity_before));
+        self.velocity_after_m_s.extend(events.iter().map(|event| event.velocity_after));
+        self.cam_velocity_m_s.extend(events.iter().map(|event| event.cam_velocity));
     }
 
     pub(crate) fn columns(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {

@@ -165,7 +165,7 @@ impl Model {
         }
         let [lift, slope, curvature] = found;
         let columns = columns!(py, "lift_m": lift, "slope_m_rad": slope, "curvature_m_rad2": curvature);
-        in_units(&columns, &self.model.units)
+        in_units(columns, &self.model.units)
     }
 
     /// The events of `revolutions` of one run at `rpm`, after `transient` revolutions that are not recorded.
@@ -208,13 +208,13 @@ impl Model {
             let simulation = Simulation::of(&self.model.name, rpm, machine, first);
             let run = simulation.run(wanted, &Unwatched, |sight| {
                 if let Sight::Events(seen) = sight {
-                    seen.iter().for_each(|event| events.push(event));
+                    events.extend(seen);
                 }
                 Ok(())
             });
             run.map(|_| events)
         };
-        in_units(&alone(py, run)?.or_raise()?.columns(py)?, &self.model.units)
+        in_units(alone(py, run)?.or_raise()?.columns(py)?, &self.model.units)
     }
 
     /// What happens at each of evenly spaced speeds, (lowest, highest, how many) rpm, in `record` revolutions after `transient`.
@@ -277,7 +277,7 @@ impl Model {
             });
             found.map(|_| rows)
         };
-        in_units(&shared(py, run)?.or_raise()?.columns(py, strobe.is_some(), lyapunov)?, &self.model.units)
+        in_units(shared(py, run)?.or_raise()?.columns(py, strobe.is_some(), lyapunov)?, &self.model.units)
     }
 
     /// Where `revolutions` take the states `position`, m, and `velocity`, m/s, N each, at `cam_angle`, rad: `position_m` and
@@ -328,7 +328,7 @@ impl Model {
             let entries = images.iter().flat_map(|image| image[2..].iter().copied()).collect::<Vec<_>>();
             columns.set_item("jacobian", PyArray1::from_vec(py, entries).reshape([images.len(), 2, 2])?)?;
         }
-        in_units(&columns, &self.model.units)
+        in_units(columns, &self.model.units)
     }
 
     /// The first impact after the follower leaves the cam at `cam_angle`, rad, with `relative_velocity`, m/s, 0 or more, N each:
@@ -364,7 +364,7 @@ impl Model {
             "relative_velocity_m_s": images.iter().map(|image| image[1]).collect::<Vec<_>>(),
             "flight_s": images.iter().map(|image| image[2]).collect::<Vec<_>>(),
         );
-        in_units(&columns, &self.model.units)
+        in_units(columns, &self.model.units)
     }
 
     /// The periodic orbits at `rpm` with so many `revolutions` in a period, and with so many `impacts`, if given; or the one that

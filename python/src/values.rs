@@ -110,7 +110,10 @@ pub(crate) fn pairs(
 }
 
 /// Columns under their names in the units of a model, with the values that those make others.
-pub(crate) fn in_units<'py>(columns: &Bound<'py, PyDict>, units: &Units) -> PyResult<Bound<'py, PyDict>> {
+pub(crate) fn in_units<'py>(columns: Bound<'py, PyDict>, units: &Units) -> PyResult<Bound<'py, PyDict>> {
+    if !units.are_given {
+        return Ok(columns);
+    }
     let told = PyDict::new(columns.py());
     for (name, values) in columns {
         let name: String = name.extract()?;

@@ -73,6 +73,11 @@ fn a_point_is_what_the_run_comes_to() {
     assert_eq!(resting[2], last.to_string());
     assert_relative_eq!(number(&resting[5]), fastest("183", 90), max_relative = 1e-9);
     assert_eq!(row("50")[..6], ["stays", "1", "0", "-inf", "0", "0"]);
+    // What rests again after more than the transient is seen to in what is recorded.
+    let late = ["--x", "rpm=500:500:1", "--y", "restitution=0.55:0.55:1"];
+    for transient in ["4", "300"] {
+        assert_eq!(chart(&[&late[..], &["--transient", transient]].concat())[0][2..5], ["resting", "9", "45"]);
+    }
 }
 
 /// The points of a part of a chart, of one with its axes exchanged, and on another number of threads, are those of the whole.
@@ -172,10 +177,16 @@ fn a_store_is_the_table_in_blocks() {
     let lengths = &axes[4..];
     for (other, how) in [
         (longer.clone(), "its record is 2, and not 3"),
-        ([&["--x", fewer, "--y", upwards], lengths].concat(), "its number of rows and columns is [110,120], and not [110,119]"),
+        (
+            [&["--x", fewer, "--y", upwards], lengths].concat(),
+            "its number of rows and columns is [110,120], and not [110,119]",
+        ),
         ([&["--x", elsewhere, "--y", upwards], lengths].concat(), "other values of rpm"),
         ([&["--x", upwards, "--y", axes[1]], lengths].concat(), "its pair of axes, upwards and across, is"),
-        ([&axes[..], &["--set", "mass=2"]].concat(), "its model is \"osorio-2008\", and not \"osorio-2008 with follower.mass = 2\""),
+        (
+            [&axes[..], &["--set", "mass=2"]].concat(),
+            "its model is \"osorio-2008\", and not \"osorio-2008 with follower.mass = 2\"",
+        ),
         ([&axes[..], &["--start-angle", "1"]].concat(), "its start is {\"cam_angle_rad\":0.0"),
     ] {
         let said = refused(&[&other[..], &["--out", &whole]].concat());

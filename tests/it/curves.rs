@@ -134,3 +134,39 @@ fn a_bound_of_the_model_ends_a_curve_with_a_sentence() {
         assert!(at_bound > 0, "{range:?}");
     }
 }
+
+/// A cusp of folds, by three equations in closed form. With one impact a revolution and no damping the flight is symmetric in time:
+/// with e where the spring is at rest and w its frequency, `F = c(theta) - e - K c'(theta) = 0`, with
+/// `K = (1 + r)/(1 - r) (omega/w) / tan(pi w/omega)`. At a fold `F' = 0` as well, at a cusp `F'' = 0`. So neither its place on the cam nor
+/// its phase knows anything of r.
+#[test]
+fn a_cusp_of_folds_is_where_its_equations_are_zero() {
+    for (restitution, rpm) in [(0.6, [430.0, 450.0]), (0.8, [350.0, 420.0])] {
+        let model = model("laws/harmonic");
+        let model = model.with_number("cam.amplitudes[1]", 0.004).unwrap();
+        let model = model.with_number("follower.restitution", restitution).unwrap();
+        let name = "cam.phases_deg[1]";
+        let parameter = Parameter::named(&model, name).unwrap();
+        let following = Following { parameter, range: [-180.0, 180.0], longest_step: 0.02, most_points: 2000 };
+        let wanted = Search { revolutions: 1, impacts: Some(1) };
+        let found = curves(&model, rpm, &wanted, &[Bifurcation::Fold], &following, &Unwatched).unwrap();
+        let is_cusp = |kind| kind == Kind::Cusp;
+        let points = found.curves.iter().flat_map(|curve| &curve.points);
+        let cusps: Vec<_> = points.filter(|point| point.special.is_some_and(|it| is_cusp(it.kind))).collect();
+        assert_eq!(cusps.len(), 2, "{restitution}");
+        for cusp in cusps {
+            let there = model.with_number(name, cusp.value).unwrap();
+            let (follower, omega) = (&there.follower, angular_velocity(cusp.rpm));
+            let w = (follower.stiffness / follower.mass).sqrt();
+            let rest = follower.rest_position - follower.gravity / (w * w);
+            let ratio =
+                (1.0 + restitution) / (1.0 - restitution) * omega / w / (std::f64::consts::PI * w / omega).tan();
+            let lift = Cam::new(&there).unwrap().lift(cusp.cam_angle);
+            let size = 0.02_f64;
+            assert!((lift.value - rest - ratio * lift.slope).abs() < 1e-12 * size.max(rest), "{cusp:?}");
+            assert!((lift.slope - ratio * lift.curvature).abs() < 1e-9 * size, "{cusp:?}");
+            // The place of a double root is known to half of the digits.
+            assert!((lift.curvature - ratio * lift.third).abs() < 1e-5 * size, "{cusp:?}");
+        }
+    }
+}

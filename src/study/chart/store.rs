@@ -396,7 +396,9 @@ fn difference(there: &Value, asked: &Value) -> Option<String> {
         .or_else(|| one("record", "/attributes/record"))
         .or_else(|| one("pair of axes, upwards and across,", &format!("{CLASSES}/dimension_names")))
         .or_else(|| one("number of rows and columns", &format!("{CLASSES}/shape")))
-        .or_else(|| one("number of rows and columns of a block", &format!("{CLASSES}/chunk_grid/configuration/chunk_shape")))
+        .or_else(|| {
+            one("number of rows and columns of a block", &format!("{CLASSES}/chunk_grid/configuration/chunk_shape"))
+        })
         .or_else(|| long("what is said of its arrays is something else".into(), ""))
 }
 
