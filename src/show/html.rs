@@ -4,6 +4,7 @@ use maud::{Markup, html};
 
 use crate::show::block::{Block, Column, Mark, Span, Symbol, Table, Words};
 use crate::show::digits::{Digits, typeset};
+use crate::show::formula::sentence;
 
 /// Blocks one after the other.
 pub(crate) fn blocks(blocks: &[Block]) -> Markup {
@@ -85,7 +86,7 @@ pub(crate) fn words(words: &Words) -> Markup {
 fn span(span: &Span) -> Markup {
     html! {
         @match span {
-            Span::Text(text) => (text),
+            Span::Text(text) => (sentence(text)),
             Span::Number(value, digits) => (digits.markup(*value)),
             Span::Complex([re, im], digits) => span.number {
                 (digits.markup(*re))
