@@ -170,6 +170,10 @@ fn claims_routes_and_figures_are_all_there() {
         .map(|plate| page.find(&format!("id=\"plate-{}\"", plate.id)).unwrap())
         .collect();
     assert!(places.is_sorted());
+    // In whatever part of the page: of the verdict, and of the proof behind a claim.
+    for set in ["meet at <i>ω</i><sup>*</sup>", "<i>x</i> = <i>W</i><sup>−1</sup> <i>x</i>"] {
+        assert!(page.contains(set), "{set}");
+    }
 }
 
 /// A model file's texts are its author's: markup in them is text on the page, and nothing in them steers it.
