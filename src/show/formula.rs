@@ -71,7 +71,7 @@ fn is_formula(word: &str) -> bool {
     let short = |name: &str| name.len() <= 2 || letter(name).is_some();
     let is_named = word.contains(':') || word.contains(".toml") || word.starts_with('"');
     let has_sign =
-        word.contains(['_', '^', '*', '\'', '~']) || word.trim_end_matches(['.', ',', ';', ')']).ends_with(['+', '-']);
+        word.contains(['_', '^', '*', '\'', '~']) || word.trim_end_matches(['.', ',', ';', ')', ']']).ends_with(['+', '-']);
     let is_unit = word.contains('/') && !word.contains(['_', '*', '\'']);
     let greek = names(word).any(|name| letter(name).is_some());
     !is_named && !is_unit && names(word).next().is_some() && names(word).all(short) && (has_sign || greek)
@@ -151,6 +151,7 @@ mod tests {
                 "dP/dx at fixed <i>t</i><sub>i</sub> is <i>φ</i><sub>T/2</sub> <i>x</i><sup>*</sup>.",
             ),
             ("A- and B- hold", "<i>A</i><sup>−</sup> and <i>B</i><sup>−</sup> hold"),
+            ("det [e; e A-]", "det [e; e <i>A</i><sup>−</sup>]"),
             ("omega0^2 -> 0", "<i>ω</i><sub>0</sub><sup>2</sup> → 0"),
             ("c'' is 5.1e-9 m/s^2", "<i>c</i>′′ is 5.1e-9 m/s^2"),
             ("as printed, eq:PT in one-impact words", "as printed, eq:PT in one-impact words"),
