@@ -70,8 +70,8 @@ fn names(word: &str) -> impl Iterator<Item = &str> {
 fn is_formula(word: &str) -> bool {
     let short = |name: &str| name.len() <= 2 || letter(name).is_some();
     let is_named = word.contains(':') || word.contains(".toml") || word.starts_with('"');
-    let has_sign =
-        word.contains(['_', '^', '*', '\'', '~']) || word.trim_end_matches(['.', ',', ';', ')', ']']).ends_with(['+', '-']);
+    let has_sign = word.contains(['_', '^', '*', '\'', '~'])
+        || word.trim_end_matches(['.', ',', ';', ')', ']']).ends_with(['+', '-']);
     let is_unit = word.contains('/') && !word.contains(['_', '*', '\'']);
     let greek = names(word).any(|name| letter(name).is_some());
     !is_named && !is_unit && names(word).next().is_some() && names(word).all(short) && (has_sign || greek)
