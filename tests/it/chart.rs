@@ -80,6 +80,24 @@ fn a_point_is_what_the_run_comes_to() {
     }
 }
 
+/// Nothing draws it down from above the cam, where it swings for ever.
+#[test]
+fn a_follower_that_floats_has_an_orbit_without_impacts() {
+    let point = ["--x", "rpm=700:700:1", "--y", "restitution=0.8:0.8:1"];
+    let floats = [&point[..], &["--set", "rest_position=3", "--state", "3.1,0"]].concat();
+    assert_eq!(chart(&floats)[0][2..5], ["periodic", "1", "0"]);
+}
+
+/// Chaos that rests now and then is told from what is recorded since the last rest.
+#[test]
+fn chaos_that_rests_now_and_then_is_chaos() {
+    let axes = ["--x", "rpm=580:640:12", "--y", "restitution=0.5:0.6:12", "--transient", "4"];
+    let rows = chart(&axes);
+    let count = |class: &str| rows.iter().filter(|row| row[2] == class).count();
+    let (chaotic, undecided) = (count("chaotic"), count("undecided"));
+    assert!(chaotic > 120 && undecided < 12, "{chaotic} {undecided}");
+}
+
 /// The points of a part of a chart, of one with its axes exchanged, and on another number of threads, are those of the whole.
 #[test]
 fn points_are_the_same_in_any_order_and_company() {

@@ -171,7 +171,7 @@ fn claims_routes_and_figures_are_all_there() {
         .collect();
     assert!(places.is_sorted());
     // In whatever part of the page: of the verdict, and of the proof behind a claim.
-    for set in ["meet at <i>ω</i><sup>*</sup>", "<i>x</i> = <i>W</i><sup>−1</sup> <i>x</i>"] {
+    for set in ["meet at <i>ω</i><sup>*</sup>", "x = <i>W</i><sup>−1</sup> <i>x</i>\u{303} brings"] {
         assert!(page.contains(set), "{set}");
     }
 }

@@ -57,7 +57,6 @@ impl Point {
         let fresh = || Record::over((lengths.record / PARTS).clamp(1, BLOCK));
         let (mut settling, mut record) = (waiting(lengths.transient), fresh());
         let mut run = settling.run(&mut motion, lengths.transient)?;
-        let mut wandered_from = None;
         for _ in 0..RECORDS {
             match run {
                 Run::Arrives(orbit) => return Ok(Self::on(&orbit)),
@@ -65,7 +64,7 @@ impl Point {
                 Run::Released(cam_angle) => match settling.fate(cam_angle)? {
                     Fate::Recurs(resting) => return Ok(Self::resting(&resting)),
                     Fate::Arrives(orbit, _) => return Ok(Self::on(&orbit)),
-                    Fate::Wanders { end, .. } => (motion, wandered_from) = (end, Some(cam_angle)),
+                    Fate::Wanders { end, .. } => motion = end,
                 },
                 Run::Wanders => {}
             }
@@ -74,13 +73,10 @@ impl Point {
             }
             record.take(machine, &mut motion, lengths.record)?;
             if record.rests() {
-                // From one rest to the next it takes longer than the transient: what comes of that is seen from the release.
+                // The cam may have let go of it already; and from one rest to the next it takes longer than the transient.
                 let rest = lengths.transient.saturating_add(lengths.record);
                 settling = waiting(rest);
-                run = match wandered_from.take() {
-                    Some(release) => Run::Released(release),
-                    None => settling.run(&mut motion, rest)?,
-                };
+                run = settling.run(&mut motion, rest)?;
             } else if Ending::by_growth(record.growth()).kind() == Kind::Chaotic {
                 return Ok(Self::wandering(Kind::Chaotic, &record));
             } else {
