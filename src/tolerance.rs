@@ -130,6 +130,9 @@ table! {
     /// How near 1 a multiplier is where another branch crosses.
     BRANCHING = 1e-3, "absolute: the equations are singular there, and Newton's method stops short of it; a pole of the matrix \
         has numbers above 1";
+    /// How near to a corner an impact is where a curve of the onset of resting has a kink.
+    KINK = 1e-4, "absolute, rad: as near to a corner an impact comes on a curve whose two sides there are so close together that \
+        differences of its equation reach from the one over to the other";
     /// The shortest step along a branch.
     SHORTEST_STEP = 1e-6, "of the longest: twenty halvings, after which a change in the way is one that no step gets past";
     /// The shortest stretch that a cam is continued by past a corner, rad.

@@ -83,6 +83,30 @@ fn detachment_and_the_onset_of_resting_are_where_branches_have_them() {
     is_on_branches("laws/harmonic", [380.0, 382.0], Resting, "damping", [0.0, 0.5]);
 }
 
+/// Where an impact on the way to the rest comes to a corner, the curve of the onset of resting has a kink, and may turn back sharply; it is
+/// followed around each, and is on branches beyond them.
+#[test]
+fn the_onset_of_resting_goes_on_around_kinks() {
+    let model = common::osorio();
+    let found = followed(&model, [198.0, 199.0], &[Bifurcation::Resting], "restitution", [0.7, 0.9]);
+    let [curve] = &found.curves[..] else { panic!("{}", found.curves.len()) };
+    assert_eq!(curve.ends, [End::Range, End::Range]);
+    let kinks: Vec<&_> = curve
+        .points
+        .iter()
+        .filter(|point| matches!(point.special, Some(it) if matches!(it.kind, Kind::Corner { .. })))
+        .collect();
+    assert!(kinks.len() >= 10, "{}", kinks.len());
+    // Beyond a kink on either side of the model, far from the next.
+    for (low, high) in [(0.775, 0.785), (0.855, 0.865)] {
+        let point = curve.points.iter().find(|point| (low..high).contains(&point.value)).unwrap();
+        let there = model.with_number("follower.restitution", point.value).unwrap();
+        let speeds = on_branches(&there, point.rpm, Bifurcation::Resting);
+        let off = speeds.iter().map(|rpm| (rpm - point.rpm).abs() / point.rpm).fold(f64::INFINITY, f64::min);
+        assert!(off < 1e-8, "{} rpm at {}, not in {speeds:?}", point.rpm, point.value);
+    }
+}
+
 /// Where the type of a corner impact changes, and where a graze has a multiplier of 1, a curve of folds or flips ends, by
 /// other equations.
 #[test]

@@ -1,6 +1,6 @@
 //! Curves, in two numbers, of where a follower first leaves the cam and where it no longer comes to rest on it.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use nalgebra::{DVector, Matrix2};
 
@@ -14,6 +14,9 @@ use crate::orbit::curve::{self, CurvePoint, NoPoint};
 use crate::orbit::{Course, Family, FamilyError, OrbitError, PeriodicOrbit, sticking};
 use crate::simulate::Event;
 use crate::tolerance;
+
+/// How far from a kink a curve is looked for, of the longest step.
+const AROUND: f64 = 0.05;
 
 /// Halvings that leave nothing of an interval of doubles.
 const BINARY_DIGITS: u32 = 60;
@@ -37,7 +40,10 @@ pub(super) fn curve(
         let mut from = point.clone();
         let Ok(tangent) = curve::first_tangent(&rest, &from.unknowns) else { return (Vec::new(), End::Lost) };
         from.tangent = if tangent[1] * direction >= 0.0 { tangent } else { -tangent };
-        Walk { rest, following, revolutions: orbit.revolutions, from, points: Vec::new() }.run()
+        let mut walk =
+            Walk { rest, following, revolutions: orbit.revolutions, from, regions: Vec::new(), points: Vec::new() };
+        walk.regions = walk.regions_at(&walk.from.unknowns).unwrap_or_default();
+        walk.run()
     };
     let Ok(middle) = rest.branch_point(&point, orbit.revolutions, Some(special)) else { return Ok(None) };
     Ok(Some((middle, [-1.0, 1.0].map(walk))))
@@ -48,19 +54,21 @@ struct Walk<'a> {
     following: &'a Following,
     revolutions: u64,
     from: CurvePoint,
+    /// Between which corners the impacts there are that are told by themselves.
+    regions: Vec<usize>,
     points: Vec<BranchPoint>,
 }
 
 impl Walk<'_> {
     fn run(mut self) -> HalfBranch {
         let longest = self.following.longest_step;
-        let mut step = longest;
+        let (mut step, mut turned) = (longest, false);
         loop {
             if self.points.len() >= self.following.most_points {
                 return (self.points, End::MostPoints);
             }
             match self.advance(step) {
-                Ok(None) => step = longest.min(1.5 * step),
+                Ok(None) => (step, turned) = (longest.min(1.5 * step), false),
                 Ok(Some(end)) => return (self.points, end),
                 Err(error) => {
                     if let NoPoint::Outside(Nowhere::Refused(why)) = &error
@@ -69,10 +77,15 @@ impl Walk<'_> {
                         return (self.points, end);
                     }
                     step *= 0.5;
-                    if step < tolerance::SHORTEST_STEP.value * longest {
+                    if step >= tolerance::SHORTEST_STEP.value * longest {
+                        continue;
+                    }
+                    // Not twice at one place.
+                    if turned || !self.turn() {
                         let end = self.stopped();
                         return (self.points, end);
                     }
+                    (step, turned) = (AROUND * longest, true);
                 }
             }
         }
@@ -89,7 +102,13 @@ impl Walk<'_> {
             return Ok(Some(End::Range));
         }
         let reached = self.rest.reached(&next.unknowns)?;
+        let regions = self.regions_at(&next.unknowns)?;
+        // Past a kink it may be on another part of the curve.
+        if regions.iter().zip(&self.regions).any(|(one, other)| one != other) {
+            return Err(NoPoint::NotClosed);
+        }
         if self.rest.contact.is_at(reached.contact) {
+            self.regions = regions;
             self.points.push(self.rest.branch_point(&next, self.revolutions, None)?);
             let (machine, _) = self.rest.machine(&next.unknowns)?;
             self.rest.contact = self.rest.contact.told(&machine, &reached);
@@ -115,20 +134,101 @@ impl Walk<'_> {
         Ok(None)
     }
 
+    /// Goes on from a kink, where an impact on the way to the rest is at a corner: on a small circle around it the equation changes its
+    /// sign where the curve came from and where it goes on, in whatever direction. Whether it does.
+    fn turn(&mut self) -> bool {
+        let Some(((kind, residual), on)) = self.at_corner().zip(self.beyond_kink()) else { return false };
+        let Ok(point) = self.rest.branch_point(&on, self.revolutions, None) else { return false };
+        if let Some(last) = self.points.last_mut() {
+            let bracket = [last.value.min(point.value), last.value.max(point.value)];
+            last.special = Some(Special { kind, bracket, residual });
+        }
+        self.points.push(point);
+        self.regions = self.regions_at(&on.unknowns).unwrap_or_default();
+        self.from = on;
+        true
+    }
+
+    /// For each impact that is told by itself the corners before it where a curve has a kink, counted around the cam.
+    fn regions_at(&self, unknowns: &DVector<f64>) -> Result<Vec<usize>, Nowhere> {
+        let (machine, _) = self.rest.machine(unknowns)?;
+        let Reached { impacts, contact, .. } = self.rest.contact.reached(&machine).ok_or(Nowhere::OtherWay)?;
+        let Contact::Resting { impact: told, .. } = contact else { return Ok(Vec::new()) };
+        let corners = machine.cam().corners();
+        let kinks: Vec<f64> = corners.iter().filter(|it| it.jump_order <= 2).map(|it| it.angle).collect();
+        let region =
+            |event: &Event| kinks.iter().filter(|angle| **angle <= event.cam_angle).count() % kinks.len().max(1);
+        Ok(impacts.iter().take(told).map(region).collect())
+    }
+
+    /// The point where the curve goes on, on the first circle of three that tells it from where it came.
+    fn beyond_kink(&self) -> Option<CurvePoint> {
+        [0.1, 0.01, 1.0].into_iter().find_map(|part| self.on_circle(part * AROUND * self.following.longest_step))
+    }
+
+    fn on_circle(&self, radius: f64) -> Option<CurvePoint> {
+        /// The least angle from where it came from, rad, and what each next is of the one before: both ways may be close together.
+        const LEAST: f64 = 0.002;
+        const RATIO: f64 = 1.5;
+        const CLOSER: f64 = 0.2;
+        let kink = &self.from.unknowns;
+        let away = |point: &BranchPoint| {
+            DVector::from_vec(vec![point.rpm / self.rest.spans[0], point.value / self.rest.spans[1]]) - kink
+        };
+        // Where it came through the circle, as a straight line between two points.
+        let outside = self.points.iter().rposition(|point| away(point).norm() >= radius)?;
+        let (far, near) = (away(&self.points[outside]), self.points.get(outside + 1).map(away)?);
+        let back = (&near + (&far - &near) * ((radius - near.norm()) / (far.norm() - near.norm()))).normalize();
+        let direction = |turn: f64| {
+            let (sin, cos) = turn.sin_cos();
+            DVector::from_vec(vec![cos * back[0] - sin * back[1], sin * back[0] + cos * back[1]])
+        };
+        let off = |turn: f64| self.rest.reached(&(kink + direction(turn) * radius)).ok().map(|reached| reached.off);
+        let turns: Vec<f64> =
+            std::iter::successors(Some(LEAST), |turn| Some(RATIO * turn)).take_while(|turn| *turn < PI).collect();
+        let around = turns.iter().rev().map(|turn| -turn).chain(turns.iter().copied());
+        let seen: Vec<(f64, Option<f64>)> =
+            [-PI].into_iter().chain(around).chain([PI]).map(|turn| (turn, off(turn))).collect();
+        let mut passed = Vec::new();
+        for pair in seen.windows(2) {
+            if let [(from, Some(one)), (to, Some(two))] = *pair
+                && (one < 0.0) != (two < 0.0)
+            {
+                let is_beyond = |turn: f64| off(turn).map(|off| (off < 0.0) != (one < 0.0)).ok_or(());
+                passed.push(halve([from, to], Width::Halvings(BINARY_DIGITS), is_beyond).ok()?[0]);
+            }
+        }
+        passed.sort_by(|one, two| one.abs().total_cmp(&two.abs()));
+        // Which of the two is which is certain only where one is much nearer to where it came from.
+        let [came, onward] = passed[..] else { return None };
+        if came.abs() > CLOSER * onward.abs() {
+            return None;
+        }
+        let along = direction(onward);
+        curve::closed(&self.rest, kink, &along, radius, kink + &along * radius).ok()
+    }
+
+    /// The corner that an impact on the way is at, and how near, rad: one that is told by itself; those after them are at no corner but
+    /// the last.
+    fn at_corner(&self) -> Option<(Kind, f64)> {
+        let (machine, _) = self.rest.machine(&self.from.unknowns).ok()?;
+        let Reached { impacts, contact, .. } = self.rest.reached(&self.from.unknowns).ok()?;
+        let Contact::Resting { impact: told, .. } = contact else { return None };
+        let corners = machine.cam().corners();
+        impacts.iter().take(told).enumerate().find_map(|(impact, event)| {
+            let off = |angle: f64| apart(angle, event.cam_angle);
+            let corner = corners.iter().find(|it| it.jump_order <= 2 && off(it.angle) < tolerance::KINK.value)?;
+            let kind = Kind::Corner { impact, segment: corner.segment, jump_order: corner.jump_order };
+            Some((kind, off(corner.angle)))
+        })
+    }
+
     /// What the curve comes to where no step leads on.
     fn stopped(&self) -> End {
-        let here = self.rest.machine(&self.from.unknowns).ok().zip(self.rest.reached(&self.from.unknowns).ok());
-        let Some(((machine, _), Reached { impacts, contact, .. })) = here else { return End::OtherWay };
-        // The impacts that are told one by one; those after them are at no corner but the last.
-        let told = if let Contact::Resting { impact, .. } = contact { impact } else { 0 };
-        let corners = machine.cam().corners();
-        let at_corner = |event: &Event| {
-            let near = |angle: f64| apart(angle, event.cam_angle) < tolerance::SAME_ORBIT.value;
-            corners.iter().any(|corner| corner.jump_order <= 2 && near(corner.angle))
-        };
+        let reached = self.rest.reached(&self.from.unknowns);
         match () {
-            () if impacts.len() > MANY_IMPACTS / 2 => End::Endless,
-            () if impacts.iter().take(told).any(at_corner) => End::Kink,
+            () if reached.is_ok_and(|reached| reached.impacts.len() > MANY_IMPACTS / 2) => End::Endless,
+            () if self.at_corner().is_some() => End::Kink,
             () => End::OtherWay,
         }
     }
