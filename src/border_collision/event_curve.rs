@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::feigin::{Scenario, scenario};
 use crate::orbit::branch::{Branch, BranchPoint, End, Kind, Special};
 use crate::orbit::{Eigenvalue, eigenvalues};
+use crate::tolerance;
 
 /// What happens at a corner impact, by the eigenvalues of its map alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -79,6 +80,22 @@ impl EventCurve {
     pub fn new(curve: &Branch, kind: Kind) -> Self {
         let points = curve.points.iter().map(|point| EventPoint::new(point, kind)).collect();
         Self { kind, points, ends: curve.ends.clone() }
+    }
+
+    /// Whether both go through the same events, in whatever direction: they end where the other does, for the same reasons.
+    pub fn is_same(&self, other: &Self) -> bool {
+        let ends = |curve: &Self| -> Option<[(f64, f64, End); 2]> {
+            let [first, last] = [curve.points.first()?, curve.points.last()?].map(|point| (point.value, point.rpm));
+            let [begins, ends] = curve.ends.clone();
+            (curve.points.len() > 1).then_some([(first.0, first.1, begins), (last.0, last.1, ends)])
+        };
+        let near = |one: f64, two: f64| (one - two).abs() <= tolerance::SAME_ORBIT.value * one.abs().max(two.abs());
+        let same =
+            |one: &(f64, f64, End), two: &(f64, f64, End)| near(one.0, two.0) && near(one.1, two.1) && one.2 == two.2;
+        let both = ends(self).zip(ends(other)).filter(|_| self.kind.bifurcation() == other.kind.bifurcation());
+        both.is_some_and(|([begin, end], [first, last])| {
+            (same(&begin, &first) && same(&end, &last)) || (same(&begin, &last) && same(&end, &first))
+        })
     }
 
     /// From each point to the next, with what happens in between: as at the end that is no point of change.

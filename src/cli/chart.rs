@@ -131,12 +131,11 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     // Neither is missing where it is not the state of a store that is asked for.
     let (Some(x), Some(y)) = (&arguments.x, &arguments.y) else { return Ok(Exit::BadInput) };
     let (x, y) = (named(x)?, named(y)?);
-    for (axis, option) in [(&x, "--x"), (&y, "--y")] {
-        if arguments.model.sets(&model, axis.parameter.name())? {
-            let name = axis.parameter.name();
-            return Err(CommandError::Words(format!(
-                "--set {name}: no point would have that value, as {option} goes through others"
-            )));
+    for (Axis { parameter, .. }, option) in [(&x, "--x"), (&y, "--y")] {
+        if arguments.model.sets(&model, parameter)? {
+            let name = parameter.name();
+            let words = format!("--set {name}: no point would have that value, as {option} goes through others");
+            return Err(CommandError::Words(words));
         }
     }
     let lengths = Lengths { transient: arguments.transient, record: arguments.record };

@@ -38,10 +38,10 @@ impl ModelArgument {
         Self { file: file.map(Path::to_path_buf), changes: changes.clone() }
     }
 
-    /// Whether a number, by its whole path, is one of those that were changed.
-    pub(super) fn sets(&self, model: &Model, path: &str) -> Result<bool, CommandError> {
-        let is_it = |(name, _): &(String, f64)| Parameter::named(model, name).map(|set| set.name() == path);
-        Ok(self.changes.numbers.iter().map(is_it).collect::<Result<Vec<_>, _>>()?.contains(&true))
+    /// Whether a number is one of those that were changed.
+    pub(super) fn sets(&self, model: &Model, parameter: &Parameter) -> Result<bool, CommandError> {
+        let named = self.changes.numbers.iter().map(|(name, _)| Parameter::named(model, name));
+        Ok(named.collect::<Result<Vec<_>, _>>()?.contains(parameter))
     }
 
     /// Reads the model; says on standard error which one it is where none is named.

@@ -76,17 +76,18 @@ pub(crate) fn curve(
     let (Some(first), Some(last)) = (curve.points.first(), curve.points.last()) else { return String::new() };
     let here = curve.points.iter().find(|point| point.value == own).unwrap_or(first);
     let (count, impacts, angle) = (curve.points.len(), here.impacts, here.cam_angle.to_degrees());
-    // Of an event that could not be followed at all nothing is known but where it is.
-    let at = if angle.is_finite() { format!(" at {angle:.4} deg") } else { String::new() };
     let place = |point: &EventPoint| format!("{parameter} = {:.9}, {:.6} rpm", point.value, point.rpm);
     let what = words::events(curve.kind);
     let of_what = match curve.kind {
+        // Of an event that could not be followed at all it is not known where on the cam it is.
+        Kind::Graze { .. } if !angle.is_finite() => format!("from {impacts} to {} impacts", impacts + 1),
+        _ if !angle.is_finite() => format!("of {impacts} impact(s) in {} revolution(s)", here.revolutions),
         Kind::Corner { impact, jump_order, .. } => {
-            format!("impact {} of {impacts}{at}, jump of order {jump_order}", impact + 1)
+            format!("impact {} of {impacts} at {angle:.4} deg, jump of order {jump_order}", impact + 1)
         }
-        Kind::Graze { .. } => format!("from {impacts} to {} impacts,{at}", impacts + 1),
-        Kind::Detachment => at.trim_start().into(),
-        Kind::Chatter => format!("where the cam lets go{at}"),
+        Kind::Graze { .. } => format!("from {impacts} to {} impacts, at {angle:.4} deg", impacts + 1),
+        Kind::Detachment => format!("at {angle:.4} deg"),
+        Kind::Chatter => format!("where the cam lets go at {angle:.4} deg"),
         _ => format!("of {impacts} impact(s) in {} revolution(s)", here.revolutions),
     };
     let mut lines = vec![

@@ -47,9 +47,9 @@ pub fn curves(
     let mut curves = Vec::<EventCurve>::new();
     for (index, (point, kind)) in events.iter().flat_map(|event| of_event(*event)).enumerate() {
         watch.at("following the events found", index as u64, points.len() as u64);
-        if let Some(curve) = Branch::of_event(model, point, rpm, following)? {
-            curves.push(EventCurve::new(&curve, kind));
-        }
+        let curve = Branch::of_event(model, point, rpm, following)?.map(|curve| EventCurve::new(&curve, kind));
+        // One curve may go through several of the events.
+        curves.extend(curve.filter(|curve| !curves.iter().any(|known| known.is_same(curve))));
     }
     let sharp =
         if path == CORNER_ROUNDING { sharp(&model.with_number(path, 0.0)?, rpm, wanted, watch)? } else { Vec::new() };

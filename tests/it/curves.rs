@@ -91,6 +91,10 @@ fn the_onset_of_resting_goes_on_around_kinks() {
     let found = followed(&model, [198.0, 199.0], &[Bifurcation::Resting], "restitution", [0.7, 0.9]);
     let [curve] = &found.curves[..] else { panic!("{}", found.curves.len()) };
     assert_eq!(curve.ends, [End::Range, End::Range]);
+    // Two of the model's own events are on it where it goes further: it is one curve.
+    let further = followed(&model, [180.0, 260.0], &[Bifurcation::Resting], "restitution", [0.6, 0.9]);
+    assert_eq!(further.curves.len(), 2);
+    assert!(further.curves.iter().all(|curve| curve.ends == [End::Range, End::Range]));
     let kinks: Vec<&_> = curve
         .points
         .iter()

@@ -7,12 +7,12 @@ use nalgebra::{DVector, Matrix2};
 use super::contact::{Contact, MANY_IMPACTS, Nowhere, Reached, Rest, contact};
 use super::{BranchPoint, End, Following, HalfBranch, Kind, OnCurve, Special};
 use crate::bracket::{Width, halve};
-use crate::cam::apart;
+use crate::cam::{Corner, apart};
 use crate::flight::State;
 use crate::known::Known;
 use crate::orbit::curve::{self, CurvePoint, NoPoint};
 use crate::orbit::{Course, Family, FamilyError, OrbitError, PeriodicOrbit, sticking};
-use crate::simulate::Event;
+use crate::simulate::{Event, Machine};
 use crate::tolerance;
 
 /// How far from a kink a curve is looked for, of the longest step.
@@ -40,10 +40,8 @@ pub(super) fn curve(
         let mut from = point.clone();
         let Ok(tangent) = curve::first_tangent(&rest, &from.unknowns) else { return (Vec::new(), End::Lost) };
         from.tangent = if tangent[1] * direction >= 0.0 { tangent } else { -tangent };
-        let mut walk =
-            Walk { rest, following, revolutions: orbit.revolutions, from, regions: Vec::new(), points: Vec::new() };
-        walk.regions = walk.regions_at(&walk.from.unknowns).unwrap_or_default();
-        walk.run()
+        let regions = rest.regions(&from.unknowns).unwrap_or_default();
+        Walk { rest, following, revolutions: orbit.revolutions, from, regions, points: Vec::new() }.run()
     };
     let Ok(middle) = rest.branch_point(&point, orbit.revolutions, Some(special)) else { return Ok(None) };
     Ok(Some((middle, [-1.0, 1.0].map(walk))))
@@ -54,7 +52,7 @@ struct Walk<'a> {
     following: &'a Following,
     revolutions: u64,
     from: CurvePoint,
-    /// Between which corners the impacts there are that are told by themselves.
+    /// Between which kinks the impacts there are that are told one by one.
     regions: Vec<usize>,
     points: Vec<BranchPoint>,
 }
@@ -101,8 +99,9 @@ impl Walk<'_> {
             self.end_at(bound)?;
             return Ok(Some(End::Range));
         }
-        let reached = self.rest.reached(&next.unknowns)?;
-        let regions = self.regions_at(&next.unknowns)?;
+        let (machine, _) = self.rest.machine(&next.unknowns)?;
+        let reached = self.rest.contact.reached(&machine).ok_or(Nowhere::OtherWay)?;
+        let regions = regions(&machine, &reached);
         // Past a kink it may be on another part of the curve.
         if regions.iter().zip(&self.regions).any(|(one, other)| one != other) {
             return Err(NoPoint::NotClosed);
@@ -110,7 +109,6 @@ impl Walk<'_> {
         if self.rest.contact.is_at(reached.contact) {
             self.regions = regions;
             self.points.push(self.rest.branch_point(&next, self.revolutions, None)?);
-            let (machine, _) = self.rest.machine(&next.unknowns)?;
             self.rest.contact = self.rest.contact.told(&machine, &reached);
             self.from = next;
             return Ok(None);
@@ -139,26 +137,15 @@ impl Walk<'_> {
     fn turn(&mut self) -> bool {
         let Some(((kind, residual), on)) = self.at_corner().zip(self.beyond_kink()) else { return false };
         let Ok(point) = self.rest.branch_point(&on, self.revolutions, None) else { return false };
+        let Ok(regions) = self.rest.regions(&on.unknowns) else { return false };
         if let Some(last) = self.points.last_mut() {
             let bracket = [last.value.min(point.value), last.value.max(point.value)];
             last.special = Some(Special { kind, bracket, residual });
         }
         self.points.push(point);
-        self.regions = self.regions_at(&on.unknowns).unwrap_or_default();
+        self.regions = regions;
         self.from = on;
         true
-    }
-
-    /// For each impact that is told by itself the corners before it where a curve has a kink, counted around the cam.
-    fn regions_at(&self, unknowns: &DVector<f64>) -> Result<Vec<usize>, Nowhere> {
-        let (machine, _) = self.rest.machine(unknowns)?;
-        let Reached { impacts, contact, .. } = self.rest.contact.reached(&machine).ok_or(Nowhere::OtherWay)?;
-        let Contact::Resting { impact: told, .. } = contact else { return Ok(Vec::new()) };
-        let corners = machine.cam().corners();
-        let kinks: Vec<f64> = corners.iter().filter(|it| it.jump_order <= 2).map(|it| it.angle).collect();
-        let region =
-            |event: &Event| kinks.iter().filter(|angle| **angle <= event.cam_angle).count() % kinks.len().max(1);
-        Ok(impacts.iter().take(told).map(region).collect())
     }
 
     /// The point where the curve goes on, on the first circle of three that tells it from where it came.
@@ -208,19 +195,16 @@ impl Walk<'_> {
         curve::closed(&self.rest, kink, &along, radius, kink + &along * radius).ok()
     }
 
-    /// The corner that an impact on the way is at, and how near, rad: one that is told by itself; those after them are at no corner but
-    /// the last.
+    /// The corner that an impact on the way is at, and how near, rad.
     fn at_corner(&self) -> Option<(Kind, f64)> {
         let (machine, _) = self.rest.machine(&self.from.unknowns).ok()?;
-        let Reached { impacts, contact, .. } = self.rest.reached(&self.from.unknowns).ok()?;
-        let Contact::Resting { impact: told, .. } = contact else { return None };
-        let corners = machine.cam().corners();
-        impacts.iter().take(told).enumerate().find_map(|(impact, event)| {
-            let off = |angle: f64| apart(angle, event.cam_angle);
-            let corner = corners.iter().find(|it| it.jump_order <= 2 && off(it.angle) < tolerance::KINK.value)?;
-            let kind = Kind::Corner { impact, segment: corner.segment, jump_order: corner.jump_order };
-            Some((kind, off(corner.angle)))
-        })
+        let reached = self.rest.contact.reached(&machine)?;
+        let corners: Vec<Corner> = kinks(&machine).collect();
+        let pairs = told(&reached).iter().enumerate().flat_map(|at| corners.iter().map(move |corner| (at, corner)));
+        let off = pairs.map(|((impact, event), corner)| (impact, corner, apart(corner.angle, event.cam_angle)));
+        let (impact, corner, off) = off.min_by(|one, two| one.2.total_cmp(&two.2))?;
+        let kind = Kind::Corner { impact, segment: corner.segment, jump_order: corner.jump_order };
+        (off < tolerance::KINK.value).then_some((kind, off))
     }
 
     /// What the curve comes to where no step leads on.
@@ -256,7 +240,30 @@ impl Walk<'_> {
     }
 }
 
+/// The corners at which the acceleration of an impact jumps, and with it the slope of a curve.
+fn kinks(machine: &Machine) -> impl Iterator<Item = Corner> {
+    machine.cam().corners().iter().copied().filter(|corner| corner.jump_order <= 2)
+}
+
+/// The impacts that are told one by one; those after them are at no corner but the last.
+fn told(reached: &Reached) -> &[Event] {
+    let told = if let Contact::Resting { impact, .. } = reached.contact { impact } else { 0 };
+    &reached.impacts[..told.min(reached.impacts.len())]
+}
+
+/// For each of those impacts how many kinks are before it, counted around the cam.
+fn regions(machine: &Machine, reached: &Reached) -> Vec<usize> {
+    let angles: Vec<f64> = kinks(machine).map(|corner| corner.angle).collect();
+    let region = |event: &Event| angles.iter().filter(|angle| **angle <= event.cam_angle).count() % angles.len().max(1);
+    told(reached).iter().map(region).collect()
+}
+
 impl Rest<'_> {
+    fn regions(&self, unknowns: &DVector<f64>) -> Result<Vec<usize>, Nowhere> {
+        let (machine, _) = self.machine(unknowns)?;
+        self.contact.reached(&machine).map(|reached| regions(&machine, &reached)).ok_or(Nowhere::OtherWay)
+    }
+
     fn branch_point(
         &self,
         point: &CurvePoint,

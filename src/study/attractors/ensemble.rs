@@ -122,6 +122,7 @@ impl Ensemble {
         let mut wanderers = wanders.iter().cycle();
         for (index, end) in ends.into_iter().enumerate() {
             let Some(End { run, mut motion, .. }) = end else { continue };
+            let mut wandering_from = None;
             let ending = match run {
                 Run::Arrives(orbit) => Some(Ending::Orbit(orbit)),
                 Run::Stays => Some(Ending::Stays),
@@ -132,9 +133,7 @@ impl Ensemble {
                         match fate {
                             Fate::Recurs(_) => {}
                             Fate::Arrives(_, end) => motion = *end,
-                            Fate::Wanders { released, .. } => {
-                                motion = settling.settled(*released).map_err(|error| (index, error))?;
-                            }
+                            Fate::Wanders { released, .. } => wandering_from = Some(*released),
                         }
                         Some(ending.clone())
                     }
@@ -142,14 +141,21 @@ impl Ensemble {
                 },
             };
             if let Some(ending) = ending {
-                ensemble.add(ending, index, motion, outlast);
+                let settled = || wandering_from.map_or(Ok(motion), |released| settling.settled(released));
+                ensemble.add(ending, index, outlast, settled).map_err(|error| (index, error))?;
             }
         }
         Ok(ensemble)
     }
 
-    /// Counts a start that ends on `ending`.
-    fn add(&mut self, ending: Ending, index: usize, motion: Motion, outlast: bool) {
+    /// Counts a start that ends on `ending`; the first that does gives the motion.
+    fn add(
+        &mut self,
+        ending: Ending,
+        index: usize,
+        outlast: bool,
+        motion: impl FnOnce() -> Result<Motion, SimulateError>,
+    ) -> Result<(), SimulateError> {
         // Chaos is not what rests where it outlasts that.
         let is_same =
             |part: &&mut Part| part.ending.is_same(&ending) && (part.ending.kind() == ending.kind() || !outlast);
@@ -161,8 +167,9 @@ impl Ensemble {
                 }
                 part.starts.push(index);
             }
-            None => self.parts.push(Part { ending, starts: vec![index], motion }),
+            None => self.parts.push(Part { ending, starts: vec![index], motion: motion()? }),
         }
+        Ok(())
     }
 }
 

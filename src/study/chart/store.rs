@@ -382,24 +382,27 @@ fn start(start: &Start) -> Value {
 /// What tells the chart of a store from the one that is asked for, by their documents: the first that does.
 fn difference(there: &Value, asked: &Value) -> Option<String> {
     const CLASSES: &str = "/consolidated_metadata/metadata/class";
-    let one = |name: &str, pointer: &str| {
+    let told = [
+        ("version", "/attributes/corner_impact_version"),
+        ("model", "/attributes/model"),
+        ("speed, rpm,", "/attributes/rpm"),
+        ("start", "/attributes/start"),
+        ("transient", "/attributes/transient"),
+        ("record", "/attributes/record"),
+        ("pair of axes, upwards and across,", &format!("{CLASSES}/dimension_names")),
+        ("number of rows and columns", &format!("{CLASSES}/shape")),
+        ("number of rows and columns of a block", &format!("{CLASSES}/chunk_grid/configuration/chunk_shape")),
+    ];
+    let differs = |(name, pointer): &(&str, &str)| {
         let [there, asked] = [there, asked].map(|document| document.pointer(pointer).unwrap_or(&Value::Null));
         (there != asked).then(|| format!("its {name} is {there}, and not {asked}"))
     };
-    let long = |words: String, pointer: &str| (there.pointer(pointer) != asked.pointer(pointer)).then_some(words);
-    one("version", "/attributes/corner_impact_version")
-        .or_else(|| one("model", "/attributes/model"))
-        .or_else(|| long("numbers of its model are others".into(), "/attributes/model_toml"))
-        .or_else(|| one("speed, rpm,", "/attributes/rpm"))
-        .or_else(|| one("start", "/attributes/start"))
-        .or_else(|| one("transient", "/attributes/transient"))
-        .or_else(|| one("record", "/attributes/record"))
-        .or_else(|| one("pair of axes, upwards and across,", &format!("{CLASSES}/dimension_names")))
-        .or_else(|| one("number of rows and columns", &format!("{CLASSES}/shape")))
-        .or_else(|| {
-            one("number of rows and columns of a block", &format!("{CLASSES}/chunk_grid/configuration/chunk_shape"))
-        })
-        .or_else(|| long("what is said of its arrays is something else".into(), ""))
+    // A model's text and what is said of arrays are too long to be shown.
+    let long = || match there["attributes"]["model_toml"] == asked["attributes"]["model_toml"] {
+        true => "what is said of its arrays is something else".into(),
+        false => "numbers of its model are others".into(),
+    };
+    told.iter().find_map(differs).or_else(|| (there != asked).then(long))
 }
 
 /// Whether every file of a block is there, with its length.
