@@ -28,6 +28,8 @@ pub enum Mark {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Span {
     Text(String),
+    /// What the author of a model wrote: in it an underscore is no index.
+    Quoted(String),
     /// A number, and how many of its digits are shown.
     Number(f64, Digits),
     /// Real and imaginary part; a real number where the latter is 0.

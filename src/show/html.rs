@@ -69,7 +69,7 @@ fn table(table: &Table) -> Markup {
 /// Words without what only a browser shows.
 fn plain(words: &Words) -> String {
     let part = |span: &Span| match span {
-        Span::Text(text) | Span::Code(text) | Span::Marked(_, text) => text.clone(),
+        Span::Text(text) | Span::Quoted(text) | Span::Code(text) | Span::Marked(_, text) => text.clone(),
         Span::Symbol(symbol) => symbol.plain.clone(),
         Span::Unit(unit) => (*unit).to_owned(),
         Span::About(_, words) => plain(words),
@@ -87,6 +87,7 @@ fn span(span: &Span) -> Markup {
     html! {
         @match span {
             Span::Text(text) => (sentence(text)),
+            Span::Quoted(text) => (text),
             Span::Number(value, digits) => (digits.markup(*value)),
             Span::Complex([re, im], digits) => span.number {
                 (digits.markup(*re))

@@ -153,7 +153,7 @@ impl Page {
 /// Words as a terminal has them.
 pub(crate) fn text(words: &Words) -> String {
     let of = |span: &Span| match span {
-        Span::Text(text) | Span::Code(text) => foreign::visible(text).into_owned(),
+        Span::Text(text) | Span::Quoted(text) | Span::Code(text) => foreign::visible(text).into_owned(),
         Span::Unit(unit) => (*unit).to_owned(),
         Span::Number(value, digits) | Span::Against(value, _, digits) => digits.text(*value),
         Span::Complex([re, im], digits) if *im == 0.0 => digits.text(*re),

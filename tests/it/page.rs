@@ -182,7 +182,7 @@ fn claims_routes_and_figures_are_all_there() {
 fn a_models_name_is_text_whatever_it_holds() {
     let evil = "</script><script>alert(1)</script><img src=x onerror=alert(2)> \\\" & 'x' \\u001b[31m\\u0000\\u202e";
     let text = OSORIO_2008.replacen("name = \"osorio-2008\"", &format!("name = \"{evil}\""), 1);
-    let text = text.replacen("source = \"\"\"", &format!("source = \"\"\"{} ", evil.replace("\\\"", "'")), 1);
+    let text = text.replacen("source = \"\"\"", &format!("source = \"\"\"{} a_1 ", evil.replace("\\\"", "'")), 1);
     let model = Model::parse("<b>evil</b>.toml", &text).unwrap();
     assert!(model.name.contains("<script>"));
     let dossier = Report::of(&model, External::LeftOut, Some([690.0, 700.0]), &Unwatched).unwrap();
@@ -191,6 +191,8 @@ fn a_models_name_is_text_whatever_it_holds() {
     for raw in ["<script>alert", "<img src=x", "<b>evil"] {
         assert!(!page.contains(raw), "{raw}");
     }
+    // What looks like a formula is one only in words of the program.
+    assert!(page.contains(" a_1 "));
     assert!(page.contains("&lt;script&gt;alert(1)") && page.contains("\\u{1b}[31m\\u{0}\\u{202e}"));
     assert!(!page.contains(|letter: char| letter.is_control() && letter != '\n' || letter == '\u{202e}'));
     assert_eq!(page.matches("<script").count(), page.matches("</script>").count());

@@ -17,8 +17,9 @@ pub(crate) fn section(report: &Report) -> Result<Section, HtmlError> {
     let motion = "A follower of mass _m_ on a spring, slack at _q₀_, flies above a cam of lift _c_(_θ_), hits it with _v^−_ where the \
                   cam has the velocity _c′_, and leaves it with _v^+_:";
     let numbers = Block::Table(numbers(report));
+    let source = Span::Quoted(sheet.source.clone());
     let mut blocks =
-        vec![Block::paragraph(&sheet.source), Block::paragraph(Words::prose(motion, [])), Block::Markup(formulas())];
+        vec![Block::paragraph(source), Block::paragraph(Words::prose(motion, [])), Block::Markup(formulas())];
     blocks.push(match sheet.quantities.len() {
         count if count > LONG => Block::Details(words![count, " numbers of the model"], vec![numbers]),
         _ => numbers,
