@@ -125,8 +125,25 @@ impl Likely {
 
     /// The same of as many numbers as there are.
     pub fn errors(&self, numbers: &[f64], of: impl Fn(&Model, &Cam) -> Option<Vec<f64>> + Sync) -> Option<Vec<f64>> {
-        /// How many of the tables may do without.
-        const WITHOUT: usize = 2;
+        self.spread(numbers, (self.others.len(), 2.0), of)
+    }
+
+    /// The same of a number that takes long to tell: of few of the tables. The largest of so few deviations is two thirds as large.
+    pub fn error_by_few(&self, number: f64, of: impl Fn(&Model, &Cam) -> Option<f64> + Sync) -> Option<f64> {
+        const FEW: usize = 4;
+        self.spread(&[number], (FEW, 3.0), |model, cam| of(model, cam).map(|number| vec![number]))?.pop()
+    }
+
+    /// By so many tables, and so many times by what they differ by.
+    fn spread(
+        &self,
+        numbers: &[f64],
+        (tables, times): (usize, f64),
+        of: impl Fn(&Model, &Cam) -> Option<Vec<f64>> + Sync,
+    ) -> Option<Vec<f64>> {
+        /// One in so many of the tables may do without.
+        const WITHOUT: usize = 8;
+        let others = &self.others[..tables.min(self.others.len())];
         let Some((best, cam)) = &self.best else { return Some(vec![0.0; numbers.len()]) };
         let centre = of(best, cam)?;
         // The third derivative is bent to 0 over a stretch at each corner that shrinks with the sixth root of the weight: ten times the
@@ -135,12 +152,12 @@ impl Likely {
             Some((model, cam)) => of(model, cam)?,
             None => centre.clone(),
         };
-        let all: Vec<Vec<f64>> = self.others.par_iter().filter_map(|(model, cam)| of(model, cam)).collect();
+        let all: Vec<Vec<f64>> = others.par_iter().filter_map(|(model, cam)| of(model, cam)).collect();
         let error = |(index, number): (usize, &f64)| {
             let apart = all.iter().fold(0.0_f64, |most, one| most.max((one[index] - centre[index]).abs()));
-            (centre[index] - number).abs() + 2.0 * apart + 6.0 * (closer[index] - centre[index]).abs()
+            (centre[index] - number).abs() + times * apart + 6.0 * (closer[index] - centre[index]).abs()
         };
-        (all.len() + WITHOUT >= self.others.len()).then(|| numbers.iter().enumerate().map(error).collect())
+        (all.len() + others.len() / WITHOUT >= others.len()).then(|| numbers.iter().enumerate().map(error).collect())
     }
 }
 

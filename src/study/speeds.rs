@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
+use crate::cam::Cam;
 use crate::estimate::Estimate;
 use crate::known::Known;
 use crate::measured::{Likely, Measured};
@@ -13,7 +14,8 @@ use crate::orbit::ending::{Ending, Kind};
 use crate::progress::Watch;
 use crate::simulate::{EventKind, Machine, SimulateError, angular_velocity};
 use crate::study::attractors::{
-    Attractors, AttractorsError, Cause, Change, Here, Part, Resolution, Row, Wandering, attractors, detachment_near,
+    Attractors, AttractorsError, Cause, Change, Grid, Here, Part, Resolution, Row, Wandering, attractors,
+    detachment_near,
 };
 use crate::study::design::contact::Contact;
 use crate::study::machine;
@@ -230,9 +232,12 @@ pub fn speeds(
     let likely = Likely::of(model)?;
     let noisy = likely.as_ref().filter(|likely| likely.best.is_some());
     if let Some(likely) = noisy {
-        rows.par_iter_mut()
-            .flat_map_iter(|row| row.ends.iter_mut().flatten())
-            .for_each(|change| change.error = error(&lowest, likely, change));
+        rows.par_iter_mut().for_each(|row| {
+            let errors = [0, 1].map(|side| error(&lowest, likely, row, side, &grid));
+            for (change, error) in row.ends.iter_mut().zip(errors) {
+                change.iter_mut().for_each(|change| change.error = error);
+            }
+        });
     }
     let first = |rpm: f64| {
         noisy?.error([rpm], |model, cam| detachment_near(model, cam, rpm).map(|rpm| [rpm])).map(|[error]| error)
@@ -290,21 +295,23 @@ pub fn speeds(
     })
 }
 
-/// How far a measured cam may have moved what an attractor begins or ends with, rpm.
-fn error(machine: &Machine, likely: &Likely, change: &Change) -> Option<f64> {
-    let rpm = change.rpm;
-    let [error] = match (change.cause, &change.point) {
-        (Cause::Detachment, _) => {
-            likely.error([rpm], |model, cam| detachment_near(model, cam, rpm).map(|rpm| [rpm]))?
-        }
-        (_, Some(point)) => {
-            let machine = machine.at_speed(angular_velocity(rpm));
-            let event = Event::of_point(&machine, point)?;
-            likely.error([rpm], |model, cam| event.moved(model, cam).map(|rpm| [rpm]))?
-        }
-        _ => return None,
+/// How far a measured cam may have moved what an attractor begins or ends with, rpm: by the event's equations, or by runs where it is
+/// known by runs.
+fn error(machine: &Machine, likely: &Likely, row: &Row, side: usize, grid: &Grid) -> Option<f64> {
+    let change = row.ends[side].as_ref()?;
+    let (rpm, speed) = (change.rpm, angular_velocity(change.rpm));
+    let machine = machine.at_speed(speed);
+    let event = change.point.as_ref().and_then(|point| Event::of_point(&machine, point));
+    let by_equations = |moved: &(dyn Fn(&Model, &Cam) -> Option<f64> + Sync)| {
+        likely.error([rpm], |model, cam| moved(model, cam).map(|rpm| [rpm])).map(|[error]| error)
     };
-    Some(error)
+    match (change.cause, event) {
+        (Cause::Detachment, _) => by_equations(&|model, cam| detachment_near(model, cam, rpm)),
+        (_, Some(event)) => by_equations(&|model, cam| event.moved(model, cam)),
+        (Cause::Runs, None) => likely
+            .error_by_few(rpm, |model, cam| row.moved(&Machine::new(cam.clone(), &model.follower, speed), grid, side)),
+        _ => None,
+    }
 }
 
 fn name(index: usize) -> String {

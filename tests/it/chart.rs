@@ -253,6 +253,32 @@ fn a_store_that_cannot_be_written_loses_nothing() {
     assert_eq!(prints(&status).trim(), "2 of 2 blocks are done");
 }
 
+/// On a disk that has room for what is said of a store, and for none of its blocks, none counts as done, nothing of one is there, and
+/// whoever has room goes on.
+#[test]
+#[cfg(unix)]
+fn a_store_without_room_counts_nothing_as_done() {
+    let folder = tempfile::TempDir::new().unwrap();
+    let store = folder.path().join("c.zarr");
+    let store = store.to_str().unwrap();
+    let axes = ["--x", "rpm=90:190:100", "--y", "restitution=0:0.9:100", "--transient", "2", "--record", "1"];
+    let whole = [&["chart", MODEL], &axes[..], &["--out", store]].concat();
+    // In blocks of 512 bytes; past the limit there would be a signal, and without that an error.
+    let limited = "trap '' XFSZ; ulimit -f 40; exec \"$@\"";
+    let mut shell = std::process::Command::new("sh");
+    let shell = shell.current_dir(common::ROOT).args(["-c", limited, "sh", common::PROGRAM]);
+    let output = shell.args(&whole).output().unwrap();
+    let complaint = common::text(output.stderr);
+    assert!(output.status.code() == Some(2) && complaint.contains("c.zarr/revolutions/c/0"), "{complaint}");
+    assert!(complaint.contains("File too large"), "{complaint}");
+    let blocks = Path::new(store).join("revolutions/c/0");
+    assert_eq!(std::fs::read_dir(blocks).unwrap().count(), 0);
+    let status = ["chart", "--status", store];
+    assert_eq!(prints(&status).trim(), "0 of 1 blocks are done");
+    prints(&whole);
+    assert_eq!(prints(&status).trim(), "1 of 1 blocks are done");
+}
+
 #[test]
 fn what_is_no_chart_is_refused_with_a_reason() {
     let (x, y) = ("rpm=600:760:3", "restitution=0.5:0.95:3");

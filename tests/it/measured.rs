@@ -5,9 +5,9 @@ use corner_impact::cam::{Cam, Law, Side};
 use corner_impact::measured::Likely;
 use corner_impact::model::{Model, Study};
 use corner_impact::progress::Unwatched;
-use corner_impact::study::attractors::{Change, Resolution, Step, detachment_near};
+use corner_impact::study::attractors::{Cause, Change, Resolution, Step, detachment_near};
 use corner_impact::study::locate::locate;
-use corner_impact::study::speeds::speeds;
+use corner_impact::study::speeds::{Speeds, speeds};
 use corner_impact::study::verify::{External, verify};
 use serde_json::{Value, json};
 
@@ -367,6 +367,19 @@ fn a_measured_corner_impact() {
         assert!((event.rpm - rpm).abs() <= open && open < 2.0, "{name}: {} ± {open}", event.rpm);
     }
     assert!((error - speed).abs() < 0.05 * speed, "{error}, not {speed}");
+    // Where chaos ends and begins is known by runs, of either machine.
+    let by_runs = |survey: &Speeds| -> Vec<Change> {
+        let ends = survey.attractors.iter().flat_map(|one| one.death.iter().chain(&one.birth));
+        ends.filter(|end| end.cause == Cause::Runs).cloned().collect()
+    };
+    let exact = by_runs(&speeds(&paper, [665.0, 755.0], resolution, &Unwatched).unwrap());
+    let measured = by_runs(&survey);
+    assert_eq!((exact.len(), measured.len()), (2, 2));
+    for (end, exact) in measured.iter().zip(&exact) {
+        let open = end.error.unwrap();
+        assert!((end.rpm - exact.rpm).abs() <= open && open > 0.0 && open < 5.0, "{} ± {open}", end.rpm);
+        assert_eq!(exact.error, None);
+    }
 }
 
 /// The measured machine that `new` writes: what is told of its cam, and ± on what depends on it.

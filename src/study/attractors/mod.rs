@@ -35,7 +35,7 @@ pub use detachment::{detachment, detachment_near};
 pub use ensemble::{Ensemble, Part, Patience, Wandering};
 pub use here::Here;
 use rayon::prelude::*;
-pub use rows::Row;
+pub use rows::{Grid, Row};
 pub use starts::Starts;
 
 /// A grid of speeds that no range has a say in: whole multiples of a step.

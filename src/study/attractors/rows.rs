@@ -13,7 +13,7 @@ use crate::model::Model;
 use crate::orbit::ending::{Ending, Kind};
 use crate::orbit::settle::close;
 use crate::orbit::{Course, PeriodicOrbit};
-use crate::simulate::{Machine, SimulateError, angular_velocity};
+use crate::simulate::{Machine, Motion, SimulateError, angular_velocity};
 
 /// What holds a motion together from one speed to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -268,30 +268,50 @@ impl Row {
     fn ended(&self, machine: &Machine, grid: &Grid, index: usize, gone: f64) -> Change {
         /// Halvings of a step of the grid.
         const HALVINGS: u32 = 8;
-        /// Starts at each speed between.
-        const STARTS: usize = 12;
-        let rpm = speed(&grid[index]);
-        let sorted = |[one, two]: [f64; 2]| [one.min(two), one.max(two)];
-        let part = grid[index].as_ref().ok().and_then(|here| here.parts.get(*self.at.get(&index)?));
-        let Some(part) = part else { return Change::by_runs(sorted([rpm, gone])) };
-        let (mut motion, kind) = (part.motion, part.ending.kind());
-        let of_class = |part: &Part| Class::of(&part.ending) == self.class;
-        // One long motion may be chaotic at one speed and be seen to rest at the next; where there are both, the one is not the other.
-        let both = grid[index].iter().any(|here| here.parts.iter().filter(|part| of_class(part)).count() > 1);
-        let found = halve([rpm, gone], Width::Halvings(HALVINGS), |rpm| -> Result<bool, SimulateError> {
-            let here = Here::new(machine, rpm, STARTS)?;
-            let alike = |part: &&Part| of_class(part) && part.ending.kind() == kind;
-            let goes_on = |part: &Part| if both { alike(&part) } else { of_class(part) };
-            let there = match here.parts.iter().find(alike) {
-                Some(part) => Some(part.clone()),
-                None => here.come_to(machine, &motion)?.filter(goes_on),
-            };
-            if let Some(part) = &there {
-                motion = part.motion;
-            }
-            Ok(there.is_none())
+        let ends = [speed(&grid[index]), gone];
+        let found = self.wanted(grid, index).map(|(wanted, part)| {
+            let mut motion = Some(part.motion);
+            halve(ends, Width::Halvings(HALVINGS), |rpm| Ok(!wanted.is_there(machine, rpm, &mut motion)?))
         });
-        Change::by_runs(sorted(found.unwrap_or([rpm, gone])))
+        Change::by_runs(sorted(found.and_then(Result::<_, SimulateError>::ok).unwrap_or(ends)))
+    }
+
+    /// The speed, rpm, at which an end that is known by runs is on another machine, whose cam differs by little; none where it is not
+    /// found near by.
+    pub fn moved(&self, other: &Machine, grid: &Grid, side: usize) -> Option<f64> {
+        /// The first step, in brackets of the end: as narrow a bracket takes long, and steps are doubled.
+        const FIRST: f64 = 16.0;
+        /// How often.
+        const DOUBLED: usize = 7;
+        /// Halvings of the step that it is in.
+        const HALVINGS: u32 = 3;
+        let change = self.ends[side].as_ref().filter(|_| self.class != Class::Undecided)?;
+        let index = if side == 0 { self.at.keys().next() } else { self.at.keys().last() };
+        let (wanted, _) = self.wanted(grid, *index?)?;
+        let mut motion = None;
+        let mut is_there = |rpm: f64| wanted.is_there(other, rpm, &mut motion);
+        let was_there = is_there(change.rpm).ok()?;
+        let outward = if side == 0 { -1.0 } else { 1.0 };
+        let mut step = (if was_there { outward } else { -outward }) * FIRST * (change.bracket[1] - change.bracket[0]);
+        let mut from = change.rpm;
+        for _ in 0..DOUBLED {
+            let next = from + step;
+            if is_there(next).ok()? != was_there {
+                let found =
+                    halve([from, next], Width::Halvings(HALVINGS), |rpm| is_there(rpm).map(|there| there != was_there));
+                return found.ok().map(|[one, two]| 0.5 * (one + two));
+            }
+            (from, step) = (next, 2.0 * step);
+        }
+        None
+    }
+
+    /// What it is at a speed of the grid, to be looked for elsewhere.
+    fn wanted<'a>(&self, grid: &'a Grid, index: usize) -> Option<(Wanted, &'a Part)> {
+        let here = grid.get(index)?.as_ref().ok()?;
+        let part = here.parts.get(*self.at.get(&index)?)?;
+        let of_class = here.parts.iter().filter(|part| Class::of(&part.ending) == self.class);
+        Some((Wanted { class: self.class, kind: part.ending.kind(), both: of_class.count() > 1 }, part))
     }
 
     /// Turns of the cam and impacts of one period, where that is the same all along.
@@ -340,6 +360,38 @@ impl Row {
         }
         self.rpm[0] < self.rpm[1]
     }
+}
+
+/// A motion that runs are asked for at other speeds.
+struct Wanted {
+    class: Class,
+    kind: Kind,
+    /// Whether there are several of the class, of which another kind is another motion: one that is long may be chaotic at one speed and
+    /// be seen to rest at the next.
+    both: bool,
+}
+
+impl Wanted {
+    /// Whether one of a few starts ends on it, or the `motion` of another speed goes on as one; that is put in its place then.
+    fn is_there(&self, machine: &Machine, rpm: f64, motion: &mut Option<Motion>) -> Result<bool, SimulateError> {
+        /// Starts at each speed.
+        const STARTS: usize = 12;
+        let here = Here::new(machine, rpm, STARTS)?;
+        let of_class = |part: &Part| Class::of(&part.ending) == self.class;
+        let alike = |part: &&Part| of_class(part) && part.ending.kind() == self.kind;
+        let goes_on = |part: &Part| if self.both { alike(&part) } else { of_class(part) };
+        let there = match (here.parts.iter().find(alike), *motion) {
+            (Some(part), _) => Some(part.motion),
+            (None, Some(before)) => here.come_to(machine, &before)?.filter(goes_on).map(|part| part.motion),
+            (None, None) => None,
+        };
+        *motion = there.or(*motion);
+        Ok(there.is_some())
+    }
+}
+
+fn sorted([one, two]: [f64; 2]) -> [f64; 2] {
+    [one.min(two), one.max(two)]
 }
 
 /// Whether runs have come to a motion of the same class as `ending`.
