@@ -96,8 +96,8 @@ table! {
         nearer ones know their own place less well";
     /// How much the second term of the sum of infinitely many impacts may differ from the first.
     CHATTER_REMAINDER = 1e-8, "squared, of the sum: of a turn of 1e-7 rad it leaves 1e-15, the rounding of an angle";
-    /// When a number that must be changed, where runs tell whether it is enough, is known well enough.
-    NEEDED_BY_RUNS = 1e-3, "of a number that must be changed, where runs at some speeds tell: three digits are more than the speeds \
+    /// When a number that must be changed, or a speed at which a limit is passed, is known well enough where runs tell.
+    NEEDED_BY_RUNS = 1e-3, "of the number or the speed, where runs at some speeds tell: three digits are more than the speeds \
         that are left out allow";
     /// Width at which a bracket around a root is closed.
     ROOT_WIDTH = 4.0 * f64::EPSILON, "of the root: T* is asked for to 1e-14, and a bracket cannot close below two ulps";

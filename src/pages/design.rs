@@ -146,8 +146,8 @@ fn limits(found: &Design) -> Vec<Block> {
                     limit,
                     Span::Marked(Mark::Bad, "passed".into()),
                     " at ",
-                    (rpm, SIX),
-                    " rpm and perhaps before, of the speeds above"
+                    (rpm, Digits::Significant(4)),
+                    " rpm first, as far as the speeds above tell"
                 ]
             }
             None => words![limit, Span::Marked(Mark::Good, "kept".into()), " at each of the speeds above"],

@@ -66,15 +66,18 @@ fn names(word: &str) -> impl Iterator<Item = &str> {
     word.split(|letter: char| !letter.is_ascii_alphabetic()).filter(|name| !name.is_empty())
 }
 
-/// Whether a word is a formula: its names are letters of one or two, or of Greek, and it has a sign of mathematics or is such a letter.
+/// Whether a word is a formula: its names are letters of one or two, or of Greek, and it has a sign of mathematics, is such a letter, or
+/// is a derivative, `dP/dx`.
 fn is_formula(word: &str) -> bool {
     let short = |name: &str| name.len() <= 2 || letter(name).is_some();
-    let is_named = word.contains(':') || word.contains(".toml") || word.starts_with('"');
+    let is_named = word.trim_end_matches(':').contains(':') || word.contains(".toml") || word.starts_with('"');
     let has_sign = word.contains(['_', '^', '*', '\'', '~'])
         || word.trim_end_matches(['.', ',', ';', ')', ']']).ends_with(['+', '-']);
-    let is_unit = word.contains('/') && !word.contains(['_', '*', '\'']);
     let greek = names(word).any(|name| letter(name).is_some());
-    !is_named && !is_unit && names(word).next().is_some() && names(word).all(short) && (has_sign || greek)
+    let is_derivative = word.contains('/') && word.split('/').all(|side| side.starts_with('d'));
+    let is_unit = word.contains('/') && !word.contains(['_', '*', '\'']);
+    let is_told = if is_unit { greek || is_derivative } else { has_sign || greek };
+    !is_named && names(word).next().is_some() && names(word).all(short) && is_told
 }
 
 /// A formula as its stretches: after `_` and `^` a letter, a number or what stands in braces; an asterisk, a prime or a side behind a name.
@@ -148,12 +151,17 @@ mod tests {
         for (text, set) in [
             (
                 "dP/dx at fixed t_i is phi_{T/2} x*.",
-                "dP/dx at fixed <i>t</i><sub>i</sub> is <i>φ</i><sub>T/2</sub> <i>x</i><sup>*</sup>.",
+                "<i>dP</i>/<i>dx</i> at fixed <i>t</i><sub>i</sub> is <i>φ</i><sub>T/2</sub> <i>x</i><sup>*</sup>.",
             ),
             ("A- and B- hold", "<i>A</i><sup>−</sup> and <i>B</i><sup>−</sup> hold"),
             ("det [e; e A-]", "det [e; e <i>A</i><sup>−</sup>]"),
             ("omega0^2 -> 0", "<i>ω</i><sub>0</sub><sup>2</sup> → 0"),
             ("c'' is 5.1e-9 m/s^2", "<i>c</i>′′ is 5.1e-9 m/s^2"),
+            (
+                "dP/dt_i: x + g/omega0^2,",
+                "<i>dP</i>/<i>dt</i><sub>i</sub>: x + <i>g</i>/<i>ω</i><sub>0</sub><sup>2</sup>,",
+            ),
+            ("1/s, d/s, N/mm and m/s^2", "1/s, d/s, N/mm and m/s^2"),
             ("as printed, eq:PT in one-impact words", "as printed, eq:PT in one-impact words"),
             ("phi_t = e^{-zeta t} x*", "<i>φ</i><sub>t</sub> = <i>e</i><sup>−ζ t</sup> <i>x</i><sup>*</sup>"),
             ("W^{-1} x~", "<i>W</i><sup>−1</sup> <i>x</i>\u{303}"),

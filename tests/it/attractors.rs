@@ -169,6 +169,14 @@ fn what_is_left_by_chance_is_no_attractor_and_what_outlasts_rests_is() {
     assert_eq!(kinds(682.15).len(), 2, "{:?}", kinds(682.15));
 }
 
+/// From rest alone, where the follower is let go and comes to wander: what is kept of that is chaos, and not how it began.
+#[test]
+fn what_wanders_from_a_rest_is_told_from_where_it_has_forgotten_that() {
+    let here = Here::new(&machine(&common::osorio(), 380.0), 380.0, 0).unwrap();
+    let [part] = &here.parts[..] else { panic!("{here:?}") };
+    assert!(matches!(part.ending, Ending::Chaotic(_)) && part.motion.revolution > 50, "{part:?}");
+}
+
 /// A release is followed by the same motion each time, however long that is and whatever came before.
 #[test]
 fn a_motion_that_rests_repeats_from_its_release_on() {

@@ -121,6 +121,21 @@ fn the_document_has_the_fields_of_the_contract() {
     assert!(needs[..4].iter().all(|need| need["known"] == "computed"));
     assert!(needs[4..].iter().all(|need| need["known"] == "sampled"));
     assert!(found["limits"][0]["speed_rpm"].is_f64(), "{}", found["limits"]);
+    // A limit is passed first where it is, between two speeds of the table; by runs, and by the force on the cam.
+    for (limit, speeds, list, field, most) in [
+        ("gap=0.001", "100:250", "loads", "gap_m", 0.001),
+        ("impact-speed=2", "100:250", "loads", "impact_speed_m_s", 2.0),
+        ("force=400", "50:110", "contact_force", "largest_n", 400.0),
+    ] {
+        let at = |rpm: f64| {
+            let rpm = format!("{rpm}");
+            let found = document(&["design", "models/preloaded.toml", "--rpm", &rpm, "--json"]);
+            found[list][0][field].as_f64().unwrap_or(0.0)
+        };
+        let asked = ["design", "models/preloaded.toml", "--rpm", speeds, "--speeds", "2", "--limit", limit, "--json"];
+        let passed = document(&asked)["limits"][0]["speed_rpm"].as_f64().unwrap();
+        assert!(at(passed) > most && at(0.998 * passed) <= most, "{limit} at {passed} rpm");
+    }
     // What the cam presses with below the separation counts as well.
     let pressed = document(&[
         "design",

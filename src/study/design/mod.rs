@@ -9,12 +9,14 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::{ModelLabel, StudyError, machine};
+use crate::bracket::{Width, halve};
 use crate::cam::{Cam, Least};
 use crate::known::Known;
 use crate::measured::{Likely, Measured};
 use crate::model::{CORNER_ROUNDING, Model, Units};
 use crate::progress::{Pieces, Watch};
 use crate::simulate::angular_velocity;
+use crate::tolerance;
 use contact::{Contact, Separation};
 use loads::{Load, Loads};
 use needs::{Answer, Changed, Lever, Need};
@@ -67,7 +69,7 @@ document!(ForceAt as it {
     largest_n: it.largest,
 });
 
-/// A limit that the user sets, and the first speed of those looked at that is past it.
+/// A limit that the user sets, and where it is passed first, as far as the speeds of the table tell.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Passed {
     /// Of which load.
@@ -76,7 +78,8 @@ pub struct Passed {
     pub value: f64,
     /// The unit.
     pub unit: String,
-    /// The first of the speeds at which it is passed, rpm; none where it is not.
+    /// Where it is passed, rpm: to a thousandth below the first speed of the table at which it is, at the lowest of them that speed
+    /// itself; none where it is passed at none.
     pub speed_rpm: Option<f64>,
 }
 
@@ -253,20 +256,28 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
         Ok(Loads { rpm: *rpm, ..Loads::at(model, &machine(model, *rpm)?)? })
     };
     let loads = parted.par_iter().map(|rpm| pieces.each(|| loads_at(rpm))).collect::<Result<Vec<_>, _>>()?;
-    let passed = |(limit, value): &(Load, f64)| Passed {
-        limit: *limit,
-        value: *value,
-        unit: limit.unit(&model.units),
-        speed_rpm: {
-            let most = limit.inside(&model.units, *value);
-            // Up to the separation the follower bears what the cam presses with.
-            let on_cam = forces.iter().filter(|at| *limit == Load::Force && at.rpm <= separation.speed());
-            let on_cam = on_cam.map(|at| (at.rpm, at.largest));
-            let all = on_cam.chain(loads.iter().map(|loads| (loads.rpm, loads.of(*limit))));
-            all.filter(|(_, load)| *load > most).map(|(rpm, _)| rpm).next()
-        },
+    let passed = |(limit, value): &(Load, f64)| -> Result<Passed, StudyError> {
+        let most = limit.inside(&model.units, *value);
+        // Up to the separation the follower bears what the cam presses with.
+        let on_cam = forces.iter().filter(|at| *limit == Load::Force && at.rpm <= separation.speed());
+        let on_cam = on_cam.map(|at| (at.rpm, at.largest));
+        let all = on_cam.chain(loads.iter().map(|loads| (loads.rpm, loads.of(*limit))));
+        let first = all.filter(|(_, load)| *load > most).map(|(rpm, _)| rpm).next();
+        let is_passed = |rpm: f64| -> Result<bool, StudyError> {
+            Ok(match limit {
+                Load::Force if rpm <= separation.speed() => contact.largest(rpm) > most,
+                _ => rpm > separation.speed() && loads_at(&rpm)?.of(*limit) > most,
+            })
+        };
+        // Between that speed and the one before.
+        let before = |rpm: f64| speeds.iter().rev().copied().find(|speed| *speed < rpm);
+        let bracket = first.and_then(|rpm| Some([before(rpm)?, rpm]));
+        let width = Width::Relative(tolerance::NEEDED_BY_RUNS.value);
+        let located = bracket.map(|bracket| halve(bracket, width, is_passed)).transpose()?;
+        let speed_rpm = located.map(|[_, passed]| passed).or(first);
+        Ok(Passed { limit: *limit, value: *value, unit: limit.unit(&model.units), speed_rpm })
     };
-    let limits = asked.limits.iter().map(passed).collect();
+    let limits = asked.limits.iter().map(passed).collect::<Result<_, _>>()?;
     let changed = Changed::new(model, &contact);
     let mut needs = Vec::new();
     let total = (asked.needs.len() * Lever::ALL.len()) as u64;
