@@ -8,6 +8,7 @@ that fails. A first run of each test notes what it reaches.
     python tests/mutants/mutants.py                   every mutant of every stage: some hours
     python tests/mutants/mutants.py simulate/again    those in files whose path has these words
     python tests/mutants/mutants.py --sample 100 --seed 7      so many, drawn by the seed; or --seconds 60, as many as fit
+    python tests/mutants/mutants.py --out tried.jsonl          in several sittings: the next goes on where one was broken off
 
 What survives and is not in explained.toml is listed, and the exit code is 1.
 """
@@ -452,7 +453,7 @@ def main():
     ask.add_argument("--seconds", type=float, default=float("inf"), help="begin no mutant after so long")
     ask.add_argument("--longest", type=float, default=10.0, help="no test that takes longer, s")
     ask.add_argument("--tests", nargs="*", default=[], help="parts of the names of the tests to ask, instead of all")
-    ask.add_argument("--out", help="write what became of each, as JSON lines")
+    ask.add_argument("--out", help="write what became of each, as JSON lines; what has failed a test there already is not asked again")
     ask.add_argument("--list", action="store_true", help="list them, and run none")
     asked = ask.parse_args()
     begun = time.monotonic()
@@ -490,6 +491,10 @@ def main():
 
     began, tried, caught, endless, known, survivors = time.monotonic(), Counter(), Counter(), Counter(), Counter(), []
     kills = Counter()
+    before = {}
+    if asked.out and Path(asked.out).exists():
+        lines = [json.loads(line) for line in Path(asked.out).read_text().splitlines()]
+        before = {line["key"]: line["tests"] for line in lines if line["tests"] != "pass"}
     out = open(asked.out, "a") if asked.out else None
     for id in chosen:
         if time.monotonic() - began > asked.seconds:
@@ -498,6 +503,9 @@ def main():
         tried[stage(id)] += 1
         if name(mutant) in told:
             known[stage(id)] += 1
+            continue
+        if mutant["key"] in before:
+            (caught if before[mutant["key"]] == "fail" else endless)[stage(id)] += 1
             continue
         # What has caught others of this file, then what is quick.
         reach = sorted(places[place[id]], key=lambda test: tests[test][0] / (1 + kills[mutant["file"], test]))
