@@ -125,20 +125,21 @@ impl Likely {
 
     /// The same of as many numbers as there are.
     pub fn errors(&self, numbers: &[f64], of: impl Fn(&Model, &Cam) -> Option<Vec<f64>> + Sync) -> Option<Vec<f64>> {
-        self.spread(numbers, (self.others.len(), 2.0), of)
+        self.spread(numbers, (self.others.len(), 0, 2.0), of)
     }
 
-    /// The same of a number that takes long to tell: of few of the tables. The largest of so few deviations is two thirds as large.
-    pub fn error_by_few(&self, number: f64, of: impl Fn(&Model, &Cam) -> Option<f64> + Sync) -> Option<f64> {
+    /// The same of a number that runs tell, which takes long: of few of the tables, of which one may be told wrongly. The next to
+    /// largest of so few deviations is less than half as large as the largest of all.
+    pub fn error_by_runs(&self, number: f64, of: impl Fn(&Model, &Cam) -> Option<f64> + Sync) -> Option<f64> {
         const FEW: usize = 4;
-        self.spread(&[number], (FEW, 3.0), |model, cam| of(model, cam).map(|number| vec![number]))?.pop()
+        self.spread(&[number], (FEW, 1, 4.5), |model, cam| of(model, cam).map(|number| vec![number]))?.pop()
     }
 
-    /// By so many tables, and so many times by what they differ by.
+    /// By so many tables, of which so many that differ most are left out, and so many times by what the others differ by.
     fn spread(
         &self,
         numbers: &[f64],
-        (tables, times): (usize, f64),
+        (tables, left_out, times): (usize, usize, f64),
         of: impl Fn(&Model, &Cam) -> Option<Vec<f64>> + Sync,
     ) -> Option<Vec<f64>> {
         /// One in so many of the tables may do without.
@@ -154,7 +155,9 @@ impl Likely {
         };
         let all: Vec<Vec<f64>> = others.par_iter().filter_map(|(model, cam)| of(model, cam)).collect();
         let error = |(index, number): (usize, &f64)| {
-            let apart = all.iter().fold(0.0_f64, |most, one| most.max((one[index] - centre[index]).abs()));
+            let mut apart: Vec<f64> = all.iter().map(|one| (one[index] - centre[index]).abs()).collect();
+            apart.sort_by(|one, two| two.total_cmp(one));
+            let apart = apart.get(left_out).copied().unwrap_or_default();
             (centre[index] - number).abs() + times * apart + 6.0 * (closer[index] - centre[index]).abs()
         };
         (all.len() + others.len() / WITHOUT >= others.len()).then(|| numbers.iter().enumerate().map(error).collect())

@@ -58,6 +58,9 @@ table! {
     /// What curvature may hide in the noise of rows that are called a dwell.
     HIDDEN_CURVATURE = 1e-2, "of the cam's largest: below that an acceleration is none for any follower, and a motion's top, which \
         turns round with its largest, never stays as long";
+    /// What rows spread by, where a tolerance of smoothing is so large that it is remarked on.
+    SMOOTHED_AWAY = 1.0 / 30.0, "of the tolerance: a gauge that is right to thirty times what its rows spread by would be used for no cam, and \
+        a spline that far from them leaves out what the cam has";
     /// The least jump of the second derivative that is called a corner where rows show one.
     CORNER_SHARE = 0.2, "of the largest second derivative: a smaller one is what a jump of the third derivative makes over a few rows";
     /// How far rows may be from two cubics that meet at a corner, where they have less noise than that.

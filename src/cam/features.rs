@@ -71,6 +71,13 @@ pub struct Stray {
     pub off_m: f64,
 }
 
+/// What the rows of a table are off by where each is told by those beside it, m: their noise, or what they are rounded to.
+pub(crate) fn spread(profile: &TableProfile) -> f64 {
+    let (angles, lifts): (Vec<f64>, Vec<f64>) =
+        profile.rows.iter().map(|row| (row.angle_deg.to_radians(), row.lift)).unzip();
+    Rows::new(&angles, &lifts, profile.reading.half_step()).noise
+}
+
 /// What a slip of a hand or a gauge leaves in a table, in order: a spline follows it, or half follows where it smooths. A cam that turns
 /// sharply between two rows has such, too.
 pub(crate) fn strays(profile: &TableProfile) -> Vec<Stray> {
@@ -124,7 +131,10 @@ impl<'a> Rows<'a> {
         let reach = ((REACH / gap) as isize).clamp(1, angles.len() as isize / 4);
         let all = || 0..angles.len() as isize;
         rows.curvature = all().map(|row| rows.bend(row, reach).abs()).fold(0.0, f64::max);
-        let mut misses: Vec<f64> = all().map(|row| rows.miss(row).1.abs()).filter(|miss| *miss > 0.0).collect();
+        // On a dwell rounding alone is left of lifts that are one number; how much depends on the unit that they are in.
+        let size = lifts.iter().fold(0.0_f64, |size, lift| size.max(lift.abs()));
+        let rounding = 64.0 * tolerance::ULP.value * size;
+        let mut misses: Vec<f64> = all().map(|row| rows.miss(row).1.abs()).filter(|miss| *miss > rounding).collect();
         let middle = misses.len() / 2;
         let median = if misses.is_empty() { 0.0 } else { *misses.select_nth_unstable_by(middle, f64::total_cmp).1 };
         /// The standard deviation over the median of what is normally distributed.

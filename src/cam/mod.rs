@@ -34,7 +34,7 @@ pub use arc::Arc;
 pub(crate) use bounds::Bounds;
 pub use corners::{Corner, Side};
 pub use features::Stray;
-pub(crate) use features::strays;
+pub(crate) use features::{spread, strays};
 pub(crate) use fit::{Fit, fit, fitted};
 pub use harmonics::Harmonics;
 pub(crate) use jet::Jet;
@@ -140,6 +140,11 @@ impl Cam {
         // Searches ask for them at each guess, and those of a table are many.
         cam.corners = std::sync::Arc::new(cam.meetings());
         cam
+    }
+
+    /// Whether a corner is where two pieces of a spline meet, no more: a knot, and nothing of the cam that was measured.
+    pub fn is_knot(&self, corner: &Corner) -> bool {
+        matches!(self.joint, Joint::Spline { degree, .. } if corner.jump_order >= degree)
     }
 
     fn joint(&self) -> &Joint {

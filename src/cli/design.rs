@@ -31,7 +31,7 @@ pub(super) struct Arguments {
     /// Speeds of a range.
     #[arg(long, value_name = "N", default_value_t = 21, value_parser = clap::value_parser!(u32).range(2..=10_000))]
     speeds: u32,
-    /// What is needed: \"no separation to 4500 rpm\", \"impact speed below 0.5 m/s to 6000 rpm\"; also gap and energy (may
+    /// What is needed: "no separation to 4500 rpm", "impact speed below 0.5 m/s to 6000 rpm"; also gap and energy (may
     /// be repeated).
     #[arg(long, value_name = "TEXT", value_parser = need)]
     need: Vec<(String, Need)>,

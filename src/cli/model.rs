@@ -60,7 +60,8 @@ impl ModelArgument {
         let model = model.changed(&self.changes.numbers)?;
         session.units = model.units.clone();
         let strays = model.table().map(words::strays).unwrap_or_default();
-        for words in model.doubt(session.rpm)?.iter().chain(&strays) {
+        let loose = model.table().and_then(words::loose);
+        for words in model.doubt(session.rpm)?.iter().chain(&strays).chain(&loose) {
             session.note(words);
         }
         Ok(model)

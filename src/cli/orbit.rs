@@ -27,7 +27,7 @@ pub(super) struct Arguments {
     /// Impacts in one period [default: any number].
     #[arg(long, value_name = "M")]
     impacts: Option<usize>,
-    /// Only the orbit that Newton's method finds from this state at cam angle 0, m and m/s.
+    /// Only the orbit that Newton's method finds from this state at cam angle 0: position and velocity, in the model's units.
     #[arg(long, value_name = "Q,V", value_parser = state, allow_hyphen_values = true, conflicts_with = "impacts")]
     guess: Option<State>,
     /// Print one JSON document instead of the page.

@@ -33,7 +33,7 @@ pub(super) struct Arguments {
     #[arg(long)]
     json: bool,
     /// Lowest and highest speed that the answer is about [default: from below where the follower first leaves the cam up to the end of
-    /// the model's [study], or twice the speed of its spring].
+    /// the model's [study], or to twice that speed, or twice that of its spring where it stays on the cam].
     #[arg(long, value_name = "LO:HI", value_parser = rpm_range, allow_hyphen_values = true)]
     rpm: Option<[f64; 2]>,
     /// Leave out the routes that need Python (symbolic, scipy, certificate), and say so.

@@ -24,7 +24,7 @@ use crate::study::speeds::{speeds, usual_range};
 pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
-    /// Lowest and highest speed [default: from below where the follower first leaves the cam up to the end of the model's [study], or twice the speed of its spring].
+    /// Lowest and highest speed [default: from below where the follower first leaves the cam up to the end of the model's [study], or to twice that speed, or twice that of its spring where it stays on the cam].
     #[arg(long, value_name = "LO:HI", value_parser = rpm_range, allow_hyphen_values = true)]
     rpm: Option<[f64; 2]>,
     /// The least number of speeds that are run.

@@ -50,12 +50,12 @@ impl CornerMark {
     }
 }
 
-/// The corners worth a label: a dozen at most, those of the lowest order first, then those of the largest jump, in order of
-/// angle. Corners of a cam of three circles bear the letters of the paper's drawing, with an apostrophe on the way down.
+/// The corners worth a label, knots of a spline left out: a dozen at most, those of the lowest order first, then those of the largest
+/// jump, in order of angle. Corners of a cam of three circles bear the letters of the paper's drawing, with an apostrophe on the way down.
 pub fn corner_marks(cam: &Cam) -> Vec<CornerMark> {
     let corners = cam.corners();
     let letters: &[&str] = if of_circles(cam) { &["R", "P", "Q", "Q'", "P'", "R'"] } else { &[] };
-    let mut order: Vec<usize> = (0..corners.len()).collect();
+    let mut order: Vec<usize> = (0..corners.len()).filter(|index| !cam.is_knot(&corners[*index])).collect();
     let rank = |index: &usize| (corners[*index].jump_order, -corners[*index].jump.abs());
     order.sort_by(|one, other| {
         let ((order, size), (other_order, other_size)) = (rank(one), rank(other));
@@ -72,10 +72,14 @@ pub fn corner_marks(cam: &Cam) -> Vec<CornerMark> {
 
 /// What the marks of corners are, in a sentence.
 pub(crate) fn corners_in_words(cam: &Cam, marks: &str) -> String {
-    let (all, marked) = (cam.corners(), corner_marks(cam).len());
+    let marked = corner_marks(cam).len();
+    let all: Vec<&Corner> = cam.corners().iter().filter(|corner| !cam.is_knot(corner)).collect();
     let orders = all.iter().map(|corner| corner.jump_order);
     let Some((least, most)) = orders.clone().min().zip(orders.max()) else {
-        return "It has no corner: no derivative of its lift jumps.".into();
+        return match cam.corners().len() {
+            0 => "It has no corner: no derivative of its lift jumps.".into(),
+            knots => format!("It is a spline, whose {knots} knots are not marked, and has no corner."),
+        };
     };
     let which = if marked < all.len() {
         format!("are {marked} of its {} corners", all.len())
@@ -107,11 +111,11 @@ pub(crate) fn of_circles(cam: &Cam) -> bool {
 pub fn cam_figure(cam: &Cam, title: &str) -> Figure {
     let corners = cam.corners();
     let marks = corner_marks(cam);
-    let note = if marks.len() < corners.len() {
+    let worth = corners.iter().filter(|corner| !cam.is_knot(corner)).count();
+    let note = if marks.len() < worth {
         format!(
-            "{} of {} corners are marked: those of the lowest derivatives, then of the largest jumps.",
-            marks.len(),
-            corners.len()
+            "{} of {worth} corners are marked: those of the lowest derivatives, then of the largest jumps.",
+            marks.len()
         )
     } else {
         String::new()

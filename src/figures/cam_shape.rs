@@ -22,9 +22,10 @@ pub(crate) const CAM_SHAPE: Entry = Entry {
                 .to_owned()
         } else {
             format!(
-                "The model gives the lift alone; it is drawn around O with {:.4} m added, so this is the path of the \
+                "The model gives the lift alone; it is drawn around O with {:.4} {} added, so this is the path of the \
                  follower's foot seen from the cam and not the cut of the metal",
-                outline.added
+                outline.added,
+                subject.model.units.length.name()
             )
         };
         drawn(

@@ -14,7 +14,7 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-pub(crate) use read::text;
+pub(crate) use read::{text, text_of_any_age};
 pub(crate) use scratch::Scratch;
 pub(crate) use signals::Started;
 use unfinished::Unfinished;

@@ -11,8 +11,23 @@ const LONGEST_LINE: usize = 1 << 20;
 
 /// The text of a file; no more than the limit is read, whatever it is.
 pub(crate) fn text(path: &Path) -> io::Result<String> {
-    let mut text = String::new();
-    File::open(path)?.take(LONGEST as u64 + 1).read_to_string(&mut text)?;
+    let text = String::from_utf8(bytes(path)?);
+    limited(text.map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "it is no text in UTF-8"))?)
+}
+
+/// The same of a file that an older program may have written: what is no UTF-8 is Latin-1, in which a degree sign is one byte.
+pub(crate) fn text_of_any_age(path: &Path) -> io::Result<String> {
+    let text = String::from_utf8(bytes(path)?);
+    limited(text.unwrap_or_else(|error| error.into_bytes().into_iter().map(char::from).collect()))
+}
+
+fn bytes(path: &Path) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    File::open(path)?.take(LONGEST as u64 + 1).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+fn limited(text: String) -> io::Result<String> {
     let refused = |words: String| Err(io::Error::new(io::ErrorKind::FileTooLarge, words));
     if text.len() > LONGEST {
         return refused(format!("it is longer than {} MiB, the most that is read", LONGEST >> 20));

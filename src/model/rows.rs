@@ -65,7 +65,8 @@ const HEADER: &str = "angle_deg,lift";
 /// Words for the first column.
 const ANGLES: [&str; 12] =
     ["angle", "angles", "theta", "θ", "phi", "φ", "alpha", "rotation", "winkel", "drehwinkel", "cam", "crank"];
-const DEGREES: [&str; 4] = ["deg", "degree", "degrees", "°"];
+/// "Grad" is German; a turn of 400 of them is refused by its rows.
+const DEGREES: [&str; 5] = ["deg", "degree", "degrees", "°", "grad"];
 const RADIANS: [&str; 3] = ["rad", "radian", "radians"];
 
 impl Separator {
@@ -137,7 +138,7 @@ impl Table<'_> {
     /// Refuses a unit in brackets that is none: it would be taken for another one.
     fn known_unit(&self, line: usize, cell: &str, column: &str) -> Result<(), ModelError> {
         let lengths: Vec<&str> = LENGTHS.iter().map(Unit::name).collect();
-        let units = if column == "angle" { vec!["deg", "rad"] } else { lengths };
+        let (units, field) = if column == "angle" { (vec!["deg", "rad"], "angle_unit") } else { (lengths, "unit") };
         let is_known = |unit: &str| match column {
             "angle" => DEGREES.contains(&unit) || RADIANS.contains(&unit),
             _ => units.contains(&unit) || unit == "µm",
@@ -147,7 +148,10 @@ impl Table<'_> {
                 line,
                 "header",
                 cell,
-                format!("the unit of the {column} must be one of: {}", units.join(", ")),
+                format!(
+                    "the unit of the {column} must be one of: {}; or leave this line out, and say it in [cam], by {field}",
+                    units.join(", ")
+                ),
             )),
             _ => Ok(()),
         }

@@ -176,8 +176,8 @@ pub(super) fn read(fields: &mut Fields) -> Result<TableProfile, ModelError> {
     let spline = fields.choice("cam.spline", &SPLINES)?;
     let path = Path::new(fields.file()).parent().unwrap_or(Path::new("")).join(&file);
     let shown = path.display().to_string();
-    let text =
-        file::text(&path).map_err(|error| fields.reject("cam.file", format!("cannot be read at {shown}: {error}")))?;
+    let text = file::text_of_any_age(&path)
+        .map_err(|error| fields.reject("cam.file", format!("cannot be read at {shown}: {error}")))?;
     // Spreadsheets begin UTF-8 with a mark.
     let table = Table { file: shown, text: text.strip_prefix('\u{feff}').unwrap_or(&text), has_lines: true };
     let (rows, layout) = table.rows()?;

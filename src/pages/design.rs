@@ -1,5 +1,6 @@
 //! The page of `design`: the answer in sentences first, then speeds, limits and what must be changed.
 
+use crate::known::Known;
 use crate::pages::speeds::measured_speed;
 use crate::show::Paged;
 use crate::show::block::{Block, Column, Mark, Span, Table, Words, words};
@@ -78,7 +79,7 @@ pub(crate) fn margin(found: &Design) -> Option<Words> {
     Some(words!["At ", rpm, " rpm the cam presses with ", force, format!(" {unit} at least, at "), angle, " deg."])
 }
 
-fn speeds(found: &Design) -> Vec<Block> {
+pub(crate) fn speeds(found: &Design) -> Vec<Block> {
     let force = found.units.force.name();
     let mut columns = vec![number("rpm"), number(format!("least force {force}")), number("at deg")];
     let head = |name: &str, unit: &'static str| number(words![name, Span::Unit(unit)]);
@@ -111,7 +112,7 @@ fn speeds(found: &Design) -> Vec<Block> {
                 Some(loads) => cells.extend([
                     three(loads.impact_speed),
                     three(loads.gap),
-                    words![(100.0 * loads.off_cam, Digits::Fixed(1))],
+                    format!("{:.1}", 100.0 * loads.off_cam).into(),
                     three(loads.energy),
                     three(found.force(loads.force)),
                 ]),
@@ -172,15 +173,23 @@ fn needs(found: &Design) -> Vec<Block> {
             Column::words(""),
         ];
         let mut table = Table::new(&of_need[0].need, columns);
-        for Answer { lever, now, value, error, unit, note, known, .. } in of_need {
-            let digits =
-                if *known == crate::known::Known::Computed { Digits::Significant(9) } else { Digits::Significant(3) };
-            let bound = if lever.is_upper_bound() { "at most" } else { "at least" };
+        for answer in of_need {
+            let Answer { lever, now, unit, note, known, .. } = answer;
+            let digits = if *known == Known::Computed { Digits::Significant(9) } else { Digits::Significant(3) };
+            let bound = if answer.is_upper_bound { "at most" } else { "at least" };
+            let value = answer.value.map(|value| with_open(value, answer.error, digits));
+            let other = answer.other.map(|other| with_open(other, answer.other_error, digits));
+            let (bound, to) = match (value, other) {
+                (None, _) => ("", "none".into()),
+                (Some(value), None) => (bound, value),
+                (Some(value), Some(other)) if answer.is_upper_bound => ("between", words![other, " and ", value]),
+                (Some(value), Some(other)) => ("between", words![value, " and ", other]),
+            };
             table.row([
                 lever.to_string().into(),
                 words![(*now, Digits::Short)],
-                if value.is_some() { bound.into() } else { Words::default() },
-                value.map_or("none".into(), |value| with_open(value, *error, digits)),
+                bound.into(),
+                to,
                 unit.into(),
                 known.to_string().into(),
                 note.into(),

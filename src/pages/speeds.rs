@@ -43,7 +43,14 @@ pub(crate) fn together(found: &Speeds) -> Vec<Words> {
             _ => joined.push([over.from_rpm, over.to_rpm]),
         }
     }
-    joined.into_iter().map(range).collect()
+    joined.into_iter().map(|[from, to]| words![open_to(found, from), "–", open_to(found, to)]).collect()
+}
+
+/// A speed at which an attractor begins or ends, in no more digits than a measured cam leaves it.
+fn open_to(found: &Speeds, rpm: f64) -> Words {
+    let ends = found.attractors.iter().flat_map(|attractor| attractor.birth.iter().chain(&attractor.death));
+    let error = ends.filter(|end| end.rpm == rpm).find_map(|end| end.error);
+    words![(rpm, error.map_or(Digits::Fixed(2), |error| with_error(error).0))]
 }
 
 /// Where the follower first leaves the cam.
@@ -85,7 +92,7 @@ pub(crate) fn how(found: &Speeds) -> String {
 }
 
 /// What errors stand for, where the cam is measured.
-fn cam(measured: &Measured) -> Option<Block> {
+pub(crate) fn cam(measured: &Measured) -> Option<Block> {
     let words = format!(
         "± is what the cam leaves open, {}: how far the event moves among cams that are as likely. A speed without it is of the cam as \
          it is drawn through the rows.",
@@ -113,11 +120,6 @@ pub(crate) fn rests(attractor: &Attractor) -> Option<String> {
             1.0 / rests.rate
         ),
     })
-}
-
-/// A range of speeds.
-pub(crate) fn range([from, to]: [f64; 2]) -> Words {
-    words![(from, Digits::Fixed(2)), "–", (to, Digits::Fixed(2))]
 }
 
 /// The attractors, with where each begins and ends.

@@ -8,7 +8,9 @@ use serde::Serialize;
 use crate::agreement::by_quantity;
 use crate::cam::{Cam, Jet, Side};
 use crate::draw::layout::WIDTH;
-use crate::figures::{Drawn, Plate, Subject, corner_marks, impacts_by_speed, plates, speeds_figure, through_corner};
+use crate::figures::{
+    Drawn, Plate, Subject, corner_marks, design_figure, impacts_by_speed, plates, speeds_figure, through_corner,
+};
 use crate::measured::{Likely, Measured};
 use crate::model::{Model, ModelError, Units};
 use crate::paper::{Claims, Context, LedgerError};
@@ -20,7 +22,7 @@ use crate::show::words;
 use crate::study::attractors::{Resolution, Step};
 use crate::study::cam::CamSheet;
 use crate::study::design::contact::{Contact, Separation};
-use crate::study::design::known;
+use crate::study::design::{Asked, Design, design, known};
 use crate::study::speeds::{Speeds, speeds, usual_range};
 use crate::study::verify::{External, Tally, Verification, verify_watched};
 
@@ -53,6 +55,10 @@ pub struct Report {
     pub speeds: Result<Speeds, String>,
     /// Where its impacts fall over these speeds: the picture of the answer.
     pub overview: Option<Plate>,
+    /// What cam and follower bear over the range; none where a run cannot go on.
+    pub design: Option<Design>,
+    /// That drawn.
+    pub loads: Option<Plate>,
     /// The same with every attractor and its share of the starts.
     pub attractors: Option<Plate>,
     /// The figures, in the paper's order.
@@ -117,6 +123,7 @@ document!(Report as it {
     claims: it.claims,
     separation_rpm: it.margin.as_ref().map(|margin| margin.separation_rpm),
     margin: it.margin,
+    design if_any: it.design,
     speeds: it.speeds.as_ref().ok(),
     no_speeds: it.speeds.as_ref().err(),
     plates: it.plates,
@@ -184,10 +191,13 @@ pub enum ReportError {
 const SPEEDS: (u32, usize) = (30, 12);
 /// Of the paper's machine, whose chaos is quick to run.
 const PAPERS_SPEEDS: (u32, usize) = (100, 32);
+/// Speeds at which loads are told.
+const LOADED: u32 = 21;
 /// Parts of the work that are done when each stage is, of one.
 const VERIFIED: f64 = 0.1;
 const HELD: f64 = 0.25;
 const SURVEYED: f64 = 0.55;
+const LOADS: f64 = 0.58;
 const THROUGH: f64 = 0.6;
 
 impl Report {
@@ -214,7 +224,10 @@ impl Report {
         let speeds = speeds(model, range, resolution, &part(HELD, SURVEYED)).map_err(|error| error.to_string());
         let overview = speeds.as_ref().ok().map(|found| overview(model, &cam, found));
         let attractors = speeds.as_ref().ok().map(|found| attractors(model, &cam, found));
-        part(SURVEYED, THROUGH).at("the orbits on both sides of the corner impact", 0, 1);
+        let asked = Asked { rpm: Some(range), speeds: LOADED, ..Asked::default() };
+        let design = design(model, &asked, &part(SURVEYED, LOADS)).ok();
+        let loads = design.as_ref().map(|found| loads(model, found, range));
+        part(LOADS, THROUGH).at("the orbits on both sides of the corner impact", 0, 1);
         let through = verification.as_ref().map_err(String::clone).and_then(|found| through(model, &cam, found));
         let subject = Subject::with(model, verification.clone())?;
         let drawing = part(THROUGH, 1.0);
@@ -228,7 +241,7 @@ impl Report {
             quantities: quantities(model),
             cam: CamSheet::new(model, &cam, Jet::HIGHEST_JUMP)?,
         };
-        let commands = commands(model, verification.is_ok());
+        let commands = commands(model, range, verification.is_ok());
         let contact = Contact::new(&cam, model.follower);
         let likely = Likely::of(model)?;
         let separation = known(contact.separation(), likely.as_ref());
@@ -247,6 +260,8 @@ impl Report {
             parsed: model.clone(),
             speeds,
             overview,
+            design,
+            loads,
             attractors,
             plates,
             commands,
@@ -283,6 +298,19 @@ fn overview(model: &Model, cam: &Cam, found: &Speeds) -> Plate {
     Plate { id: "overview", place: "", title, command, drawn: Ok(Drawn { figure, caption }) }
 }
 
+/// What cam and follower bear, drawn.
+fn loads(model: &Model, found: &Design, [low, high]: [f64; 2]) -> Plate {
+    let figure = design_figure(found).in_units(|unit| model.units.spelled(unit));
+    let title = figure.title.clone();
+    let caption = format!(
+        "The least force between cam and follower of {} as long as they touch; above the separation the most of what four starts come to: \
+         impacts, gap, time off the cam and energy.",
+        model.name
+    );
+    let command = command("design", model, &format!("--rpm {low}:{high} --out loads.svg"));
+    Plate { id: "loads", place: "", title, command, drawn: Ok(Drawn { figure, caption }) }
+}
+
 /// What runs end on, drawn.
 fn attractors(model: &Model, cam: &Cam, found: &Speeds) -> Plate {
     let figure = speeds_figure(found, &corner_marks(cam), WIDTH);
@@ -290,7 +318,8 @@ fn attractors(model: &Model, cam: &Cam, found: &Speeds) -> Plate {
     let caption = "What runs end on against the speed: where its impacts are on the cam, a bar for each attractor, and the share of \
                    the starts that end on it."
         .to_owned();
-    let command = command("speeds", model, "--out attractors.svg");
+    let [low, high] = found.rpm;
+    let command = command("speeds", model, &format!("--rpm {low}:{high} --out attractors.svg"));
     Plate { id: "attractors", place: "", title, command, drawn: Ok(Drawn { figure, caption }) }
 }
 
@@ -322,7 +351,7 @@ impl Watch for Part<'_> {
     }
 }
 
-fn commands(model: &Model, verified: bool) -> Vec<(String, &'static str)> {
+fn commands(model: &Model, [low, high]: [f64; 2], verified: bool) -> Vec<(String, &'static str)> {
     let again = |name: &str, what| (command(name, model, ""), what);
     let mut commands = vec![again("report", "writes this page")];
     if verified {
@@ -330,6 +359,7 @@ fn commands(model: &Model, verified: bool) -> Vec<(String, &'static str)> {
         commands.push(again("claims", "holds the statements of the paper that this program checks against it"));
     }
     commands.push(again("cam", "lists segments and corners of the cam"));
-    commands.push(again("speeds", "what the follower does at each speed, with more speeds than here"));
+    let speeds = command("speeds", model, &format!("--rpm {low}:{high}"));
+    commands.push((speeds, "what the follower does at each speed, with more speeds than here"));
     commands
 }

@@ -7,12 +7,12 @@ use crate::border_collision::conditions::Decides;
 use crate::border_collision::feigin::{Scenario, Speeds};
 use crate::border_collision::long_run::{Chaos, End};
 use crate::border_collision::validity::{Compared, Ends};
-use crate::cam::{self, Side, Stray};
+use crate::cam::{self, Side, Stray, spread};
 use crate::corner::map::RouteName;
 use crate::covering::Unproved;
 use crate::covering::prove::Relation;
 use crate::measured::Measured;
-use crate::model::{Reading, Separator, TableProfile};
+use crate::model::{Reading, Separator, TableProfile, Tolerance};
 use crate::orbit::branch::{self, Bifurcation};
 use crate::orbit::ending::{Ending, Kind};
 use crate::published::Verdict;
@@ -20,6 +20,7 @@ use crate::show::block::{Mark, Symbol, Words, words};
 use crate::show::digits::Digits;
 use crate::study::attractors::{Cause, Change};
 use crate::study::speeds::Attractor;
+use crate::tolerance;
 
 /// A route's name.
 pub(crate) fn route(name: RouteName) -> String {
@@ -328,6 +329,23 @@ pub(crate) fn strays(profile: &TableProfile) -> Vec<String> {
         told.push(format!("{} more rows are off as well: `cam --json` lists them", strays.len() - NAMED));
     }
     told
+}
+
+/// That a smoothing spline may be farther from the rows than they are from a motion, where it may by much.
+pub(crate) fn loose(profile: &TableProfile) -> Option<String> {
+    let Tolerance::Within(within) = profile.spline.smoothing()?.tolerance else { return None };
+    let spread = spread(profile);
+    let reading = &profile.reading;
+    let told = |length: f64| Digits::Aligned(2).text(reading.in_model.told(length));
+    (spread < tolerance::SMOOTHED_AWAY.value * within).then(|| {
+        format!(
+            "cam.tolerance: {} {unit} is far more than the rows spread by, some {} {unit}; the spline may leave out what the cam has, and ± \
+             does not know of that",
+            told(within),
+            told(spread),
+            unit = reading.unit
+        )
+    })
 }
 
 /// What a table of lifts is not exact for.

@@ -199,14 +199,14 @@ impl Attractor {
 }
 
 /// The range of speeds to look at where none is named, rpm: from below the speed at which the follower first leaves the cam up to
-/// the fastest of `[study]`, or twice the larger of that speed and the machine's own.
+/// the fastest of `[study]`, or twice that speed, or twice the machine's own where it never does.
 pub fn usual_range(model: &Model) -> Result<[f64; 2], ModelError> {
     let machine = machine(model, FALLBACK)?;
     let own = own_speed(&machine).unwrap_or(FALLBACK);
     let leaves = Contact::new(machine.cam(), model.follower).separation().speed();
     let leaves = Some(leaves).filter(|rpm| *rpm > 0.0 && rpm.is_finite());
     let low = two_digits(leaves.map_or(0.5 * own, |rpm| 0.8 * rpm), f64::floor);
-    let high = two_digits(2.0 * leaves.map_or(own, |rpm| rpm.max(own)), f64::ceil);
+    let high = two_digits(2.0 * leaves.unwrap_or(own), f64::ceil);
     Ok(model.study.map_or([low, high], |study| [low.min(study.rpm_min), study.rpm_max]))
 }
 
@@ -309,7 +309,7 @@ fn error(machine: &Machine, likely: &Likely, row: &Row, side: usize, grid: &Grid
         (Cause::Detachment, _) => by_equations(&|model, cam| detachment_near(model, cam, rpm)),
         (_, Some(event)) => by_equations(&|model, cam| event.moved(model, cam)),
         (Cause::Runs, None) => likely
-            .error_by_few(rpm, |model, cam| row.moved(&Machine::new(cam.clone(), &model.follower, speed), grid, side)),
+            .error_by_runs(rpm, |model, cam| row.moved(&Machine::new(cam.clone(), &model.follower, speed), grid, side)),
         _ => None,
     }
 }

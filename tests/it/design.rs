@@ -81,6 +81,34 @@ fn a_need_is_met_at_its_value_and_not_beyond() {
     assert_eq!(met, 3);
 }
 
+/// A damper that holds the follower where it would be thrown off the top of the rise lets it go on the return: what does is a range, however
+/// narrow.
+#[test]
+fn too_much_damping_does_no_more() {
+    let model = valve("mass = 0.11\ndamping = 0\nstiffness = 30\npreload = 220", "cycloidal");
+    let with = |damping: f64| separation(&model.with_number("follower.damping", damping).unwrap()).speed();
+    let (mut best, mut most) = (0.0, with(0.0));
+    for step in 1..4000 {
+        let damping = 0.01 * f64::from(step);
+        if with(damping) > most {
+            (best, most) = (damping, with(damping));
+        }
+    }
+    assert!(best > 1.0 && most > 1.01 * with(0.0), "{best} {most}");
+    for goal in [0.5 * (with(0.0) + most), (1.0 - 1e-6) * most] {
+        let words = format!("no separation to {goal} rpm");
+        let need: Need = words.parse().unwrap();
+        let asked = Asked { speeds: 2, needs: vec![(words, need)], ..Asked::default() };
+        let found = design(&model, &asked, &Unwatched).unwrap();
+        let damping = found.needs.iter().find(|answer| answer.lever == Lever::Damping).unwrap();
+        let [least, most] = [damping.value, damping.other].map(|end| end.unwrap());
+        assert!(least < best + 0.01 && best - 0.01 < most && most < 2.0 * best, "{damping:?}");
+        for (end, outside) in [(least, 0.999 * least), (most, 1.001 * most)] {
+            assert!((with(end) - goal).abs() < 1e-9 * goal && with(outside) < goal, "{damping:?}: {}", with(end));
+        }
+    }
+}
+
 fn document(words: &[&str]) -> Value {
     let output = corner_impact(words);
     assert!(output.status.success(), "{}", text(output.stderr));

@@ -2,10 +2,13 @@
 
 use approx::assert_abs_diff_eq;
 use corner_impact::cam::{Cam, Law, Side};
+use corner_impact::figures::corner_marks;
 use corner_impact::measured::Likely;
 use corner_impact::model::{Model, Study};
 use corner_impact::progress::Unwatched;
 use corner_impact::study::attractors::{Cause, Change, Resolution, Step, detachment_near};
+use corner_impact::study::design::contact::Separation;
+use corner_impact::study::design::{Asked, design};
 use corner_impact::study::locate::locate;
 use corner_impact::study::speeds::{Speeds, speeds};
 use corner_impact::study::verify::{External, verify};
@@ -225,8 +228,8 @@ fn real_files() {
     let lift =
         |angle: f64| (1000.0 * (5.0 - 4.0 * angle.to_radians().cos() + angle.to_radians().sin())).round() / 1000.0;
     let rows: Vec<(f64, f64)> = (0..72).map(|k| 5.0 * f64::from(k)).map(|angle| (angle, lift(angle))).collect();
-    let read = |text: &str, more: &str, length: &str| {
-        std::fs::write(folder.path().join("lift.csv"), text).unwrap();
+    let read_bytes = |bytes: &[u8], more: &str, length: &str| {
+        std::fs::write(folder.path().join("lift.csv"), bytes).unwrap();
         let file = folder.path().join("model.toml");
         let text = format!(
             "[units]\nlength = \"{length}\"\n[follower]\nmass = 1\ndamping = 0\nstiffness = 1\ngravity = 0\nrest_position = 0\n\
@@ -237,6 +240,7 @@ fn real_files() {
         let reading = Likely::of(&model).unwrap().unwrap().measured.reading;
         Ok::<_, String>((Cam::new(&model).unwrap(), serde_json::to_value(reading).unwrap()))
     };
+    let read = |text: &str, more: &str, length: &str| read_bytes(text.as_bytes(), more, length);
     let table = |from: usize, header: &str, parted: &str, write: &dyn Fn(f64, f64) -> [String; 2]| {
         let turned = rows.iter().cycle().skip(from).take(rows.len());
         let lines: Vec<String> = turned.map(|(angle, lift)| write(*angle, *lift).join(parted) + "\n").collect();
@@ -250,7 +254,7 @@ fn real_files() {
     let expected = json!({ "unit": "mm", "angle_unit": "deg", "separator": "comma", "decimal_comma": false, "comments": 0,
         "header": "angle_deg,lift", "rows": 72, "first_deg": 0.0, "repeats_first": false, "step": 0.001 });
     assert_eq!(told, expected);
-    let cases: [(&str, String, &str, &str, Value); 10] = [
+    let cases: [(&str, String, &str, &str, Value); 11] = [
         ("headless", table(0, "", ",", &plain), "", "mm", json!({ "header": null })),
         (
             "semicolons",
@@ -258,6 +262,13 @@ fn real_files() {
             "",
             "mm",
             json!({ "separator": "semicolon", "decimal_comma": true }),
+        ),
+        (
+            "German",
+            table(0, "Winkel [Grad];Hub [mm]\n", ";", &comma),
+            "",
+            "m",
+            json!({ "unit": "mm", "angle_unit": "deg" }),
         ),
         ("tabs", table(0, "theta\tlift\n", "\t", &plain), "", "mm", json!({ "separator": "tab" })),
         (
@@ -289,6 +300,10 @@ fn real_files() {
             assert_eq!(&told[field], value, "{name}: {field}");
         }
     }
+    // In Latin-1 a degree sign is one byte.
+    let old = [b"Winkel [\xb0];Hub [mm]\n", table(0, "", ";", &comma).as_bytes()].concat();
+    let (found, told) = read_bytes(&old, "", "mm").unwrap();
+    assert_eq!((found.lift(1.0).value, &told["angle_unit"]), (cam.lift(1.0).value, &json!("deg")));
     // Radians to six digits, the last row a turn after the first but for what they leave out.
     let radians = table(0, "theta [rad],lift\n", ",", &rad) + "6.283185,1.0\n";
     let (found, told) = read(&radians, "angle_unit = \"rad\"\n", "mm").unwrap();
@@ -400,12 +415,32 @@ fn a_new_measured_machine() {
     ] {
         assert!(page.contains(says), "no \"{says}\" in: {page}");
     }
+    // A tolerance that smooths the cam away is remarked on, and one of a coarse gauge is not.
+    let text = std::fs::read_to_string(folder.path().join("valve.toml")).unwrap();
+    for (tolerance, is_loose) in [("0.5", true), ("0.005", false)] {
+        let loose = text.replace("tolerance = \"auto\"", &format!("tolerance = {tolerance}"));
+        std::fs::write(folder.path().join("loose.toml"), loose).unwrap();
+        let output = crate::common::program(["cam", "loose.toml"]).current_dir(folder.path()).output().unwrap();
+        let notes = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(notes.contains("0.50 mm is far more than the rows spread by, some 0.00"), is_loose, "{notes}");
+    }
     let page = run(&["design", "valve.toml", "--speeds", "3"]);
     assert!(page.contains(" ± ") && page.contains(" rpm: lift rounded to 0.001 mm."), "{page}");
     let speeds = ["speeds", "valve.toml", "--rpm", "2700:4500", "--speeds", "10", "--starts", "8"];
     let page = run(&speeds);
     assert!(page.contains("leaves the cam first at 29") && page.contains("rpm: lift rounded to 0.001 mm"), "{page}");
     assert!(page.contains("± is what the cam leaves open, lift rounded to 0.001 mm"), "{page}");
+    run(&["report", "valve.toml", "--no-external", "--rpm", "2700:3500", "--out", "report.html"]);
+    let report = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
+    for says in [
+        "id=\"loads\"",
+        ">impact speed (mm/s)<",
+        "± is what the cam leaves open, lift rounded to 0.001 mm",
+        "design valve.toml --rpm 2700:3500 --out loads.svg",
+        "speeds valve.toml --rpm 2700:3500 --out attractors.svg",
+    ] {
+        assert!(report.contains(says), "{says}");
+    }
     let found: Value = serde_json::from_str(&run(&[&speeds[..], &["--json"]].concat())).unwrap();
     let error = found["detachment_error_rpm"].as_f64().unwrap();
     assert!(error > 1.0 && error < 0.03 * found["detachment_rpm"].as_f64().unwrap(), "{error}");
@@ -413,6 +448,46 @@ fn a_new_measured_machine() {
     let located: Vec<&Value> = ends.filter(|end| end["located"] == json!(true)).collect();
     let known = located.iter().filter(|end| end["error_rpm"].as_f64().is_some_and(|error| error > 0.0)).count();
     assert!(known >= 2 && 3 * known >= 2 * located.len(), "{known} of {}", located.len());
+}
+
+/// Dwells, corners and errors are the same in whatever unit the lifts are: on a dwell rounding alone is left of them.
+#[test]
+fn what_is_found_does_not_hang_on_the_unit() {
+    let dwell = |span: f64| json!({ "motion": "dwell", "span_deg": span });
+    let moves = |span: f64, rise: f64| json!({ "motion": "cycloidal", "span_deg": span, "rise": rise });
+    let exact = json!({ "law": "program", "base": 20.0,
+        "segment": [dwell(60.0), moves(80.0, 10.0), dwell(15.0), moves(90.0, -10.0), dwell(115.0)] });
+    let cam = Cam::new(&machine(exact).unwrap()).unwrap();
+    let rows: String =
+        (0..360).map(|degree| format!("{degree},{:.3}\n", cam.lift(f64::from(degree).to_radians()).value)).collect();
+    let folder = tempfile::tempdir().unwrap();
+    let found = ["mm", "m", "um", "in"].map(|length| {
+        std::fs::write(folder.path().join("lift.csv"), format!("angle [deg],lift [mm]\n{rows}")).unwrap();
+        let file = folder.path().join("model.toml");
+        let text = format!(
+            "[units]\nlength = \"{length}\"\nstiffness = \"N/mm\"\n[follower]\nmass = 0.11\ndamping = 5\nstiffness = 30\ngravity = 0\n\
+             preload = 220\nrestitution = 0.3\n[cam]\nlaw = \"table\"\nfile = \"lift.csv\"\nspline = \"smoothing\"\n"
+        );
+        std::fs::write(&file, text).unwrap();
+        let model = Model::read(&file).unwrap();
+        // The ends of its dwells are marked in pictures, and not the knots of the spline.
+        assert_eq!(corner_marks(&Cam::new(&model).unwrap()).len(), 4, "{length}");
+        let asked = Asked { rpm: Some([2000.0, 2600.0]), speeds: 2, ..Asked::default() };
+        let found = design(&model, &asked, &Unwatched).unwrap();
+        let Separation::At { rpm, error, .. } = found.separation else { panic!("{length}") };
+        // On a dwell the spring alone presses, and nothing is open of that.
+        let force = found.forces[0];
+        assert!(force.error.is_none() && (found.force(force.least.value) - 220.0).abs() < 1e-6, "{length}: {force:?}");
+        (found.measured.unwrap().dwells_deg, rpm, error)
+    });
+    for (dwells, rpm, error) in &found[1..] {
+        assert_eq!(dwells.len(), 2);
+        for (one, other) in dwells.as_flattened().iter().zip(found[0].0.as_flattened()) {
+            assert_abs_diff_eq!(one, other, epsilon = 1e-6);
+        }
+        assert_abs_diff_eq!(*rpm, found[0].1, epsilon = 1e-6 * rpm);
+        assert_abs_diff_eq!(*error, found[0].2, epsilon = 1e-3 * error);
+    }
 }
 
 /// A slip in one row is found with the row and how far it is off, whatever the spline and wherever it is; noise, rounding, corners,

@@ -245,7 +245,7 @@ fn a_model_without_a_corner_impact_has_a_page_that_says_why() {
     assert!(page.contains("There is no corner impact to verify"));
     assert!(page.contains("[study] says where to look for the corner impact"));
     let sections: Vec<&str> = between(&page, "<section id=\"", "\"").into_iter().collect();
-    assert_eq!(sections, ["answer", "model", "speeds", "figures", "reproduce", "numbers"]);
+    assert_eq!(sections, ["answer", "loads", "model", "speeds", "figures", "reproduce", "numbers"]);
     all_are_explained(&page);
     for said in ["Separation.", "Impacts.", "Coexistence.", "What is proved.", "id=\"plate-overview\""] {
         let at = page.find(said).unwrap_or_else(|| panic!("{said}"));

@@ -55,7 +55,7 @@ pub struct ForceAt {
     pub rpm: f64,
     /// Where it is, and how large.
     pub least: Least,
-    /// How far a measured cam may have moved that, by what is open of its second derivative.
+    /// How far a measured cam may have moved that; none where nothing is open.
     pub error: Option<f64>,
     /// The largest force round the cam.
     pub largest: f64,
@@ -240,12 +240,15 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
         |index: u32| if count == 1 { low } else { low + (high - low) * f64::from(index) / f64::from(count - 1) };
     let speeds: Vec<f64> = (0..count).map(speed).collect();
     let has_force = !matches!(separation, Separation::Kink { .. });
-    let open = likely.as_ref().map(|likely| &likely.measured).filter(|measured| measured.is_noisy);
+    let noisy = likely.as_ref().filter(|likely| likely.best.is_some());
     let force_at = |rpm: &f64| {
-        // m w^2 times what is open of c''
-        let inertia = model.follower.mass * angular_velocity(*rpm).powi(2);
-        let error = open.map(|measured| inertia * measured.curvature_error);
-        ForceAt { rpm: *rpm, least: contact.least(*rpm), error, largest: contact.largest(*rpm) }
+        let least = contact.least(*rpm);
+        let of = |model: &Model, cam: &Cam| Some([Contact::new(cam, model.follower).least(*rpm).value]);
+        let (error, largest) = (noisy.and_then(|likely| likely.error([least.value], of)), contact.largest(*rpm));
+        // On a dwell nothing is open but the rounding.
+        let rounding = tolerance::JET_ROUNDING.value * largest.abs();
+        let error = error.map(|[error]| error).filter(|error| *error > rounding);
+        ForceAt { rpm: *rpm, least, error, largest }
     };
     let forces: Vec<ForceAt> = if has_force { speeds.iter().map(force_at).collect() } else { Vec::new() };
     let round = if count == 1 && has_force { round(&contact, low, MOMENTS) } else { Vec::new() };
@@ -299,7 +302,10 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
                 let pair = |index: u32| -> Result<Pair, StudyError> {
                     let changed = changed.with(against, inside(value(index)));
                     let found = needs::answer(&changed, (need, text), parameter, uncertain)?;
-                    Ok(Pair { given: value(index), found: found.value, error: found.error })
+                    // Of what is not to be too much, none at all will do.
+                    let is_none = found.is_upper_bound && !parameter.is_upper_bound();
+                    let (found, error) = if is_none { (Some(0.0), None) } else { (found.value, found.error) };
+                    Ok(Pair { given: value(index), found, error })
                 };
                 let pairs = (0..count).into_par_iter().map(pair).collect::<Result<_, _>>()?;
                 let (unit, against_unit) = (changed.told(parameter, 0.0).1, against_unit.clone());

@@ -193,10 +193,16 @@ pub struct Answer {
     pub lever: Lever,
     /// What it is, in the unit that is told.
     pub now: f64,
-    /// The least that will do, of a mass the most; none where no value does it.
+    /// The least that will do, or the most; none where no value does it.
     pub value: Option<f64>,
-    /// How far it may be off where the cam is measured.
+    /// How far it may be off: where the cam is measured, and of what is told by runs.
     pub error: Option<f64>,
+    /// Whether that is the most that will do.
+    pub is_upper_bound: bool,
+    /// Where it does no more on the other side: a damper that keeps the follower on the cam's rise throws it off on the return.
+    pub other: Option<f64>,
+    /// How far that may be off.
+    pub other_error: Option<f64>,
     /// The unit.
     pub unit: String,
     /// Why there is no value, or what else there is to say.
@@ -212,7 +218,9 @@ document!(Answer as it {
     value: it.value,
     error if_any: it.error,
     unit: it.unit,
-    is_upper_bound: it.lever.is_upper_bound(),
+    is_upper_bound: it.is_upper_bound,
+    other if_any: it.other,
+    other_error if_any: it.other_error,
     note: it.note,
     known: it.known,
 });
@@ -225,28 +233,59 @@ pub(super) fn answer(
     uncertain: f64,
 ) -> Result<Answer, SimulateError> {
     let known = if need.what == What::NoSeparation { Known::Computed } else { Known::Sampled };
-    let (found, note) = find(of, need, lever)?;
-    let value = found.map(|value| of.told(lever, value).0);
-    let error = match found {
-        // Of what is as little as there can be nothing is open.
-        Some(value) if uncertain > 0.0 && note.is_empty() => {
-            let (certain, _) = find(of, &Need { rpm: need.rpm * (1.0 + uncertain), ..*need }, lever)?;
-            certain.map(|certain| of.told(lever, (certain - value).abs()).0)
+    let found = find(of, need, lever)?;
+    let told = |value: f64| of.told(lever, value).0;
+    // Of what is as little as there can be nothing is open.
+    let certain = match found.value {
+        Some(_) if uncertain > 0.0 && found.note.is_empty() => {
+            Some(find(of, &Need { rpm: need.rpm * (1.0 + uncertain), ..*need }, lever)?)
         }
         _ => None,
     };
+    let error = |of: fn(&Found) -> Option<f64>| {
+        let apart = (of(certain.as_ref()?)? - of(&found)?).abs();
+        // As narrow as runs tell it.
+        let width = if known == Known::Sampled { tolerance::NEEDED_BY_RUNS.value * of(&found)?.abs() } else { 0.0 };
+        Some(told(apart.max(width)))
+    };
     let (now, unit) = of.told(lever, of.value(lever));
-    Ok(Answer { need: text.into(), lever, now, value, error, unit, note, known })
+    Ok(Answer {
+        need: text.into(),
+        lever,
+        now,
+        value: found.value.map(told),
+        error: error(|found| found.value),
+        is_upper_bound: found.is_upper_bound,
+        other: found.other.map(told),
+        other_error: error(|found| found.other),
+        unit,
+        note: found.note,
+        known,
+    })
 }
 
-/// The value of a number, or none, with a sentence.
-pub(super) fn find(of: &Changed<'_>, need: &Need, lever: Lever) -> Result<(Option<f64>, String), SimulateError> {
+/// Where a number begins to do, and where it ceases to on the other side; in the unit inside, with a sentence where there is none.
+#[derive(Default)]
+pub(super) struct Found {
+    pub value: Option<f64>,
+    pub other: Option<f64>,
+    pub is_upper_bound: bool,
+    pub note: String,
+}
+
+/// The range of values that do, if there are any.
+///
+/// The contact force is linear in each of the numbers: what keeps the follower on the cam everywhere and at each speed is one range. Of
+/// loads that is not certain.
+pub(super) fn find(of: &Changed<'_>, need: &Need, lever: Lever) -> Result<Found, SimulateError> {
     /// Doublings and halvings of the number's own size that are tried.
     const DOUBLINGS: i32 = 20;
     const DOUBLINGS_OF_RUNS: i32 = 6;
+    let is_upper_bound = lever.is_upper_bound();
+    let none = |note: String| Found { note, is_upper_bound, ..Found::default() };
     let springs = matches!(lever, Lever::Preload | Lever::Stiffness);
     if springs && of.contact.follower.stiffness == 0.0 {
-        return Ok((None, "there is no spring".into()));
+        return Ok(none("there is no spring".into()));
     }
     let Follower { mass, stiffness, gravity, .. } = of.contact.follower;
     let weight = mass * gravity.abs();
@@ -266,27 +305,71 @@ pub(super) fn find(of: &Changed<'_>, need: &Need, lever: Lever) -> Result<(Optio
     if !matches!(lever, Lever::Mass | Lever::Stiffness) {
         values.insert(0, 0.0);
     }
-    if lever.is_upper_bound() {
+    if is_upper_bound {
         values.reverse();
     }
-    let mut before = None;
-    for value in values {
-        if does(value)? {
-            let unit = of.told(lever, value).1;
-            let Some(fails) = before else {
-                let words = if lever.is_upper_bound() {
-                    format!("as far as {:.3e} {unit} is looked at, any will do", of.told(lever, value).0)
-                } else {
-                    "as little as there can be will do".into()
-                };
-                return Ok((Some(value), words));
-            };
-            let [_, found] = halve([fails, value], Width::Relative(width), does)?;
-            return Ok((Some(found), String::new()));
+    let told = |value: f64| of.told(lever, value);
+    let mut first = None;
+    for (index, value) in values.iter().enumerate() {
+        if does(*value)? {
+            first = Some(index);
+            break;
         }
-        before = Some(value);
     }
-    let (last, unit) = of.told(lever, before.unwrap_or_default());
-    let side = if lever.is_upper_bound() { "above" } else { "below" };
-    Ok((None, format!("no {lever} {side} {last:.1e} {unit} does it, the others kept")))
+    let edge = |fails: f64, does_it: f64| halve([fails, does_it], Width::Relative(width), does).map(|[_, found]| found);
+    let Some(first) = first else {
+        // A narrow range may lie between two of the values.
+        if need.what == What::NoSeparation
+            && let Some([low, best, high]) =
+                best_of(&values, |value| of.with(lever, value).contact.separation().speed())
+            && does(best)?
+        {
+            let (value, other) = (edge(low, best)?, edge(high, best)?);
+            return Ok(Found { value: Some(value), other: Some(other), is_upper_bound, ..Found::default() });
+        }
+        let (last, unit) = told(values.last().copied().unwrap_or_default());
+        let side = if is_upper_bound { "above" } else { "below" };
+        let tried = if need.what == What::NoSeparation { "" } else { ", of those tried," };
+        return Ok(none(format!("no {lever} {side} {last:.1e} {unit}{tried} does it, the others kept")));
+    };
+    let before = first.checked_sub(1).map(|before| edge(values[before], values[first])).transpose()?;
+    let mut beyond = None;
+    for pair in values[first..].windows(2) {
+        if !does(pair[1])? {
+            beyond = Some(edge(pair[1], pair[0])?);
+            break;
+        }
+    }
+    Ok(match (before, beyond) {
+        (None, Some(_)) => Found { value: beyond, is_upper_bound: !is_upper_bound, ..Found::default() },
+        (Some(_), _) => Found { value: before, other: beyond, is_upper_bound, ..Found::default() },
+        (None, None) => {
+            let (value, unit) = told(values[first]);
+            let note = if is_upper_bound {
+                format!("as far as {value:.3e} {unit} is looked at, any will do")
+            } else {
+                "as little as there can be will do".into()
+            };
+            Found { value: Some(values[first]), ..none(note) }
+        }
+    })
+}
+
+/// Between its neighbours the value for which `speed` is largest, where all values for which it is above any bound are one range.
+fn best_of(values: &[f64], speed: impl Fn(f64) -> f64) -> Option<[f64; 3]> {
+    /// Thirds of the range that are left out, one after the other: to the square root of a rounding, which a flat top hides.
+    const THIRDS: usize = 45;
+    let speeds: Vec<f64> = values.iter().map(|value| speed(*value)).collect();
+    let best = (0..values.len()).max_by(|one, two| speeds[*one].total_cmp(&speeds[*two]))?;
+    let [from, to] = [best.saturating_sub(1), (best + 1).min(values.len() - 1)].map(|index| values[index]);
+    let (mut low, mut high) = (from, to);
+    for _ in 0..THIRDS {
+        let third = (high - low) / 3.0;
+        if speed(low + third) < speed(high - third) {
+            low += third;
+        } else {
+            high -= third;
+        }
+    }
+    Some([from, 0.5 * (low + high), to])
 }

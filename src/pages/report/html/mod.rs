@@ -6,6 +6,7 @@
 
 mod answer;
 mod ledger;
+mod loads;
 mod model;
 mod numbers;
 mod plates;
@@ -68,6 +69,7 @@ pub fn render(report: &Report) -> Result<String, HtmlError> {
     let mut sections: Vec<Section> = [
         Some(answer::section(report)?),
         slider::section(report)?,
+        loads::section(report)?,
         verdict::section(report),
         Some(model::section(report)?),
         titled("corner-impact", "Where the corner impact is", verify::orbit),
