@@ -33,7 +33,7 @@
 //!    ▼
 //!  show                  blocks on a terminal, in a browser and as Markdown; JSON, CSV; words and digits, each written once
 //!    ▼
-//!  figures               one file per figure: its numbers, plot, title and caption
+//!  figures               a file for each figure, or for a family: numbers, plot, title and caption
 //!    ▼
 //!  report                everything about one model in one value
 //!    ▼

@@ -9,7 +9,7 @@ use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::diagram::Speeds;
 use crate::figures::design_figure;
 use crate::study::design::loads::Load;
-use crate::study::design::needs::{Lever, Need};
+use crate::study::design::needs::{Lever, Need, in_si};
 use crate::study::design::{Asked, design};
 
 /// Tells up to which speed the follower stays on the cam, how hard it hits beyond, and what must be changed.
@@ -35,10 +35,10 @@ pub(super) struct Arguments {
     /// be repeated).
     #[arg(long, value_name = "TEXT", value_parser = need)]
     need: Vec<(String, Need)>,
-    /// Tell where a load is first more than this, in the units of the model: impact-speed=0.5; also gap, energy and force (may
+    /// Tell where a load is first more than this, in the units of the model or one that is named: impact-speed=0.5m/s; also gap, energy and force (may
     /// be repeated).
     #[arg(long, value_name = "NAME=VALUE", value_parser = limit)]
-    limit: Vec<(Load, f64)>,
+    limit: Vec<(Load, f64, Option<f64>)>,
     /// What is needed against one of preload, stiffness, damping and mass, in the units of the model.
     #[arg(long, value_name = "NAME=LO:HI:N", value_parser = against, requires = "need", allow_hyphen_values = true)]
     against: Option<(Lever, Speeds)>,
@@ -56,9 +56,14 @@ fn need(text: &str) -> Result<(String, Need), String> {
     Ok((text.into(), text.parse()?))
 }
 
-fn limit(text: &str) -> Result<(Load, f64), String> {
+/// A load, what it may be at most, and what the unit is of the SI's where one is named.
+fn limit(text: &str) -> Result<(Load, f64, Option<f64>), String> {
     let (name, value) = text.split_once('=').ok_or("must be NAME=VALUE: a load, and what it may be at most")?;
-    Ok((load(name.trim())?, positive(value)?))
+    let load = load(name.trim())?;
+    let number = value.trim_end_matches(|letter: char| letter.is_ascii_alphabetic() || letter == '/');
+    let unit = Some(value[number.len()..].trim()).filter(|unit| !unit.is_empty() && !number.trim().is_empty());
+    let number = if unit.is_some() { number } else { value };
+    Ok((load, positive(number.trim())?, unit.map(|unit| in_si(load, unit)).transpose()?))
 }
 
 fn against(text: &str) -> Result<(Lever, Speeds), String> {
@@ -76,7 +81,11 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         rpm: arguments.rpm,
         speeds: arguments.speeds,
         needs: arguments.need.clone(),
-        limits: arguments.limit.clone(),
+        limits: arguments
+            .limit
+            .iter()
+            .map(|(load, value, one)| (*load, one.map_or(*value, |one| load.of_si(&model.units, value * one))))
+            .collect(),
         against: arguments
             .against
             .as_ref()

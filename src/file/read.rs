@@ -11,31 +11,37 @@ const LONGEST_LINE: usize = 1 << 20;
 
 /// The text of a file; no more than the limit is read, whatever it is.
 pub(crate) fn text(path: &Path) -> io::Result<String> {
-    let text = String::from_utf8(bytes(path)?);
-    limited(text.map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "it is no text in UTF-8"))?)
+    lines(String::from_utf8(bytes(path)?).map_err(|_| no_text("UTF-8"))?)
 }
 
 /// The same of a file that an older program may have written: what is no UTF-8 is Latin-1, in which a degree sign is one byte.
 pub(crate) fn text_of_any_age(path: &Path) -> io::Result<String> {
-    let text = String::from_utf8(bytes(path)?);
-    limited(text.unwrap_or_else(|error| error.into_bytes().into_iter().map(char::from).collect()))
+    let bytes = bytes(path)?;
+    // As UTF-16 and files that are no text have.
+    if bytes.contains(&0) {
+        return Err(no_text("UTF-8 or Latin-1"));
+    }
+    lines(String::from_utf8(bytes).unwrap_or_else(|error| error.into_bytes().into_iter().map(char::from).collect()))
+}
+
+fn no_text(code: &str) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, format!("it is no text in {code}"))
+}
+
+fn too_long(what: &str, most: usize) -> io::Error {
+    let words = format!("{what} is longer than {} MiB, the most that is read", most >> 20);
+    io::Error::new(io::ErrorKind::FileTooLarge, words)
 }
 
 fn bytes(path: &Path) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     File::open(path)?.take(LONGEST as u64 + 1).read_to_end(&mut bytes)?;
-    Ok(bytes)
+    if bytes.len() > LONGEST { Err(too_long("it", LONGEST)) } else { Ok(bytes) }
 }
 
-fn limited(text: String) -> io::Result<String> {
-    let refused = |words: String| Err(io::Error::new(io::ErrorKind::FileTooLarge, words));
-    if text.len() > LONGEST {
-        return refused(format!("it is longer than {} MiB, the most that is read", LONGEST >> 20));
-    }
+fn lines(text: String) -> io::Result<String> {
     match text.split('\n').position(|line| line.len() > LONGEST_LINE) {
-        Some(index) => {
-            refused(format!("line {} is longer than {} MiB, the most that is read", index + 1, LONGEST_LINE >> 20))
-        }
+        Some(index) => Err(too_long(&format!("line {}", index + 1), LONGEST_LINE)),
         None => Ok(text),
     }
 }

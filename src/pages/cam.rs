@@ -47,7 +47,7 @@ pub(crate) fn lift(sheet: &CamSheet) -> Words {
 }
 
 /// How the table was understood, how well the cam is known, and what a smoothing spline has.
-fn measured(measured: &Measured) -> Vec<Block> {
+pub(crate) fn measured(measured: &Measured) -> Vec<Block> {
     let told =
         |length: f64| words![(measured.reading.in_model.told(length), Digits::Aligned(2)), " ", &measured.reading.unit];
     let mut blocks = vec![Block::paragraph(format!("table: {}", words::reading(&measured.reading)))];

@@ -152,7 +152,7 @@ fn the_document_has_the_fields_of_the_contract() {
     // A limit is passed first where it is, between two speeds of the table; by runs, and by the force on the cam.
     for (limit, speeds, list, field, most) in [
         ("gap=0.001", "100:250", "loads", "gap_m", 0.001),
-        ("impact-speed=2", "100:250", "loads", "impact_speed_m_s", 2.0),
+        ("impact-speed=2000 mm/s", "100:250", "loads", "impact_speed_m_s", 2.0),
         ("force=400", "50:110", "contact_force", "largest_n", 400.0),
     ] {
         let at = |rpm: f64| {

@@ -434,6 +434,7 @@ fn a_new_measured_machine() {
     let report = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
     for says in [
         "id=\"loads\"",
+        "table: 180 rows, angles in deg and lifts in mm",
         ">impact speed (mm/s)<",
         "± is what the cam leaves open, lift rounded to 0.001 mm",
         "design valve.toml --rpm 2700:3500 --out loads.svg",

@@ -383,7 +383,7 @@ impl Wanted {
         let there = match (here.parts.iter().find(alike), *motion) {
             (Some(part), _) => Some(part.motion),
             (None, Some(before)) => here.come_to(machine, &before)?.filter(goes_on).map(|part| part.motion),
-            (None, None) => None,
+            (None, None) => here.parts.iter().find(|part| goes_on(part)).map(|part| part.motion),
         };
         *motion = there.or(*motion);
         Ok(there.is_some())

@@ -35,6 +35,14 @@ impl Load {
         if self == Self::Force { units.force.inside(value) } else { value }
     }
 
+    /// A value of the SI in the unit that it is told in; of a force as it is.
+    pub fn of_si(self, units: &Units, value: f64) -> f64 {
+        match self {
+            Self::ImpactSpeed | Self::Gap => units.length.told(value),
+            Self::Energy | Self::Force => value,
+        }
+    }
+
     /// The unit that it is told in.
     pub fn unit(self, units: &Units) -> String {
         match self {

@@ -64,17 +64,23 @@ impl FromStr for Need {
                 if load == Load::Force {
                     return Err("a force is no need: what keeps the follower on the cam presses harder; --limit tells where it is".into());
                 }
-                let of_load = || UNITS.iter().filter(|(of, ..)| *of == load);
-                let Some((_, _, one)) = of_load().find(|(_, name, _)| name == unit) else {
-                    let names: Vec<&str> = of_load().map(|(_, name, _)| *name).collect();
-                    let unit = foreign::value(unit);
-                    return Err(format!("\"{unit}\": {} is in one of: {}", name.replace('-', " "), names.join(", ")));
-                };
-                Ok(Self { what: What::Below(load, number(value)? * one), rpm: number(rpm)? })
+                Ok(Self { what: What::Below(load, number(value)? * in_si(load, unit)?), rpm: number(rpm)? })
             }
             _ => Err(like.into()),
         }
     }
+}
+
+/// What a unit of a load is of the SI's.
+pub fn in_si(load: Load, unit: &str) -> Result<f64, String> {
+    let of_load = || UNITS.iter().filter(|(of, ..)| *of == load);
+    let found = of_load().find(|(_, name, _)| *name == unit).map(|(_, _, one)| *one);
+    found.ok_or_else(|| {
+        let names: Vec<&str> = of_load().map(|(_, name, _)| *name).collect();
+        let (unit, name) = (foreign::value(unit), load.to_string().replace('-', " "));
+        let names = if names.is_empty() { "the model's unit, which is not named".into() } else { names.join(", ") };
+        format!("\"{unit}\": {name} is in one of: {names}")
+    })
 }
 
 /// A number that an engineer can change.
@@ -164,11 +170,7 @@ impl<'a> Changed<'a> {
             return Ok(true);
         }
         let What::Below(load, limit) = need.what else { return Ok(false) };
-        let units = &self.model.units;
-        let limit = match load {
-            Load::ImpactSpeed | Load::Gap => units.length.told(limit),
-            Load::Energy | Load::Force => limit,
-        };
+        let limit = load.of_si(&self.model.units, limit);
         let mut model = self.model.clone();
         model.follower = self.contact.follower;
         let speed = |index: u32| stays + (need.rpm - stays) * f64::from(index) / f64::from(SPEEDS);

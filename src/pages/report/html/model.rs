@@ -24,8 +24,9 @@ pub(crate) fn section(report: &Report) -> Result<Section, HtmlError> {
         count if count > LONG => Block::Details(words![count, " numbers of the model"], vec![numbers]),
         _ => numbers,
     });
-    let cam =
-        [vec![Block::paragraph(words!["The cam: ", cam::lift(&sheet.cam), "."])], cam::parts(&sheet.cam)].concat();
+    let mut cam = vec![Block::paragraph(words!["The cam: ", cam::lift(&sheet.cam), "."])];
+    cam.extend(sheet.cam.measured.iter().flat_map(cam::measured));
+    cam.extend(cam::parts(&sheet.cam));
     blocks.push(Block::About("lift".into(), cam));
     if let Some(plate) = report.plates.iter().find(|plate| plate.id == plates::CAM) {
         blocks.push(plates::plate(plate, report)?);
