@@ -422,7 +422,8 @@ fn a_new_measured_machine() {
         std::fs::write(folder.path().join("loose.toml"), loose).unwrap();
         let output = crate::common::program(["cam", "loose.toml"]).current_dir(folder.path()).output().unwrap();
         let notes = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(notes.contains("0.50 mm is far more than the rows spread by, some 0.00"), is_loose, "{notes}");
+        assert_eq!(notes.contains("mm is far more than the rows spread by, some 0.00"), is_loose, "{notes}");
+        assert_eq!(notes.contains("cam.tolerance: 0.50 mm"), is_loose, "{notes}");
     }
     let page = run(&["design", "valve.toml", "--speeds", "3"]);
     assert!(page.contains(" ± ") && page.contains(" rpm: lift rounded to 0.001 mm."), "{page}");
