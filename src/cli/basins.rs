@@ -75,7 +75,7 @@ fn cells(text: &str) -> Result<[usize; 2], String> {
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let to_standard = picture::out_is_standard(arguments.out.as_ref(), arguments.summary)?;
-    let model = arguments.model.read(session)?;
+    let model = arguments.model.read_as_drawn(session)?;
     let section = Section::new(&model, arguments.rpm, within_a_turn(arguments.strobe))?;
     let grid = section.grid(arguments.grid, arguments.position, arguments.velocity)?;
     let patience = Patience { revolutions: arguments.revolutions, longest: arguments.longest };

@@ -41,7 +41,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
-    let model = arguments.model.read(session)?;
+    let model = arguments.model.read_as_drawn(session)?;
     if let (true, Some([low, high])) = (arguments.orbits, arguments.rpm) {
         if low < high {
             let found = watched("proving orbits", |_| proved_counts(&model, [low, high], arguments.bits))?;

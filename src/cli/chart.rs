@@ -124,7 +124,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         return Ok(Exit::Agrees);
     }
     let to_standard = picture::out_is_standard(arguments.out.as_ref(), arguments.summary)?;
-    let model = arguments.model.read(session)?;
+    let model = arguments.model.read_as_drawn(session)?;
     let named = |(name, values): &(String, Speeds)| -> Result<Axis, CommandError> {
         Ok(Axis::even(Parameter::named(&model, name)?, values))
     };

@@ -61,7 +61,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
-    let model = arguments.model.read(session)?;
+    let model = arguments.model.read_as_drawn(session)?;
     let corners = corner_marks(&Cam::new(&model)?);
     let (name, range) = &arguments.parameter;
     let following = Following {

@@ -62,7 +62,7 @@ pub(super) const LONGEST_STEP: f64 = 0.02;
 pub(super) const MOST_POINTS: usize = 2000;
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
-    let model = arguments.model.read(session)?;
+    let model = arguments.model.read_as_drawn(session)?;
     let (name, range) = &arguments.parameter;
     let parameter = Parameter::named(&model, name)?;
     let target = Target::create(&arguments.out, &mut *session.out, arguments.picture.look()?)?;

@@ -96,7 +96,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     if arguments.strobe.is_some() && matches!(arguments.section, SectionName::Impact) {
         return Err(CommandError::Words("--strobe is the angle of --section strobe, which is not there".into()));
     }
-    let model = arguments.model.read(session)?;
+    let model = arguments.model.read_as_drawn(session)?;
     let cam = Cam::new(&model)?;
     let corners = corner_marks(&cam);
     let sweep = Sweep {

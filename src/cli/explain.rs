@@ -39,7 +39,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         session.print(&lines.collect::<String>())?;
         return Ok(Exit::Agrees);
     };
-    let model = arguments.model.read(session)?;
+    let model = arguments.model.read_as_drawn(session)?;
     let needed = links.needs(what, &model)?;
     let verified = needed
         .map(|external| if arguments.no_external { External::LeftOut } else { external })

@@ -66,4 +66,13 @@ impl ModelArgument {
         }
         Ok(model)
     }
+
+    /// The same for a command whose answer is of the cam as it is drawn: of a measured one it says how far that is known.
+    pub(super) fn read_as_drawn(&self, session: &mut Session<'_>) -> Result<Model, CommandError> {
+        let model = self.read(session)?;
+        if let Some(words) = words::as_drawn(&model)? {
+            session.note(&words);
+        }
+        Ok(model)
+    }
 }

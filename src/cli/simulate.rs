@@ -90,7 +90,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
             "--drawn says how much --trace and --phase-plane draw: neither is there".into(),
         ));
     }
-    let model = arguments.model.read(session)?;
+    let model = arguments.model.read_as_drawn(session)?;
     let simulation = Simulation::new(&model, arguments.rpm, arguments.start.start())?;
     let (machine, first) = (&simulation.machine, &simulation.first);
     let shown = trace.is_some() || phase_plane.is_some();

@@ -40,6 +40,12 @@ impl TableProfile {
         self.rows.len() >= FEWEST_SMOOTHED
     }
 
+    /// From its lowest lift to its highest.
+    pub(crate) fn rise(&self) -> f64 {
+        let lifts = self.rows.iter().map(|row| row.lift);
+        lifts.clone().fold(f64::NEG_INFINITY, f64::max) - lifts.fold(f64::INFINITY, f64::min)
+    }
+
     /// The field that says where its rows are.
     pub fn place(&self) -> &'static str {
         if self.file.is_some() { "cam.file" } else { "cam.rows" }

@@ -101,7 +101,7 @@ pub(crate) fn speeds(found: &Design) -> Vec<Block> {
         let mut cells = vec![words![(rpm, SIX)]];
         match found.forces.iter().find(|at| at.rpm == rpm) {
             Some(at) => cells.extend([
-                words![(found.force(at.least.value), SIX)],
+                with_open(found.force(at.least.value), at.error.map(|error| found.force(error)), SIX),
                 words![(at.least.angle.to_degrees(), Digits::Fixed(2))],
             ]),
             None => cells.extend([Words::default(), Words::default()]),

@@ -1,11 +1,13 @@
 //! The page of `orbit`: each periodic orbit, its multipliers, and where it meets the cam.
 
 use crate::known::{Complete, Known};
-use crate::orbit::{Course, PeriodicOrbit, Undecided};
+use crate::measured::Measured;
+
+use crate::orbit::{Course, Eigenvalue, PeriodicOrbit, Undecided};
 use crate::show::block::{Block, Mark, Span, Words, words};
-use crate::show::digits::Digits;
+use crate::show::digits::{Digits, with_error};
 use crate::show::{Paged, words};
-use crate::study::orbit::Orbits;
+use crate::study::orbit::{OrbitError, Orbits};
 
 impl Paged for Orbits {
     fn blocks(&self) -> Vec<Block> {
@@ -16,9 +18,16 @@ impl Paged for Orbits {
         };
         let title = format!("{} at {} rpm: {count} found", self.model, self.speed_rpm);
         let mut page = vec![Block::Line((Mark::Heading, title.as_str()).into())];
-        self.orbits.iter().enumerate().for_each(|(index, orbit)| page.extend(one(index + 1, orbit)));
+        for (index, orbit) in self.orbits.iter().enumerate() {
+            let error = self.errors.get(index).copied().flatten();
+            page.extend(one(index + 1, orbit, error.as_ref()));
+            page.extend(self.measured.as_ref().map(|cam| left_open(cam, error.as_ref())));
+        }
         page.extend(self.complete.iter().map(complete));
         page.extend(self.undecided.iter().map(undecided));
+        if self.measured.is_some() && !self.complete.is_empty() {
+            page.push(Block::paragraph("What is proved is proved of the cam as it is drawn through the rows."));
+        }
         page
     }
 }
@@ -38,7 +47,44 @@ fn undecided(at: &Undecided) -> Block {
     Block::paragraph(format!("Not decided: impacts at {} deg.", angles.collect::<Vec<_>>().join(" and ")))
 }
 
-fn one(number: usize, orbit: &PeriodicOrbit) -> Vec<Block> {
+/// How far an orbit's numbers may be off, and why.
+fn left_open(cam: &Measured, error: Option<&OrbitError>) -> Block {
+    let why = words::accuracy(cam);
+    let Some(error) = error else {
+        return Block::paragraph(format!(
+            "How far that is off is not known: cams that are as likely have no such orbit nearby ({why})."
+        ));
+    };
+    let of = |error: f64| Digits::Aligned(2).text(error);
+    let [position, velocity] = error.state.map(of);
+    let mut text = words![
+        format!("± {} of a multiplier, {position} ", of(error.multiplier)),
+        Span::Unit("m"),
+        format!(" and {velocity} "),
+        Span::Unit("m/s"),
+        " at cam angle 0"
+    ];
+    if error.velocity_m_s > 0.0 {
+        let (angle, velocity) = (of(error.cam_angle_rad.to_degrees()), of(error.velocity_m_s));
+        text.push(words![
+            format!(", {angle} deg and {velocity} "),
+            Span::Unit("m/s"),
+            " where it meets the cam or leaves it"
+        ]);
+    }
+    text.push(format!(": {why}."));
+    Block::paragraph(text)
+}
+
+/// So many places, or as many as the cam leaves.
+fn known(places: usize, error: Option<f64>) -> Digits {
+    match error.filter(|error| *error > 0.0).map(|error| with_error(error).0) {
+        Some(Digits::Fixed(left)) => Digits::Fixed(left.min(places)),
+        _ => Digits::Fixed(places),
+    }
+}
+
+fn one(number: usize, orbit: &PeriodicOrbit, error: Option<&OrbitError>) -> Vec<Block> {
     /// Impacts that are shown of an orbit.
     const SHOWN: usize = 8;
     let impacts = orbit.impacts().count();
@@ -48,10 +94,18 @@ fn one(number: usize, orbit: &PeriodicOrbit) -> Vec<Block> {
         Course::Free => "stays clear of the cam".to_owned(),
         Course::Impacts(_) => words::many(impacts as u64, "impact"),
     };
-    let mark = if orbit.is_stable() { Mark::Good } else { Mark::Doubtful };
-    let stable = (mark, words::stability(orbit.is_stable()));
-    let [one, two] = orbit.multipliers().map(|multiplier| Span::Complex([multiplier.re, multiplier.im], TEN));
-    let (q, v) = (Digits::Fixed(12).text(orbit.state.position), Digits::Fixed(9).text(orbit.state.velocity));
+    let largest = orbit.multipliers().map(Eigenvalue::modulus).into_iter().fold(0.0, f64::max);
+    let stable = match orbit.is_stable() {
+        _ if error.is_some_and(|error| (largest - 1.0).abs() <= error.multiplier) => {
+            (Mark::Doubtful, "stable or unstable, which the cam leaves open")
+        }
+        true => (Mark::Good, words::stability(true)),
+        false => (Mark::Doubtful, words::stability(false)),
+    };
+    let ten = known(10, error.map(|error| error.multiplier));
+    let [one, two] = orbit.multipliers().map(|multiplier| Span::Complex([multiplier.re, multiplier.im], ten));
+    let q = known(12, error.map(|error| error.state[0])).text(orbit.state.position);
+    let v = known(9, error.map(|error| error.state[1])).text(orbit.state.velocity);
     let mut lines = vec![
         Block::Gap,
         Block::Line(words![format!("  {number}. {turns}, {what}, "), stable]),
@@ -64,10 +118,11 @@ fn one(number: usize, orbit: &PeriodicOrbit) -> Vec<Block> {
         ]),
     ];
     let mut line = |text: Words| lines.push(Block::Line(text));
-    let six = |value: f64| Digits::Fixed(6).text(value);
+    let of_angle = known(6, error.map(|error| error.cam_angle_rad.to_degrees()));
+    let of_velocity = known(6, error.map(|error| error.velocity_m_s));
     for impact in orbit.impacts().take(SHOWN) {
-        let (angle, turn) = (six(impact.cam_angle.to_degrees()), impact.revolution);
-        let (before, after) = (six(impact.velocity_before), six(impact.velocity_after));
+        let (angle, turn) = (of_angle.text(impact.cam_angle.to_degrees()), impact.revolution);
+        let (before, after) = (of_velocity.text(impact.velocity_before), of_velocity.text(impact.velocity_after));
         let text = format!("     impact at {angle:>11} deg of revolution {turn}   v {before:>14} -> {after} ");
         line(words![text, Span::Unit("m/s")]);
     }
@@ -75,10 +130,8 @@ fn one(number: usize, orbit: &PeriodicOrbit) -> Vec<Block> {
         line(format!("     and {} more", impacts - SHOWN).into());
     }
     for rest in orbit.rests() {
-        let (angle, turn) = (six(rest.cam_angle.to_degrees()), rest.revolution);
+        let (angle, turn) = (of_angle.text(rest.cam_angle.to_degrees()), rest.revolution);
         line(format!("     {:<7} at {angle:>10} deg of revolution {turn}", rest.kind.name()).into());
     }
     lines
 }
-
-const TEN: Digits = Digits::Fixed(10);

@@ -11,8 +11,8 @@ use crate::cam::{self, Side, Stray, spread};
 use crate::corner::map::RouteName;
 use crate::covering::Unproved;
 use crate::covering::prove::Relation;
-use crate::measured::Measured;
-use crate::model::{Reading, Separator, TableProfile, Tolerance};
+use crate::measured::{Likely, Measured};
+use crate::model::{Model, ModelError, Reading, Separator, TableProfile, Tolerance};
 use crate::orbit::branch::{self, Bifurcation};
 use crate::orbit::ending::{Ending, Kind};
 use crate::published::Verdict;
@@ -348,15 +348,41 @@ pub(crate) fn loose(profile: &TableProfile) -> Option<String> {
     })
 }
 
+/// How well the cam is known that an answer without a ± of its own is about; none where the rows have no noise.
+pub(crate) fn as_drawn(model: &Model) -> Result<Option<String>, ModelError> {
+    /// Of more rows it takes longer than many a command does.
+    const MOST_ROWS: usize = 4000;
+    let Some(profile) = model.table().filter(|profile| profile.may_be_smoothed()) else { return Ok(None) };
+    let spread = spread(profile);
+    if spread <= tolerance::NOISE_SEEN.value * profile.rise() {
+        return Ok(None);
+    }
+    let (accuracy, open) = if profile.rows.len() <= MOST_ROWS {
+        let Some(measured) = Likely::of(model)?.map(|likely| likely.measured).filter(|cam| cam.is_noisy) else {
+            return Ok(None);
+        };
+        let percent = Digits::Aligned(2).text(100.0 * measured.curvature_error / measured.largest_curvature);
+        (accuracy(&measured), format!("to {percent} % of its largest value"))
+    } else {
+        (measured_to(&profile.reading, spread), "as far as `cam` tells".into())
+    };
+    Ok(Some(format!(
+        "{accuracy}, which leaves the cam's second derivative open {open}; what follows is of the cam as it is drawn through the rows, \
+         without a ±: `speeds`, `design` and `orbit` tell theirs"
+    )))
+}
+
 /// What a table of lifts is not exact for.
 pub(crate) fn accuracy(measured: &Measured) -> String {
-    let (reading, unit) = (&measured.reading, &measured.reading.unit);
+    let reading = &measured.reading;
     match reading.step.filter(|_| measured.is_rounded()) {
-        Some(step) => format!("lift rounded to {step} {unit}"),
-        None => {
-            format!("lift measured to {} {unit}", Digits::Aligned(2).text(reading.in_model.told(measured.noise_m)))
-        }
+        Some(step) => format!("lift rounded to {step} {}", reading.unit),
+        None => measured_to(reading, measured.noise_m),
     }
+}
+
+fn measured_to(reading: &Reading, noise: f64) -> String {
+    format!("lift measured to {} {}", Digits::Aligned(2).text(reading.in_model.told(noise)), reading.unit)
 }
 
 /// How the rows of a table were understood.

@@ -3,12 +3,15 @@
 use serde::Serialize;
 
 use super::{StudyError, machine};
+use crate::cam::{Cam, apart};
 use crate::flight::State;
 use crate::known::Complete;
+use crate::measured::{Likely, Measured};
 use crate::model::Model;
 use crate::orbit::settle::near;
 use crate::orbit::{PeriodicOrbit, Search, Searched, Undecided, search_all};
 use crate::progress::Watch;
+use crate::simulate::{Event, Machine};
 
 /// The periodic orbits of a model at a speed: the document of `orbit --json`.
 #[derive(Clone, Debug, Serialize)]
@@ -26,6 +29,25 @@ pub struct Orbits {
     pub undecided: Vec<Undecided>,
     /// Those that were found.
     pub orbits: Vec<PeriodicOrbit>,
+    /// How well a measured cam is known, where its rows have noise.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub measured: Option<Measured>,
+    /// What that leaves open of each of the orbits; none of one that too few of the cams have that are as likely.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub errors: Vec<Option<OrbitError>>,
+}
+
+/// How far an orbit's numbers may be off, as far as its cam is known.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct OrbitError {
+    /// Either multiplier, in the complex plane.
+    pub multiplier: f64,
+    /// Position and velocity of the state, m and m/s.
+    pub state: [f64; 2],
+    /// The cam angle of an impact, or of where it begins or ends to stick, rad.
+    pub cam_angle_rad: f64,
+    /// The velocity before or after one of these, m/s.
+    pub velocity_m_s: f64,
 }
 
 /// What is looked for.
@@ -47,6 +69,53 @@ pub fn orbits(model: &Model, speed_rpm: f64, wanted: Wanted, watch: &dyn Watch) 
             Searched { orbits, complete: Vec::new(), undecided: Vec::new() }
         }
     };
+    let likely = if orbits.is_empty() { None } else { Likely::of(model)?.filter(|likely| likely.best.is_some()) };
+    let errors = match &likely {
+        Some(likely) => orbits.iter().map(|orbit| error(likely, &machine, orbit)).collect(),
+        None => Vec::new(),
+    };
+    let measured = likely.map(|likely| likely.measured);
     let (schema, model) = ("corner-impact/orbit/1", model.name.clone());
-    Ok(Orbits { schema, model, speed_rpm, section_angle_rad: 0.0, complete, undecided, orbits })
+    Ok(Orbits { schema, model, speed_rpm, section_angle_rad: 0.0, complete, undecided, orbits, measured, errors })
+}
+
+/// How far an orbit of `machine` may be off: by where the same orbit is on the cams that are as likely.
+fn error(likely: &Likely, machine: &Machine, orbit: &PeriodicOrbit) -> Option<OrbitError> {
+    /// Multipliers and the state.
+    const OF_ORBIT: usize = 6;
+    /// An angle and the velocities before and after.
+    const OF_EVENT: usize = 3;
+    /// Impacts that are compared: of those that lead to a rest, the last are lost in rounding.
+    const IMPACTS: usize = 64;
+    let events: Vec<&Event> = orbit.impacts().take(IMPACTS).chain(orbit.rests()).collect();
+    let numbers = |found: &PeriodicOrbit| -> Option<Vec<f64>> {
+        let [one, two] = found.multipliers();
+        let of_orbit = [one.re, one.im, two.re, two.im, found.state.position, found.state.velocity];
+        let there: Vec<&Event> = found.impacts().take(IMPACTS).chain(found.rests()).collect();
+        let is_alike = there.len() == events.len() && there.iter().zip(&events).all(|(one, two)| one.kind == two.kind);
+        // An angle is told from where it is in the orbit: on another cam it may be on the other side of angle 0.
+        let of_event = |(there, here): (&&Event, &&Event)| {
+            [apart(there.cam_angle, here.cam_angle), there.velocity_before, there.velocity_after]
+        };
+        is_alike.then(|| of_orbit.into_iter().chain(there.iter().zip(&events).flat_map(of_event)).collect())
+    };
+    let there = |model: &Model, cam: &Cam| {
+        let there = Machine::new(cam.clone(), &model.follower, machine.angular_velocity());
+        // What touches the one cam may be within the other.
+        let state = State { position: orbit.state.position.max(cam.lift(0.0).value), ..orbit.state };
+        let found = near(&there, 0.0, state, orbit.revolutions).ok()??;
+        numbers(&found).filter(|_| found.revolutions == orbit.revolutions)
+    };
+    let errors = likely.errors(&numbers(orbit)?, there)?;
+    let (of_orbit, of_events) = errors.split_at(OF_ORBIT);
+    let most = |of: &[usize]| {
+        let of_one = |one: &[f64]| of.iter().map(|index| one[*index]).fold(0.0, f64::max);
+        of_events.chunks(OF_EVENT).map(of_one).fold(0.0, f64::max)
+    };
+    Some(OrbitError {
+        multiplier: of_orbit[0].hypot(of_orbit[1]).max(of_orbit[2].hypot(of_orbit[3])),
+        state: [of_orbit[4], of_orbit[5]],
+        cam_angle_rad: most(&[0]),
+        velocity_m_s: most(&[1, 2]),
+    })
 }

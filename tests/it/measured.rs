@@ -5,11 +5,13 @@ use corner_impact::cam::{Cam, Law, Side};
 use corner_impact::figures::corner_marks;
 use corner_impact::measured::Likely;
 use corner_impact::model::{Model, Study};
+use corner_impact::orbit::{PeriodicOrbit, Search};
 use corner_impact::progress::Unwatched;
 use corner_impact::study::attractors::{Cause, Change, Resolution, Step, detachment_near};
 use corner_impact::study::design::contact::Separation;
 use corner_impact::study::design::{Asked, design};
 use corner_impact::study::locate::locate;
+use corner_impact::study::orbit::{Wanted, orbits};
 use corner_impact::study::speeds::{Speeds, speeds};
 use corner_impact::study::verify::{External, verify};
 use serde_json::{Value, json};
@@ -397,6 +399,109 @@ fn a_measured_corner_impact() {
     }
 }
 
+/// Orbits of a rounded cam: those of the exact one are within what is said, of multipliers, states and impacts, where a spline goes
+/// through the rows and where it goes near them; an exact cam has no ±.
+#[test]
+fn orbits_of_a_measured_cam_are_known_to_within_what_is_said() {
+    let truth = machine(program("cycloidal", 74.0201, 13.71, 0.0)).unwrap();
+    let cam = Cam::new(&truth).unwrap();
+    let mut compared = 0;
+    for rpm in [3500.0, 8000.0, 12000.0] {
+        let find =
+            |model: &Model| orbits(model, rpm, Wanted::All(Search { revolutions: 1, impacts: None }), &Unwatched);
+        let exact = find(&truth).unwrap();
+        assert!(exact.measured.is_none() && exact.errors.is_empty());
+        for spline in ["smoothing", "quintic"] {
+            let mut rows = smoothing(&rounded(&cam, 4), &json!({}));
+            rows["spline"] = json!(spline);
+            let found = find(&machine(rows).unwrap()).unwrap();
+            assert_eq!(found.errors.len(), found.orbits.len());
+            for (orbit, error) in found.orbits.iter().zip(&found.errors) {
+                let Some(error) = error else { continue };
+                let angles = |orbit: &PeriodicOrbit| orbit.impacts().map(|event| event.cam_angle).collect::<Vec<_>>();
+                let here = angles(orbit);
+                let near = |other: &&PeriodicOrbit| {
+                    let there = angles(other);
+                    there.len() == here.len() && there.iter().zip(&here).all(|(one, two)| (one - two).abs() < 0.05)
+                };
+                let other = exact.orbits.iter().find(near).unwrap_or_else(|| panic!("{spline} at {rpm}: {orbit:?}"));
+                compared += 1;
+                let within = |one: f64, two: f64, error: f64, most: f64| {
+                    let off = (one - two).abs();
+                    assert!(off <= error + 1e-9 && error <= most, "{spline} at {rpm} rpm: {one} is {two} ± {error}");
+                };
+                for (one, two) in other.multipliers().into_iter().zip(orbit.multipliers()) {
+                    within(one.re, two.re, error.multiplier, 0.3);
+                    within(one.im, two.im, error.multiplier, 0.3);
+                }
+                within(other.state.position, orbit.state.position, error.state[0], 0.5);
+                within(other.state.velocity, orbit.state.velocity, error.state[1], 300.0);
+                for (one, two) in other.impacts().zip(orbit.impacts()) {
+                    within(one.cam_angle, two.cam_angle, error.cam_angle_rad, 0.02);
+                    within(one.velocity_before, two.velocity_before, error.velocity_m_s, 300.0);
+                    within(one.velocity_after, two.velocity_after, error.velocity_m_s, 300.0);
+                }
+            }
+        }
+    }
+    assert!(compared >= 6, "{compared}");
+}
+
+/// Commands whose numbers have no ± of their own say how well the cam is known that they are about, once, on standard error; those
+/// whose numbers have one do not, and of exact rows none does.
+#[test]
+fn an_answer_without_an_error_says_how_well_its_cam_is_known() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |line: &str| {
+        let output = crate::common::program(line.split(' ')).current_dir(folder.path()).output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{line}: {}", String::from_utf8_lossy(&output.stderr));
+        output
+    };
+    let notes = |line: &str| String::from_utf8(run(line).stderr).unwrap();
+    run("new valve.toml --law table");
+    let rounded =
+        "note: lift rounded to 0.001 mm, which leaves the cam's second derivative open to 1.6 % of its largest value; ";
+    for (command, is_without) in [
+        ("simulate valve.toml --rpm 3000 --revolutions 2", true),
+        ("diagram valve.toml --rpm 3000:3100:100 --transient 0 --record 1", true),
+        ("basins valve.toml --rpm 3000 --grid 2x2 --revolutions 2", true),
+        ("continue valve.toml --from-rpm 8000 --parameter rpm=7990:8010", true),
+        ("chaos valve.toml --rpm 3000", true),
+        ("chart valve.toml --x rpm=3000:3100:2 --y restitution=0.2:0.3:2", true),
+        ("curve valve.toml --rpm 2900:2950 --parameter restitution=0.2:0.3 --event detachment --step 0.5", true),
+        ("cam valve.toml", false),
+        ("design valve.toml --rpm 2500 --speeds 2", false),
+        ("orbit valve.toml --rpm 3300", false),
+    ] {
+        let told = notes(command);
+        assert_eq!(told.matches(rounded).count(), usize::from(is_without), "{command}: {told}");
+    }
+    let page = crate::common::text(run("orbit valve.toml --rpm 8000").stdout);
+    let ends = page.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(ends.contains("± 0.0") && ends.contains("of a multiplier") && ends.contains("lift rounded to 0.001 mm."));
+    assert!(page.contains("     multipliers   1.777   0.003"), "{page}");
+    // The same cam with all digits, and with more rows than are looked at in a blink.
+    let (model, rows) = (folder.path().join("valve.toml"), folder.path().join("valve.csv"));
+    let text = std::fs::read_to_string(&model).unwrap();
+    let quintic = text.replace("\"smoothing\"", "\"quintic\"").replace("tolerance = \"auto\"", "");
+    std::fs::write(&model, quintic).unwrap();
+    let lift = |angle: f64| 5.0 * (1.0 - angle.cos()) + 0.3 * (1.0 - (2.0 * angle).cos());
+    for (count, digits, says) in
+        [(360, 17, None), (360, 4, Some("lift rounded to 0.0001 mm")), (5000, 3, Some("as far as `cam` tells"))]
+    {
+        let row = |index: u32| {
+            let angle = 360.0 * f64::from(index) / f64::from(count);
+            format!("{angle},{:.digits$}\n", lift(angle.to_radians()))
+        };
+        std::fs::write(&rows, format!("angle [deg],lift [mm]\n{}", (0..count).map(row).collect::<String>())).unwrap();
+        let told = notes("simulate valve.toml --rpm 3000 --revolutions 2");
+        match says {
+            Some(says) => assert!(told.contains(says) && told.contains("second derivative open"), "{told}"),
+            None => assert!(!told.contains("second derivative"), "{told}"),
+        }
+    }
+}
+
 /// The measured machine that `new` writes: what is told of its cam, and ± on what depends on it.
 #[test]
 fn a_new_measured_machine() {
@@ -546,9 +651,12 @@ fn a_slip_is_told_with_its_line() {
     assert!(told[0].starts_with("note: valve.csv, line 60: lift 6.514 at 114 deg is 3.0 mm below what"), "{told:?}");
     assert!(told[2].starts_with("note: valve.csv, line 120: lift 0.05 at 234 deg is 0.05"), "{told:?}");
     assert_eq!(told[3], "note: 2 more rows are off as well: `cam --json` lists them");
-    assert_eq!(
-        told,
-        lines(&crate::common::text(run(&["simulate", "valve.toml", "--rpm", "100", "--revolutions", "1"]).stderr))
+    let of_run =
+        lines(&crate::common::text(run(&["simulate", "valve.toml", "--rpm", "100", "--revolutions", "1"]).stderr));
+    assert_eq!(told, of_run[..4]);
+    assert!(
+        of_run[4].contains("which leaves the cam's second derivative open to 9") && of_run.len() == 5,
+        "{of_run:?}"
     );
     let sheet: Value = serde_json::from_slice(&run(&["cam", "valve.toml", "--json"]).stdout).unwrap();
     let strays = sheet["measured"]["strays"].as_array().unwrap();
