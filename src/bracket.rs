@@ -42,6 +42,10 @@ pub fn halve<E>(
             return Ok([from, to]);
         }
         let middle = 0.5 * (from + to);
+        // Toward 0 the relative width stays as it is until there is no number in between.
+        if middle == from || middle == to {
+            return Ok([from, to]);
+        }
         if is_beyond(middle)? {
             to = middle;
         } else {

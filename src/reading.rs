@@ -66,9 +66,9 @@ impl Model {
         /// m: of a cam that somebody turns.
         const LARGEST_RISE: f64 = 5.0;
         /// Weights that a spring presses with.
-        const MOST_WEIGHTS: f64 = 5000.0;
+        const MOST_WEIGHTS: f64 = 2000.0;
         /// The cam's speed over the frequency of follower and spring, and a spring's compression over the rise.
-        const MOST_TIMES: f64 = 20.0;
+        const MOST_TIMES: f64 = 15.0;
         const MOST_RISES: f64 = 100.0;
         /// m/s^2, of weights, also where the model has no gravity.
         const GRAVITY: f64 = 9.81;

@@ -171,7 +171,9 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
             };
             let over = ground.map(events).transpose()?.map(|found| found.curves).unwrap_or_default();
             let table = || csv::chart(&found);
-            target.fill(&model.units, table, || Ok(chart_figure(&found, arguments.show.coloured(), &over)))?;
+            target.fill(&model.units, table, || {
+                Ok(chart_figure(&found, arguments.show.coloured(), &over, &model.units))
+            })?;
             found
         }
     };

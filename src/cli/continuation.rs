@@ -6,7 +6,7 @@ use super::picture::{PictureArguments, Target, picture_or_table};
 use super::start::{parameter, positive, rpm};
 use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::cam::Cam;
-use crate::figures::{branches_figure, corner_marks};
+use crate::figures::{branches_figure, corner_marks, unit_of};
 use crate::orbit::branch::Following;
 use crate::orbit::{Parameter, Search};
 use crate::pages;
@@ -81,7 +81,13 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let table = || csv::branches(name, &found.branches);
     target.fill(&model.units, table, || {
         let settled = watched("", |watch| found.settled(arguments.runs, watch))?;
-        Ok(branches_figure(&found.title(), (name, *range), &found.branches, &settled, &corners))
+        Ok(branches_figure(
+            &found.title(),
+            (name, &unit_of(name, &model.units), *range),
+            &found.branches,
+            &settled,
+            &corners,
+        ))
     })?;
     Ok(Exit::Agrees)
 }

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::model::Changes;
 use super::progress::{Progress, watched};
+use super::start::rpm_range;
 use super::{CommandError, Exit, ModelArgument, Session, picture};
 use crate::figures::{FIGURES, Listed, Plate, Subject, listed};
 use crate::foreign;
@@ -27,6 +28,9 @@ pub(super) struct Arguments {
     words: Vec<String>,
     #[command(flatten)]
     changes: Changes,
+    /// Speeds of the figures that are of no corner impact [default: the machine's own].
+    #[arg(long, value_name = "LO:HI", value_parser = rpm_range, allow_hyphen_values = true)]
+    rpm: Option<[f64; 2]>,
     /// The picture (.svg, .png or .pdf).
     #[arg(long, value_name = "FILE", value_parser = picture::picture, group = "picture")]
     out: Option<PathBuf>,
@@ -68,11 +72,11 @@ fn named(words: &[String]) -> Result<(Option<&str>, Option<&str>), CommandError>
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let (file, id) = named(&arguments.words)?;
-    let model = ModelArgument::of(file.map(Path::new), &arguments.changes).read(session)?;
+    let model = ModelArgument::of(file.map(Path::new), &arguments.changes).read_as_drawn(session)?;
     if id.is_none() && arguments.out.is_some() {
         return Err(CommandError::Words("--out is for one figure: name it, from the list without --out".into()));
     }
-    let subject = watched("verifying the model", |_| Subject::new(&model))?;
+    let subject = watched("verifying the model", |_| Subject::new(&model, arguments.rpm))?;
     let page = match id {
         None => list(&model, &subject, arguments.json)?,
         Some(id) => {

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::{CommandError, progress::watched, session::Session, start::finite};
+use crate::cam::Cam;
 use crate::model::Model;
 use crate::orbit::Parameter;
 use crate::show::words;
@@ -61,7 +62,11 @@ impl ModelArgument {
         session.units = model.units.clone();
         let strays = model.table().map(words::strays).unwrap_or_default();
         let loose = model.table().and_then(words::loose);
-        for words in model.doubt(session.rpm)?.iter().chain(&strays).chain(&loose) {
+        let contradicted = match model.table() {
+            Some(table) => words::contradicted(table, &Cam::new(&model)?),
+            None => None,
+        };
+        for words in model.doubt(session.rpm)?.iter().chain(&strays).chain(&loose).chain(&contradicted) {
             session.note(words);
         }
         Ok(model)

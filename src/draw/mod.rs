@@ -152,6 +152,8 @@ impl<P: IntoIterator<Item = [f64; 2]>> Points for P {}
 pub struct Series {
     /// Its name in the legend; empty for none.
     pub label: String,
+    /// What a table calls it where the legend does not name it; empty where it does.
+    pub name: String,
     /// Its colour.
     pub colour: Colour,
     /// Its values.
@@ -160,7 +162,12 @@ pub struct Series {
 
 impl Series {
     pub(crate) fn new(label: &str, colour: Colour, data: Data) -> Self {
-        Self { label: label.into(), colour, data }
+        Self { label: label.into(), name: String::new(), colour, data }
+    }
+
+    /// The same with a name for tables.
+    pub(crate) fn called(self, name: &str) -> Self {
+        Self { name: name.into(), ..self }
     }
 
     pub(crate) fn line(label: &str, colour: Colour, stroke: Stroke, points: impl Points) -> Self {

@@ -24,7 +24,7 @@ pub(crate) const FAST_IMPACTS: Entry = Entry {
         let runs = subject.fast_runs(range, false)?;
         let shown = shown_impacts(&cloud(range, &runs));
         let corners = corner_marks(&subject.cam);
-        let mut figure = branches_figure(title, ("rpm", range), subject.branches()?, &runs, &corners);
+        let mut figure = branches_figure(title, ("rpm", SPEED[1], range), subject.branches()?, &runs, &corners);
         if let Some(panel) = figure.panels.first_mut() {
             panel.y.range = shown.or(panel.y.range);
         }
@@ -71,7 +71,7 @@ fn mark(kind: &Kind) -> usize {
 /// parameter: the parameter across, impact phases in degrees up.
 pub fn branches_figure(
     title: &str,
-    (name, range): (&str, [f64; 2]),
+    (name, unit, range): (&str, &str, [f64; 2]),
     branches: &[Branch],
     settled: &[[f64; 2]],
     corners: &[CornerMark],
@@ -92,7 +92,7 @@ pub fn branches_figure(
         let points = points().filter_map(|point| place(point, which));
         series.extend(Series::points(label, colour, marker, points).if_any());
     }
-    let [label, unit] = if name == "rpm" { SPEED } else { [name, ""] };
+    let label = if name == "rpm" { SPEED[0] } else { name };
     let panel = Panel::new(impact_angles().over(WHOLE_CAM), 0.52, series);
     let panel = Panel { marks: corners.iter().map(CornerMark::mark).collect(), ..panel };
     Figure::new(title, Axis::new(label, unit).over(range), vec![panel])

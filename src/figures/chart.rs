@@ -2,10 +2,11 @@
 
 use serde::Serialize;
 
-use super::curve;
+use super::{curve, unit_of};
 use crate::border_collision::EventCurve;
 use crate::draw::ticks::{Spacing, Tick, Ticks, ticks};
 use crate::draw::{Axis, Colour, Data, Density, Figure, Panel, Series};
+use crate::model::Units;
 use crate::orbit::Parameter;
 use crate::orbit::ending::Kind;
 use crate::show::words;
@@ -131,7 +132,7 @@ fn bands(edges: &[Tick], exponent: i32, coloured: Coloured) -> Vec<Class> {
 }
 
 /// The points of a chart, each in the colour of its class, and curves of events over them; colours of a number go by bands of it.
-pub fn chart_figure(found: &Charted, coloured: Coloured, curves: &[EventCurve]) -> Figure {
+pub fn chart_figure(found: &Charted, coloured: Coloured, curves: &[EventCurve], units: &Units) -> Figure {
     let (x, y) = (&found.chart.x, &found.chart.y);
     let (classes, class_of) = classes(found, coloured);
     let range = |axis: &chart::Axis| {
@@ -168,7 +169,7 @@ pub fn chart_figure(found: &Charted, coloured: Coloured, curves: &[EventCurve]) 
     let series = series.chain(curve::lines(curves, place)).collect();
     let axis = |axis: &chart::Axis, range| match &axis.parameter {
         Parameter::Speed => Axis::new("speed", "rpm").over(range),
-        Parameter::Field(path) => Axis::new(path.rsplit('.').next().unwrap_or(path), "").over(range),
+        Parameter::Field(path) => Axis::new(path.rsplit('.').next().unwrap_or(path), &unit_of(path, units)).over(range),
     };
     let what = match coloured {
         Coloured::Period => "after how many revolutions the motion repeats",

@@ -31,17 +31,17 @@ const MARKED: [(&str, &str, Marker); 3] = [
     ("degenerate-graze", "degenerate graze", Marker::Triangle),
 ];
 
-/// Speed up, the parameter across; its name, its range, and its value in the model, which is marked.
+/// Speed up, the parameter across; its name, its unit, its range, and its value in the model, which is marked.
 pub fn curve_figure(
     title: &str,
-    (name, range, own): (&str, [f64; 2], f64),
+    (name, unit, range, own): (&str, &str, [f64; 2], f64),
     speeds: [f64; 2],
     curves: &[EventCurve],
 ) -> Figure {
     let panel = Panel::new(Axis::new("speed", "rpm").over(speeds), 0.52, lines(curves, |rpm, value| [value, rpm]));
     let is_shown = (range[0]..=range[1]).contains(&own);
     let marks = is_shown.then(|| Mark { at: own, label: format!("the model, {own}") }).into_iter().collect();
-    Figure { marks, ..Figure::new(title, Axis::new(name, "").over(range), vec![panel]) }
+    Figure { marks, ..Figure::new(title, Axis::new(name, unit).over(range), vec![panel]) }
 }
 
 /// A line for each kind of event, and the marks on them; `place` tells where a speed, rpm, and a value of the number are drawn.

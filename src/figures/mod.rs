@@ -25,6 +25,7 @@ mod trace;
 use serde::Serialize;
 
 use crate::draw::{Axis, Colour, Figure, Series, Stroke};
+use crate::model::Units;
 use crate::show::command::command;
 
 pub use basins::basins_figure;
@@ -41,6 +42,7 @@ pub use local_map::{NextToCorner, Ray};
 pub use phase_plane::phase_plane;
 pub use section::Crossings;
 pub use speeds::{impacts_by_speed, speeds_figure};
+pub(crate) use subject::NO_STUDY;
 pub use subject::{Effort, Fast, Shown, Slow, Subject};
 pub use through_corner::through_corner;
 pub use trace::{Run, time_trace, with_force};
@@ -156,13 +158,24 @@ impl Entry {
         let units = &subject.model.units;
         let in_units = |drawn: Drawn| Drawn { figure: drawn.figure.in_units(|unit| units.spelled(unit)), ..drawn };
         let drawn = (self.draw)(subject, &title).map(in_units);
-        let command = command("figure", &subject.model, &format!("{} --out {}.svg", self.id, self.id));
+        let speeds = subject.rpm.map_or(String::new(), |[low, high]| format!(" --rpm {low}:{high}"));
+        let command = command("figure", &subject.model, &format!("{}{speeds} --out {}.svg", self.id, self.id));
         Plate { id: self.id, place: self.place, title, command, drawn }
     }
 }
 
 /// Name and unit of the axis of speeds.
 const SPEED: [&str; 2] = ["cam speed ω", "rpm"];
+
+/// The unit of what changes: of the speed, or of a number of a model.
+pub fn unit_of(name: &str, units: &Units) -> String {
+    let name = name.strip_prefix("follower.").unwrap_or(name);
+    match name {
+        "rpm" => SPEED[1].into(),
+        "rest_position" => units.length.name().into(),
+        _ => units.of_follower(name).map_or(String::new(), |unit| unit.name().into()),
+    }
+}
 
 /// The axis of positions at the section.
 fn position() -> Axis {

@@ -42,18 +42,19 @@ pub fn speeds_figure(found: &Speeds, corners: &[CornerMark], across: f64) -> Fig
         let places =
             attractor.at.iter().flat_map(|at| at.impact_angles.iter().map(|phase| [at.rpm, phase.to_degrees()]));
         if attractor.kind == Kind::Periodic {
-            return Series::points("", colour(index), marker(colour(index)), places).if_any();
+            let points = Series::points("", colour(index), marker(colour(index)), places);
+            return points.called(&attractor.id).if_any();
         }
         let mut points = Density::new(found.rpm, WHOLE_CAM);
         places.for_each(|[rpm, degrees]| points.push(rpm, degrees));
-        Some(Series::new("", colour(index), Data::Density(points)))
+        Some(Series::new("", colour(index), Data::Density(points)).called(&attractor.id))
     }));
     let impacts = Panel::new(impact_angles().over(WHOLE_CAM), 0.42, impacts);
     let impacts = Panel { marks: corners.iter().map(CornerMark::mark).collect(), ..impacts };
     let shares = each().map(|(index, attractor)| {
         let stroke = BARS.iter().find(|(kind, _)| *kind == attractor.kind).map_or(Stroke::Thin, |(_, stroke)| *stroke);
         let points = attractor.at.iter().map(|at| [at.rpm, 100.0 * at.share.value]);
-        Series::line("", colour(index), stroke, points)
+        Series::line("", colour(index), stroke, points).called(&attractor.id)
     });
     let shares = shade(SHARES[1]).into_iter().chain(shares).collect();
     let shares = Panel::new(Axis::new("share of starts", "%").over(SHARES), 0.14, shares);
@@ -70,6 +71,8 @@ pub fn speeds_figure(found: &Speeds, corners: &[CornerMark], across: f64) -> Fig
 pub fn impacts_by_speed(found: &Speeds, corners: &[CornerMark]) -> Figure {
     let mut figure = speeds_figure(found, corners, WIDTH);
     figure.panels.truncate(1);
+    let several = if found.coexistence.is_empty() { "" } else { "; grey: several, each reached by runs" };
+    figure.note = format!("each colour and shape is one motion{several}");
     Figure { title: format!("{}: impacts from {} to {} rpm", found.model, found.rpm[0], found.rpm[1]), ..figure }
 }
 

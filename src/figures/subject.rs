@@ -25,6 +25,8 @@ pub struct Subject {
     pub findings: Result<Verification, String>,
     /// The speeds that are shown.
     pub shown: Shown,
+    /// Those that were chosen, rpm.
+    pub(crate) rpm: Option<[f64; 2]>,
     /// How fine the sweep above detachment is: `Effort::SLOW`.
     pub slow_effort: Effort,
     /// How fine the sweeps around the corner impact are: `Effort::FAST`.
@@ -101,6 +103,11 @@ impl Shown {
         }
     }
 
+    /// Speeds that were chosen: from the lowest to the highest, with traces in the middle and at the end.
+    fn chosen([low, high]: [f64; 2]) -> Slow {
+        Slow { chattering: rounded(0.5 * (low + high)), range: [low, high], interrupted: high }
+    }
+
     /// The speeds in proportion to that of the corner impact.
     fn fast(at: &CornerImpact, falls: bool) -> Fast {
         let (_, fast) = Self::PAPERS;
@@ -113,6 +120,10 @@ impl Shown {
     }
 }
 
+/// Why there is no corner impact where none is looked for.
+pub(crate) const NO_STUDY: &str =
+    "the model file has no [study], which says at which speeds to look for a corner impact";
+
 /// Four digits, as a person would choose a speed.
 fn rounded(rpm: f64) -> f64 {
     let scale = 10_f64.powi(3 - rpm.abs().log10().floor() as i32);
@@ -121,18 +132,24 @@ fn rounded(rpm: f64) -> f64 {
 }
 
 impl Subject {
-    /// A model as it is, verified without programs outside.
-    pub fn new(model: &Model) -> Result<Self, ModelError> {
+    /// A model as it is, verified without programs outside, at speeds of this range, rpm, or of its own.
+    pub fn new(model: &Model, rpm: Option<[f64; 2]>) -> Result<Self, ModelError> {
         let findings = verify(model, External::LeftOut).map_err(|error| error.to_string());
-        Self::with(model, findings)
+        Self::with(model, findings, rpm)
     }
 
     /// A model with what `verify` found for it, or why that found nothing.
-    pub(crate) fn with(model: &Model, findings: Result<Verification, String>) -> Result<Self, ModelError> {
+    pub(crate) fn with(
+        model: &Model,
+        findings: Result<Verification, String>,
+        rpm: Option<[f64; 2]>,
+    ) -> Result<Self, ModelError> {
         let cam = Cam::new(model)?;
         let paper = model.is_the_papers()?;
         let [slowest, fastest] = usual_range(model)?;
-        let slow = if paper {
+        let slow = if let Some(chosen) = rpm {
+            Ok(Shown::chosen(chosen))
+        } else if paper {
             Ok(Shown::PAPERS.0)
         } else {
             match detachment(model, [slowest, fastest]) {
@@ -153,9 +170,7 @@ impl Subject {
                 });
                 Ok(Shown::fast(&found.at, !rises))
             }
-            Err(_) if model.study.is_none() => {
-                Err("the model file has no [study], which says at which speeds to look for a corner impact".into())
-            }
+            Err(_) if model.study.is_none() => Err(NO_STUDY.into()),
             Err(why) => Err(why.clone()),
         };
         // One reason for every figure of the corner impact.
@@ -169,6 +184,7 @@ impl Subject {
             is_paper: paper,
             findings,
             shown: Shown { slow, fast },
+            rpm,
             slow_effort: Effort::SLOW,
             fast_effort: Effort::FAST,
             followed: OnceLock::new(),

@@ -21,7 +21,7 @@ pub(crate) const SLOW_TRACE: Entry = Entry {
         let paper = "The follower leaves the cam at P, comes down, and bounces lower and lower in less and less time until \
                      it stays on the cam: the chattering that the paper describes.";
         let run = subject.settled(subject.shown.slow.clone()?.chattering, SLOW_TURNS)?;
-        let what = if subject.is_paper { paper } else { &format!("{} {SAME_MULTIPLE} first trace.", in_words(&run)) };
+        let what = if subject.is_paper { paper } else { &in_words(&run) };
         drawn(time_trace(title, &run), format!("Follower and cam above, the gap between them below. {what}"))
     },
 };
@@ -40,7 +40,7 @@ pub(crate) const INTERRUPTED_TRACE: Entry = Entry {
              bounces there; before the bounces have died out the flank begins to rise, and the chattering ends on it, shortly \
              before the follower leaves the cam at P."
         } else {
-            &format!("Follower, cam and gap at another slow speed. {} {SAME_MULTIPLE} second trace.", in_words(&run))
+            &format!("Follower, cam and gap at another speed. {}", in_words(&run))
         };
         drawn(time_trace(title, &run), caption)
     },
@@ -81,9 +81,6 @@ pub(crate) const SLOW_TURNS: u64 = 2;
 const FAST_TURNS: u64 = 12;
 /// Revolutions before anything is shown.
 pub(crate) const TRANSIENT: u64 = 300;
-/// Of a speed that is not the paper's.
-const SAME_MULTIPLE: &str =
-    "The speed is the same multiple of the one at which the follower first leaves the cam as in the paper's";
 
 /// A stretch of motion at one speed.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,6 +2,7 @@
 
 use crate::cam::Corner;
 use crate::measured::Measured;
+use crate::pages::source;
 use crate::show::Paged;
 use crate::show::block::{Block, Column, Span, Table, Words, words};
 use crate::show::digits::{Digits, with_error};
@@ -14,7 +15,9 @@ const LONGEST: usize = 40;
 impl Paged for CamSheet {
     fn blocks(&self) -> Vec<Block> {
         let title = Block::Title(words!["Cam of ", &self.model]);
-        let mut blocks = vec![title, Block::paragraph(&self.source), Block::Gap, Block::paragraph(lift(self))];
+        let mut blocks = vec![title];
+        blocks.extend(source(&self.source));
+        blocks.extend([Block::Gap, Block::paragraph(lift(self))]);
         blocks.extend(largest(self));
         blocks.extend(self.measured.iter().flat_map(measured));
         blocks.extend(parts(self));

@@ -1,6 +1,7 @@
 //! The page of `design`: the answer in sentences first, then speeds, limits and what must be changed.
 
 use crate::known::Known;
+use crate::pages::source;
 use crate::pages::speeds::measured_speed;
 use crate::show::Paged;
 use crate::show::block::{Block, Column, Mark, Span, Table, Words, words};
@@ -19,8 +20,9 @@ const SIX: Digits = Digits::Significant(6);
 impl Paged for Design {
     fn blocks(&self) -> Vec<Block> {
         let title = Block::Title(words!["Design of ", &self.model.name]);
-        let mut page =
-            vec![title, Block::paragraph(&self.model.source), Block::Gap, Block::paragraph(separation(self))];
+        let mut page = vec![title];
+        page.extend(source(&self.model.source));
+        page.extend([Block::Gap, Block::paragraph(separation(self))]);
         if let Some(words) = margin(self) {
             page.push(Block::paragraph(words));
         }

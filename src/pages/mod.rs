@@ -1,5 +1,7 @@
 //! The page of each command, laid out from what was found.
 
+use crate::show::block::Block;
+
 mod basins;
 pub(crate) mod branches;
 pub mod cam;
@@ -17,3 +19,8 @@ pub mod report;
 mod simulate;
 mod speeds;
 mod verify;
+
+/// Where a model's numbers come from, where it says so.
+fn source(said: &str) -> Option<Block> {
+    (!said.is_empty()).then(|| Block::paragraph(said))
+}

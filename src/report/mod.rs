@@ -9,7 +9,8 @@ use crate::agreement::by_quantity;
 use crate::cam::{Cam, Jet, Side};
 use crate::draw::layout::WIDTH;
 use crate::figures::{
-    Drawn, Plate, Subject, corner_marks, design_figure, impacts_by_speed, plates, speeds_figure, through_corner,
+    Drawn, NO_STUDY, Plate, Subject, corner_marks, design_figure, impacts_by_speed, plates, speeds_figure,
+    through_corner,
 };
 use crate::measured::{Likely, Measured};
 use crate::model::{Model, ModelError, Units};
@@ -213,7 +214,10 @@ impl Report {
         let part = |from, to| Part { watch, from, to };
         let cam = Cam::new(model)?;
         let is_paper = model.is_the_papers()?;
-        let verification = verify_watched(model, external, &part(0.0, VERIFIED)).map_err(|error| error.to_string());
+        let verification = verify_watched(model, external, &part(0.0, VERIFIED)).map_err(|error| match model.study {
+            Some(_) => error.to_string(),
+            None => NO_STUDY.into(),
+        });
         let claims = match &verification {
             Ok(found) if is_paper => Some(Claims::hold(&Context::new(model, &cam, found)?, &part(VERIFIED, HELD))?),
             _ => None,
@@ -229,7 +233,7 @@ impl Report {
         let loads = design.as_ref().map(|found| loads(model, found, range));
         part(LOADS, THROUGH).at("the orbits on both sides of the corner impact", 0, 1);
         let through = verification.as_ref().map_err(String::clone).and_then(|found| through(model, &cam, found));
-        let subject = Subject::with(model, verification.clone())?;
+        let subject = Subject::with(model, verification.clone(), rpm)?;
         let drawing = part(THROUGH, 1.0);
         let plates = plates(&subject, &mut |done, total| drawing.at("the figures", done as u64, total as u64));
         let agrees = verification.as_ref().map_or(true, |found| found.agrees)

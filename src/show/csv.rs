@@ -285,7 +285,11 @@ pub fn figure(figure: &Figure) -> String {
     for panel in &figure.panels {
         for series in &panel.series {
             let across = [&figure.x, &panel.y].map(|axis| format!("{} ({})", axis.label, axis.unit).replace(" ()", ""));
-            let heads = format!("{},{}", word(&across.join(", ")), word(&series.label));
+            let heads = format!(
+                "{},{}",
+                word(&across.join(", ")),
+                word(if series.label.is_empty() { &series.name } else { &series.label })
+            );
             let mut row = |kind: &str, [x, y]: [f64; 2], count: u16| {
                 let [across, up] = if kind == "line" || kind == "point" { [6, 5] } else { [5, 4] };
                 let [x, y] = [shown(x, across), shown(y, up)];

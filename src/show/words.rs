@@ -7,12 +7,12 @@ use crate::border_collision::conditions::Decides;
 use crate::border_collision::feigin::{Scenario, Speeds};
 use crate::border_collision::long_run::{Chaos, End};
 use crate::border_collision::validity::{Compared, Ends};
-use crate::cam::{self, Side, Stray, spread};
+use crate::cam::{self, Cam, Side, Stray, spread};
 use crate::corner::map::RouteName;
 use crate::covering::Unproved;
 use crate::covering::prove::Relation;
 use crate::measured::{Likely, Measured};
-use crate::model::{Model, ModelError, Reading, Separator, TableProfile, Tolerance};
+use crate::model::{Model, ModelError, Reading, Row, Separator, TableProfile, Tolerance};
 use crate::orbit::branch::{self, Bifurcation};
 use crate::orbit::ending::{Ending, Kind};
 use crate::published::Verdict;
@@ -344,6 +344,30 @@ pub(crate) fn loose(profile: &TableProfile) -> Option<String> {
             told(within),
             told(spread),
             unit = reading.unit
+        )
+    })
+}
+
+/// That corners or dwells that were given keep a smoothing spline away from the rows.
+pub(crate) fn contradicted(profile: &TableProfile, cam: &Cam) -> Option<String> {
+    /// Of the tolerance, or of what the rows spread by: noise keeps within two of these.
+    const FAR: f64 = 10.0;
+    let own = profile.spline.smoothing()?;
+    let given = match (&own.corners_deg, &own.dwells_deg) {
+        (_, Some(dwells)) if !dwells.is_empty() => "cam.dwells_deg",
+        (Some(_), _) => "cam.corners_deg",
+        _ => return None,
+    };
+    let within = if let Tolerance::Within(within) = own.tolerance { within } else { spread(profile) };
+    let off = |row: &Row| (cam.lift(row.angle_deg.to_radians()).value - row.lift).abs();
+    let worst = profile.rows.iter().max_by(|one, two| off(one).total_cmp(&off(two)))?;
+    let (reading, least) = (&profile.reading, tolerance::NOISE_SEEN.value * profile.rise());
+    (off(worst) > FAR * within.max(least)).then(|| {
+        format!(
+            "{given}: the rows are otherwise: at {} deg the cam is {} {} from them",
+            worst.angle_deg,
+            Digits::Aligned(2).text(reading.in_model.told(off(worst))),
+            reading.unit
         )
     })
 }

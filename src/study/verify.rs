@@ -1,13 +1,15 @@
 //! One model through the whole pipeline: locate, every route, every comparison, the classification, the paper's numbers.
 
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
 use std::thread::JoinHandle;
 
 use nalgebra::{Matrix2, Vector2};
 use serde::Serialize;
 
 use crate::agreement::{Agreement, NamedOrbit, Quantity, compare_orbits, fewest_shared_decimals};
-use crate::border_collision::feigin::Speeds;
+use crate::border_collision::feigin::{Scenario, Speeds};
 use crate::border_collision::validity::{self, Range};
 use crate::border_collision::{
     Classification, Condition, Degenerate, LocalMap, LocalOutcome, NormalForm, Refusal, RoundedCorner, conditions,
@@ -110,14 +112,24 @@ pub struct LeftOpen {
     pub cam: Measured,
     /// How far speed, rpm, and each entry of the map may be off; none where too few of the cams that are as likely have the corner impact.
     pub error: Option<(f64, CornerMap)>,
+    /// How many of the cams that are as likely come to each verdict, or to none; those without the corner impact are left out.
+    pub verdicts: Vec<(Option<Scenario>, usize)>,
 }
 
 document!(LeftOpen as it {
     speed_rpm: it.error.map(|(speed, _)| speed),
     minus: it.error.map(|(_, map)| map.minus),
     plus: it.error.map(|(_, map)| map.plus),
+    verdicts: it.verdicts.iter().map(|(scenario, cams)| Verdicts { scenario: *scenario, cams: *cams }).collect::<Vec<_>>(),
     measured: it.cam,
 });
+
+/// A verdict, and how many cams come to it.
+#[derive(Serialize)]
+struct Verdicts {
+    scenario: Option<Scenario>,
+    cams: usize,
+}
 
 impl LeftOpen {
     /// Of a corner impact with its map.
@@ -130,10 +142,14 @@ impl LeftOpen {
                 _ => plus[index - 7],
             })
         };
+        let seen = Mutex::new(Vec::new());
         let there = |model: &Model, cam: &Cam| {
             let (first, others) = corner::locate(model, cam).ok()?;
             let found = std::iter::once(first).chain(others).find(|found| at.is_near(found))?;
-            Some(numbers(found.speed_rpm(), &closed_form::route(model, &found).map))
+            let map = closed_form::route(model, &found).map;
+            let verdict = compared::classified(&map, variational::border(model, cam, &found), None).ok();
+            seen.lock().unwrap_or_else(PoisonError::into_inner).push(verdict.map(|kind| kind.scenario));
+            Some(numbers(found.speed_rpm(), &map))
         };
         let side = |error: &[f64]| SideMap {
             a: Matrix2::new(error[0], error[1], error[2], error[3]),
@@ -141,7 +157,17 @@ impl LeftOpen {
         };
         let error = likely.error(numbers(at.speed_rpm(), map), there);
         let error = error.filter(|_| likely.best.is_some());
+        let mut verdicts: Vec<(Option<Scenario>, usize)> = Vec::new();
+        for scenario in seen.into_inner().unwrap_or_else(PoisonError::into_inner) {
+            match verdicts.iter_mut().find(|(known, _)| *known == scenario) {
+                Some((_, cams)) => *cams += 1,
+                None => verdicts.push((scenario, 1)),
+            }
+        }
+        // In no order of threads.
+        verdicts.sort_by_key(|(scenario, cams)| (Reverse(*cams), scenario.map(|scenario| scenario.to_string())));
         Self {
+            verdicts,
             error: error.map(|error| (error[0], Sides { minus: side(&error[1..7]), plus: side(&error[7..]) })),
             cam: likely.measured,
         }

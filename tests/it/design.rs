@@ -5,7 +5,7 @@ use corner_impact::model::Model;
 use corner_impact::progress::Unwatched;
 use corner_impact::study::attractors::detachment;
 use corner_impact::study::design::contact::{Contact, Separation};
-use corner_impact::study::design::needs::{Lever, Need};
+use corner_impact::study::design::needs::{Answer, Lever, Need};
 use corner_impact::study::design::{Asked, Design, design};
 use serde_json::Value;
 
@@ -222,6 +222,40 @@ fn what_cannot_be_answered_is_told() {
     let path = folder.path().join("force.svg");
     let output = corner_impact(["design", "models/laws/rectified-sine.toml", "--out", path.to_str().unwrap()]);
     assert_eq!((output.status.code(), path.exists()), (Some(2), false), "{}", text(output.stderr));
+}
+
+/// Of a machine whose cam stays at its lowest lift and that nothing else presses, any preload keeps the follower on it to some speed: the answer
+/// is that, at once. And where nothing presses at all, a run on the stay makes no progress, and the other numbers are answered.
+#[test]
+fn any_preload_above_none_is_an_answer() {
+    let follower = "mass = 0.11\ndamping = 0\nstiffness = 30\npreload = 220\ngravity = 0\nrestitution = 0.6";
+    let moves = |rise: f64| format!("[[cam.segment]]\nmotion = \"modified-sine\"\nspan_deg = 90\nrise = {rise}\n");
+    let stays = "[[cam.segment]]\nmotion = \"dwell\"\nspan_deg = 60\n";
+    let text = format!(
+        "name = \"valve\"\n[units]\nlength = \"mm\"\nstiffness = \"N/mm\"\n[follower]\n{follower}\n[cam]\nlaw = \"program\"\n\
+         base = 0\n{stays}{}{stays}{}{stays}",
+        moves(10.0),
+        moves(-10.0)
+    );
+    let model = Model::parse("valve.toml", &text).unwrap();
+    let preload = |need: &str, of: &dyn Fn(&Answer)| {
+        let asked = Asked {
+            rpm: Some([2000.0, 2000.0]),
+            speeds: 1,
+            needs: vec![(need.into(), need.parse().unwrap())],
+            ..Asked::default()
+        };
+        let found = design(&model, &asked, &Unwatched).unwrap();
+        assert_eq!(found.needs.len(), 4);
+        of(found.needs.iter().find(|answer| answer.lever == Lever::Preload).unwrap());
+    };
+    preload("no separation to 3000 rpm", &|found| {
+        assert_eq!((found.value, found.note.as_str()), (Some(0.0), "any above 0 will do"), "{found:?}");
+    });
+    preload("energy below 0.1 J to 5500 rpm", &|found| {
+        assert!(found.value.is_some_and(|value| (400.0..480.0).contains(&value)), "{found:?}");
+        assert_eq!(found.note, "at 0 N a run makes no progress, which is taken not to do");
+    });
 }
 
 /// The loads of a table are those of its picture's speeds, and energy is what impacts of a follower with restitution take.

@@ -19,7 +19,7 @@ use resvg::tiny_skia::Pixmap;
 use resvg::usvg::{Options, Tree, roxmltree::Document};
 
 fn series(data: Data) -> Series {
-    Series { label: "f".into(), colour: Colour::Blue, data }
+    Series { label: "f".into(), name: String::new(), colour: Colour::Blue, data }
 }
 
 fn figure(data: Data) -> Figure {

@@ -11,7 +11,7 @@ use corner_impact::cam::Side;
 use corner_impact::cli::{Exit, run};
 use corner_impact::draw::layout::{Layout, WIDTH};
 use corner_impact::draw::{Data, Figure, Look, Series, svg};
-use corner_impact::figures::{Effort, Neighbour, Outline, Plate, Subject, listed, plate, plates};
+use corner_impact::figures::{Effort, Neighbour, Outline, Plate, Subject, listed, plate, plates, unit_of};
 use corner_impact::flight::State;
 use corner_impact::model::{Model, OSORIO_2008};
 use corner_impact::simulate::EventKind;
@@ -28,7 +28,7 @@ const SLACK: f64 = 0.3;
 const RESTITUTION: f64 = 0.8;
 
 fn paper() -> Subject {
-    Subject::new(&Model::parse("osorio-2008.toml", OSORIO_2008).unwrap()).unwrap()
+    Subject::new(&Model::parse("osorio-2008.toml", OSORIO_2008).unwrap(), None).unwrap()
 }
 
 fn drawn(subject: &Subject, id: &str) -> Figure {
@@ -140,7 +140,7 @@ fn every_model_has_its_figures_or_a_reason() {
     assert!(files.len() >= 15, "{files:?}");
     files.par_iter().for_each(|file| {
         let model = Model::read(file).unwrap();
-        let mut subject = Subject::new(&model).unwrap();
+        let mut subject = Subject::new(&model, None).unwrap();
         // Whether there is a figure, and one that can be read, does not depend on how fine the sweeps are.
         subject.slow_effort.speeds = 80;
         subject.fast_effort = Effort { speeds: 60, transient: 100, record: 30 };
@@ -168,7 +168,7 @@ fn other_models_are_shown_at_speeds_in_the_papers_proportions() {
         .replace("rpm_min = 600.0", "rpm_min = 660.0")
         .replace("rpm_max = 760.0", "rpm_max = 836.0");
     assert_ne!(stiffer, OSORIO_2008);
-    let subject = Subject::new(&Model::parse("stiffer.toml", &stiffer).unwrap()).unwrap();
+    let subject = Subject::new(&Model::parse("stiffer.toml", &stiffer).unwrap(), None).unwrap();
     assert!(!subject.is_paper);
     let slow = subject.shown.slow.unwrap();
     assert_eq!((slow.chattering, slow.range, slow.interrupted), (201.3, [126.5, 220.0], 192.5));
@@ -512,6 +512,44 @@ fn a_model_file_goes_before_the_name() {
     let (_, document, _) = command(&[&model, "corner-orbit", "--json"]);
     let document: serde_json::Value = serde_json::from_str(&document).unwrap();
     assert!(document["figure"]["panels"][0]["series"].is_array() && document["absent"].is_null());
+}
+
+/// Figures at speeds that are chosen are at those, and the command that draws one again has them.
+#[test]
+fn speeds_of_figures_can_be_chosen() {
+    let model = file("laws/harmonic.toml");
+    let (_, page, _) = command(&[&model, "slow-trace", "--rpm", "400:600"]);
+    assert!(page.contains("at 500 rpm") && page.contains("In 2 revolutions the follower hits"), "{page}");
+    assert!(page.contains("slow-trace --rpm 400:600 --out slow-trace.svg") && !page.contains("the paper's"), "{page}");
+    let (_, own, _) = command(&[&model, "slow-trace"]);
+    assert!(!own.contains("--rpm") && !own.contains("500 rpm"), "{own}");
+}
+
+/// What changes has its unit on the axis, the model's where that says one; and a table names what a legend does not.
+#[test]
+fn axes_have_the_units_of_the_model() {
+    let si = Model::built_in().unwrap().units;
+    let units =
+        Model::parse("mm.toml", &OSORIO_2008.replace("[follower]", "[units]\nstiffness = \"N/mm\"\n[follower]"));
+    let units = units.unwrap().units;
+    for (name, is, there) in [
+        ("rpm", "rpm", "rpm"),
+        ("follower.stiffness", "N/m", "N/mm"),
+        ("stiffness", "N/m", "N/mm"),
+        ("follower.mass", "kg", "kg"),
+        ("follower.preload", "N", "N"),
+        ("follower.rest_position", "m", "m"),
+        ("restitution", "", ""),
+    ] {
+        assert_eq!((unit_of(name, &si).as_str(), unit_of(name, &units).as_str()), (is, there), "{name}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("chart.svg");
+    let words = ["chart", "models/osorio-2008.toml", "--x", "rpm=700:710:2", "--y", "stiffness=1400:1450:2", "--out"];
+    let output = crate::common::program(words).arg(&path).output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let drawn = std::fs::read_to_string(&path).unwrap();
+    assert!(drawn.contains("stiffness (N/m)"), "{drawn}");
 }
 
 #[test]

@@ -35,7 +35,7 @@ fn column() -> Look {
 
 fn parabola() -> Figure {
     let points: Vec<[f64; 2]> = (0..100).map(|i| [f64::from(i), f64::from(i * i)]).collect();
-    let series = |colour, data| Series { label: String::new(), colour, data };
+    let series = |colour, data| Series { label: String::new(), name: String::new(), colour, data };
     let word = Word { at: [50.0, 2500.0], text: "half_way".into(), beside: Beside::Right };
     let mut cloud = Density::new([0.0, 100.0], [0.0, 1e4]);
     (0..200).for_each(|i| (0..200).for_each(|j| cloud.push(0.5 * f64::from(i), 50.0 * f64::from(j))));

@@ -211,6 +211,9 @@ fn numbers_that_are_odd_are_asked_about() {
         spoken(["0.11", "30000", "rest_position = -7.3", "25"], "", "3000")
             .contains("rises by 25.0000 m: did you mean mm?")
     );
+    // A spring whose period is a twentieth of what the cam's is, in the units that it seems to be in.
+    assert_eq!(spoken(["0.11", "30", "rest_position = -0.0073", "0.01"], "", "3000"), soft);
+    assert!(spoken(["0.11", "30000", "preload = 5000", "0.01"], "", "3000").contains("4633 times the weight"));
     assert!(spoken(["0.11", "30000", "preload = 22000", "0.01"], "", "3000").contains("times the weight of mass 0.11"));
     assert_eq!(spoken(["0.11", "30000", "preload = 220", "0.01"], "", "3000"), "");
     assert_eq!(

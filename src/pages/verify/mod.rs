@@ -7,19 +7,21 @@ use crate::border_collision::feigin::{Scenario, SideCounts};
 use crate::border_collision::{Classification, NormalForm, Refusal};
 use crate::cam::Side;
 use crate::pages::local_map;
+use crate::pages::source;
 use crate::pages::speeds::measured_speed;
 use crate::show::Paged;
 use crate::show::block::{Block, Column, Mark, Span, Table, Words, about, words};
 use crate::show::digits::Digits;
 use crate::show::words;
 use crate::study::compared::Skipped;
-use crate::study::verify::{Tally, Verification};
+use crate::study::verify::{LeftOpen, Tally, Verification};
 pub(crate) use map::{agreement, map};
 
 impl Paged for Verification {
     fn blocks(&self) -> Vec<Block> {
         let title = Block::Title(format!("Corner impact of {}", self.model.name).into());
-        let mut page = vec![title, Block::paragraph(&self.model.source)];
+        let mut page = vec![title];
+        page.extend(source(&self.model.source));
         for section in
             [orbit(self), map(self), agreement(self), bifurcation(self), local_map::blocks(self), published(self)]
         {
@@ -115,6 +117,7 @@ pub(crate) fn bifurcation(found: &Verification) -> Vec<Block> {
         Ok(kind) => entries.extend(classification(kind)),
         Err(refusal) => entries.push(("verdict".into(), none(refusal))),
     }
+    entries.extend(found.measured.as_ref().and_then(|open| left_open(found, open)));
     entries.extend(local_map::conditions(found));
     let mut full: Vec<Block> = found.classification.iter().flat_map(fixed_points).collect();
     full.extend(
@@ -126,6 +129,27 @@ pub(crate) fn bifurcation(found: &Verification) -> Vec<Block> {
         Block::Entries(20, vec![(Words::prose("_W_", []), about("normal_form", rows(&form.w))), shift])
     }));
     vec![Block::Heading("What happens there".into()), Block::Entries(20, entries), Block::Full(full)]
+}
+
+/// Whether a measured cam leaves the verdict open: what cams say that are as likely.
+fn left_open(found: &Verification, open: &LeftOpen) -> Option<(Words, Words)> {
+    let own = found.classification.as_ref().ok().map(|kind| kind.scenario);
+    let all: usize = open.verdicts.iter().map(|(_, cams)| cams).sum();
+    let others: Vec<String> = open
+        .verdicts
+        .iter()
+        .filter(|(scenario, _)| *scenario != own)
+        .map(|(scenario, cams)| format!("{} of {cams}", scenario.map_or("none".into(), |kind| kind.to_string())))
+        .collect();
+    let why = words::accuracy(&open.cam);
+    let said = match others.is_empty() {
+        true => format!("the same of {all} cams that are as likely ({why})").into(),
+        false => words![
+            (Mark::Doubtful, "not known"),
+            format!(": of {all} cams that are as likely ({why}) the verdict is {}", others.join(", "))
+        ],
+    };
+    (all > 0).then(|| ("on likely cams".into(), said))
 }
 
 fn normal_form(form: &NormalForm) -> Words {

@@ -1,5 +1,6 @@
 //! What must be changed so that a machine does as it is needed to: one number at a time, the others kept.
 
+use std::cell::Cell;
 use std::str::FromStr;
 
 use rayon::prelude::*;
@@ -251,6 +252,10 @@ pub(super) fn answer(
         Some(told(apart.max(width)))
     };
     let (now, unit) = of.told(lever, of.value(lever));
+    let stuck = found
+        .stuck
+        .map(|value| format!("at {} {unit} a run makes no progress, which is taken not to do", told(value) as f32));
+    let notes: Vec<String> = [found.note.clone()].into_iter().filter(|note| !note.is_empty()).chain(stuck).collect();
     Ok(Answer {
         need: text.into(),
         lever,
@@ -261,7 +266,7 @@ pub(super) fn answer(
         other: found.other.map(told),
         other_error: error(|found| found.other),
         unit,
-        note: found.note,
+        note: notes.join("; "),
         known,
     })
 }
@@ -273,6 +278,8 @@ pub(super) struct Found {
     pub other: Option<f64>,
     pub is_upper_bound: bool,
     pub note: String,
+    /// A value with which a run makes no progress.
+    pub stuck: Option<f64>,
 }
 
 /// The range of values that do, if there are any.
@@ -302,7 +309,15 @@ pub(super) fn find(of: &Changed<'_>, need: &Need, lever: Lever) -> Result<Found,
         What::NoSeparation => (DOUBLINGS, tolerance::ROOT_WIDTH.value),
         What::Below(..) => (DOUBLINGS_OF_RUNS, tolerance::NEEDED_BY_RUNS.value),
     };
-    let does = |value: f64| of.with(lever, value).does(need);
+    // A value with which a run does not get on is none that is known to do.
+    let stuck = Cell::new(None);
+    let does = |value: f64| match of.with(lever, value).does(need) {
+        Err(SimulateError::NoProgress { .. }) => {
+            stuck.set(Some(value));
+            Ok(false)
+        }
+        other => other,
+    };
     let mut values: Vec<f64> = (-most..=most).map(|power| size * 2.0_f64.powi(power)).collect();
     if !matches!(lever, Lever::Mass | Lever::Stiffness) {
         values.insert(0, 0.0);
@@ -319,6 +334,7 @@ pub(super) fn find(of: &Changed<'_>, need: &Need, lever: Lever) -> Result<Found,
         }
     }
     let edge = |fails: f64, does_it: f64| halve([fails, does_it], Width::Relative(width), does).map(|[_, found]| found);
+    let told_stuck = |found: Found| Found { stuck: stuck.get(), ..found };
     let Some(first) = first else {
         // A narrow range may lie between two of the values.
         if need.what == What::NoSeparation
@@ -327,14 +343,20 @@ pub(super) fn find(of: &Changed<'_>, need: &Need, lever: Lever) -> Result<Found,
             && does(best)?
         {
             let (value, other) = (edge(low, best)?, edge(high, best)?);
-            return Ok(Found { value: Some(value), other: Some(other), is_upper_bound, ..Found::default() });
+            let found = Found { value: Some(value), other: Some(other), is_upper_bound, ..Found::default() };
+            return Ok(told_stuck(found));
         }
         let (last, unit) = told(values.last().copied().unwrap_or_default());
         let side = if is_upper_bound { "above" } else { "below" };
         let tried = if need.what == What::NoSeparation { "" } else { ", of those tried," };
-        return Ok(none(format!("no {lever} {side} {last:.1e} {unit}{tried} does it, the others kept")));
+        return Ok(told_stuck(none(format!("no {lever} {side} {last:.1e} {unit}{tried} does it, the others kept"))));
     };
-    let before = first.checked_sub(1).map(|before| edge(values[before], values[first])).transpose()?;
+    let before = match first.checked_sub(1) {
+        // Where nothing of it fails for want of any, no least value is to be found.
+        Some(before) if values[before] == 0.0 && does(width * values[first])? => None,
+        Some(before) => Some(edge(values[before], values[first])?),
+        None => None,
+    };
     let mut beyond = None;
     for pair in values[first..].windows(2) {
         if !does(pair[1])? {
@@ -342,19 +364,21 @@ pub(super) fn find(of: &Changed<'_>, need: &Need, lever: Lever) -> Result<Found,
             break;
         }
     }
-    Ok(match (before, beyond) {
+    Ok(told_stuck(match (before, beyond) {
         (None, Some(_)) => Found { value: beyond, is_upper_bound: !is_upper_bound, ..Found::default() },
         (Some(_), _) => Found { value: before, other: beyond, is_upper_bound, ..Found::default() },
         (None, None) => {
             let (value, unit) = told(values[first]);
-            let note = if is_upper_bound {
-                format!("as far as {value:.3e} {unit} is looked at, any will do")
+            let (value, note) = if is_upper_bound {
+                (values[first], format!("as far as {value:.3e} {unit} is looked at, any will do"))
+            } else if first > 0 && values[first - 1] == 0.0 {
+                (0.0, "any above 0 will do".into())
             } else {
-                "as little as there can be will do".into()
+                (values[first], "as little as there can be will do".into())
             };
-            Found { value: Some(values[first]), ..none(note) }
+            Found { value: Some(value), ..none(note) }
         }
-    })
+    }))
 }
 
 /// Between its neighbours the value for which `speed` is largest, where all values for which it is above any bound are one range.

@@ -16,8 +16,7 @@ pub(crate) fn section(report: &Report) -> Section {
         Block::paragraph(Words::prose(sources, [])),
     ];
     if let Err(why) = &report.verification {
-        let none = "There is no corner impact to verify, in the words of the search: ";
-        blocks.push(Block::Note(words![none, code(why)]));
+        blocks.push(Block::Note(words!["No corner impact is verified here: ", why.as_str()]));
     }
     Section { id: "reproduce", title: "How to do it again".into(), blocks }
 }
