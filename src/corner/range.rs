@@ -49,6 +49,8 @@ pub struct FoundCornerImpacts {
     pub rejected: Vec<Rejected>,
     /// The corners of the cam, in order of angle.
     pub corners: Vec<Corner>,
+    /// How many knots of a smoothing spline were not looked at.
+    pub left_out: usize,
     /// For which numbers of impacts the list is all there is.
     pub complete: Vec<Complete>,
     /// Where one of one impact may be missing, or refused without a proof.
@@ -114,15 +116,17 @@ pub fn find_corner_impacts(
     if !(low > 0.0 && high > low && angular_velocity(high).is_finite()) {
         return Err(RangeError::NoRange { low, high });
     }
-    let corners = cam.corners();
+    let corners = &worth_looking_at(model, cam);
     let (one_impact, undecided) = one_impact(model, cam, corners, range, revolutions)?;
     let known = if undecided.is_empty() { Known::Proved } else { Known::Sampled };
     let complete = vec![Complete { revolutions, impacts: 1, known }];
-    let (on_branches, searched) = candidates(model, cam, range, revolutions, watch);
+    let (mut on_branches, searched) = candidates(model, cam, range, revolutions, watch);
+    on_branches.retain(|candidate| corners.contains(&candidate.corner));
     let mut all = FoundCornerImpacts {
         found: Vec::new(),
         rejected: Vec::new(),
         corners: corners.to_vec(),
+        left_out: cam.corners().len() - corners.len(),
         complete,
         undecided,
         searched,
@@ -131,12 +135,17 @@ pub fn find_corner_impacts(
         let orbit = all.orbit(&corner, 60.0 / period, verdict);
         all.found.extend(orbit);
     }
-    for candidates in [on_branches, shots(model, cam, range, revolutions, watch)] {
+    for candidates in [on_branches, shots(model, cam, corners, range, revolutions, watch)] {
         all.confirm(model, cam, range, candidates);
     }
     all.found.sort_by(|one, two| one.speed_rpm().total_cmp(&two.speed_rpm()));
     all.rejected.sort_by(|one, two| one.speed_rpm.total_cmp(&two.speed_rpm));
     Ok(all)
+}
+
+/// Corners at which impacts are looked for: all but the knots of a smoothing spline, which are no part of what was measured.
+fn worth_looking_at(model: &Model, cam: &Cam) -> Vec<Corner> {
+    cam.corners().iter().filter(|corner| !(model.is_smoothed() && cam.is_knot(corner))).copied().collect()
 }
 
 /// What the roots of the equation for one impact are at each corner, each with its period, s; and where there may be others.

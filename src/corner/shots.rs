@@ -38,12 +38,18 @@ const REACH: f64 = 1.02;
 const NEAR: f64 = 0.3;
 
 /// The corner impacts of several impacts in `revolutions` that shots lead to, over a range of speeds and a little beyond.
-pub fn shots(model: &Model, cam: &Cam, range: Study, revolutions: u64, watch: &dyn Watch) -> Vec<Candidate> {
+pub fn shots(
+    model: &Model,
+    cam: &Cam,
+    corners: &[Corner],
+    range: Study,
+    revolutions: u64,
+    watch: &dyn Watch,
+) -> Vec<Candidate> {
     let machine = Machine::new(cam.clone(), &model.follower, angular_velocity(1.0));
     let step = |rpm: f64| rpm.ln() / SHOT_RATIO.ln();
     let first = step(range.rpm_min / REACH).floor() as i32;
     let speeds = first..=step(range.rpm_max * REACH).ceil() as i32;
-    let corners = cam.corners();
     let at = |index: i32| {
         let rpm = SHOT_RATIO.powf(f64::from(index) + 0.5);
         let machine = machine.at_speed(angular_velocity(rpm));

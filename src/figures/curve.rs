@@ -8,7 +8,7 @@ use crate::orbit::branch::Bifurcation;
 
 /// Kinds of corner impact, with the way in which they are drawn.
 const KINDS: [(Happening, Colour, Stroke); 5] = [
-    (Happening::BorderCollision(Scenario::NonsmoothFold), Colour::Vermilion, Stroke::Solid),
+    (Happening::BorderCollision(Scenario::NonsmoothFold), Colour::Vermilion, Stroke::Thick),
     (Happening::BorderCollision(Scenario::NonsmoothFlip), Colour::Purple, Stroke::Dashed),
     (Happening::BorderCollision(Scenario::Persistence), Colour::Blue, Stroke::Thin),
     (Happening::NotPiecewiseLinear, Colour::Green, Stroke::Dashed),

@@ -173,6 +173,11 @@ impl Model {
         if let CamProfile::Table(table) = sharp { Some(table) } else { None }
     }
 
+    /// Whether its cam is a smoothing spline near the rows of a table.
+    pub(crate) fn is_smoothed(&self) -> bool {
+        self.table().is_some_and(|table| table.spline.smoothing().is_some())
+    }
+
     /// A complaint about `field` found by a later stage; `allowed` says what would be accepted.
     pub fn reject(&self, field: &str, allowed: impl Into<String>) -> ModelError {
         self.fields.reject(field, allowed)

@@ -115,6 +115,9 @@ fn segments(sheet: &CamSheet) -> Vec<Block> {
     }
     let [least, most] = spans.map(|span| (span, Digits::Significant(6)));
     let spans = words!["spans from ", least, " to ", most, " degrees; --json lists them"];
+    if sheet.is_smoothed() {
+        return vec![Block::Heading(title.into()), Block::paragraph(spans)];
+    }
     vec![
         Block::Brief(vec![Block::Heading(title.as_str().into()), Block::paragraph(spans)]),
         Block::Details(title.into(), vec![Block::Table(table)]),
@@ -162,6 +165,11 @@ fn corners(sheet: &CamSheet) -> Vec<Block> {
             at,
             " deg"
         ]));
+    }
+    // Where a smoothing spline's polynomials meet is nothing of the cam, and fills pages.
+    if sheet.is_smoothed() {
+        blocks.extend(brief);
+        return blocks;
     }
     let all = table(&sheet.corners.iter().collect::<Vec<_>>());
     blocks.extend([Block::Brief(brief), Block::Details(title.into(), vec![all])]);

@@ -126,13 +126,17 @@ fn rejected(found: &Located) -> Vec<Block> {
 }
 
 fn searched(found: &Located) -> String {
-    let FoundCornerImpacts { corners, searched, undecided, .. } = &found.looked_at;
+    let FoundCornerImpacts { corners, left_out, searched, undecided, .. } = &found.looked_at;
     let corners = corners.len();
+    let knots = match left_out {
+        0 => String::new(),
+        _ => format!(", {left_out} knots of its spline left out"),
+    };
     let mut words = if corners == 0 {
         "The cam has no corner: no derivative of its lift jumps as far as can be told.".to_owned()
     } else {
         format!(
-            "{corners} corner(s) of the cam. Orbits of one impact: {}. Orbits of several impacts were looked for in two ways that know \
+            "{corners} corner(s) of the cam{knots}. Orbits of one impact: {}. Orbits of several impacts were looked for in two ways that know \
              nothing of each other: on branches through what a search finds at {} speeds, each {:.0} % faster than the one before, and \
              through what branches off there with twice the period ({} stretches of branches); and by {VELOCITIES} shots from each \
              corner at speeds {:.1} % apart. {} Of up to {MOST_IMPACTS} impacts a revolution, none of them within {:.2} deg of the one on \

@@ -87,6 +87,11 @@ fn motions(model: &Model, cam: &Cam) -> Vec<&'static str> {
 }
 
 impl CamSheet {
+    /// Whether it is a smoothing spline near the rows of a table.
+    pub(crate) fn is_smoothed(&self) -> bool {
+        self.measured.as_ref().is_some_and(|measured| measured.is_smoothed)
+    }
+
     /// What a model's cam is made of, with corners up to an order.
     pub fn new(model: &Model, cam: &Cam, highest_order: usize) -> Result<Self, ModelError> {
         let segments = cam.segments().to_vec();

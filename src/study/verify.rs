@@ -299,7 +299,7 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
     let mut log = Log::default();
     // The programs outside take seconds and this one's routes a few hundredths: they run beside each other.
     let outside = start_outside(model, external)?;
-    let is_smoothed = model.table().is_some_and(|table| table.spline.smoothing().is_some());
+    let is_smoothed = model.is_smoothed();
     let proving = (external == External::Run && !is_smoothed).then(|| {
         let (model, place) = (model.clone(), certify::candidate(model, &cam, &at));
         std::thread::spawn(stop::carried(move || certify::prove(&model, vec![place], certify::BITS)))
