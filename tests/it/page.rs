@@ -242,8 +242,10 @@ fn a_model_without_a_corner_impact_has_a_page_that_says_why() {
     let (code, out, _) = report(folder.path(), &[model, "--set", "restitution=0"]);
     assert_eq!((code, out.as_str()), (0, "harmonic-follower.restitution-0-report.html\n"));
     let page = std::fs::read_to_string(folder.path().join(out.trim_end())).unwrap();
-    assert!(page.contains("There is no corner impact to verify"));
-    assert!(page.contains("[study] says where to look for the corner impact"));
+    assert!(page.contains(
+        "No corner impact is verified here: the model file has no [study], which says at which speeds to look for"
+    ));
+    assert!(!page.contains("study.rpm_min is needed"));
     let sections: Vec<&str> = between(&page, "<section id=\"", "\"").into_iter().collect();
     assert_eq!(sections, ["answer", "loads", "model", "speeds", "figures", "reproduce", "numbers"]);
     all_are_explained(&page);

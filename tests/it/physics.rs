@@ -200,6 +200,26 @@ fn the_jerk_and_its_bound() {
     }
 }
 
+/// The fourth derivative, by differences of the third, is never above its bound, and the bound is what is left of it and of the third together.
+#[test]
+fn the_fourth_derivative_and_its_bound() {
+    for follower in followers() {
+        let flight = Flight::new(&follower);
+        let start = State { position: 0.52, velocity: -4.0 };
+        let rate = flight.zeta() + flight.omega0_squared().sqrt();
+        let h = 1e-5 / rate.max(1.0);
+        let at = |time: f64| flight.fly(start, time).1;
+        let fourth = |time: f64| (flight.jerk(at(time + h)) - flight.jerk(at((time - h).max(0.0)))) / (h + time.min(h));
+        let bound = flight.fourth_bound(start);
+        for k in 0..60 {
+            let now = fourth(0.004 * f64::from(k)).abs();
+            assert!(now <= bound * (1.0 + 1e-3) + 1e-6, "{follower:?}: {now} {bound}");
+        }
+        let left = fourth(0.0).hypot(flight.omega0_squared().sqrt() * flight.jerk(start));
+        assert_relative_eq!(bound, left, max_relative = 1e-3, epsilon = 1e-9);
+    }
+}
+
 #[test]
 fn restitution_scales_and_reverses_the_relative_velocity() {
     for r in [0.0, 0.3, 0.8, 1.0] {
