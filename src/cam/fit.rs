@@ -198,7 +198,7 @@ fn cross_validated(at: &impl Fn(f64) -> Option<Smoothed>) -> Option<f64> {
     const STEP: f64 = 0.75;
     /// What is taken from the rows counts for more: once in so many tables plain cross-validation follows the noise.
     const CHARGED: f64 = 1.4;
-    /// The most that is taken from the rows, of them.
+    /// The most that is taken from the rows, of them: well below where what counts for more is all of them.
     const MOST: f64 = 0.6;
     /// Parts of the golden section: the logarithm is known to a hundredth then.
     const SECTIONS: u32 = 10;

@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use super::{CommandError, progress::watched, session::Session, start::finite};
-use crate::cam::Cam;
 use crate::model::Model;
 use crate::orbit::Parameter;
 use crate::show::words;
@@ -62,10 +61,7 @@ impl ModelArgument {
         session.units = model.units.clone();
         let strays = model.table().map(words::strays).unwrap_or_default();
         let loose = model.table().and_then(words::loose);
-        let contradicted = match model.table() {
-            Some(table) => words::contradicted(table, &Cam::new(&model)?),
-            None => None,
-        };
+        let contradicted = words::contradicted(&model)?;
         for words in model.doubt(session.rpm)?.iter().chain(&strays).chain(&loose).chain(&contradicted) {
             session.note(words);
         }

@@ -19,7 +19,7 @@ pub struct Subject {
     pub model: Model,
     /// Its cam.
     pub cam: Cam,
-    /// Whether follower and cam are the paper's.
+    /// Whether follower, cam and speeds are the paper's.
     pub is_paper: bool,
     /// What `verify` found for it, or why it found nothing.
     pub findings: Result<Verification, String>,
@@ -181,7 +181,8 @@ impl Subject {
         Ok(Self {
             model: model.clone(),
             cam,
-            is_paper: paper,
+            // What the paper says of its speeds is not said of others.
+            is_paper: paper && rpm.is_none(),
             findings,
             shown: Shown { slow, fast },
             rpm,

@@ -349,27 +349,29 @@ pub(crate) fn loose(profile: &TableProfile) -> Option<String> {
 }
 
 /// That corners or dwells that were given keep a smoothing spline away from the rows.
-pub(crate) fn contradicted(profile: &TableProfile, cam: &Cam) -> Option<String> {
+pub(crate) fn contradicted(model: &Model) -> Result<Option<String>, ModelError> {
     /// Of the tolerance, or of what the rows spread by: noise keeps within two of these.
     const FAR: f64 = 10.0;
-    let own = profile.spline.smoothing()?;
+    let smoothed = model.table().and_then(|profile| Some((profile, profile.spline.smoothing()?)));
+    let Some((profile, own)) = smoothed else { return Ok(None) };
     let given = match (&own.corners_deg, &own.dwells_deg) {
         (_, Some(dwells)) if !dwells.is_empty() => "cam.dwells_deg",
         (Some(_), _) => "cam.corners_deg",
-        _ => return None,
+        _ => return Ok(None),
     };
+    let cam = Cam::new(model)?;
     let within = if let Tolerance::Within(within) = own.tolerance { within } else { spread(profile) };
     let off = |row: &Row| (cam.lift(row.angle_deg.to_radians()).value - row.lift).abs();
-    let worst = profile.rows.iter().max_by(|one, two| off(one).total_cmp(&off(two)))?;
+    let worst = profile.rows.iter().max_by(|one, two| off(one).total_cmp(&off(two)));
     let (reading, least) = (&profile.reading, tolerance::NOISE_SEEN.value * profile.rise());
-    (off(worst) > FAR * within.max(least)).then(|| {
+    Ok(worst.filter(|worst| off(worst) > FAR * within.max(least)).map(|worst| {
         format!(
             "{given}: the rows are otherwise: at {} deg the cam is {} {} from them",
             worst.angle_deg,
             Digits::Aligned(2).text(reading.in_model.told(off(worst))),
             reading.unit
         )
-    })
+    }))
 }
 
 /// How well the cam is known that an answer without a ± of its own is about; none where the rows have no noise.

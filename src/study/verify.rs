@@ -113,27 +113,29 @@ pub struct LeftOpen {
     /// How far speed, rpm, and each entry of the map may be off; none where too few of the cams that are as likely have the corner impact.
     pub error: Option<(f64, CornerMap)>,
     /// How many of the cams that are as likely come to each verdict, or to none; those without the corner impact are left out.
-    pub verdicts: Vec<(Option<Scenario>, usize)>,
+    pub verdicts: Vec<Verdicts>,
 }
 
 document!(LeftOpen as it {
     speed_rpm: it.error.map(|(speed, _)| speed),
     minus: it.error.map(|(_, map)| map.minus),
     plus: it.error.map(|(_, map)| map.plus),
-    verdicts: it.verdicts.iter().map(|(scenario, cams)| Verdicts { scenario: *scenario, cams: *cams }).collect::<Vec<_>>(),
+    verdicts: it.verdicts,
     measured: it.cam,
 });
 
 /// A verdict, and how many cams come to it.
-#[derive(Serialize)]
-struct Verdicts {
-    scenario: Option<Scenario>,
-    cams: usize,
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Verdicts {
+    /// What happens at the corner impact; none where its map is refused.
+    pub scenario: Option<Scenario>,
+    /// How many say so.
+    pub cams: usize,
 }
 
 impl LeftOpen {
     /// Of a corner impact with its map.
-    fn new(likely: Likely, at: &CornerImpact, map: &CornerMap) -> Self {
+    fn new(likely: Likely, at: &CornerImpact, map: &CornerMap, sticking: Option<Side>) -> Self {
         let numbers = |speed: f64, map: &CornerMap| -> [f64; 13] {
             let (minus, plus) = (map.minus.entries(), map.plus.entries());
             std::array::from_fn(|index| match index {
@@ -147,7 +149,7 @@ impl LeftOpen {
             let (first, others) = corner::locate(model, cam).ok()?;
             let found = std::iter::once(first).chain(others).find(|found| at.is_near(found))?;
             let map = closed_form::route(model, &found).map;
-            let verdict = compared::classified(&map, variational::border(model, cam, &found), None).ok();
+            let verdict = compared::classified(&map, variational::border(model, cam, &found), sticking).ok();
             seen.lock().unwrap_or_else(PoisonError::into_inner).push(verdict.map(|kind| kind.scenario));
             Some(numbers(found.speed_rpm(), &map))
         };
@@ -157,15 +159,15 @@ impl LeftOpen {
         };
         let error = likely.error(numbers(at.speed_rpm(), map), there);
         let error = error.filter(|_| likely.best.is_some());
-        let mut verdicts: Vec<(Option<Scenario>, usize)> = Vec::new();
+        let mut verdicts: Vec<Verdicts> = Vec::new();
         for scenario in seen.into_inner().unwrap_or_else(PoisonError::into_inner) {
-            match verdicts.iter_mut().find(|(known, _)| *known == scenario) {
-                Some((_, cams)) => *cams += 1,
-                None => verdicts.push((scenario, 1)),
+            match verdicts.iter_mut().find(|known| known.scenario == scenario) {
+                Some(known) => known.cams += 1,
+                None => verdicts.push(Verdicts { scenario, cams: 1 }),
             }
         }
         // In no order of threads.
-        verdicts.sort_by_key(|(scenario, cams)| (Reverse(*cams), scenario.map(|scenario| scenario.to_string())));
+        verdicts.sort_by_key(|told| (Reverse(told.cams), told.scenario.map(|scenario| scenario.to_string())));
         Self {
             verdicts,
             error: error.map(|error| (error[0], Sides { minus: side(&error[1..7]), plus: side(&error[7..]) })),
@@ -309,7 +311,7 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
     let closed = closed_form::route(model, &at);
     let map = closed.map;
     let (mut routes, sticking) = compared::routes(model, &cam, &at, &mut log);
-    let measured = Likely::of(model)?.map(|likely| LeftOpen::new(likely, &at, &map));
+    let measured = Likely::of(model)?.map(|likely| LeftOpen::new(likely, &at, &map, sticking));
 
     let mut orbits: Vec<NamedOrbit> = vec![(RouteName::Located, at.x_star(), at.period)];
     if model.follower.stiffness > 0.0 {

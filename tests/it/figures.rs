@@ -521,6 +521,9 @@ fn speeds_of_figures_can_be_chosen() {
     let (_, page, _) = command(&[&model, "slow-trace", "--rpm", "400:600"]);
     assert!(page.contains("at 500 rpm") && page.contains("In 2 revolutions the follower hits"), "{page}");
     assert!(page.contains("slow-trace --rpm 400:600 --out slow-trace.svg") && !page.contains("the paper's"), "{page}");
+    // What the paper says of its own speeds is not said of others.
+    let (_, paper, _) = command(&["slow-trace", "--rpm", "130:150"]);
+    assert!(paper.contains("the motion at 140 rpm") && !paper.contains("that the paper describes"), "{paper}");
     let (_, own, _) = command(&[&model, "slow-trace"]);
     assert!(!own.contains("--rpm") && !own.contains("500 rpm"), "{own}");
 }

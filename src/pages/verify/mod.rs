@@ -134,19 +134,19 @@ pub(crate) fn bifurcation(found: &Verification) -> Vec<Block> {
 /// Whether a measured cam leaves the verdict open: what cams say that are as likely.
 fn left_open(found: &Verification, open: &LeftOpen) -> Option<(Words, Words)> {
     let own = found.classification.as_ref().ok().map(|kind| kind.scenario);
-    let all: usize = open.verdicts.iter().map(|(_, cams)| cams).sum();
+    let all: usize = open.verdicts.iter().map(|told| told.cams).sum();
     let others: Vec<String> = open
         .verdicts
         .iter()
-        .filter(|(scenario, _)| *scenario != own)
-        .map(|(scenario, cams)| format!("{} of {cams}", scenario.map_or("none".into(), |kind| kind.to_string())))
+        .filter(|told| told.scenario != own)
+        .map(|told| format!("{} say {}", told.cams, told.scenario.map_or("none".into(), |kind| kind.to_string())))
         .collect();
     let why = words::accuracy(&open.cam);
     let said = match others.is_empty() {
         true => format!("the same of {all} cams that are as likely ({why})").into(),
         false => words![
             (Mark::Doubtful, "not known"),
-            format!(": of {all} cams that are as likely ({why}) the verdict is {}", others.join(", "))
+            format!(": of {all} cams that are as likely ({why}) {}", others.join(", "))
         ],
     };
     (all > 0).then(|| ("on likely cams".into(), said))
