@@ -7,8 +7,8 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::cam::{Cam, Fit, Stray, fit, strays};
-use crate::model::{Model, ModelError, Reading, Smoothing};
+use crate::cam::{Cam, Fit, Stray, fit, spread, strays};
+use crate::model::{Model, ModelError, Reading, Row, Smoothing, TableProfile, Tolerance};
 use crate::tolerance;
 
 /// How well a measured cam is known.
@@ -213,5 +213,94 @@ fn measured(
         dwells_are_found: own.is_some_and(|own| own.dwells_deg.is_none()),
         largest_curvature: own_curvatures.into_iter().fold(0.0, |most, one| most.max(one.abs())),
         curvature_error,
+    }
+}
+
+/// What is odd about the rows of a table, or about what is asked of a spline near them.
+#[derive(Clone, Debug, Default)]
+pub struct Remarks {
+    /// Rows that are far from where the rows beside them say.
+    pub strays: Vec<Stray>,
+    /// A tolerance and what the rows spread by, m, where that is far less.
+    pub loose: Option<[f64; 2]>,
+    /// Where the rows are otherwise than corners or dwells that were given.
+    pub contradicted: Option<Contradicted>,
+}
+
+/// A row that what was given keeps the cam away from.
+#[derive(Clone, Copy, Debug)]
+pub struct Contradicted {
+    /// The field that was given.
+    pub field: &'static str,
+    /// The row's angle, degrees.
+    pub cam_angle_deg: f64,
+    /// How far the cam is from it, m.
+    pub off_m: f64,
+}
+
+impl Remarks {
+    /// On the cam of a model; none on one that is no table.
+    pub fn on(model: &Model) -> Result<Self, ModelError> {
+        let Some(profile) = model.table() else { return Ok(Self::default()) };
+        let Some(own) = profile.spline.smoothing() else {
+            return Ok(Self { strays: strays(profile), ..Self::default() });
+        };
+        let spread = spread(profile);
+        let within = if let Tolerance::Within(within) = own.tolerance { Some(within) } else { None };
+        let loose = within.filter(|within| spread < tolerance::SMOOTHED_AWAY.value * within);
+        Ok(Self {
+            strays: strays(profile),
+            loose: loose.map(|within| [within, spread]),
+            contradicted: contradicted(model, profile, own, within.unwrap_or(spread))?,
+        })
+    }
+}
+
+/// Where a smoothing spline is far from the rows, within some m of which it is meant to be.
+fn contradicted(
+    model: &Model,
+    profile: &TableProfile,
+    own: &Smoothing,
+    within: f64,
+) -> Result<Option<Contradicted>, ModelError> {
+    /// Of the tolerance, or of what the rows spread by: noise keeps within two of these.
+    const FAR: f64 = 10.0;
+    let field = match (&own.corners_deg, &own.dwells_deg) {
+        (_, Some(dwells)) if !dwells.is_empty() => "cam.dwells_deg",
+        (Some(_), _) => "cam.corners_deg",
+        _ => return Ok(None),
+    };
+    let cam = Cam::new(model)?;
+    let off = |row: &Row| (cam.lift(row.angle_deg.to_radians()).value - row.lift).abs();
+    let worst = profile.rows.iter().map(|row| (row.angle_deg, off(row))).max_by(|one, two| one.1.total_cmp(&two.1));
+    let least = tolerance::NOISE_SEEN.value * profile.rise();
+    let is_far = |(_, off): &(f64, f64)| *off > FAR * within.max(least);
+    Ok(worst.filter(is_far).map(|(cam_angle_deg, off_m)| Contradicted { field, cam_angle_deg, off_m }))
+}
+
+/// What the noise of a table leaves open of its cam.
+#[derive(Clone, Debug)]
+pub enum LeftOpen {
+    /// As it is told by cams that are as likely.
+    Told(Box<Measured>),
+    /// Of a table of too many rows to be told at once: what its rows spread by, m.
+    Noise(f64),
+}
+
+impl LeftOpen {
+    /// On the cam of a model; none where the rows have no noise.
+    pub fn of(model: &Model) -> Result<Option<Self>, ModelError> {
+        /// Of more rows it takes longer than many a command does.
+        const MOST_ROWS: usize = 4000;
+        let Some(profile) = model.table().filter(|profile| profile.may_be_smoothed()) else { return Ok(None) };
+        let spread = spread(profile);
+        if spread <= tolerance::NOISE_SEEN.value * profile.rise() {
+            return Ok(None);
+        }
+        if profile.rows.len() > MOST_ROWS {
+            return Ok(Some(Self::Noise(spread)));
+        }
+        let measured = Likely::of(model)?.map(|likely| likely.measured).filter(|cam| cam.is_noisy);
+        Ok(measured.map(|measured| Self::Told(Box::new(measured))))
     }
 }

@@ -11,6 +11,7 @@ use corner_impact::model;
 use corner_impact::orbit::Search;
 use corner_impact::progress::Unwatched;
 use corner_impact::section::{StroboscopicMap, next_impact};
+use corner_impact::show::notes;
 use corner_impact::simulate::{Machine, angular_velocity};
 use corner_impact::study::StudyError;
 use corner_impact::study::attractors::{Resolution, Step};
@@ -24,6 +25,7 @@ use corner_impact::study::simulate::{self, Sight, Simulation, Until};
 use corner_impact::study::speeds::{speeds, usual_range};
 use corner_impact::study::verify::{External, verify};
 use numpy::{PyArray1, PyArrayMethods};
+use pyo3::exceptions::{PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyType};
 use rayon::prelude::*;
@@ -58,6 +60,15 @@ impl Model {
         Ok(Self { model, machine })
     }
 
+    /// Read from somewhere, with a warning for each thing that is odd about it.
+    fn read(py: Python<'_>, model: model::Model) -> PyResult<Self> {
+        for note in alone(py, || notes::notes(&model, None))?.or_raise()? {
+            let note = std::ffi::CString::new(note).map_err(|error| PyValueError::new_err(error.to_string()))?;
+            PyErr::warn(py, &py.get_type::<PyUserWarning>(), &note, 1)?;
+        }
+        Self::new(model)
+    }
+
     fn at(&self, rpm: f64) -> PyResult<Machine> {
         Ok(self.machine.at_speed(angular_velocity(values::speed(rpm)?)))
     }
@@ -67,10 +78,11 @@ impl Model {
 impl Model {
     /// The model in a file, with the table of lifts that it names, if any.
     ///
-    /// Raises ModelError where the file cannot be read or a field of it is wrong.
+    /// Warns of what is odd about it, such as a row of the table that is a slip. Raises ModelError where the file cannot be read or a
+    /// field of it is wrong.
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        Self::new(alone(py, || model::Model::read(&path))?.or_raise()?)
+        Self::read(py, alone(py, || model::Model::read(&path))?.or_raise()?)
     }
 
     /// The model that the text of a model file describes; `file` is what complaints call it, and tables of lifts are looked for
@@ -90,7 +102,7 @@ impl Model {
     }
 
     /// The model that a dict describes: the tables and fields of a model file, as dicts, lists (or arrays), text and numbers.
-    /// Lifts of a table may stand in it as `rows`, N x 2: angle in degrees and lift.
+    /// Lifts of a table may stand in it as `rows`, N x 2: angle in degrees and lift. Warns as `load` does.
     ///
     /// >>> import numpy as np
     /// >>> angle = np.arange(0.0, 360.0, 10.0)
@@ -106,7 +118,7 @@ impl Model {
     #[staticmethod]
     #[pyo3(signature = (fields, name="dict"))]
     fn from_dict(fields: &Bound<'_, PyDict>, name: &str) -> PyResult<Self> {
-        Self::new(model::Model::of_document(name, &item(fields.as_any())?).or_raise()?)
+        Self::read(fields.py(), model::Model::of_document(name, &item(fields.as_any())?).or_raise()?)
     }
 
     /// The model of the paper: Osorio, di Bernardo, Santini 2008.
@@ -125,6 +137,21 @@ impl Model {
     #[getter]
     fn source(&self) -> &str {
         &self.model.source
+    }
+
+    /// What there is to say before anything is computed with it, a sentence each: what `load` warns of, at speeds `rpm`, a pair, or
+    /// those of its `[study]`; and how well a measured cam is known.
+    ///
+    /// >>> Model.paper().notes()
+    /// []
+    #[pyo3(signature = (rpm=None))]
+    fn notes(&self, py: Python<'_>, rpm: Option<[f64; 2]>) -> PyResult<Vec<String>> {
+        alone(py, || {
+            let mut said = notes::notes(&self.model, rpm)?;
+            said.extend(notes::as_drawn(&self.model)?);
+            Ok::<_, model::ModelError>(said)
+        })?
+        .or_raise()
     }
 
     /// The model as the text of a model file that needs no other: every number in digits that read back as the same double,

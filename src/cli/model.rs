@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::{CommandError, progress::watched, session::Session, start::finite};
 use crate::model::Model;
 use crate::orbit::Parameter;
-use crate::show::words;
+use crate::show::notes;
 
 /// Which model a command is about.
 #[derive(clap::Args)]
@@ -59,11 +59,8 @@ impl ModelArgument {
         };
         let model = model.changed(&self.changes.numbers)?;
         session.units = model.units.clone();
-        let strays = model.table().map(words::strays).unwrap_or_default();
-        let loose = model.table().and_then(words::loose);
-        let contradicted = words::contradicted(&model)?;
-        for words in model.doubt(session.rpm)?.iter().chain(&strays).chain(&loose).chain(&contradicted) {
-            session.note(words);
+        for words in notes::notes(&model, session.rpm)? {
+            session.note(&words);
         }
         Ok(model)
     }
@@ -71,7 +68,7 @@ impl ModelArgument {
     /// The same for a command whose answer is of the cam as it is drawn: of a measured one it says how far that is known.
     pub(super) fn read_as_drawn(&self, session: &mut Session<'_>) -> Result<Model, CommandError> {
         let model = self.read(session)?;
-        if let Some(words) = words::as_drawn(&model)? {
+        if let Some(words) = notes::as_drawn(&model)? {
             session.note(&words);
         }
         Ok(model)

@@ -29,7 +29,7 @@ pub(super) struct LookArguments {
     /// Leave out the title.
     #[arg(long, requires = "picture")]
     no_title: bool,
-    /// A screen that may be dark, or white paper, for which an SVG brings its letters; PNG and PDF are white on both.
+    /// A screen that may be dark, or white paper; PNG and PDF are white on both.
     #[arg(long, value_enum, value_name = "THEME", requires = "picture")]
     theme: Option<ThemeName>,
 }
@@ -137,7 +137,10 @@ pub(super) struct Canvas {
 impl Canvas {
     /// Begins to write `path`, which names a kind of picture.
     pub(super) fn create(path: &Path, look: Option<Look>) -> Result<Self, CommandError> {
-        Ok(Self { file: Output::file(path)?, kind: kind(path).unwrap_or(Kind::Svg), look: look.unwrap_or_default() })
+        let mut look = look.unwrap_or_default();
+        // A file is to have the same letters wherever it is looked at.
+        look.fonts.get_or_insert_default();
+        Ok(Self { file: Output::file(path)?, kind: kind(path).unwrap_or(Kind::Svg), look })
     }
 
     /// The figure with the units of a model, written but not yet a file of that name.

@@ -1,7 +1,7 @@
 //! Where everything of a figure stands on the page, so that no label covers another.
 //!
 //! The page is as many units wide as its look says, [`WIDTH`] where it says nothing, and as high as it needs to be. Widths of
-//! letters are guessed on the safe side: an SVG is read with whatever sans-serif font there is.
+//! letters are guessed on the safe side: in a page an SVG is read with whatever sans-serif font there is.
 
 use super::ticks::{self, Tick, ticks};
 use super::{Axis, Data, Figure, Mark, Panel};

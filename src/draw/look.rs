@@ -19,7 +19,7 @@ pub enum Theme {
     /// On a screen: an SVG is light or dark as the reader's screen is.
     #[default]
     Screen,
-    /// On white paper, whatever the screen; an SVG brings its letters with it.
+    /// On white paper, whatever the screen.
     Print,
 }
 
@@ -30,7 +30,8 @@ pub struct Look {
     pub width: Option<f64>,
     /// Height of its letters on paper, points; what they have in a figure as wide as a page where there is none.
     pub size: Option<f64>,
-    /// Whose letters; the program's own where there is none.
+    /// Whose letters, which an SVG brings with it then; where there are none those of the page that an SVG stands in, and the program's own
+    /// in a PNG and a PDF.
     pub fonts: Option<Fonts>,
     /// On what it is looked at.
     pub theme: Theme,
@@ -69,11 +70,6 @@ impl Look {
     /// Whether a length on paper is asked for.
     pub(super) fn is_sized(&self) -> bool {
         self.width.is_some() || self.size.is_some() || self.theme == Theme::Print
-    }
-
-    /// Whether an SVG brings its letters with it: where they have been chosen, and in print.
-    pub(super) fn brings_letters(&self) -> bool {
-        self.fonts.is_some() || self.theme == Theme::Print
     }
 
     /// The title that stands above a figure.

@@ -42,7 +42,7 @@ const IDENTITY: SystemInfo<'_> = SystemInfo { registry: Str(b"Adobe"), ordering:
 /// The figure on one page that is as large as it is.
 pub fn render(figure: &Figure, look: &Look) -> Result<Vec<u8>, PdfError> {
     let fonts = look.fonts.clone().unwrap_or_default();
-    let tree = fonts.tree(&svg::document(figure, look, "")?)?;
+    let tree = fonts.tree(&svg::document(figure, look)?)?;
     let mut writer =
         Writer { pdf: Pdf::new(), last: 0, page: Content::new(), images: Vec::new(), opacities: Vec::new() };
     let [catalog, pages, page, contents, info] = [(); 5].map(|()| writer.next());

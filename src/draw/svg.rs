@@ -6,6 +6,7 @@ use std::fmt::{self, Write};
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use resvg::usvg::Tree;
 
 use super::element::{escaped, fill, markers, number, stroke, stroked};
 use super::font::{cut, used};
@@ -33,15 +34,21 @@ pub enum SvgError {
 
 /// The figure as an SVG document.
 pub fn render(figure: &Figure, look: &Look) -> Result<String, SvgError> {
-    let letters = if look.brings_letters() { letters(figure, look)? } else { String::new() };
-    Ok(document(figure, look, &letters)?)
+    const HEAD: &str = "</title>\n";
+    let own = document(figure, look)?;
+    match &look.fonts {
+        Some(fonts) => {
+            let letters = format!("{HEAD}<style>{}</style>\n", letters(&fonts.tree(&own)?)?.trim_end());
+            Ok(own.replacen(HEAD, &letters, 1))
+        }
+        None => Ok(own),
+    }
 }
 
-/// The letters that a figure has, for its style.
-fn letters(figure: &Figure, look: &Look) -> Result<String, SvgError> {
-    let tree = look.fonts.clone().unwrap_or_default().tree(&document(figure, look, "")?)?;
+/// The letters that a figure has, for a style.
+fn letters(tree: &Tree) -> Result<String, fmt::Error> {
     let mut faces = String::new();
-    for (id, glyphs) in used(&tree) {
+    for (id, glyphs) in used(tree) {
         let name = tree.fontdb().face(id).and_then(|face| Some(face.families.first()?.0.clone())).unwrap_or_default();
         let face = tree.fontdb().with_face_data(id, |data, index| cut(data, index, &glyphs)).flatten();
         if let Some(face) = face {
@@ -52,9 +59,9 @@ fn letters(figure: &Figure, look: &Look) -> Result<String, SvgError> {
     Ok(faces)
 }
 
-/// The document, with what its style says of letters.
-pub(super) fn document(figure: &Figure, look: &Look, letters: &str) -> Result<String, fmt::Error> {
-    let drawings = write(figure, look, letters, false)?.into_iter().filter_map(|layer| match layer {
+/// The document, without the letters that it has.
+pub(super) fn document(figure: &Figure, look: &Look) -> Result<String, fmt::Error> {
+    let drawings = write(figure, look, false)?.into_iter().filter_map(|layer| match layer {
         Layer::Drawing(text) => Some(text),
         Layer::Grid(..) => None,
     });
@@ -62,7 +69,7 @@ pub(super) fn document(figure: &Figure, look: &Look, letters: &str) -> Result<St
 }
 
 /// The figure in layers, dense grids among them if they are to stand `apart`, else one document.
-pub(super) fn write(figure: &Figure, look: &Look, letters: &str, apart: bool) -> Result<Vec<Layer>, fmt::Error> {
+pub(super) fn write(figure: &Figure, look: &Look, apart: bool) -> Result<Vec<Layer>, fmt::Error> {
     let wide = look.across();
     let layout = Layout::new(figure, look.title(figure), wide);
     let height = layout.height;
@@ -71,15 +78,16 @@ pub(super) fn write(figure: &Figure, look: &Look, letters: &str, apart: bool) ->
         true => format!(r#"width="{}pt" height="{}pt""#, number(look.points()), number(look.points() * height / wide)),
         false => r#"width="100%""#.into(),
     };
-    let chosen = look.brings_letters().then(|| look.fonts.clone().unwrap_or_default());
-    let family = chosen.map(|fonts| format!("'{}', ", escaped(fonts.family()))).unwrap_or_default();
+    let family = look.fonts.as_ref().map(|fonts| format!("'{}', ", escaped(fonts.family()))).unwrap_or_default();
     let page = format!(
         r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {wide} {height}" {size} role="img" font-family="{family}sans-serif" font-size="{TEXT}">"#
     );
     let ink = format!("<g {}>", fill(Colour::Ink));
     let mut out = Sheet::new(format!("{page}\n{ink}\n"), apart);
     writeln!(out, "{page}\n<title>{}</title>", escaped(&figure.title))?;
-    style(&mut out, look.theme, letters)?;
+    if look.theme == Theme::Screen {
+        style(&mut out)?;
+    }
     writeln!(out, r##"<rect class="paper" width="{wide}" height="{height}" fill="#ffffff"/>"##)?;
     writeln!(out, "{ink}")?;
     for line in &layout.title {
@@ -104,12 +112,9 @@ pub(super) fn write(figure: &Figure, look: &Look, letters: &str, apart: bool) ->
     Ok(out.layers())
 }
 
-/// The letters that come with the document, and colours on a dark screen; nothing where there are neither.
-fn style(out: &mut Sheet, theme: Theme, letters: &str) -> fmt::Result {
-    if theme == Theme::Print {
-        return if letters.is_empty() { Ok(()) } else { writeln!(out, "<style>{}</style>", letters.trim_end()) };
-    }
-    write!(out, "<style>{letters}@media screen and (prefers-color-scheme: dark) {{ .paper {{ fill: {DARK_PAPER} }}")?;
+/// Colours on a dark screen.
+fn style(out: &mut Sheet) -> fmt::Result {
+    write!(out, "<style>@media screen and (prefers-color-scheme: dark) {{ .paper {{ fill: {DARK_PAPER} }}")?;
     for (class, _, dark) in Colour::ALL.map(Colour::shades) {
         write!(out, " .s-{class} {{ stroke: {dark} }} .f-{class} {{ fill: {dark} }}")?;
     }

@@ -12,9 +12,29 @@ use crate::study::speeds::{Attractor, Speeds};
 /// The colours of attractors, and the marks by which those are told apart without them.
 const COLOURS: [Colour; 4] = [Colour::Blue, Colour::Vermilion, Colour::Green, Colour::Purple];
 const MARKERS: [Marker; 4] = [Marker::Dot, Marker::Ring, Marker::Triangle, Marker::Square];
+/// The same of those whose impacts are a cloud.
+const OF_CLOUDS: [Marker; 4] = [Marker::Diamond, Marker::Cross, Marker::Plus, Marker::Below];
 
-fn marker(colour: Colour) -> Marker {
-    COLOURS.iter().zip(MARKERS).find(|(known, _)| **known == colour).map_or(Marker::Dot, |(_, marker)| marker)
+fn marker(attractor: &Attractor, colour: Colour) -> Marker {
+    let markers = if is_cloud(attractor) { OF_CLOUDS } else { MARKERS };
+    COLOURS.iter().zip(markers).find(|(known, _)| **known == colour).map_or(Marker::Dot, |(_, marker)| marker)
+}
+
+/// Whether it has more impacts than can be marked one by one.
+fn is_cloud(attractor: &Attractor) -> bool {
+    attractor.kind != Kind::Periodic
+}
+
+/// A few impacts of a cloud, over all of its speeds: in grey they tell it from another.
+fn few(attractor: &Attractor) -> impl Iterator<Item = [f64; 2]> {
+    /// At so many of its speeds, and of the impacts of each, at most.
+    const FEW: [usize; 2] = [8, 3];
+    let speeds = attractor.at.iter().filter(|at| !at.impact_angles.is_empty());
+    let apart = attractor.at.len().div_ceil(FEW[0]).max(1);
+    speeds.skip(apart / 2).step_by(apart).flat_map(|at| {
+        let apart = at.impact_angles.len().div_ceil(FEW[1]);
+        at.impact_angles.iter().step_by(apart.max(1)).map(|phase| [at.rpm, phase.to_degrees()])
+    })
 }
 
 /// Each kind of motion with the stroke of its bar.
@@ -38,17 +58,27 @@ pub fn speeds_figure(found: &Speeds, corners: &[CornerMark], across: f64) -> Fig
         Series::area("", Colour::Grey, Stroke::Thin, corners).if_any()
     };
     let mut impacts: Vec<Series> = shade(WHOLE_CAM[1]).into_iter().collect();
-    impacts.extend(each().filter_map(|(index, attractor)| {
-        let places =
-            attractor.at.iter().flat_map(|at| at.impact_angles.iter().map(|phase| [at.rpm, phase.to_degrees()]));
-        if attractor.kind == Kind::Periodic {
-            let points = Series::points("", colour(index), marker(colour(index)), places);
-            return points.called(&attractor.id).if_any();
-        }
-        let mut points = Density::new(found.rpm, WHOLE_CAM);
-        places.for_each(|[rpm, degrees]| points.push(rpm, degrees));
-        Some(Series::new("", colour(index), Data::Density(points)).called(&attractor.id))
-    }));
+    impacts.extend(
+        each()
+            .flat_map(|(index, attractor)| {
+                let places = attractor
+                    .at
+                    .iter()
+                    .flat_map(|at| at.impact_angles.iter().map(|phase| [at.rpm, phase.to_degrees()]));
+                let marked = |places| {
+                    let points = Series::points("", colour(index), marker(attractor, colour(index)), places);
+                    points.called(&attractor.id).if_any()
+                };
+                if !is_cloud(attractor) {
+                    return [marked(places.collect::<Vec<_>>()), None];
+                }
+                let mut points = Density::new(found.rpm, WHOLE_CAM);
+                places.for_each(|[rpm, degrees]| points.push(rpm, degrees));
+                let cloud = Series::new("", colour(index), Data::Density(points)).called(&attractor.id);
+                [Some(cloud), marked(few(attractor).collect())]
+            })
+            .flatten(),
+    );
     let impacts = Panel::new(impact_angles().over(WHOLE_CAM), 0.42, impacts);
     let impacts = Panel { marks: corners.iter().map(CornerMark::mark).collect(), ..impacts };
     let shares = each().map(|(index, attractor)| {
@@ -60,10 +90,12 @@ pub fn speeds_figure(found: &Speeds, corners: &[CornerMark], across: f64) -> Fig
     let shares = Panel::new(Axis::new("share of starts", "%").over(SHARES), 0.14, shares);
     let title = format!("{}: attractors from {} to {} rpm", found.model, found.rpm[0], found.rpm[1]);
     let axis = Axis::new(SPEED[0], SPEED[1]).over(found.rpm);
-    let mut figure = Figure::new(&title, axis, vec![impacts, bars(found, &colours, across), shares]);
-    if !found.coexistence.is_empty() {
-        figure.note = "grey: several attractors, each reached by runs".into();
-    }
+    let placed = placed(found, &colours, across);
+    let unnamed = placed.0.iter().filter(|(.., beside)| beside.is_none()).count();
+    let mut figure = Figure::new(&title, axis, vec![impacts, bars(placed), shares]);
+    let several = (!found.coexistence.is_empty()).then(|| "grey: several attractors, each reached by runs".to_owned());
+    let short = (unnamed > 0).then(|| format!("lowest lane: {unnamed} over short ranges, without names"));
+    figure.note = several.into_iter().chain(short).collect::<Vec<_>>().join("; ");
     figure
 }
 
@@ -94,47 +126,72 @@ fn colours(found: &Speeds) -> Vec<Colour> {
 /// The axis of shares, a little wider than they can be.
 const SHARES: [f64; 2] = [-5.0, 105.0];
 
-/// The range of speeds of each attractor as a bar, stroked by its kind, in as few lanes as they fit into.
-fn bars(found: &Speeds, colours: &[Colour], across: f64) -> Panel {
+/// An attractor, its lane, the uppermost being 0, and the side of its beginning on which its name stands; none of one that is too
+/// short to be seen where there are many.
+type Placed<'a> = (&'a Attractor, Colour, usize, Option<Beside>);
+
+/// The attractors in as few lanes as they and their names fit into, and how many lanes that are.
+fn placed<'a>(found: &'a Speeds, colours: &[Colour], across: f64) -> (Vec<Placed<'a>>, usize) {
     /// Of the range: what is left between two bars of a lane.
     const APART: f64 = 0.004;
     /// Of the page's width: what labels take on either side of the frame.
     const LABELS: f64 = 130.0;
+    /// More lanes are not looked through: what is shorter than this part of the range stands in one of its own then.
+    const LOOKED_THROUGH: usize = 12;
+    const SHORT: f64 = 0.01;
     let span = found.rpm[1] - found.rpm[0];
     // What a name takes of the range, with half a letter's room.
-    let name = |id: &str| (width(id, TEXT) + 0.5 * TEXT) / (across - LABELS).max(LABELS);
-    let mut lanes: Vec<f64> = Vec::new();
-    let placed: Vec<(&Attractor, f64)> = found
-        .attractors
-        .iter()
-        .map(|attractor| {
-            let [from, to] = attractor.rpm;
-            let lane = lanes.iter().position(|end| *end + APART * span < from).unwrap_or(lanes.len());
-            lanes.resize(lanes.len().max(lane + 1), f64::NEG_INFINITY);
-            lanes[lane] = to.max(from + name(&attractor.id) * span);
-            (attractor, -(lane as f64))
-        })
-        .collect();
+    let name = |attractor: &Attractor| span * (width(&attractor.id, TEXT) + 0.5 * TEXT) / (across - LABELS).max(LABELS);
+    let each = || found.attractors.iter().zip(colours);
+    let lanes = |named: &dyn Fn(&Attractor) -> bool| {
+        let mut ends: Vec<f64> = Vec::new();
+        let mut placed = Vec::new();
+        for (attractor, colour) in each().filter(|(attractor, _)| named(attractor)) {
+            let ([from, to], name) = (attractor.rpm, name(attractor));
+            // At the right edge there is no room beside the bar's beginning but on the left.
+            let (beside, taken) = if from + name > found.rpm[1] {
+                (Beside::AboveLeft, [from - name, to])
+            } else {
+                (Beside::AboveRight, [from, to.max(from + name)])
+            };
+            let lane = ends.iter().position(|end| *end + APART * span < taken[0]).unwrap_or(ends.len());
+            ends.resize(ends.len().max(lane + 1), f64::NEG_INFINITY);
+            ends[lane] = taken[1];
+            placed.push((attractor, *colour, lane, Some(beside)));
+        }
+        (placed, ends.len())
+    };
+    let all = lanes(&|_| true);
+    if all.1 <= LOOKED_THROUGH {
+        return all;
+    }
+    let is_long = |attractor: &Attractor| attractor.rpm[1] - attractor.rpm[0] >= SHORT * span;
+    let (mut placed, count) = lanes(&is_long);
+    placed.extend(each().filter(|(one, _)| !is_long(one)).map(|(short, colour)| (short, *colour, count, None)));
+    (placed, count + 1)
+}
+
+/// The range of speeds of each attractor as a bar, stroked by its kind.
+fn bars((placed, lanes): (Vec<Placed<'_>>, usize)) -> Panel {
+    let place = |lane: usize| -(lane as f64);
     let bars = BARS.iter().filter_map(|(kind, stroke)| {
-        let of_kind = placed.iter().filter(|(attractor, _)| attractor.kind == *kind);
-        let points =
-            of_kind.flat_map(|(attractor, lane)| [BREAK, [attractor.rpm[0], *lane], [attractor.rpm[1], *lane]]);
+        let of_kind = placed.iter().filter(|(attractor, ..)| attractor.kind == *kind);
+        let points = of_kind.flat_map(|(attractor, _, lane, _)| {
+            [BREAK, [attractor.rpm[0], place(*lane)], [attractor.rpm[1], place(*lane)]]
+        });
         Series::line(words::kind(*kind), Colour::Ink, *stroke, points).if_any()
     });
     // In the middle of each bar stands what the attractor has above.
-    let marks = placed.iter().zip(colours).filter_map(|((attractor, lane), colour)| {
-        let middle = [0.5 * (attractor.rpm[0] + attractor.rpm[1]), *lane];
-        let cloud = attractor.kind != Kind::Periodic;
-        Series::points("", *colour, if cloud { Marker::Dot } else { marker(*colour) }, [middle]).if_any()
+    let marks = placed.iter().map(|(attractor, colour, lane, _)| {
+        let middle = [0.5 * (attractor.rpm[0] + attractor.rpm[1]), place(*lane)];
+        Series::points("", *colour, marker(attractor, *colour), [middle])
     });
-    // At the right edge there is no room beside the bar's beginning but on the left.
-    let names = placed.iter().map(|(attractor, lane)| {
-        let is_last = attractor.rpm[0] + name(&attractor.id) * span > found.rpm[1];
-        let beside = if is_last { Beside::AboveLeft } else { Beside::AboveRight };
-        Word::new([attractor.rpm[0], *lane], &attractor.id, beside)
+    let names = placed.iter().filter_map(|(attractor, _, lane, beside)| {
+        Some(Word::new([attractor.rpm[0], place(*lane)], &attractor.id, (*beside)?))
     });
     let series = bars.chain(marks).chain(Series::words(names).if_any()).collect();
-    let lanes = [-(lanes.len() as f64) + 0.5, 0.9];
-    let axis = Axis { spacing: Spacing::Nothing, ..Axis::new("attractor", "").over(lanes) };
-    Panel::new(axis, 0.06 + 0.03 * (lanes[1] - lanes[0]), series)
+    // Above the first lane its names have room in a narrow figure, too.
+    let range = [0.5 + place(lanes), 1.3];
+    let axis = Axis { spacing: Spacing::Nothing, ..Axis::new("attractor", "").over(range) };
+    Panel::new(axis, 0.05 + 0.03 * (range[1] - range[0]), series)
 }

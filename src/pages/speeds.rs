@@ -46,11 +46,25 @@ pub(crate) fn together(found: &Speeds) -> Vec<Words> {
     joined.into_iter().map(|[from, to]| words![open_to(found, from), "–", open_to(found, to)]).collect()
 }
 
+/// Where attractors begin and end.
+fn ends(found: &Speeds) -> impl Iterator<Item = &Change> {
+    found.attractors.iter().flat_map(|attractor| attractor.birth.iter().chain(&attractor.death))
+}
+
 /// A speed at which an attractor begins or ends, in no more digits than a measured cam leaves it.
 fn open_to(found: &Speeds, rpm: f64) -> Words {
-    let ends = found.attractors.iter().flat_map(|attractor| attractor.birth.iter().chain(&attractor.death));
-    let error = ends.filter(|end| end.rpm == rpm).find_map(|end| end.error);
-    words![(rpm, error.map_or(Digits::Fixed(2), |error| with_error(error).0))]
+    match ends(found).find(|end| end.rpm == rpm) {
+        Some(end) => words![(rpm, open(found, end).map_or(Digits::Fixed(2), |error| with_error(error).0))],
+        None => words![(rpm, Digits::Fixed(2))],
+    }
+}
+
+/// How far a measured cam may have moved an end, as far as digits go, rpm: one of which that is not known has no more of them than
+/// the best known, and no decimals where none is known.
+fn open(found: &Speeds, end: &Change) -> Option<f64> {
+    const WHOLE: f64 = 10.0;
+    let best = || ends(found).filter_map(|end| end.error).reduce(f64::min);
+    end.error.or_else(|| is_noisy(found).then(|| best().unwrap_or(WHOLE)))
 }
 
 /// Where the follower first leaves the cam.
@@ -77,25 +91,32 @@ pub(crate) fn measured_speed(rpm: f64, digits: Digits, error: Option<f64>, cam: 
     }
 }
 
+/// Whether a measured cam leaves the speeds open, farther than digits are printed.
+fn is_noisy(found: &Speeds) -> bool {
+    found.measured.as_ref().is_some_and(|cam| cam.is_noisy)
+}
+
 /// How it was found out, and what that can miss.
 pub(crate) fn how(found: &Speeds) -> String {
+    const LOCATED: &str = " A speed with six decimals was located by the equations of what happens there; others are known from runs \
+                           alone, to the digits shown.";
     let listed = if found.two_impacts { ", and of two in one that a search by intervals finds" } else { "" };
     format!(
         "Sampled: {} starts at each of the speeds {} rpm apart, on the cam at any angle and up to the velocity that impacts keep \
          up; rest on the cam wherever that lets go; and the stable orbits of one impact in up to three revolutions{listed}. Another \
-         attractor with a basin of less than {:.1} % of the starts may be missed at a speed, and what is there between two speeds only. \
-         A speed with six decimals was located by the equations of what happens there; others are known from runs alone, to the digits shown.",
+         attractor with a basin of less than {:.1} % of the starts may be missed at a speed, and what is there between two speeds only.{}",
         found.starts,
         found.step,
-        100.0 * found.missed()
+        100.0 * found.missed(),
+        if is_noisy(found) { "" } else { LOCATED }
     )
 }
 
 /// What errors stand for, where the cam is measured.
 pub(crate) fn cam(measured: &Measured) -> Option<Block> {
     let words = format!(
-        "± is what the cam leaves open, {}: how far the event moves among cams that are as likely. A speed without it is of the cam as \
-         it is drawn through the rows.",
+        "± is what the cam leaves open, {}: how far the event moves among cams that are as likely. It is ? where that is not known: \
+         the event is not there on each of those cams, or runs could not tell.",
         words::accuracy(measured)
     );
     measured.is_noisy.then(|| Block::paragraph(words))
@@ -142,7 +163,7 @@ pub(crate) fn table(found: &Speeds) -> Table {
             _ => String::new(),
         };
         let ends = [&attractor.birth, &attractor.death];
-        let [from, to] = [0, 1].map(|side| speed(attractor.rpm[side], ends[side].as_ref()));
+        let [from, to] = [0, 1].map(|side| speed(found, attractor.rpm[side], ends[side].as_ref()));
         let ends = ends.map(|end| end.as_ref().map_or(String::new(), words::change)).join(" – ");
         table.row([
             attractor.id.as_str().into(),
@@ -157,17 +178,15 @@ pub(crate) fn table(found: &Speeds) -> Table {
 }
 
 /// A speed to the digits that it is known to.
-fn speed(rpm: f64, change: Option<&Change>) -> Words {
+fn speed(found: &Speeds, rpm: f64, change: Option<&Change>) -> Words {
     /// Of a located speed.
     const LOCATED: f64 = 6.0;
-    let places = match change {
-        None => return words![(rpm, Digits::UpTo(LOCATED as usize))],
-        Some(Change { error: Some(error), .. }) => {
-            let (digits, error) = with_error(*error);
-            return words![(rpm, digits), " ± ", (error, digits)];
-        }
-        Some(change) if change.is_located() => LOCATED,
-        Some(change) => (-(change.bracket[1] - change.bracket[0]).log10()).ceil().clamp(0.0, LOCATED),
+    let Some(change) = change else { return words![(rpm, Digits::UpTo(LOCATED as usize))] };
+    let places = match open(found, change).map(with_error) {
+        Some((digits, error)) if change.error.is_some() => return words![(rpm, digits), " ± ", (error, digits)],
+        Some((digits, _)) => return words![(rpm, digits), " ± ?"],
+        None if change.is_located() => LOCATED,
+        None => (-(change.bracket[1] - change.bracket[0]).log10()).ceil().clamp(0.0, LOCATED),
     };
     words![(rpm, Digits::Fixed(places as usize))]
 }

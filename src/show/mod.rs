@@ -10,6 +10,7 @@ pub(crate) mod formula;
 pub(crate) mod html;
 pub mod json;
 pub mod markdown;
+pub mod notes;
 pub(crate) mod page;
 pub(crate) mod words;
 

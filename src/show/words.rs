@@ -7,12 +7,12 @@ use crate::border_collision::conditions::Decides;
 use crate::border_collision::feigin::{Scenario, Speeds};
 use crate::border_collision::long_run::{Chaos, End};
 use crate::border_collision::validity::{Compared, Ends};
-use crate::cam::{self, Cam, Side, Stray, spread};
+use crate::cam::Side;
 use crate::corner::map::RouteName;
 use crate::covering::Unproved;
 use crate::covering::prove::Relation;
-use crate::measured::{Likely, Measured};
-use crate::model::{Model, ModelError, Reading, Row, Separator, TableProfile, Tolerance};
+use crate::measured::Measured;
+use crate::model::{Reading, Separator};
 use crate::orbit::branch::{self, Bifurcation};
 use crate::orbit::ending::{Ending, Kind};
 use crate::published::Verdict;
@@ -20,7 +20,6 @@ use crate::show::block::{Mark, Symbol, Words, words};
 use crate::show::digits::Digits;
 use crate::study::attractors::{Cause, Change};
 use crate::study::speeds::Attractor;
-use crate::tolerance;
 
 /// A route's name.
 pub(crate) fn route(name: RouteName) -> String {
@@ -308,96 +307,6 @@ pub(crate) fn range(ends: [f64; 2], digits: Digits) -> String {
     }
 }
 
-/// Rows of a table that are far from where the rows beside them say, each in a sentence; only the first are named.
-pub(crate) fn strays(profile: &TableProfile) -> Vec<String> {
-    /// How many are named.
-    const NAMED: usize = 3;
-    let reading = &profile.reading;
-    let told = |Stray { line, cam_angle_deg, lift_m, off_m }: &Stray| {
-        let place = profile.file.as_ref().map_or("cam.rows".into(), |file| format!("{file}, line {line}"));
-        let (lift, off, unit) = (reading.in_model.told(*lift_m), reading.in_model.told(*off_m), &reading.unit);
-        let side = if off < 0.0 { "below" } else { "above" };
-        let off = Digits::Aligned(2).text(off.abs());
-        format!(
-            "{place}: lift {lift} at {cam_angle_deg} deg is {off} {unit} {side} what the rows beside it tell: a slip, or does the cam turn \
-             sharply there?"
-        )
-    };
-    let strays = cam::strays(profile);
-    let mut told: Vec<String> = strays.iter().take(NAMED).map(told).collect();
-    if strays.len() > NAMED {
-        told.push(format!("{} more rows are off as well: `cam --json` lists them", strays.len() - NAMED));
-    }
-    told
-}
-
-/// That a smoothing spline may be farther from the rows than they are from a motion, where it may by much.
-pub(crate) fn loose(profile: &TableProfile) -> Option<String> {
-    let Tolerance::Within(within) = profile.spline.smoothing()?.tolerance else { return None };
-    let spread = spread(profile);
-    let reading = &profile.reading;
-    let told = |length: f64| Digits::Aligned(2).text(reading.in_model.told(length));
-    (spread < tolerance::SMOOTHED_AWAY.value * within).then(|| {
-        format!(
-            "cam.tolerance: {} {unit} is far more than the rows spread by, some {} {unit}; the spline may leave out what the cam has, and ± \
-             does not know of that",
-            told(within),
-            told(spread),
-            unit = reading.unit
-        )
-    })
-}
-
-/// That corners or dwells that were given keep a smoothing spline away from the rows.
-pub(crate) fn contradicted(model: &Model) -> Result<Option<String>, ModelError> {
-    /// Of the tolerance, or of what the rows spread by: noise keeps within two of these.
-    const FAR: f64 = 10.0;
-    let smoothed = model.table().and_then(|profile| Some((profile, profile.spline.smoothing()?)));
-    let Some((profile, own)) = smoothed else { return Ok(None) };
-    let given = match (&own.corners_deg, &own.dwells_deg) {
-        (_, Some(dwells)) if !dwells.is_empty() => "cam.dwells_deg",
-        (Some(_), _) => "cam.corners_deg",
-        _ => return Ok(None),
-    };
-    let cam = Cam::new(model)?;
-    let within = if let Tolerance::Within(within) = own.tolerance { within } else { spread(profile) };
-    let off = |row: &Row| (cam.lift(row.angle_deg.to_radians()).value - row.lift).abs();
-    let worst = profile.rows.iter().max_by(|one, two| off(one).total_cmp(&off(two)));
-    let (reading, least) = (&profile.reading, tolerance::NOISE_SEEN.value * profile.rise());
-    Ok(worst.filter(|worst| off(worst) > FAR * within.max(least)).map(|worst| {
-        format!(
-            "{given}: the rows are otherwise: at {} deg the cam is {} {} from them",
-            worst.angle_deg,
-            Digits::Aligned(2).text(reading.in_model.told(off(worst))),
-            reading.unit
-        )
-    }))
-}
-
-/// How well the cam is known that an answer without a ± of its own is about; none where the rows have no noise.
-pub(crate) fn as_drawn(model: &Model) -> Result<Option<String>, ModelError> {
-    /// Of more rows it takes longer than many a command does.
-    const MOST_ROWS: usize = 4000;
-    let Some(profile) = model.table().filter(|profile| profile.may_be_smoothed()) else { return Ok(None) };
-    let spread = spread(profile);
-    if spread <= tolerance::NOISE_SEEN.value * profile.rise() {
-        return Ok(None);
-    }
-    let (accuracy, open) = if profile.rows.len() <= MOST_ROWS {
-        let Some(measured) = Likely::of(model)?.map(|likely| likely.measured).filter(|cam| cam.is_noisy) else {
-            return Ok(None);
-        };
-        let percent = Digits::Aligned(2).text(100.0 * measured.curvature_error / measured.largest_curvature);
-        (accuracy(&measured), format!("to {percent} % of its largest value"))
-    } else {
-        (measured_to(&profile.reading, spread), "as far as `cam` tells".into())
-    };
-    Ok(Some(format!(
-        "{accuracy}, which leaves the cam's second derivative open {open}; what follows is of the cam as it is drawn through the rows, \
-         without a ±: `speeds`, `design` and `orbit` tell theirs"
-    )))
-}
-
 /// What a table of lifts is not exact for.
 pub(crate) fn accuracy(measured: &Measured) -> String {
     let reading = &measured.reading;
@@ -407,7 +316,8 @@ pub(crate) fn accuracy(measured: &Measured) -> String {
     }
 }
 
-fn measured_to(reading: &Reading, noise: f64) -> String {
+/// The same of one that is not rounded, by the noise of its lifts, m.
+pub(crate) fn measured_to(reading: &Reading, noise: f64) -> String {
     format!("lift measured to {} {}", Digits::Aligned(2).text(reading.in_model.told(noise)), reading.unit)
 }
 

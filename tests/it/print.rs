@@ -16,7 +16,7 @@ use corner_impact::figures::{cam_figure, corner_marks, impact_diagram, speeds_fi
 use corner_impact::model::{Model, OSORIO_2008};
 use corner_impact::progress::Unwatched;
 use corner_impact::study::attractors::{Resolution, Step};
-use corner_impact::study::speeds::speeds;
+use corner_impact::study::speeds::{Attractor, Speeds, speeds};
 use flate2::read::ZlibDecoder;
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::fontdb::Source;
@@ -191,7 +191,7 @@ fn an_svg_brings_its_letters() {
         panel.series.pop();
         panel.y = Axis::new("é", "");
     }
-    let look = column();
+    let look = Look { fonts: Some(Fonts::default()), ..column() };
     let text = svg::render(&figure, &look).unwrap();
     let brought = text.split("font/ttf;base64,").nth(1).and_then(|rest| STANDARD.decode(rest.split(')').next()?).ok());
     let brought = brought.unwrap();
@@ -206,7 +206,17 @@ fn an_svg_brings_its_letters() {
     };
     let [brought, full, none] = [brought.as_slice(), epaint_default_fonts::UBUNTU_LIGHT, &[]].map(image);
     assert!(brought == full && full != none);
+    // In a page it has those of the page, and in a file of its own the program's.
     assert!(!svg::render(&figure, &Look::default()).unwrap().contains("@font-face"));
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("cam.svg");
+    assert!(
+        common::corner_impact(["cam", "models/osorio-2008.toml", "--out", file.to_str().unwrap()]).status.success()
+    );
+    let text = std::fs::read_to_string(file).unwrap();
+    assert!(
+        text.contains("font-family=\"'Ubuntu', sans-serif\"") && text.contains("@font-face { font-family: 'Ubuntu';")
+    );
 }
 
 /// Letters of a PDF can be looked for and copied: glyphs, by the table that says what they stand for, are the words.
@@ -299,8 +309,41 @@ fn attractors_are_told_apart_by_shapes() {
     };
     let [places, bars] = [&figure.panels[0], &figure.panels[1]].map(shapes);
     let (colours, markers): (BTreeSet<_>, BTreeSet<_>) = places.iter().cloned().unzip();
-    assert!(colours.len() > 1 && colours.len() == markers.len() && places.len() == colours.len(), "{places:?}");
+    assert!(colours.len() > 1 && markers.len() == places.len(), "{places:?}");
+    assert!(markers.contains("Diamond"), "a cloud has its own: {places:?}");
     assert!(places.is_subset(&bars), "{places:?}, {bars:?}");
+}
+
+/// Names stand beside each other or in lanes, also at the right edge; of many attractors those that are there for a short range have none.
+#[test]
+fn names_of_attractors_have_room() {
+    let model = common::osorio();
+    let resolution = Resolution { step: Step::for_speeds([700.0, 701.0], 2), starts: 4, two_impacts: false };
+    let mut found = speeds(&model, [700.0, 701.0], resolution, &Unwatched).unwrap();
+    let [wide, narrow] = [240.0, WIDTH];
+    let one = found.attractors[0].clone();
+    let over = |from: f64, to: f64, index: usize| Attractor { id: format!("A{index}"), rpm: [from, to], ..one.clone() };
+    let words = |found: &Speeds, across: f64| {
+        let figure = speeds_figure(found, &[], across);
+        let bars = figure.panels[1].series.iter();
+        let words =
+            bars.filter_map(|series| if let Data::Words(words) = &series.data { Some(words.clone()) } else { None });
+        (words.flatten().collect::<Vec<_>>(), figure.note)
+    };
+    found.attractors = vec![over(700.0, 700.9, 1), over(700.95, 701.0, 2), over(700.96, 701.0, 3)];
+    for across in [narrow, wide] {
+        let (words, _) = words(&found, across);
+        // The first name ends before the second begins, which ends before its bar does.
+        let lanes: Vec<f64> = words.iter().map(|word| word.at[1]).collect();
+        assert_eq!(lanes, [0.0, -1.0, -2.0], "{across}: {words:?}");
+    }
+    found.attractors[0].rpm[1] = 700.2;
+    let (few, note) = words(&found, WIDTH);
+    assert_eq!((few[0].at[1], few[1].at[1], few.len(), note.as_str()), (0.0, 0.0, 3, ""), "{few:?}");
+    found.attractors.extend((4..40).map(|index| over(700.5, 700.501, index)));
+    let (many, note) = words(&found, WIDTH);
+    assert_eq!(many.len(), 3, "{many:?}");
+    assert_eq!(note, "lowest lane: 36 over short ranges, without names");
 }
 
 /// Every command that draws has the options of paper.
