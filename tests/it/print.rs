@@ -320,7 +320,6 @@ fn names_of_attractors_have_room() {
     let model = common::osorio();
     let resolution = Resolution { step: Step::for_speeds([700.0, 701.0], 2), starts: 4, two_impacts: false };
     let mut found = speeds(&model, [700.0, 701.0], resolution, &Unwatched).unwrap();
-    let [wide, narrow] = [240.0, WIDTH];
     let one = found.attractors[0].clone();
     let over = |from: f64, to: f64, index: usize| Attractor { id: format!("A{index}"), rpm: [from, to], ..one.clone() };
     let words = |found: &Speeds, across: f64| {
@@ -330,8 +329,8 @@ fn names_of_attractors_have_room() {
             bars.filter_map(|series| if let Data::Words(words) = &series.data { Some(words.clone()) } else { None });
         (words.flatten().collect::<Vec<_>>(), figure.note)
     };
-    found.attractors = vec![over(700.0, 700.9, 1), over(700.95, 701.0, 2), over(700.96, 701.0, 3)];
-    for across in [narrow, wide] {
+    found.attractors = vec![over(700.0, 700.94, 1), over(700.97, 701.0, 2), over(700.98, 701.0, 3)];
+    for across in [240.0, WIDTH] {
         let (words, _) = words(&found, across);
         // The first name ends before the second begins, which ends before its bar does.
         let lanes: Vec<f64> = words.iter().map(|word| word.at[1]).collect();

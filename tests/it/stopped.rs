@@ -165,6 +165,33 @@ fn a_script_ends_with_the_program() {
     }
 }
 
+/// The folder of a program that runs is left alone, that of one that was killed goes with the next that makes one.
+#[test]
+fn what_was_killed_leaves_nothing_for_long() {
+    let (folder, scripts) = (TempDir::new().unwrap(), TempDir::new().unwrap());
+    let written = || fs::read_dir(&scripts).unwrap().map(|entry| entry.unwrap().path()).collect::<Vec<_>>();
+    let (python, begun) = (folder.path().join("python"), folder.path().join("begun"));
+    fs::write(&python, format!("#!/bin/sh\necho > {}\nexec sleep 6000\n", begun.display())).unwrap();
+    fs::set_permissions(&python, fs::Permissions::from_mode(0o755)).unwrap();
+    let verify = |python: &Path| {
+        let mut command = common::program(["verify"]);
+        command.env("CORNER_IMPACT_PYTHON", python).env("TMPDIR", scripts.path()).process_group(0);
+        command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
+    };
+    let mut killed = verify(&python);
+    wait_until(&mut killed, |_| begun.exists(), "verify");
+    let first = written();
+    verify(Path::new("false")).wait().unwrap();
+    assert!(!first.is_empty() && first.iter().all(|folder| folder.exists()), "{first:?}");
+    // With the scripts, which would sleep on.
+    let group = format!("-{}", killed.id());
+    assert!(Command::new("kill").args(["-KILL", "--", &group]).status().unwrap().success());
+    assert_eq!(killed.wait().unwrap().signal(), Some(9));
+    assert!(!written().is_empty());
+    verify(Path::new("false")).wait().unwrap();
+    assert_eq!(written(), Vec::<PathBuf>::new());
+}
+
 #[track_caller]
 fn complains(output: &Output, says: &[&str], line: &str) {
     let message = String::from_utf8_lossy(&output.stderr);
