@@ -28,7 +28,7 @@ use crate::published::{PrintedNumber, PublishedError, compare_published};
 use crate::python::PythonError;
 use crate::stop;
 use crate::study::ModelLabel;
-use crate::study::certify::{self, Certificate, Outcome};
+use crate::study::certify::{self, Certificate, CertifyError, Outcome};
 use crate::study::compared::{self, Log, Skipped};
 
 /// What a verification found: the document `corner-impact/verify/1`.
@@ -301,8 +301,8 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
     let mut log = Log::default();
     // The programs outside take seconds and this one's routes a few hundredths: they run beside each other.
     let outside = start_outside(model, external)?;
-    let is_smoothed = model.is_smoothed();
-    let proving = (external == External::Run && !is_smoothed).then(|| {
+    let is_beyond = certify::is_beyond(model);
+    let proving = (external == External::Run && !is_beyond).then(|| {
         let (model, place) = (model.clone(), certify::candidate(model, &cam, &at));
         std::thread::spawn(stop::carried(move || certify::prove(&model, vec![place], certify::BITS)))
     });
@@ -340,7 +340,7 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
     let border = variational::border(model, &cam, &at);
     let classification = compared::classified(&map, border, sticking);
     watch.at("the proof, in Python", 0, 0);
-    let certificate = certificate(proving, (classification.is_err(), is_smoothed), &mut log);
+    let certificate = certificate(proving, (classification.is_err(), is_beyond), &mut log);
     if let Some(certificate) = &certificate {
         let (name, x_star) = (RouteName::Certificate, Vector2::from_fn(|row, _| certificate.state[row].value()));
         routes.push(Route { name, map: certificate.map(), own: certificate.own(), uncertainty: None });
@@ -402,18 +402,18 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
     })
 }
 
-type Proving = JoinHandle<Result<Vec<Outcome>, PythonError>>;
+type Proving = JoinHandle<Result<Vec<Outcome>, CertifyError>>;
 
 /// The certificate that was waited for; where what happens is not classified either, there need be none.
 fn certificate(
     proving: Option<Proving>,
-    (is_unclassified, is_smoothed): (bool, bool),
+    (is_unclassified, is_beyond): (bool, bool),
     log: &mut Log,
 ) -> Option<Certificate> {
     let name = RouteName::Certificate;
     let Some(proving) = proving else {
-        let smoothed = "knows splines through the rows of a table, not near them";
-        log.leave_out(name, if is_smoothed { smoothed } else { "left out by --no-external" });
+        let beyond = "knows splines through the rows of a table, not near them, and of a thousand rows at most";
+        log.leave_out(name, if is_beyond { beyond } else { "left out by --no-external" });
         return None;
     };
     let outcome = proving.join().map(|proved| proved.map(|mut outcomes| outcomes.pop()));

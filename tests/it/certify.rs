@@ -372,3 +372,18 @@ fn without_python_flint_it_says_so() {
         "{words}"
     );
 }
+
+/// A smoothing spline is near the rows, where no proof knows how: refused by name before a script runs.
+#[test]
+fn splines_near_the_rows_are_not_proved() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("valve.toml");
+    let file = file.to_str().unwrap();
+    assert!(common::corner_impact(["new", file, "--law", "table"]).status.success());
+    for asked in [["--resting", "--rpm", "3500"], ["--orbits", "--rpm", "3500"]] {
+        let output = common::corner_impact(["certify", file].iter().chain(&asked));
+        let says = common::text(output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{says}");
+        assert!(says.contains("cam.spline = \"smoothing\": proofs are of splines through the rows"), "{says}");
+    }
+}

@@ -130,7 +130,10 @@ fn what_happens_comes_first() {
     assert_eq!(told(&found, "fixed_points_exist_for_minus").0["b"], "slower");
     assert!(found["changes"][0]["difference"].is_null(), "words come first: {}", found["changes"][0]);
     for (model, says) in [
-        (["compare", PAPER, "models/laws/harmonic.toml"].as_slice(), "no corner impact is looked for: "),
+        (
+            ["compare", PAPER, "models/laws/harmonic.toml"].as_slice(),
+            "no corner impact is looked for: the model has no [study]",
+        ),
         (&["compare", PAPER, "--set", "rpm_max=610"], "no corner impact: "),
     ] {
         let found = document(model);

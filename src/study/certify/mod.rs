@@ -7,8 +7,9 @@ mod orbits;
 mod resting;
 
 use nalgebra::{Matrix2, RowVector2, Vector2};
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::ModelLabel;
 use crate::ball::Ball;
@@ -283,13 +284,29 @@ pub(super) enum Outcome {
 }
 
 /// Has the script prove what it can of `candidates`, in their order.
-pub(super) fn prove(model: &Model, candidates: Vec<serde_json::Value>, bits: u32) -> Result<Vec<Outcome>, PythonError> {
+pub(super) fn prove(model: &Model, candidates: Vec<Value>, bits: u32) -> Result<Vec<Outcome>, CertifyError> {
     #[derive(Deserialize)]
     struct Answer {
         results: Vec<Outcome>,
     }
-    let document = json!({ "follower": model.follower, "cam": model.cam, "bits": bits, "candidates": candidates });
-    Ok(python::run::<Answer>("certify.py", &document)?.results)
+    Ok(ask::<Answer>(model, bits, ("candidates", json!(candidates)))?.results)
+}
+
+/// What the script says of a model, asked for by a field of its own.
+fn ask<T: DeserializeOwned>(model: &Model, bits: u32, (field, value): (&str, Value)) -> Result<T, CertifyError> {
+    if is_beyond(model) {
+        let allowed = format!("proofs are of splines through the rows, cubic or quintic, and of {ROWS} rows at most");
+        return Err(model.reject("cam.spline", allowed).into());
+    }
+    Ok(python::run("certify.py", &json!({ "follower": model.follower, "cam": model.cam, "bits": bits, field: value }))?)
+}
+
+/// Rows of a table that the script takes.
+const ROWS: usize = 1000;
+
+/// Whether a model has a cam of which nothing is proved.
+pub(super) fn is_beyond(model: &Model) -> bool {
+    model.is_smoothed() || model.table().is_some_and(|table| table.rows.len() > ROWS)
 }
 
 /// Where a corner impact is thought to be, its flights in order from the corner on.

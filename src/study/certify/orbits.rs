@@ -3,11 +3,10 @@
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
-use super::CertifyError;
+use super::{CertifyError, ask};
 use crate::ball::Ball;
 use crate::known::Known;
 use crate::model::Model;
-use crate::python;
 
 /// The periodic orbits of one impact and of two in one revolution at a speed, found and proved by the script alone.
 #[derive(Clone, Debug, Deserialize)]
@@ -80,8 +79,7 @@ named!(OrbitKind, OrbitEvent);
 
 /// All orbits of one impact and of two in one revolution at a speed, rpm.
 pub fn proved_orbits(model: &Model, speed_rpm: f64, bits: u32) -> Result<ProvedOrbits, CertifyError> {
-    let document = json!({ "follower": model.follower, "cam": model.cam, "bits": bits, "orbits_at_rpm": speed_rpm });
-    let found: ProvedOrbits = python::run("certify.py", &document)?;
+    let found: ProvedOrbits = ask(model, bits, ("orbits_at_rpm", json!(speed_rpm)))?;
     Ok(ProvedOrbits { speed_rpm, bits, ..found })
 }
 
@@ -154,7 +152,6 @@ pub enum OrbitEvent {
 
 /// The number of orbits of one impact in one revolution at every speed of a range, rpm.
 pub fn proved_counts(model: &Model, range_rpm: [f64; 2], bits: u32) -> Result<ProvedCounts, CertifyError> {
-    let document = json!({ "follower": model.follower, "cam": model.cam, "bits": bits, "orbits_over_rpm": range_rpm });
-    let found: ProvedCounts = python::run("certify.py", &document)?;
+    let found: ProvedCounts = ask(model, bits, ("orbits_over_rpm", json!(range_rpm)))?;
     Ok(ProvedCounts { range_rpm, bits, ..found })
 }

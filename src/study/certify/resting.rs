@@ -3,11 +3,10 @@
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
-use super::CertifyError;
+use super::{CertifyError, ask};
 use crate::ball::Ball;
 use crate::known::Known;
 use crate::model::Model;
-use crate::python;
 
 /// What becomes of a follower that rests on the cam at a speed.
 #[derive(Clone, Debug, Deserialize)]
@@ -78,7 +77,6 @@ impl ProvedResting {
 
 /// What becomes of a follower that rests on the cam at a speed, rpm.
 pub fn proved_resting(model: &Model, speed_rpm: f64, bits: u32) -> Result<ProvedResting, CertifyError> {
-    let document = json!({ "follower": model.follower, "cam": model.cam, "bits": bits, "resting_at_rpm": speed_rpm });
-    let found: ProvedResting = python::run("certify.py", &document)?;
+    let found: ProvedResting = ask(model, bits, ("resting_at_rpm", json!(speed_rpm)))?;
     Ok(ProvedResting { speed_rpm, ..found })
 }

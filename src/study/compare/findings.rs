@@ -229,7 +229,7 @@ impl Findings {
             }
             Err(why) => {
                 let why = match why {
-                    LocateError::Model(why) => NoVerdict::NotLookedFor(why),
+                    LocateError::Model(_) if model.study.is_none() => NoVerdict::NotLookedFor,
                     why => NoVerdict::NotThere(why),
                 };
                 (Verdict { found: Err(why), agrees: true }, None, Values::new())

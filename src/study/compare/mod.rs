@@ -20,7 +20,7 @@ use crate::cam::Cam;
 use crate::corner::LocateError;
 use crate::known::Known;
 use crate::measured::Likely;
-use crate::model::{Model, ModelError};
+use crate::model::Model;
 use crate::progress::Watch;
 use crate::tolerance;
 use findings::{Findings, differences, numbers, open};
@@ -68,7 +68,7 @@ impl Comparison {
         let Pair { a, b } = &self.verdict;
         let is_alike = match (&a.found, &b.found) {
             (Err(NoVerdict::NotThere(_)), Err(NoVerdict::NotThere(_))) => true,
-            (Err(NoVerdict::NotLookedFor(_)), Err(NoVerdict::NotLookedFor(_))) => true,
+            (Err(NoVerdict::NotLookedFor), Err(NoVerdict::NotLookedFor)) => true,
             (a, b) => a == b,
         };
         !is_alike || a.agrees != b.agrees
@@ -96,8 +96,8 @@ pub enum NoVerdict {
     #[error("no corner impact: {0}")]
     NotThere(LocateError),
     /// It is not said where to look for one.
-    #[error("no corner impact is looked for: {0}")]
-    NotLookedFor(ModelError),
+    #[error("no corner impact is looked for: the model has no [study]")]
+    NotLookedFor,
     /// Its map is refused.
     #[error("{0}")]
     Refused(Refusal),
