@@ -49,12 +49,12 @@ def test_what_is_odd_about_a_model_is_told() -> None:
     lift = (0.05 - 0.01 * np.cos(np.radians(angle))).round(6)
     (known,) = Model.from_dict(table(np.column_stack([angle, lift]), spline="smoothing")).notes()
     assert "leaves the cam's second derivative open to" in known
+    with pytest.warns(UserWarning, match="did you mean mm"):
+        Model.from_dict(table(np.column_stack([angle, 1000.0 * lift]), spline="cubic"))
     lift[40] += 0.001
     with pytest.warns(UserWarning, match="cam.rows: lift .* at 80 deg .* a slip") as told:
         model = Model.from_dict(table(np.column_stack([angle, lift]), spline="smoothing"))
     assert [str(one.message) for one in told] == model.notes()[:1]
-    with pytest.warns(UserWarning, match="did you mean mm"):
-        Model.from_dict(table(np.column_stack([angle, 1000.0 * lift]), spline="cubic"))
 
 
 def test_rows_of_a_table_stand_in_a_dict() -> None:
