@@ -14,7 +14,7 @@ use crate::study::verify::External;
     \x20 corner-impact compare models/damped-light.toml models/damped-heavy.toml\n\
     \x20 corner-impact compare models/osorio-2008.toml --set mass=1.3 --json\n\
     \n\
-    The answer is in the units of A. A model without a corner impact is an answer, too.\n\
+    The answer is in the units of A; the lengths of B must be in the same. A model without a corner impact is an answer, too.\n\
     Exit code: 0 done, whatever moved; 1 routes disagree about one of the two; 2 bad usage or model file.")]
 pub(super) struct Arguments {
     /// Model file (TOML) [default: the paper's model, osorio-2008, which is built in].

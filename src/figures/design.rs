@@ -1,6 +1,6 @@
 //! What an engineer asks, drawn: the contact force round the cam, forces and loads against the speed, or one number against another.
 
-use crate::draw::{Axis, Colour, Figure, Mark, Marker, Panel, Series, Stroke, extent};
+use crate::draw::{Axis, BREAK, Colour, Figure, Mark, Marker, Panel, Series, Stroke, extent};
 use crate::figures::SPEED;
 use crate::figures::impacts::WHOLE_CAM;
 use crate::model::Units;
@@ -37,26 +37,36 @@ fn round(found: &Design) -> Figure {
 }
 
 fn speeds(found: &Design) -> Figure {
-    type Quantity = (&'static str, &'static str, fn(&Loads) -> f64);
+    type Quantity = (&'static str, &'static str, f64);
     let all = found.forces.iter().map(|at| at.rpm).chain(found.loads.iter().map(|loads| loads.rpm));
     let range = extent(all);
     let forces = found.forces.iter().map(|at| [at.rpm, found.force(at.least.value)]);
     let mut panels = Vec::new();
     if !found.forces.is_empty() {
         let line = Series::line("", Colour::Blue, Stroke::Solid, forces);
-        panels.push(Panel::new(force_axis(found, "least contact force"), 0.24, vec![line]).with_zero());
+        let open = found
+            .forces
+            .iter()
+            .map(|at| (at.rpm, found.force(at.least.value), at.error.map(|error| found.force(error))));
+        let series = open_by_cam(OPEN, open.collect()).into_iter().chain([line]).collect();
+        panels.push(Panel::new(force_axis(found, "least contact force"), 0.24, series).with_zero());
     }
     let quantities: [Quantity; 4] = [
-        ("impact speed", "m/s", |loads| loads.impact_speed),
-        ("largest gap", "m", |loads| loads.gap),
-        ("time off the cam", "%", |loads| 100.0 * loads.off_cam),
-        ("energy lost a revolution", "J", |loads| loads.energy),
+        ("impact speed", "m/s", 1.0),
+        ("largest gap", "m", 1.0),
+        ("time off the cam", "%", 100.0),
+        ("energy lost a revolution", "J", 1.0),
     ];
     if !found.loads.is_empty() {
-        panels.extend(quantities.map(|(name, unit, value)| {
+        // In the order of the numbers of loads.
+        panels.extend(quantities.into_iter().enumerate().map(|(index, (name, unit, scale))| {
+            let value = |loads: &Loads| scale * loads.numbers()[index];
             let points = found.loads.iter().map(|loads| [loads.rpm, value(loads)]);
             let line = Series::line("", Colour::Vermilion, Stroke::Solid, points);
-            Panel::new(Axis::new(name, unit), 0.15, vec![line]).with_zero()
+            let error = |loads: &Loads| loads.errors.map(|errors| scale * errors[index]);
+            let open =
+                open_by_cam("", found.loads.iter().map(|loads| (loads.rpm, value(loads), error(loads))).collect());
+            Panel::new(Axis::new(name, unit), 0.15, open.into_iter().chain([line]).collect()).with_zero()
         }));
     }
     let at = found.separation.speed();
@@ -94,18 +104,31 @@ pub fn loads_diagram(title: &str, sweep: &[Vec<Loads>], load: Load, units: &Unit
 }
 
 fn trades(found: &Design) -> Figure {
-    // Of what no value does, or 0 does, there is no line.
-    let does = |pair: &Pair| pair.found.is_some_and(|value| value > 0.0);
+    // Of what no value does, or any does, there is no line.
+    let does = |pair: &Pair| pair.found.is_some_and(|value| value > 0.0) || pair.other.is_some();
     let has_line = |trade: &&Trade| trade.pairs.windows(2).any(|pairs| pairs.iter().all(does));
     let mut shown: Vec<&Trade> = found.trades.iter().filter(has_line).collect();
     if shown.is_empty() {
         shown = found.trades.iter().collect();
     }
     let panels = shown.into_iter().map(|trade| {
-        let points = trade.pairs.iter().map(|pair| [pair.given, pair.found.unwrap_or(f64::NAN)]);
-        let line = Series::line("", Colour::Blue, Stroke::Solid, points);
-        let bound = if trade.parameter.is_upper_bound() { "most" } else { "least" };
-        Panel::new(Axis::new(&format!("{bound} {}", trade.parameter), &trade.unit), 0.22, vec![line])
+        let line = |name: &str, stroke: Stroke, end: fn(&Pair) -> Option<f64>| {
+            let points = trade.pairs.iter().map(|pair| [pair.given, end(pair).unwrap_or(f64::NAN)]);
+            Series::line(name, Colour::Blue, stroke, points)
+        };
+        let is_range = trade.pairs.iter().any(|pair| pair.other.is_some());
+        let [bound, beyond] = if trade.parameter.is_upper_bound() { ["most", "least"] } else { ["least", "most"] };
+        let error = |pair: &Pair| Some((pair.given, pair.found?, pair.error));
+        let mut series: Vec<Series> =
+            open_by_cam(OPEN, trade.pairs.iter().filter_map(error).collect()).into_iter().collect();
+        series.push(line(if is_range { bound } else { "" }, Stroke::Solid, |pair| pair.found));
+        if is_range {
+            let error = |pair: &Pair| Some((pair.given, pair.other?, pair.other_error));
+            series.extend(open_by_cam("", trade.pairs.iter().filter_map(error).collect()));
+            series.push(line(beyond, Stroke::Dashed, |pair| pair.other));
+        }
+        let name = if is_range { trade.parameter.to_string() } else { format!("{bound} {}", trade.parameter) };
+        Panel::new(Axis::new(&name, &trade.unit), 0.22, series)
     });
     let (against, unit) = found
         .trades
@@ -115,4 +138,15 @@ fn trades(found: &Design) -> Figure {
     let needs: Vec<&str> = found.trades.iter().map(|trade| trade.need.as_str()).collect();
     let title = format!("{}: {}", found.model.name, needs.first().unwrap_or(&""));
     Figure::new(&title, Axis::new(&against, unit).over(range), panels.collect())
+}
+
+/// What stands for the lines of what a measured cam leaves open, once in a panel.
+const OPEN: &str = "what the cam leaves open";
+
+/// Lines on both sides of values `(x, y, error)`, as far as the cam leaves them open; nothing where it does not.
+fn open_by_cam(label: &str, values: Vec<(f64, f64, Option<f64>)>) -> Option<Series> {
+    let side = |sign: f64| values.iter().map(move |(x, y, error)| [*x, y + sign * error.unwrap_or(0.0)]);
+    let points = side(-1.0).chain([BREAK]).chain(side(1.0));
+    let is_open = values.iter().any(|(.., error)| error.is_some_and(|error| error > 0.0));
+    is_open.then(|| Series::line(label, Colour::Grey, Stroke::Thin, points))
 }

@@ -125,9 +125,9 @@ fn segments(sheet: &CamSheet) -> Vec<Block> {
 }
 
 fn corners(sheet: &CamSheet) -> Vec<Block> {
-    let title = format!("Corners ({})", sheet.corners.len());
+    let title = format!("Corners ({})", sheet.own_corners.len());
     let mut blocks = vec![Block::Heading(title.as_str().into())];
-    if sheet.corners.is_empty() {
+    if sheet.own_corners.is_empty() {
         let order = sheet.highest_order;
         let none = format!("No derivative of the lift up to order {order} jumps as far as can be told.");
         blocks.push(Block::paragraph(none));
@@ -142,14 +142,14 @@ fn corners(sheet: &CamSheet) -> Vec<Block> {
         "."
     ]));
     blocks.push(Block::Gap);
-    let of_order = |order: usize| sheet.corners.iter().filter(move |corner| corner.jump_order == order);
+    let of_order = |order: usize| sheet.own_corners.iter().filter(move |corner| corner.jump_order == order);
     let long: Vec<usize> = (1..=sheet.highest_order).filter(|order| of_order(*order).count() > LONGEST).collect();
     if long.is_empty() {
-        blocks.push(table(&sheet.corners.iter().collect::<Vec<_>>()));
+        blocks.push(table(&sheet.own_corners.iter().collect::<Vec<_>>()));
         return blocks;
     }
     let mut brief = Vec::new();
-    let few: Vec<_> = sheet.corners.iter().filter(|corner| !long.contains(&corner.jump_order)).collect();
+    let few: Vec<_> = sheet.own_corners.iter().filter(|corner| !long.contains(&corner.jump_order)).collect();
     if !few.is_empty() {
         brief.push(table(&few));
     }
@@ -166,12 +166,7 @@ fn corners(sheet: &CamSheet) -> Vec<Block> {
             " deg"
         ]));
     }
-    // Where a smoothing spline's polynomials meet is nothing of the cam, and fills pages.
-    if sheet.is_smoothed() {
-        blocks.extend(brief);
-        return blocks;
-    }
-    let all = table(&sheet.corners.iter().collect::<Vec<_>>());
+    let all = table(&sheet.own_corners.iter().collect::<Vec<_>>());
     blocks.extend([Block::Brief(brief), Block::Details(title.into(), vec![all])]);
     blocks
 }

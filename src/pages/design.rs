@@ -6,6 +6,7 @@ use crate::pages::speeds::measured_speed;
 use crate::show::Paged;
 use crate::show::block::{Block, Column, Mark, Span, Table, Words, words};
 use crate::show::digits::{Digits, with_error};
+use crate::show::page::text;
 use crate::study::design::contact::Separation;
 use crate::study::design::needs::Answer;
 use crate::study::design::{Design, Pair, Trade};
@@ -87,11 +88,11 @@ pub(crate) fn speeds(found: &Design) -> Vec<Block> {
     let head = |name: &str, unit: &'static str| number(words![name, Span::Unit(unit)]);
     if !found.loads.is_empty() {
         columns.extend([
-            head("impact speed ", "m/s"),
+            head("impact ", "m/s"),
             head("gap ", "m"),
             number("off cam %"),
             number("lost J/rev"),
-            number(format!("largest force {force}")),
+            number(format!("most force {force}")),
         ]);
     }
     let mut table = Table::new("Contact force and loads by speed", columns);
@@ -111,13 +112,20 @@ pub(crate) fn speeds(found: &Design) -> Vec<Block> {
         if !found.loads.is_empty() {
             let three = |value: f64| words![(value, Digits::Aligned(3))];
             match found.loads.iter().find(|loads| loads.rpm == rpm) {
-                Some(loads) => cells.extend([
-                    three(loads.impact_speed),
-                    three(loads.gap),
-                    format!("{:.1}", 100.0 * loads.off_cam).into(),
-                    three(loads.energy),
-                    three(found.force(loads.force)),
-                ]),
+                Some(loads) => {
+                    let error = |index: usize| loads.errors.map(|errors| errors[index]);
+                    // In per cent it is no number of the document.
+                    let off_cam = error(2).map(|error| 100.0 * error);
+                    let force = error(4).map(|error| found.force(error));
+                    let unknown = if is_noisy(found) && loads.errors.is_none() { " ± ?" } else { "" };
+                    cells.extend([
+                        words![load(loads.impact_speed, error(0), Digits::Aligned(3), true), unknown],
+                        load(loads.gap, error(1), Digits::Aligned(3), true),
+                        text(&load(100.0 * loads.off_cam, off_cam, Digits::Fixed(1), false)).into(),
+                        load(loads.energy, error(3), Digits::Aligned(3), false),
+                        load(found.force(loads.force), force, Digits::Aligned(3), false),
+                    ]);
+                }
                 None => {
                     cells.extend((0..4).map(|_| "".into()));
                     let on_cam = found.forces.iter().find(|at| at.rpm == rpm);
@@ -135,6 +143,11 @@ pub(crate) fn speeds(found: &Design) -> Vec<Block> {
         let words = "The other columns are the most of what four starts come to: over 8 revolutions after up to 200; sampled. \
                      Energy is what impacts take, force that between them.";
         blocks.push(Block::Note(words.into()));
+        if found.loads.iter().any(|loads| loads.errors.is_some()) {
+            let words = "± is what the cam leaves open, by what cams that are as likely come to. A load that may be as little as none is told \
+                         as what it is less than; the last three columns have no more digits than are left them, and --json has the ± of each.";
+            blocks.push(Block::Note(words.into()));
+        }
     }
     blocks
 }
@@ -179,7 +192,9 @@ fn needs(found: &Design) -> Vec<Block> {
             let Answer { lever, now, unit, note, known, .. } = answer;
             let digits = if *known == Known::Computed { Digits::Significant(9) } else { Digits::Significant(3) };
             let bound = if answer.is_upper_bound { "at most" } else { "at least" };
-            let value = answer.value.map(|value| with_open(value, answer.error, digits));
+            // Of any value that will do nothing is open, and that is said.
+            let unknown = if is_noisy(found) && answer.error.is_none() && note.is_empty() { " ± ?" } else { "" };
+            let value = answer.value.map(|value| words![with_open(value, answer.error, digits), unknown]);
             let other = answer.other.map(|other| with_open(other, answer.other_error, digits));
             let (bound, to) = match (value, other) {
                 (None, _) => ("", "none".into()),
@@ -218,8 +233,33 @@ fn rounded(found: &Design) -> Vec<Block> {
         let speed = at.separation_rpm.map_or("".into(), |rpm| words![(rpm, Digits::Significant(7))]);
         table.row([words![(at.corner_rounding_deg, SIX)], speed, words![(at.jerk, SIX)]]);
     }
-    let words = "The acceleration of the cam jumps, and its jerk is infinite there. Rounded (corner_rounding_deg):";
+    let words = "The acceleration of the cam jumps, and its jerk is infinite there. Rounded by a polynomial (corner_rounding_deg), which keeps \
+                 the lifts and slopes on both sides, and whose acceleration goes beyond both by a twelfth of the jump for that, over \
+                 however short an angle:";
     vec![Block::Heading("Jumps of the acceleration".into()), Block::paragraph(words), Block::Table(table)]
+}
+
+/// Whether a measured cam leaves the answers open.
+fn is_noisy(found: &Design) -> bool {
+    found.measured.as_ref().is_some_and(|cam| cam.is_noisy)
+}
+
+/// A load with what the cam leaves open of it, or in as many digits as that leaves it; what may be none is below something.
+fn load(value: f64, error: Option<f64>, digits: Digits, is_told: bool) -> Words {
+    /// Of the value: what leaves it three digits.
+    const KNOWN: f64 = 0.005;
+    let Some(error) = error.filter(|error| *error > 0.0) else { return words![(value, digits)] };
+    let (open, rounded) = with_error(error);
+    match error < value {
+        // Three digits and no more were meant.
+        true if !is_told && error < KNOWN * value => words![(value, digits)],
+        true if is_told => words![(value, open), " ± ", (rounded, open)],
+        true => words![(value, open)],
+        false => {
+            let most = with_error(value + error);
+            format!("< {}", most.0.text(most.1)).into()
+        }
+    }
 }
 
 /// A value, with what the cam leaves open of it.
@@ -234,9 +274,20 @@ fn trade(trade: &Trade) -> [Block; 2] {
     let Trade { need, parameter, unit, against, against_unit, pairs } = trade;
     let columns = [number(format!("{against} {against_unit}")), number(format!("{parameter} {unit}"))];
     let mut table = Table::new(need, columns);
-    for Pair { given, found, error } in pairs {
-        table.row([words![(*given, SIX)], found.map_or("none".into(), |value| with_open(value, *error, SIX))]);
+    for Pair { given, found, error, other, other_error } in pairs {
+        let found = found.map(|value| with_open(value, *error, SIX));
+        let cell = match (found, other.map(|value| with_open(value, *other_error, SIX))) {
+            (None, _) => "none".into(),
+            (Some(found), None) => found,
+            (Some(found), Some(other)) if parameter.is_upper_bound() => words![other, " to ", found],
+            (Some(found), Some(other)) => words![found, " to ", other],
+        };
+        table.row([words![(*given, SIX)], cell]);
     }
-    let bound = if parameter.is_upper_bound() { "most" } else { "least" };
-    [Block::Heading(format!("{need}: the {bound} {parameter} for each {against}").into()), Block::Table(table)]
+    let bound = match parameter.is_upper_bound() {
+        _ if pairs.iter().any(|pair| pair.other.is_some()) => "",
+        true => "most ",
+        false => "least ",
+    };
+    [Block::Heading(format!("{need}: the {bound}{parameter} for each {against}").into()), Block::Table(table)]
 }

@@ -199,7 +199,7 @@ pub(crate) fn one_row(speeds: &Speeds, points: &[Result<Point, String>]) -> Stri
 /// A line for each revolution of a sweep: what follower and cam bear in it.
 pub(crate) fn loads(sweep: &[Vec<Loads>]) -> String {
     let mut lines = String::from("rpm,revolution,impact_speed_m_s,gap_m,off_cam_share,energy_lost_j,largest_force_n\n");
-    for (revolution, Loads { rpm, impact_speed, gap, off_cam, energy, force }) in
+    for (revolution, Loads { rpm, impact_speed, gap, off_cam, energy, force, .. }) in
         sweep.iter().flat_map(|speed| speed.iter().enumerate())
     {
         let _ = writeln!(lines, "{rpm},{revolution},{impact_speed},{gap},{off_cam},{energy},{force}");

@@ -31,6 +31,9 @@ pub struct CamSheet {
     pub highest_order: usize,
     /// In order of angle.
     pub corners: Vec<Corner>,
+    /// Those of the cam itself: where polynomials of a smoothing spline meet is nothing of it.
+    #[serde(skip)]
+    pub own_corners: Vec<Corner>,
 }
 
 /// The largest size of a derivative of the lift between corners.
@@ -96,6 +99,9 @@ impl CamSheet {
     pub fn new(model: &Model, cam: &Cam, highest_order: usize) -> Result<Self, ModelError> {
         let segments = cam.segments().to_vec();
         let highest_order = highest_order.min(Jet::HIGHEST_JUMP);
+        let corners: Vec<Corner> =
+            cam.corners().iter().copied().filter(|corner| corner.jump_order <= highest_order).collect();
+        let is_own = |corner: &Corner| !model.is_smoothed() || !cam.is_knot(corner);
         Ok(Self {
             schema: "corner-impact/cam/1",
             model: model.name.clone(),
@@ -107,7 +113,8 @@ impl CamSheet {
             measured: Likely::of(model)?.map(|likely| likely.measured),
             segments,
             highest_order,
-            corners: cam.corners().iter().copied().filter(|corner| corner.jump_order <= highest_order).collect(),
+            own_corners: corners.iter().copied().filter(is_own).collect(),
+            corners,
         })
     }
 }

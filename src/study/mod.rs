@@ -62,7 +62,9 @@ pub enum StudyError {
     #[error(transparent)]
     Locate(#[from] locate::LocateError),
     /// Matrices in two units of length.
-    #[error("lengths are in {a} in the one and in {b} in the other model: state both in one unit ([units], length)")]
+    #[error(
+        "lengths are in \"{a}\" in the one and in \"{b}\" in the other model: state both in one unit ([units], length)"
+    )]
     Lengths { a: String, b: String },
     /// What changes is not within its range where a search begins.
     #[error("{file}: {name} = {value}, where orbits are looked for, is outside of {}:{}", range[0], range[1])]

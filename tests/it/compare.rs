@@ -177,7 +177,7 @@ fn answers_are_in_the_units_of_the_first() {
     assert!((preload["b"].as_f64().unwrap() - 0.14308).abs() < 1e-9, "{preload}");
     let refused = common::corner_impact(["compare", &metres, &inches]);
     assert_eq!(refused.status.code(), Some(2));
-    assert!(common::text(refused.stderr).contains("lengths are in m in the one and in in in the other"));
+    assert!(common::text(refused.stderr).contains("lengths are in \"m\" in the one and in \"in\" in the other"));
     let alone = common::corner_impact(["compare", PAPER]);
     assert_eq!(alone.status.code(), Some(2));
 }

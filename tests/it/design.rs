@@ -3,6 +3,7 @@
 use corner_impact::cam::Cam;
 use corner_impact::model::Model;
 use corner_impact::progress::Unwatched;
+use corner_impact::show::Paged;
 use corner_impact::study::attractors::detachment;
 use corner_impact::study::design::contact::{Contact, Separation};
 use corner_impact::study::design::needs::{Answer, Lever, Need};
@@ -107,6 +108,23 @@ fn too_much_damping_does_no_more() {
             assert!((with(end) - goal).abs() < 1e-9 * goal && with(outside) < goal, "{damping:?}: {}", with(end));
         }
     }
+    // Against another number both ends are there, and none at all will do for what the machine does without a damper.
+    for (goal, does_without) in [(0.5 * (with(0.0) + most), false), (0.99 * with(0.0), true)] {
+        let words = format!("no separation to {goal} rpm");
+        let needs = vec![(words.clone(), words.parse().unwrap())];
+        let against = Some((Lever::Stiffness, [30.0, 31.0], 2));
+        let found = design(&model, &Asked { speeds: 2, needs, against, ..Asked::default() }, &Unwatched).unwrap();
+        let trade = found.trades.iter().find(|trade| trade.parameter == Lever::Damping).unwrap();
+        let [least, most] = [trade.pairs[0].found, trade.pairs[0].other].map(|end| end.unwrap());
+        assert!((with(most) - goal).abs() < 1e-9 * goal && with(1.001 * most) < goal, "{:?}", trade.pairs);
+        assert!(
+            if does_without { least == 0.0 } else { (with(least) - goal).abs() < 1e-9 * goal },
+            "{:?}",
+            trade.pairs
+        );
+        let page = found.text().unwrap();
+        assert!(page.contains(": the damping for each stiffness") && page.contains(" to "), "{page}");
+    }
 }
 
 fn document(words: &[&str]) -> Value {
@@ -185,7 +203,8 @@ fn the_document_has_the_fields_of_the_contract() {
 fn what_is_searched_by_runs_keeps_the_limit() {
     let model = valve("mass = 0.11\ndamping = 0\nstiffness = 30\npreload = 220", "modified-sine");
     let goal = 1.3 * separation(&model).speed();
-    let words = format!("impact speed below 300 mm/s to {goal} rpm");
+    // 300 mm/s.
+    let words = format!("impact speed below {} ft/s to {goal} rpm", 300.0 / 304.8);
     let asked =
         |needs: Vec<(String, Need)>| Asked { rpm: Some([0.9 * goal, goal]), speeds: 5, needs, ..Asked::default() };
     let found = design(&model, &asked(vec![(words.clone(), words.parse().unwrap())]), &Unwatched).unwrap();

@@ -69,6 +69,8 @@ pub struct Loads {
     pub energy: f64,
     /// The largest force while they touch, but for impacts, kg m/s^2 with the model's length.
     pub force: f64,
+    /// How far a measured cam may have moved these, in their order; none where nothing is open, or not known.
+    pub errors: Option<[f64; 5]>,
 }
 
 document!(Loads as it {
@@ -78,6 +80,11 @@ document!(Loads as it {
     off_cam_share: it.off_cam,
     energy_lost_j: it.energy,
     largest_force_n: it.force,
+    impact_speed_error_m_s if_any: it.errors.map(|errors| errors[0]),
+    gap_error_m if_any: it.errors.map(|errors| errors[1]),
+    off_cam_error if_any: it.errors.map(|errors| errors[2]),
+    energy_lost_error_j if_any: it.errors.map(|errors| errors[3]),
+    largest_force_error_n if_any: it.errors.map(|errors| errors[4]),
 });
 
 impl Loads {
@@ -120,7 +127,13 @@ impl Loads {
         Ok(Self { rpm: machine.angular_velocity() / TAU * 60.0, ..worst })
     }
 
-    const NONE: Self = Self { rpm: 0.0, impact_speed: 0.0, gap: 0.0, off_cam: 0.0, energy: 0.0, force: 0.0 };
+    const NONE: Self =
+        Self { rpm: 0.0, impact_speed: 0.0, gap: 0.0, off_cam: 0.0, energy: 0.0, force: 0.0, errors: None };
+
+    /// The numbers, in their order.
+    pub fn numbers(&self) -> [f64; 5] {
+        [self.impact_speed, self.gap, self.off_cam, self.energy, self.force]
+    }
 
     fn or_more(&self, other: &Self) -> Self {
         Self {
@@ -130,6 +143,7 @@ impl Loads {
             off_cam: self.off_cam.max(other.off_cam),
             energy: self.energy.max(other.energy),
             force: self.force.max(other.force),
+            errors: None,
         }
     }
 

@@ -15,7 +15,7 @@ use crate::known::Known;
 use crate::measured::{Likely, Measured};
 use crate::model::{CORNER_ROUNDING, Model, Units};
 use crate::progress::{Pieces, Watch};
-use crate::simulate::angular_velocity;
+use crate::simulate::{Machine, angular_velocity};
 use crate::tolerance;
 use contact::{Contact, Separation};
 use loads::{Load, Loads};
@@ -93,6 +93,12 @@ pub struct Pair {
     /// How far it may be off where the cam is measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<f64>,
+    /// Where it does no more on the other side, if it does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub other: Option<f64>,
+    /// How far that may be off.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub other_error: Option<f64>,
 }
 
 /// What one number has to be for each value of another.
@@ -258,7 +264,15 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
         // As it was asked for, and not as the angular velocity has it.
         Ok(Loads { rpm: *rpm, ..Loads::at(model, &machine(model, *rpm)?)? })
     };
-    let loads = parted.par_iter().map(|rpm| pieces.each(|| loads_at(rpm))).collect::<Result<Vec<_>, _>>()?;
+    let with_errors = |rpm: &f64| -> Result<Loads, StudyError> {
+        let loads = loads_at(rpm)?;
+        let of = |model: &Model, cam: &Cam| {
+            let machine = Machine::new(cam.clone(), &model.follower, angular_velocity(*rpm));
+            Loads::at(model, &machine).ok().map(|loads| loads.numbers())
+        };
+        Ok(Loads { errors: noisy.and_then(|likely| likely.error(loads.numbers(), of)), ..loads })
+    };
+    let loads = parted.par_iter().map(|rpm| pieces.each(|| with_errors(rpm))).collect::<Result<Vec<_>, _>>()?;
     let passed = |(limit, value): &(Load, f64)| -> Result<Passed, StudyError> {
         let most = limit.inside(&model.units, *value);
         // Up to the separation the follower bears what the cam presses with.
@@ -302,10 +316,19 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
                 let pair = |index: u32| -> Result<Pair, StudyError> {
                     let changed = changed.with(against, inside(value(index)));
                     let found = needs::answer(&changed, (need, text), parameter, uncertain)?;
-                    // Of what is not to be too much, none at all will do.
-                    let is_none = found.is_upper_bound && !parameter.is_upper_bound();
-                    let (found, error) = if is_none { (Some(0.0), None) } else { (found.value, found.error) };
-                    Ok(Pair { given: value(index), found, error })
+                    let given = value(index);
+                    let Answer { value, error, other, other_error, .. } = found;
+                    // Of what is not to be too much as little as will do comes first, and none at all does where nothing else is said.
+                    Ok(match found.is_upper_bound && !parameter.is_upper_bound() {
+                        true => Pair {
+                            given,
+                            found: Some(other.unwrap_or(0.0)),
+                            error: other_error,
+                            other: value,
+                            other_error: error,
+                        },
+                        false => Pair { given, found: value, error, other, other_error },
+                    })
                 };
                 let pairs = (0..count).into_par_iter().map(pair).collect::<Result<_, _>>()?;
                 let (unit, against_unit) = (changed.told(parameter, 0.0).1, against_unit.clone());

@@ -34,14 +34,16 @@ pub enum What {
 }
 
 /// Units that loads are told in, each with what it is of the SI's.
-const UNITS: [(Load, &str, f64); 9] = [
+const UNITS: [(Load, &str, f64); 11] = [
     (Load::ImpactSpeed, "m/s", 1.0),
     (Load::ImpactSpeed, "mm/s", 1e-3),
     (Load::ImpactSpeed, "in/s", 0.0254),
+    (Load::ImpactSpeed, "ft/s", 0.3048),
     (Load::Gap, "m", 1.0),
     (Load::Gap, "mm", 1e-3),
     (Load::Gap, "um", 1e-6),
     (Load::Gap, "in", 0.0254),
+    (Load::Gap, "ft", 0.3048),
     (Load::Energy, "J", 1.0),
     (Load::Energy, "mJ", 1e-3),
 ];
