@@ -35,9 +35,9 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
-    let a = ModelArgument::of(arguments.first.as_deref(), &Changes::default()).read(session)?;
+    let a = ModelArgument::of(arguments.first.as_deref(), &Changes::default()).read_as_drawn(session)?;
     let b = match &arguments.second {
-        Some(file) => ModelArgument::of(Some(file), &arguments.changes).read(session)?,
+        Some(file) => ModelArgument::of(Some(file), &arguments.changes).read_as_drawn(session)?,
         None => a.changed(&arguments.changes.numbers)?,
     };
     session.units = a.units.clone();

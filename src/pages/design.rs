@@ -156,6 +156,8 @@ fn limits(found: &Design) -> Vec<Block> {
     let sentence = |passed: &crate::study::design::Passed| {
         let name = passed.limit.to_string().replace('-', " ");
         let limit = words![format!("{name} of "), (passed.value, SIX), format!(" {}: ", passed.unit)];
+        let open =
+            if is_noisy(found) { ", of the cam as it is drawn: what it leaves open is the ± above" } else { "" };
         match passed.speed_rpm {
             Some(rpm) => {
                 words![
@@ -163,10 +165,11 @@ fn limits(found: &Design) -> Vec<Block> {
                     Span::Marked(Mark::Bad, "passed".into()),
                     " at ",
                     (rpm, Digits::Significant(4)),
-                    " rpm first, as far as the speeds above tell"
+                    " rpm first, as far as the speeds above tell",
+                    open
                 ]
             }
-            None => words![limit, Span::Marked(Mark::Good, "kept".into()), " at each of the speeds above"],
+            None => words![limit, Span::Marked(Mark::Good, "kept".into()), " at each of the speeds above", open],
         }
     };
     if found.limits.is_empty() {

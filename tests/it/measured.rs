@@ -601,6 +601,7 @@ fn an_answer_without_an_error_says_how_well_its_cam_is_known() {
         ("curve valve.toml --rpm 2900:2950 --parameter restitution=0.2:0.3 --event detachment --step 0.5", true),
         ("explain restitution valve.toml --no-external", true),
         ("figure valve.toml cam", true),
+        ("compare valve.toml --set stiffness=40", true),
         ("cam valve.toml", false),
         ("design valve.toml --rpm 2500 --speeds 2", false),
         ("orbit valve.toml --rpm 3300", false),
@@ -608,6 +609,11 @@ fn an_answer_without_an_error_says_how_well_its_cam_is_known() {
         let told = notes(command);
         assert_eq!(told.matches(rounded).count(), usize::from(is_without), "{command}: {told}");
     }
+    let page = crate::common::text(run("design valve.toml --rpm 3000:3400 --speeds 3 --limit impact-speed=100").stdout);
+    assert!(
+        page.split_whitespace().collect::<Vec<_>>().join(" ").contains("what it leaves open is the ± above"),
+        "{page}"
+    );
     let page = crate::common::text(run("orbit valve.toml --rpm 8000").stdout);
     let ends = page.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(ends.contains("± 0.0") && ends.contains("of a multiplier") && ends.contains("lift rounded to 0.001 mm."));
@@ -696,6 +702,7 @@ fn a_new_measured_machine() {
         "table: 180 rows, angles in deg and lifts in mm",
         ">impact speed (mm/s)<",
         "± is what the cam leaves open, lift rounded to 0.001 mm",
+        "of the cam as it is drawn (lift rounded to 0.001 mm); the loads below have their ±.",
         "design valve.toml --rpm 2700:3500 --out loads.svg",
         "speeds valve.toml --rpm 2700:3500 --out attractors.svg",
     ] {

@@ -7,6 +7,7 @@ use crate::pages::speeds::{measured_speed, together};
 use crate::report::Report;
 use crate::show::block::{Block, Mark, Section, Span, Words, about, words};
 use crate::show::digits::Digits;
+use crate::show::words::accuracy;
 use crate::study::design::contact::Separation;
 
 pub(crate) fn section(report: &Report) -> Result<Section, HtmlError> {
@@ -60,6 +61,13 @@ fn margin(report: &Report) -> Option<Words> {
 fn impacts(report: &Report) -> Option<Words> {
     let found = report.speeds.as_ref().ok()?;
     let [low, high] = found.rpm;
+    let open = match found.measured.as_ref().filter(|cam| cam.is_noisy) {
+        Some(cam) => {
+            let loads = if report.loads.is_some() { "; the loads below have their ±" } else { "" };
+            format!(" It is of the cam as it is drawn ({}){loads}.", accuracy(cam))
+        }
+        None => String::new(),
+    };
     let sentence = match found.hardest() {
         Some([speed, rpm]) => words![
             "The hardest impact that was seen, ",
@@ -68,7 +76,8 @@ fn impacts(report: &Report) -> Option<Words> {
             Span::Unit("m/s"),
             " between follower and cam, is at ",
             (rpm, Digits::Significant(4)),
-            format!(" rpm (looked at: {low} to {high} rpm).")
+            format!(" rpm (looked at: {low} to {high} rpm)."),
+            open
         ],
         None => format!("None was seen from {low} to {high} rpm.").into(),
     };
