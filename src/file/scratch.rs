@@ -11,6 +11,7 @@ use super::signals::{self, Listed};
 /// What its name begins with, and the file that its program holds locked for as long as it lives.
 const NAME: &str = "corner-impact.";
 const ALIVE: &str = ".alive";
+const UNNAMED: &str = ".alive.new";
 
 /// It goes with this value, or with a signal that ends the program; where that could not be caught, with the next program that makes one.
 pub(crate) struct Scratch {
@@ -27,9 +28,13 @@ impl Scratch {
         // Signals wait until the last file is there: what is being filled cannot be emptied.
         let mut held = signals::held();
         let folder = Builder::new().prefix(NAME).tempdir()?;
-        let alive = File::create(folder.path().join(ALIVE))?;
+        // Locked before it has the name that is looked for: in between another program would find nobody there.
+        let unnamed = folder.path().join(UNNAMED);
+        let alive = File::create(&unnamed)?;
         // Without locks the folder is as good, and stays where it is killed.
-        let _ = alive.try_lock();
+        if alive.try_lock().is_ok() {
+            fs::rename(unnamed, folder.path().join(ALIVE))?;
+        }
         for (name, text) in files {
             let path = folder.path().join(name);
             path.parent().map_or(Ok(()), fs::create_dir_all)?;
