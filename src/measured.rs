@@ -280,14 +280,14 @@ fn contradicted(
 
 /// What the noise of a table leaves open of its cam.
 #[derive(Clone, Debug)]
-pub enum LeftOpen {
+pub enum Openness {
     /// As it is told by cams that are as likely.
     Told(Box<Measured>),
     /// Of a table of too many rows to be told at once: what its rows spread by, m.
     Noise(f64),
 }
 
-impl LeftOpen {
+impl Openness {
     /// On the cam of a model; none where the rows have no noise.
     pub fn of(model: &Model) -> Result<Option<Self>, ModelError> {
         /// Of more rows it takes longer than many a command does.

@@ -1,7 +1,7 @@
 //! What there is to say of a model before anything is computed with it, a sentence each.
 
 use crate::cam::Stray;
-use crate::measured::{LeftOpen, Remarks};
+use crate::measured::{Openness, Remarks};
 use crate::model::{Model, ModelError, TableProfile};
 use crate::show::digits::Digits;
 use crate::show::words::{accuracy, measured_to};
@@ -60,13 +60,13 @@ fn slips(profile: &TableProfile, strays: &[Stray]) -> Vec<String> {
 
 /// How well the cam is known that an answer without a ± of its own is about; none where the rows have no noise.
 pub fn as_drawn(model: &Model) -> Result<Option<String>, ModelError> {
-    let Some((open, profile)) = LeftOpen::of(model)?.zip(model.table()) else { return Ok(None) };
+    let Some((open, profile)) = Openness::of(model)?.zip(model.table()) else { return Ok(None) };
     let (accuracy, open) = match open {
-        LeftOpen::Told(cam) => {
+        Openness::Told(cam) => {
             let percent = Digits::Aligned(2).text(100.0 * cam.curvature_error / cam.largest_curvature);
             (accuracy(&cam), format!("to {percent} % of its largest value"))
         }
-        LeftOpen::Noise(spread) => (measured_to(&profile.reading, spread), "as far as `cam` tells".into()),
+        Openness::Noise(spread) => (measured_to(&profile.reading, spread), "as far as `cam` tells".into()),
     };
     Ok(Some(format!(
         "{accuracy}, which leaves the cam's second derivative open {open}; what follows is of the cam as it is drawn through the rows, \
