@@ -43,6 +43,11 @@ pub struct Measured {
 }
 
 impl Measured {
+    /// A measured cam that leaves what is asked of it open.
+    pub fn noisy(measured: &Option<Self>) -> Option<&Self> {
+        measured.as_ref().filter(|cam| cam.is_noisy)
+    }
+
     /// Whether rounding is all the noise that there is.
     pub fn is_rounded(&self) -> bool {
         /// Beyond which the noise is more than that, in standard deviations of the rounding.

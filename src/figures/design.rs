@@ -3,6 +3,7 @@
 use crate::draw::{Axis, BREAK, Colour, Figure, Mark, Marker, Panel, Series, Stroke, extent};
 use crate::figures::SPEED;
 use crate::figures::impacts::WHOLE_CAM;
+use crate::measured::Measured;
 use crate::model::Units;
 use crate::show::digits::with_error;
 use crate::study::design::contact::Separation;
@@ -71,7 +72,7 @@ fn speeds(found: &Design) -> Figure {
     }
     let at = found.separation.speed();
     let label = || match found.separation {
-        Separation::At { rpm, error, .. } if found.measured.as_ref().is_some_and(|cam| cam.is_noisy) => {
+        Separation::At { rpm, error, .. } if Measured::noisy(&found.measured).is_some() => {
             let (digits, error) = with_error(error);
             format!("separation, {} ± {} rpm", digits.text(rpm), digits.text(error))
         }

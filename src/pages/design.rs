@@ -1,6 +1,7 @@
 //! The page of `design`: the answer in sentences first, then speeds, limits and what must be changed.
 
 use crate::known::Known;
+use crate::measured::Measured;
 use crate::pages::source;
 use crate::pages::speeds::measured_speed;
 use crate::show::Paged;
@@ -40,7 +41,7 @@ impl Paged for Design {
 pub(crate) fn separation(found: &Design) -> Words {
     let degrees = |angle: f64| (angle.to_degrees(), Digits::Fixed(3));
     match found.separation {
-        Separation::At { rpm, error, cam_angle } => match found.measured.as_ref().filter(|cam| cam.is_noisy) {
+        Separation::At { rpm, error, cam_angle } => match Measured::noisy(&found.measured) {
             None => words![
                 "The follower leaves the cam first at ",
                 (rpm, Digits::Fixed(6)),
@@ -83,6 +84,7 @@ pub(crate) fn margin(found: &Design) -> Option<Words> {
 }
 
 pub(crate) fn speeds(found: &Design) -> Vec<Block> {
+    let is_open = Measured::noisy(&found.measured).is_some();
     let force = found.units.force.name();
     let mut columns = vec![number("rpm"), number(format!("least force {force}")), number("at deg")];
     let head = |name: &str, unit: &'static str| number(words![name, Span::Unit(unit)]);
@@ -117,7 +119,7 @@ pub(crate) fn speeds(found: &Design) -> Vec<Block> {
                     // In per cent it is no number of the document.
                     let off_cam = error(2).map(|error| 100.0 * error);
                     let force = error(4).map(|error| found.force(error));
-                    let unknown = if is_noisy(found) && loads.errors.is_none() { " ± ?" } else { "" };
+                    let unknown = if is_open && loads.errors.is_none() { " ± ?" } else { "" };
                     cells.extend([
                         words![load(loads.impact_speed, error(0), Digits::Aligned(3), true), unknown],
                         load(loads.gap, error(1), Digits::Aligned(3), true),
@@ -153,11 +155,11 @@ pub(crate) fn speeds(found: &Design) -> Vec<Block> {
 }
 
 fn limits(found: &Design) -> Vec<Block> {
+    let is_open = Measured::noisy(&found.measured).is_some();
     let sentence = |passed: &crate::study::design::Passed| {
         let name = passed.limit.to_string().replace('-', " ");
         let limit = words![format!("{name} of "), (passed.value, SIX), format!(" {}: ", passed.unit)];
-        let open =
-            if is_noisy(found) { ", of the cam as it is drawn: what it leaves open is the ± above" } else { "" };
+        let open = if is_open { ", of the cam as it is drawn: what it leaves open is the ± above" } else { "" };
         match passed.speed_rpm {
             Some(rpm) => {
                 words![
@@ -179,6 +181,7 @@ fn limits(found: &Design) -> Vec<Block> {
 }
 
 fn needs(found: &Design) -> Vec<Block> {
+    let is_open = Measured::noisy(&found.measured).is_some();
     let mut blocks = Vec::new();
     for of_need in found.needs.chunk_by(|one, two| one.need == two.need) {
         let columns = [
@@ -196,7 +199,7 @@ fn needs(found: &Design) -> Vec<Block> {
             let digits = if *known == Known::Computed { Digits::Significant(9) } else { Digits::Significant(3) };
             let bound = if answer.is_upper_bound { "at most" } else { "at least" };
             // Of any value that will do nothing is open, and that is said.
-            let unknown = if is_noisy(found) && answer.error.is_none() && note.is_empty() { " ± ?" } else { "" };
+            let unknown = if is_open && answer.error.is_none() && note.is_empty() { " ± ?" } else { "" };
             let value = answer.value.map(|value| words![with_open(value, answer.error, digits), unknown]);
             let other = answer.other.map(|other| with_open(other, answer.other_error, digits));
             let (bound, to) = match (value, other) {
@@ -240,11 +243,6 @@ fn rounded(found: &Design) -> Vec<Block> {
                  the lifts and slopes on both sides, and whose acceleration goes beyond both by a twelfth of the jump for that, over \
                  however short an angle:";
     vec![Block::Heading("Jumps of the acceleration".into()), Block::paragraph(words), Block::Table(table)]
-}
-
-/// Whether a measured cam leaves the answers open.
-fn is_noisy(found: &Design) -> bool {
-    found.measured.as_ref().is_some_and(|cam| cam.is_noisy)
 }
 
 /// A load with what the cam leaves open of it, or in as many digits as that leaves it; what may be none is below something.

@@ -5,6 +5,7 @@ use crate::corner::Way;
 use crate::corner::candidates::{MOST_IMPACTS, NEAREST_OTHER};
 use crate::corner::range::{FoundCornerImpacts, Recaptured, UndecidedSpeeds};
 use crate::corner::shots::{SHOT_RATIO, VELOCITIES};
+use crate::measured::Measured;
 use crate::orbit::branch::GRID_RATIO;
 use crate::pages::speeds::measured_speed;
 use crate::show::Paged;
@@ -34,7 +35,7 @@ impl Paged for Located {
             page.extend([Block::Gap, Block::paragraph(words)]);
         }
         for (index, impact) in self.found.iter().enumerate() {
-            if let Some(cam) = self.measured.as_ref().filter(|cam| cam.is_noisy) {
+            if let Some(cam) = Measured::noisy(&self.measured) {
                 let speed = measured_speed(impact.at.speed_rpm(), Digits::Fixed(9), impact.speed_error, Some(cam));
                 page.extend([Block::Gap, Block::paragraph(words![format!("{}: ", index + 1), speed])]);
             }

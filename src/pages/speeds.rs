@@ -64,7 +64,7 @@ fn open_to(found: &Speeds, rpm: f64) -> Words {
 fn open(found: &Speeds, end: &Change) -> Option<f64> {
     const WHOLE: f64 = 10.0;
     let best = || ends(found).filter_map(|end| end.error).reduce(f64::min);
-    end.error.or_else(|| is_noisy(found).then(|| best().unwrap_or(WHOLE)))
+    end.error.or_else(|| Measured::noisy(&found.measured).map(|_| best().unwrap_or(WHOLE)))
 }
 
 /// Where the follower first leaves the cam.
@@ -91,11 +91,6 @@ pub(crate) fn measured_speed(rpm: f64, digits: Digits, error: Option<f64>, cam: 
     }
 }
 
-/// Whether a measured cam leaves the speeds open, farther than digits are printed.
-fn is_noisy(found: &Speeds) -> bool {
-    found.measured.as_ref().is_some_and(|cam| cam.is_noisy)
-}
-
 /// How it was found out, and what that can miss.
 pub(crate) fn how(found: &Speeds) -> String {
     const LOCATED: &str = " A speed with six decimals was located by the equations of what happens there; others are known from runs \
@@ -108,7 +103,7 @@ pub(crate) fn how(found: &Speeds) -> String {
         found.starts,
         found.step,
         100.0 * found.missed(),
-        if is_noisy(found) { "" } else { LOCATED }
+        if Measured::noisy(&found.measured).is_some() { "" } else { LOCATED }
     )
 }
 

@@ -663,6 +663,7 @@ fn a_new_measured_machine() {
         "table: 180 rows, angles in deg and lifts in mm, columns parted by commas; the header is \"angle [deg],lift [mm]\"; 1 comment",
         "accuracy: lift rounded to 0.001 mm; about a smooth motion the rows spread by 0.000",
         "corners found: none; dwells found: 19",
+        "Corners (2)",
     ] {
         assert!(page.contains(says), "no \"{says}\" in: {page}");
     }

@@ -2,6 +2,7 @@
 //! is proved.
 
 use crate::figures::chaotic_set;
+use crate::measured::Measured;
 use crate::pages::report::html::{HtmlError, plates};
 use crate::pages::speeds::{measured_speed, together};
 use crate::report::Report;
@@ -61,7 +62,7 @@ fn margin(report: &Report) -> Option<Words> {
 fn impacts(report: &Report) -> Option<Words> {
     let found = report.speeds.as_ref().ok()?;
     let [low, high] = found.rpm;
-    let open = match found.measured.as_ref().filter(|cam| cam.is_noisy) {
+    let open = match Measured::noisy(&found.measured) {
         Some(cam) => {
             let loads = if report.loads.is_some() { "; the loads below have their ±" } else { "" };
             format!(" It is of the cam as it is drawn ({}){loads}.", accuracy(cam))
