@@ -1,7 +1,9 @@
 //! Is what is proved of a box of impacts so of the impacts in it, as they are simulated?
 
+use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
+use approx::assert_abs_diff_eq;
 use corner_impact::cam::Cam;
 use corner_impact::covering::{Frame, HSet, Image, ImpactMap, Strip, Unproved};
 use corner_impact::interval::Interval;
@@ -113,7 +115,9 @@ fn an_impact_that_never_comes_is_none() {
     for angle in [0.0, 1.0, 2.79, 3.5, 6.0] {
         assert_eq!(next_impact(&machine(50.0), angle, 0.0).unwrap(), None, "{angle}");
         assert!(next_impact(&machine(50.0), angle, 1e-3).unwrap().is_some(), "{angle}");
-        assert!(next_impact(&machine(670.0), angle, 0.0).unwrap().is_some(), "{angle}");
+        let thrown = next_impact(&machine(670.0), angle, 0.0).unwrap();
+        // The cam may have to let go before.
+        assert!(thrown.is_some_and(|event| event.kind == EventKind::Impact), "{angle} {thrown:?}");
         for velocity in [-1e-3, f64::NAN] {
             assert_eq!(next_impact(&machine(670.0), angle, velocity).unwrap(), None, "{angle} {velocity}");
         }
@@ -124,8 +128,17 @@ fn an_impact_that_never_comes_is_none() {
 #[test]
 fn a_trace_presses_where_it_sticks() {
     let machine = Machine::new(common::cam(&common::osorio()), &common::osorio().follower, angular_velocity(183.0));
-    let (samples, events) = trace(&machine, machine.start_on_cam(0.0, 0.0).unwrap(), 4, 360).unwrap();
+    let start = machine.start_on_cam(1.0, 0.0).unwrap();
+    let (samples, events) = trace(&machine, start, 4, 360).unwrap();
     assert!(samples.iter().all(|sample| sample.contact || sample.pressing == 0.0));
+    let moments: Vec<_> =
+        samples.iter().filter(|sample| events.iter().all(|event| event.turned_since(0.0) != sample.turned)).collect();
+    assert_eq!(moments.len(), 4 * 360 + 1);
+    for (index, sample) in moments.iter().enumerate() {
+        assert_abs_diff_eq!(sample.turned, 1.0 + TAU * index as f64 / 360.0, epsilon = 1e-12);
+        // On the cam the follower has its velocity.
+        assert!(!sample.contact || (sample.state.velocity - sample.cam_velocity).abs() < 1e-9, "{sample:?}");
+    }
     let mut met = [0; 3];
     for event in &events {
         let here: Vec<_> = samples.iter().filter(|sample| sample.turned == event.turned_since(0.0)).collect();

@@ -66,6 +66,46 @@ fn flight_solves_the_equation_of_motion() {
     }
 }
 
+/// Velocity is none where a flight turns, and of one sign before; where it never turns, of one sign for as long as is looked.
+#[test]
+fn a_flight_turns_where_its_velocity_is_none_first() {
+    const LONG: f64 = 20.0;
+    let (mut turned, mut never) = (0, 0);
+    for follower in followers() {
+        let flight = Flight::new(&follower);
+        let (zeta, w0_squared) = (0.5 * follower.damping, follower.stiffness);
+        let swings = w0_squared > zeta * zeta;
+        let frequency = swings.then(|| (w0_squared - zeta * zeta).sqrt());
+        assert_eq!(flight.damped_frequency(), frequency, "{follower:?}");
+        for (position, velocity) in
+            [(0.5, 3.0), (0.5, -3.0), (0.1, 3.0), (0.1, -3.0), (0.1, -30.0), (0.5, 0.0), (0.1, 0.0), (REST, 1.0)]
+        {
+            let start = State { position, velocity };
+            let time = flight.turning_point(start);
+            let case = format!("{follower:?} from {position}, {velocity}: {time}");
+            let at = |time: f64| flight.fly(start, time).1.velocity;
+            // Nearly critical it turns once more after hours, when nothing is left that a double holds.
+            let is_seen = time < LONG;
+            let end = time.min(LONG);
+            let signs: Vec<f64> = (1..200).map(|part| at(end * f64::from(part) / 200.0).signum()).collect();
+            assert!(signs.iter().all(|sign| *sign == signs[0]), "{case}: {signs:?}");
+            if is_seen {
+                let most = velocity.abs() + flight.acceleration(start).abs() * time;
+                assert!(
+                    at(time).abs() <= 1e-12 * most && at(1.01 * time).signum() == -signs[0],
+                    "{case}: {}",
+                    at(time)
+                );
+                turned += 1;
+            } else {
+                assert!(!swings || time.is_finite(), "{case}");
+                never += 1;
+            }
+        }
+    }
+    assert!(turned > 40 && never > 20, "{turned} {never}");
+}
+
 /// A spring so weak that it is slack kilometres away: the way down to a level is still that of the flight.
 #[test]
 fn the_fall_to_a_level_keeps_its_digits() {
