@@ -98,14 +98,14 @@ pub fn next_impact(machine: &Machine, cam_angle: f64, relative_velocity: f64) ->
         // A cam that does not let go within a turn never does.
         let goal = motion.after(if motion.contact { 1 } else { PATIENCE });
         let mut last = None;
-        let flow = machine.advance(&mut motion, goal, &mut |event: &Event| {
+        let _ = machine.advance(&mut motion, goal, &mut |event: &Event| {
             last = Some(*event);
             ControlFlow::Break(())
         })?;
         match last {
             Some(event) if event.kind == EventKind::Impact => return Ok(Some(event)),
-            None if flow.is_continue() => return Ok(None),
-            _ => {}
+            Some(_) => {}
+            None => return Ok(None),
         }
     }
 }
