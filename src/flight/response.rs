@@ -91,14 +91,13 @@ impl Flight {
             // Two in a row, since one may vanish by chance; s' has the largest terms.
             largest = of_rate.magnitude().max(size);
             size = of_rate.magnitude();
-            // Of the larger of the two before it a term of s' is this part at most.
-            let part = || (damping.magnitude() + spring.magnitude() / n) / (n + 1.0);
-            if largest < tolerance::SERIES_END.value && part() < 0.5 {
+            if largest < tolerance::SERIES_END.value {
                 break;
             }
         }
-        // With parts q <= 1/2 all that are left out are less than 2 q/(1 - q) = 2 times the larger of the last two; those of p and s
-        // are smaller.
+        // A term of s' is q = (2 zeta t + w0^2 t^2/n)/(n + 1) times the larger of the two before it at most: less than a half from the
+        // fifth on, and of terms before it two in a row are so small only where both numbers are. All that are left out are then
+        // less than 2 q/(1 - q) = 2 times the larger of the last two; those of p and s are smaller.
         let tail = N::left_out(3.0 * largest);
         Response { step: t * t * (step + tail), impulse: t * (impulse + tail), impulse_rate: impulse_rate + tail }
     }
