@@ -53,6 +53,71 @@ fn named<'a>(all: &'a [Condition], name: &str) -> &'a Condition {
     all.iter().find(|condition| condition.name == name).unwrap_or_else(|| panic!("{name}"))
 }
 
+/// Of sides that do not meet the largest minor is told over its own terms: by hand, 1*2 - 3*1 over 3*2 + 7*1. A row of which nothing depends on
+/// anything is continuous.
+#[test]
+fn how_far_a_condition_is_from_failing_is_told_over_its_terms() {
+    let side =
+        |first: [f64; 3]| SideMap { a: Matrix2::new(first[0], first[1], 0.0, 0.0), b: Vector2::new(first[2], 0.0) };
+    let map = CornerMap { minus: side([1.0, 2.0, 5.0]), plus: side([2.0, 5.0, 8.0]) };
+    for size in [1.0, 1e9] {
+        let all = conditions(&LocalMap::new(&map, (RowVector2::new(size, 2.0 * size), 3.0 * size)));
+        let meeting = named(&all, "(A+ - A-, B+ - B-) - E (e, f) = 0");
+        assert!(!meeting.holds(), "{meeting:?}");
+        assert_relative_eq!(meeting.value, 1.0 / 13.0, max_relative = 1e-14);
+        assert_relative_eq!(named(&all, "first entry of C").distance, 1.0 / 3.0, max_relative = 1e-14);
+        let jump = named(&all, "A+ - A-");
+        assert_eq!(jump.value, 3.0);
+        assert_relative_eq!(jump.distance, 3.0 / 7.0, max_relative = 1e-14);
+        // e A- is e.
+        let form = named(&all, "det [e; e A-]");
+        assert!(form.value == 0.0 && form.distance == 0.0 && !form.holds(), "{form:?}");
+    }
+}
+
+/// Of length, time, period and the height over the border alike: how far each condition is from failing, and the verdict.
+#[test]
+fn conditions_hang_on_no_unit() {
+    let told = |units: [f64; 2], of_period: f64, of_height: f64| {
+        let (mut map, (e, f)) = planted([0.4, -1.7], [0.3, 0.2], units);
+        map.minus.b *= of_period;
+        map.plus.b *= of_period;
+        let border = (e * of_height, f * of_period * of_height);
+        let distances: Vec<f64> =
+            conditions(&LocalMap::new(&map, border)).iter().skip(2).map(|condition| condition.distance).collect();
+        (distances, classify(&map, border).unwrap().scenario)
+    };
+    let (distances, scenario) = told([1.0, 1.0], 1.0, 1.0);
+    for (units, of_period, of_height) in
+        [([1e6, 1e6], 1.0, 1.0), ([1.0, 1.0], 1e-30, 1.0), ([1.0, 1.0], 1e30, 1.0), ([1.0, 1.0], 1.0, 1e9)]
+    {
+        let other = told(units, of_period, of_height);
+        assert_eq!(other.1, scenario);
+        for (one, other) in distances.iter().zip(&other.0) {
+            assert_relative_eq!(*one, *other, epsilon = 0.0, max_relative = 1e-9);
+        }
+    }
+}
+
+/// A fixed point that stays on the border is on neither side; and a complex pair is neither above 1 nor below -1, wherever its real part is.
+#[test]
+fn what_is_counted_is_real_and_on_a_side() {
+    let (map, border) = planted([3.0, 0.4], [4.0, 0.2], [1.0, 1.0]);
+    let counts = classify(&map, border).unwrap().minus;
+    assert_eq!((counts.above_one, counts.below_minus_one), (0, 0));
+    let (mut map, (e, f)) = planted([0.4, -1.7], [0.3, 0.2], [1.0, 1.0]);
+    // f is -e shift, and the fixed point of both sides is at the shift, but for what rounding might make of it.
+    let shift = Vector2::new(1.3, -2.1) * (1.0 + 1e-13);
+    for side in [&mut map.minus, &mut map.plus] {
+        side.b = (Matrix2::identity() - side.a) * shift;
+    }
+    let refused = classify(&map, (e, f)).unwrap_err();
+    assert!(
+        matches!(refused, Degenerate::Vanishes { what: "the fixed point's distance from the border", .. }),
+        "{refused:?}"
+    );
+}
+
 /// A map in which one condition fails says so, and no other does.
 #[test]
 fn each_condition_fails_where_it_must_and_alone() {

@@ -126,6 +126,18 @@ fn b_of_a_preloaded_machine_in_grams_is_what_machines_show() {
     }
 }
 
+/// Gravity goes on pulling while another number is varied, and is one itself.
+#[test]
+fn b_of_a_machine_with_gravity_is_what_machines_show() {
+    let Case { model, cam, at } = case(read("persistence.toml"), 493.827512922, 1);
+    assert!(model.follower.gravity > 0.0);
+    for name in ["follower.mass", "follower.stiffness", "follower.gravity"] {
+        let by = Varied::Number(name.into());
+        let product = variational::route_by(&model, &cam, &at, &by).unwrap();
+        assert_agree(&[product, finite_difference::route_by(&model, &cam, &at, &by).unwrap()], name);
+    }
+}
+
 #[test]
 fn a_fit_by_a_number_finds_the_same() {
     let Case { model, cam, at } = case(common::osorio(), 736.110814, 1);
@@ -136,6 +148,10 @@ fn a_fit_by_a_number_finds_the_same() {
             least_squares::route_by(&model, &cam, &at, &by).unwrap(),
         ];
         assert_agree(&routes, name);
+        let Some(Uncertainty::Extrapolation(error)) = &routes[0].uncertainty else { panic!("{name}: {:?}", routes[0]) };
+        let errors = [error.minus.b, error.plus.b];
+        assert!(errors.iter().all(|error| error.min() >= 0.0), "{name}: {errors:?}");
+        assert_eq!(errors.iter().any(|error| error.max() > 0.0), name.starts_with("cam."), "{name}: {errors:?}");
     }
 }
 

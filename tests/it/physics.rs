@@ -129,6 +129,13 @@ fn the_fall_to_a_level_keeps_its_digits() {
                 let most = gravity * time + velocity.abs() + stiffness.sqrt();
                 assert!((there.velocity - state.velocity).abs() <= 4e-15 * most, "{case}");
             }
+            if stiffness < 1.0 {
+                // A hair above the level and fast: the mean of the velocities takes it down, and the time keeps digits of its own.
+                let start = State { position: 0.45 + 1e-9, velocity: -3.0 };
+                let (time, state) = flight.fall_to(0.45, start).unwrap();
+                let expected = 2.0 * (start.position - 0.45) / -(start.velocity + state.velocity);
+                assert_relative_eq!(time, expected, epsilon = 0.0, max_relative = 1e-13);
+            }
         }
     }
 }
@@ -164,6 +171,42 @@ fn a_damped_fall_ends_where_the_level_is_passed_first() {
         }
     }
     assert!(reached > 40 && never > 10 && risen > 0, "{reached} {never} {risen}");
+}
+
+/// Thrown down hard, an overdamped follower turns far below where it rests: it is below the level for an instant or not at all.
+#[test]
+fn a_level_at_the_turn_is_reached_or_missed() {
+    let mut turns = 0;
+    for follower in followers().into_iter().filter(|follower| follower.damping > 0.0) {
+        let flight = Flight::new(&follower);
+        let start = State { position: 0.5, velocity: -300.0 };
+        let turn = flight.turning_point(start);
+        if turn.is_infinite() {
+            continue;
+        }
+        let lowest = flight.fly(start, turn).1.position;
+        let (time, state) = flight.fall_to(lowest + 1e-9, start).unwrap();
+        assert!(
+            time < turn && turn - time < 1e-3 * turn && state.velocity < 0.0,
+            "{follower:?}: {time} {turn} {state:?}"
+        );
+        assert_eq!(flight.fall_to(lowest - 1e-9, start), None, "{follower:?}");
+        turns += 1;
+    }
+    assert!(turns > 4, "{turns}");
+}
+
+/// A hair above the level and fast: the mean of the velocities takes it down, and the time has digits of its own, above and below the equilibrium.
+#[test]
+fn a_short_fall_keeps_its_digits() {
+    for level in [0.45, -0.45] {
+        let follower =
+            Follower { mass: 1.0, damping: 0.0, stiffness: 1.0, gravity: 0.0, rest_position: 0.0, restitution: 0.8 };
+        let start = State { position: level + 1e-9, velocity: -3.0 };
+        let (time, state) = Flight::new(&follower).fall_to(level, start).unwrap();
+        let expected = 2.0 * (start.position - level) / -(start.velocity + state.velocity);
+        assert_relative_eq!(time, expected, epsilon = 0.0, max_relative = 1e-13);
+    }
 }
 
 /// Two flights are one: the responses hold their digits through every switch of formula.
