@@ -96,8 +96,9 @@ impl Flight {
             }
         }
         // A term of s' is q = (2 zeta t + w0^2 t^2/n)/(n + 1) times the larger of the two before it at most: less than a half from the
-        // fifth on, and of terms before it two in a row are so small only where both numbers are. All that are left out are then
-        // less than 2 q/(1 - q) = 2 times the larger of the last two; those of p and s are smaller.
+        // fifth on, and of terms before it two in a row are so small only where both numbers are, a and b: s' begins with
+        // 1 - a + (a^2 - b)/2 + a (2 b - a^2)/6. All that are left out are then less than 2 q/(1 - q) = 2 times the larger of the last
+        // two; those of p and s are smaller.
         let tail = N::left_out(3.0 * largest);
         Response { step: t * t * (step + tail), impulse: t * (impulse + tail), impulse_rate: impulse_rate + tail }
     }
