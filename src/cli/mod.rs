@@ -59,7 +59,7 @@ pub enum Exit {
 
 /// Re-proves the corner-impact bifurcation of a cam-follower system: closed forms against simulation.
 #[derive(Parser)]
-#[command(name = "corner-impact", version)]
+#[command(name = "corner-impact", bin_name = "corner-impact", version)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,

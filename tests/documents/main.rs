@@ -19,7 +19,7 @@ use rayon::prelude::*;
 use run::{ELSEWHERE, Held, plain, run, run_page, steps};
 
 fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
+    Path::new(env!("PROJECT"))
 }
 
 /// Commands in blocks of language `console`, over all pages.

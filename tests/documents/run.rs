@@ -101,9 +101,11 @@ fn copy(from: &Path, to: &Path) {
 
 /// Runs a command line as a shell does, the program of this build found first; what it prints, in the page's form.
 pub fn run(root: &Path, folder: &Path, command: &str) -> String {
-    let program = Path::new(env!("CARGO_BIN_EXE_corner-impact"));
+    // Under the name that pages call it by, in a folder that goes when this has run.
+    let named = tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).unwrap();
+    std::fs::hard_link(env!("CARGO_BIN_EXE_corner-impact-tested"), named.path().join("corner-impact")).unwrap();
     let path = std::env::var_os("PATH").unwrap_or_default();
-    let path = [program.parent().unwrap().to_path_buf()].into_iter().chain(std::env::split_paths(&path));
+    let path = [named.path().to_path_buf()].into_iter().chain(std::env::split_paths(&path));
     // Examples are the project's, wherever the folder is.
     let manifest = format!("cargo run --quiet --locked --manifest-path {}/Cargo.toml ", root.display());
     let output = Command::new("sh")

@@ -6,7 +6,7 @@ use std::process::Output;
 use crate::common;
 use tempfile::TempDir;
 
-const MODEL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/models/osorio-2008.toml");
+const MODEL: &str = concat!(env!("PROJECT"), "/models/osorio-2008.toml");
 
 /// A folder in which commands run: nothing in it may change but where a test says so.
 struct Place(TempDir);

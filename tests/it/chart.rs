@@ -232,7 +232,7 @@ fn a_store_that_cannot_be_written_loses_nothing() {
     let [store, model, program] = ["c.zarr", "model.toml", "corner-impact"].map(|name| folder.path().join(name));
     // The superuser may write everywhere: another user tries, with copies of what that user may not come to.
     std::fs::copy(Path::new(common::ROOT).join(MODEL), &model).unwrap();
-    std::fs::copy(common::PROGRAM, &program).unwrap();
+    common::copy_program(&program);
     let [store, model] = [&store, &model].map(|path| path.to_str().unwrap());
     let axes = ["--x", "rpm=90:190:120", "--y", "restitution=0:0.9:3", "--transient", "5", "--record", "2"];
     let whole = [&["chart", model], &axes[..], &["--out", store]].concat();

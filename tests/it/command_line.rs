@@ -4,7 +4,7 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
-use crate::common::{PROGRAM, ROOT, corner_impact, program, text};
+use crate::common::{PROGRAM, ROOT, copy_program, corner_impact, program, text};
 use rayon::prelude::*;
 use tempfile::TempDir;
 
@@ -327,7 +327,7 @@ fn manual_and_completions_know_every_command() {
 fn from_any_folder() {
     let (home, empty) = (TempDir::new().unwrap(), TempDir::new().unwrap());
     let copy = home.path().join("corner-impact");
-    std::fs::copy(PROGRAM, &copy).unwrap();
+    copy_program(&copy);
     let run = |line: &str| {
         let mut command = Command::new(&copy);
         command

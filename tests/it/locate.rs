@@ -11,10 +11,10 @@ use corner_impact::progress::Unwatched;
 use corner_impact::study::locate::{Happens, LocateError, Located, LocatedImpact};
 use serde_json::Value;
 
-const MODEL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/models/osorio-2008.toml");
+const MODEL: &str = concat!(env!("PROJECT"), "/models/osorio-2008.toml");
 
 fn law(name: &str) -> String {
-    format!("{}/models/laws/{name}.toml", env!("CARGO_MANIFEST_DIR"))
+    format!("{}/models/laws/{name}.toml", env!("PROJECT"))
 }
 
 fn locate(arguments: &[&str]) -> Output {
@@ -86,7 +86,7 @@ fn an_orbit_of_two_revolutions_reaches_the_noses_end() {
 /// A follower without spring that flies for two revolutions from the corner back to it.
 #[test]
 fn one_impact_in_two_revolutions_is_found() {
-    let model = common::read(concat!(env!("CARGO_MANIFEST_DIR"), "/models/ballistic.toml").as_ref());
+    let model = common::read(concat!(env!("PROJECT"), "/models/ballistic.toml").as_ref());
     let found = surveyed(&model, 332.0, 332.6, 2);
     let [located] = found.found.as_slice() else { panic!("{:?}", found.found) };
     assert!((located.at.speed_rpm() - 332.297519227).abs() < 1e-8 && located.agrees, "{located:?}");
@@ -372,7 +372,7 @@ fn parts_of_ranges_have_their_parts_of_the_corner_impacts() {
         ]);
     }
     for (name, range, revolutions, least) in ranges {
-        let file = format!("{}/models/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        let file = format!("{}/models/{name}.toml", env!("PROJECT"));
         parts_are_the_whole(&common::read(file.as_ref()), range, revolutions, least);
     }
 }

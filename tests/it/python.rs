@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 /// The interpreter that `make` sets up; without it these questions cannot be asked, and that is a failure, not a pass.
 fn interpreter() -> PathBuf {
-    let python = Path::new(env!("CARGO_MANIFEST_DIR")).join(".venv/bin/python");
+    let python = Path::new(env!("PROJECT")).join(".venv/bin/python");
     assert!(python.is_file(), "run `make test`, which sets up .venv");
     python
 }
@@ -105,7 +105,7 @@ fn nothing_of_the_current_folder_is_run() {
     let (home, stranger, private) =
         (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let program = home.path().join("corner-impact");
-    std::fs::copy(common::PROGRAM, &program).unwrap();
+    common::copy_program(&program);
     let marks = stranger.path().join("marks");
     std::fs::create_dir_all(&marks).unwrap();
     let python = |name: &str| {
@@ -230,7 +230,7 @@ fn a_rounded_corner_is_none() {
         ("simulate_scipy.py", "no corner impact"),
         ("certify.py", "cam.corner_rounding_deg"),
     ] {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("derivations").join(script);
+        let path = Path::new(env!("PROJECT")).join("derivations").join(script);
         let mut command = Command::new(interpreter());
         let piped = std::process::Stdio::piped;
         let mut child = command.arg(path).stdin(piped()).stdout(piped()).stderr(piped()).spawn().unwrap();

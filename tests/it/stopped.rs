@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 use crate::common;
 use tempfile::TempDir;
 
-const MODEL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/models/osorio-2008.toml");
+const MODEL: &str = concat!(env!("PROJECT"), "/models/osorio-2008.toml");
 const SIGINT: i32 = 2;
 /// What a file held before.
 const OLD: &str = "old\n";
@@ -235,7 +235,7 @@ fn a_picture_on_a_full_device_is_an_error() {
 #[test]
 #[ignore = "slow"]
 fn a_picture_without_room_leaves_the_old_one() {
-    let program = env!("CARGO_BIN_EXE_corner-impact");
+    let program = env!("CARGO_BIN_EXE_corner-impact-tested");
     for line in
         PICTURES.map(|line| line.to_owned()).into_iter().chain(["simulate MODEL --rpm 183 --events FILE".into()])
     {

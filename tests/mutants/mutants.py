@@ -25,9 +25,12 @@ import shutil
 import signal
 import subprocess
 import sys
+import tempfile
+import threading
 import time
 import tomllib
 from collections import Counter, defaultdict
+from multiprocessing.pool import ThreadPool
 from pathlib import Path
 
 import tree_sitter
@@ -328,7 +331,7 @@ def copied():
     if (ROOT / ".venv").exists() and not (COPY / ".venv").exists():
         (COPY / ".venv").symlink_to(ROOT / ".venv")
     # A mutant may be unreachable, unused or absurd: no lint.
-    manifest = re.sub(r"\[lints\.\w+\]\n(.+\n)*", "", (ROOT / "Cargo.toml").read_text())
+    manifest = re.sub(r"(\[workspace\.lints\.\w+\]\n)(.+\n)*", r"\1", (ROOT / "Cargo.toml").read_text())
     # Unoptimised, simulations are slow; more than a little optimised, the compiler is.
     manifest = manifest.replace("opt-level = 2                   # 3", "opt-level = 1                   # 3")
     changed(COPY / "Cargo.toml", manifest)
@@ -394,30 +397,35 @@ def limited(seconds):
 
 
 def became(binary, tests, seconds, mutant):
-    """Whether these tests pass, fail, or take longer than they may: in seconds of a core, whatever else it does; but a test may wait."""
+    """Whether these tests pass, fail, or take longer than they may: in seconds of a core, whatever else it does; but a test may wait.
+    Which failed, and the seconds that all took."""
     words = [binary, "--include-ignored", "--exact", "--test-threads=1", *tests]
-    run = subprocess.Popen(words, cwd=COPY, env=os.environ | {"MUTANT": mutant, "RAYON_NUM_THREADS": "1", "INSTA_UPDATE": "no"},
-                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, preexec_fn=lambda: limited(math.ceil(seconds)))
-    try:
-        code = run.wait(10 * seconds)
-        return "pass" if code == 0 else "too long" if code in (-signal.SIGXCPU, -signal.SIGKILL) else "fail"
-    except subprocess.TimeoutExpired:
-        return "too long"
-    finally:
+    # Into a file, which is read once the test has ended: what it has started may still hold a pipe.
+    with tempfile.TemporaryFile() as said:
+        run = subprocess.Popen(words, cwd=COPY, env=os.environ | {"MUTANT": mutant, "RAYON_NUM_THREADS": "1", "INSTA_UPDATE": "no"},
+                               stdout=said, stderr=subprocess.DEVNULL, preexec_fn=lambda: limited(math.ceil(seconds)))
+        waited = threading.Timer(10 * seconds, lambda: ended(run.pid))
+        waited.start()
         try:
-            os.killpg(run.pid, 9)
-        except ProcessLookupError:
-            pass
-        run.wait()
+            _, status, used = os.wait4(run.pid, 0)
+            run.returncode = os.waitstatus_to_exitcode(status)
+        finally:
+            waited.cancel()
+            ended(run.pid)
+        said.seek(0)
+        failed = re.findall(r"^test (\S+) \.\.\. FAILED$", said.read().decode(errors="replace"), re.MULTILINE)
+    done = "pass" if run.returncode == 0 else "too long" if run.returncode in (-signal.SIGXCPU, -signal.SIGKILL) else "fail"
+    return done, failed, used.ru_utime + used.ru_stime
 
 
-def spent():
-    """Seconds of a core that all processes so far have taken."""
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
+def ended(group):
+    try:
+        os.killpg(group, signal.SIGKILL)
+    except ProcessLookupError:
+        pass
 
 
-def reached(binary, longest, words):
+def reached(binary, longest, words, jobs):
     """Of each test that passes in time: how long it takes, s, and which places it reaches."""
     stamp = hashlib.sha256(Path(binary).read_bytes()).hexdigest()
     kept = COPY / "reached.json"
@@ -430,18 +438,24 @@ def reached(binary, longest, words):
     listed = subprocess.run([binary, "--list"], cwd=COPY, capture_output=True, text=True, check=True).stdout
     names = [line.removesuffix(": test") for line in listed.splitlines() if line.endswith(": test")]
     names = [name for name in names if not words or any(word in name for word in words)]
-    tests, notes = {}, COPY / "notes"
-    for name in names:
+    tests = {}
+
+    def note(name):
+        if slow.get(name, 0) >= longest:
+            return
+        notes = COPY / "notes" / name.replace("::", ".")
         notes.unlink(missing_ok=True)
-        begun = spent()
-        done = "too long" if slow.get(name, 0) >= longest else became(binary, [name], longest, str(notes))
+        done, _, took = became(binary, [name], longest, str(notes))
         if done == "too long":
             slow[name] = longest
         if done == "pass":
-            took = spent() - begun
             tests[name] = [took, sorted({int(line) for line in notes.read_text().split()}) if notes.exists() else []]
+
+    (COPY / "notes").mkdir(exist_ok=True)
+    with ThreadPool(jobs) as pool:
+        pool.map(note, names, chunksize=1)
     print(f"{len(tests)} of {len(names)} tests pass within {longest} s each", flush=True)
-    kept.write_text(json.dumps({"asked": asked, "slow": slow, "tests": tests}))
+    kept.write_text(json.dumps({"asked": asked, "slow": slow, "tests": dict(sorted(tests.items()))}))
     return tests
 
 
@@ -453,6 +467,8 @@ def main():
     ask.add_argument("--seconds", type=float, default=float("inf"), help="begin no mutant after so long")
     ask.add_argument("--longest", type=float, default=10.0, help="no test that takes longer, s")
     ask.add_argument("--tests", nargs="*", default=[], help="parts of the names of the tests to ask, instead of all")
+    ask.add_argument("--enough", type=float, default=float("inf"), help="ask no further test of a mutant that has passed so many seconds of them")
+    ask.add_argument("--jobs", type=int, default=1, help="so many mutants at a time")
     ask.add_argument("--out", help="write what became of each, as JSON lines; what has failed a test there already is not asked again")
     ask.add_argument("--list", action="store_true", help="list them, and run none")
     asked = ask.parse_args()
@@ -478,7 +494,7 @@ def main():
         for id in sorted(chosen):
             print(*name(mutants[id]), sep=" | ")
         return
-    tests = reached(binary, asked.longest, asked.tests)
+    tests = reached(binary, asked.longest, asked.tests, asked.jobs)
     print(f"ready after {time.monotonic() - begun:.0f} s", flush=True)
 
     places = defaultdict(list)
@@ -496,40 +512,48 @@ def main():
         lines = [json.loads(line) for line in Path(asked.out).read_text().splitlines()]
         before = {line["key"]: line["tests"] for line in lines if line["tests"] != "pass"}
     out = open(asked.out, "a") if asked.out else None
-    for id in chosen:
-        if time.monotonic() - began > asked.seconds:
-            break
+    turn = threading.Lock()
+
+    def ask_one(id):
         mutant = mutants[id]
-        tried[stage(id)] += 1
-        if name(mutant) in told:
-            known[stage(id)] += 1
-            continue
-        if mutant["key"] in before:
-            (caught if before[mutant["key"]] == "fail" else endless)[stage(id)] += 1
-            continue
-        # What has caught others of this file, then what is quick.
-        reach = sorted(places[place[id]], key=lambda test: tests[test][0] / (1 + kills[mutant["file"], test]))
-        done, batch, most = "pass", [], 0.5
-        while reach and done == "pass":
+        with turn:
+            if time.monotonic() - began > asked.seconds:
+                return
+            tried[stage(id)] += 1
+            if name(mutant) in told:
+                known[stage(id)] += 1
+                return
+            if mutant["key"] in before:
+                (caught if before[mutant["key"]] == "fail" else endless)[stage(id)] += 1
+                return
+            # What has caught others of this file, then what is quick.
+            reach = sorted(places[place[id]], key=lambda test: tests[test][0] / (1 + kills[mutant["file"], test]))
+        done, most, passed = "pass", 0.5, 0.0
+        while reach and done == "pass" and passed < asked.enough:
             batch = [reach.pop(0)]
             total = tests[batch[0]][0]
             while reach and total + tests[reach[0]][0] < most:
                 batch.append(reach.pop(0))
                 total += tests[batch[-1]][0]
             most *= 2
-            done = became(binary, batch, 5 + 8 * total, str(id))
-            if done != "pass" and len(batch) == 1:
-                kills[mutant["file"], batch[0]] += 1
-        if done == "fail":
-            caught[stage(id)] += 1
-        elif done == "too long":
-            endless[stage(id)] += 1
-        else:
-            survivors.append(id)
-            print("survives:", f"{mutant['file']}:{mutant['line']}", mutant["function"], "|", mutant["code"], "|", mutant["replacement"],
-                  "" if places[place[id]] else "(reached by no test)", flush=True)
-        if out:
-            print(json.dumps(mutant | {"tests": done}), file=out, flush=True)
+            passed += total
+            done, failed, _ = became(binary, batch, 5 + 8 * total, str(id))
+            with turn:
+                kills.update((mutant["file"], test) for test in failed)
+        with turn:
+            if done == "fail":
+                caught[stage(id)] += 1
+            elif done == "too long":
+                endless[stage(id)] += 1
+            else:
+                survivors.append(id)
+                print("survives:", f"{mutant['file']}:{mutant['line']}", mutant["function"], "|", mutant["code"], "|", mutant["replacement"],
+                      "(reached by no test)" if not places[place[id]] else f"(of {len(reach)} tests not asked)" if reach else "", flush=True)
+            if out:
+                print(json.dumps(mutant | {"tests": done}), file=out, flush=True)
+
+    with ThreadPool(asked.jobs) as pool:
+        pool.map(ask_one, chosen, chunksize=1)
     for part in in_all:
         print(f"{part}: {in_all[part]} mutants, {tried[part]} tried, {caught[part]} fail a test, {endless[part]} take eight times as long, "
               f"{known[part]} explained, {tried[part] - caught[part] - endless[part] - known[part]} survive")

@@ -15,9 +15,9 @@ use corner_impact::model::{Model, OSORIO_2008};
 use nalgebra::{Matrix2, RowVector2, Vector2};
 
 /// The project's folder.
-pub const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+pub const ROOT: &str = env!("PROJECT");
 /// The program under test.
-pub const PROGRAM: &str = env!("CARGO_BIN_EXE_corner-impact");
+pub const PROGRAM: &str = env!("CARGO_BIN_EXE_corner-impact-tested");
 
 /// The program in the project's folder, in an environment that says nothing about terminals.
 pub fn program<Word: AsRef<OsStr>>(words: impl IntoIterator<Item = Word>) -> Command {
@@ -27,6 +27,17 @@ pub fn program<Word: AsRef<OsStr>>(words: impl IntoIterator<Item = Word>) -> Com
         command.env_remove(name);
     }
     command
+}
+
+/// Copies the program, by a process of its own on Unix: what this process writes is open in every child that another test starts
+/// meanwhile, and a program that is open for writing cannot be run.
+pub fn copy_program(to: &Path) {
+    let done = if cfg!(unix) {
+        Command::new("cp").args([PROGRAM.as_ref(), to]).status().is_ok_and(|status| status.success())
+    } else {
+        std::fs::copy(PROGRAM, to).is_ok()
+    };
+    assert!(done, "{}", to.display());
 }
 
 /// A program that signals end as they do by themselves: whoever runs the tests in the background may have it that some are ignored, and what
@@ -66,7 +77,7 @@ pub fn ends<T: Send + 'static>(run: impl FnOnce() -> T + Send + 'static) -> Resu
 
 /// Every model file that has a corner impact to verify, by name; `models/laws` has those that need none.
 pub fn model_files() -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
+    let folder = Path::new(env!("PROJECT")).join("models");
     let mut files: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     files.retain(|file| file.extension().is_some_and(|extension| extension == "toml"));
     files.sort();
