@@ -18,8 +18,8 @@ use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 
 use crate::common;
-use crate::properties::{Leg, legs};
-use crate::random::{Case, cases_of_every_law, cases_of_few_laws, check_all};
+use crate::properties::{Leg, first_contacts_from, legs};
+use crate::random::{Case, cases_of_every_law, cases_of_few_laws, cases_of_many_segments, check_all};
 
 /// What a flight is aimed at.
 #[derive(Clone, Copy, Debug)]
@@ -35,14 +35,14 @@ enum Aim {
 /// A machine, a flight to plant, and five numbers from 0 to 1 that decide where and how.
 type Planted = (Case, Aim, [f64; 5]);
 
-fn planted() -> impl Strategy<Value = Planted> {
+fn planted(cases: impl Strategy<Value = Case>) -> impl Strategy<Value = Planted> {
     let aim = prop_oneof![
         4 => (10.0..14.0_f64, any::<bool>())
             .prop_map(|(digits, below)| Aim::Graze(if below { -1.0 } else { 1.0 } * 10.0_f64.powf(-digits))),
         2 => (-4..=4).prop_map(Aim::Corner),
         2 => (0..8_u32).prop_map(Aim::Above),
     ];
-    (cases_of_few_laws(), aim, prop::array::uniform5(0.0..1.0_f64))
+    (cases, aim, prop::array::uniform5(0.0..1.0_f64))
 }
 
 fn ulps(mut number: f64, count: i32) -> f64 {
@@ -113,6 +113,20 @@ fn judged(line: &serde_json::Value) -> String {
     said
 }
 
+/// Above the cam up to where they meet it, as a scan finds, by the rounding of doubles: on cams of many segments too.
+#[test]
+fn planted_flights_come_down_first_where_a_scan_says() {
+    let holds = |(case, aim, units): &Planted| match start(case, *aim, *units) {
+        // Where damping has stopped a follower from very far off, what it has lost on the way is rounded too.
+        Some(motion) if motion.state.velocity.abs() < 10.0 * case.velocity() => {
+            first_contacts_from(case, motion, 0.5, 2)
+        }
+        _ => Ok(()),
+    };
+    check_all(planted(cases_of_few_laws()), 400, holds);
+    check_all(planted(cases_of_many_segments()), 200, holds);
+}
+
 static FLIGHTS: AtomicU32 = AtomicU32::new(0);
 static UNDECIDED: AtomicU32 = AtomicU32::new(0);
 
@@ -159,7 +173,7 @@ fn is_what_sixty_digits_say((case, aim, units): &Planted) -> TestCaseResult {
 #[test]
 #[ignore = "slow"]
 fn flights_are_what_sixty_digits_say() {
-    check_all(planted(), 300, is_what_sixty_digits_say);
+    check_all(planted(cases_of_few_laws()), 300, is_what_sixty_digits_say);
     let flights = FLIGHTS.load(Ordering::Relaxed);
     let undecided = UNDECIDED.load(Ordering::Relaxed);
     println!("{flights} flights are right, {undecided} undecided");

@@ -279,15 +279,19 @@ pub fn legs(case: &Case, mut motion: Motion, turns: f64) -> Result<Vec<Leg>, Sim
     Ok(legs)
 }
 
-/// A scan of each flight finds nothing below the cam before the next impact, and nothing above it there.
 fn first_contacts(case: &Case) -> TestCaseResult {
-    let (machine, motion) = (&case.machine, case.motion().unwrap());
-    let omega = machine.angular_velocity();
-    let legs = match legs(case, motion, 3.0) {
+    first_contacts_from(case, case.motion().unwrap(), 3.0, 60)
+}
+
+/// A scan of each flight finds nothing below the cam before the next impact, and nothing above it there; of so many flights, over so many
+/// turns.
+pub fn first_contacts_from(case: &Case, motion: Motion, turns: f64, most: usize) -> TestCaseResult {
+    let (machine, omega) = (&case.machine, case.machine.angular_velocity());
+    let legs = match legs(case, motion, turns) {
         Ok(legs) => legs,
         Err(error) => return only_no_progress(case, error),
     };
-    for Leg { angle, start, turned, time, event } in legs.into_iter().take(60) {
+    for Leg { angle, start, turned, time, event } in legs.into_iter().take(most) {
         let (least, at) = least_gap(machine, angle, start, time);
         let there = State { position: start.position, velocity: machine.flight().fly(start, at).1.velocity };
         let blur = |time: f64, state: State| blur(case, (angle + omega * time) % TAU, state, time);

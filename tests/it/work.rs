@@ -9,6 +9,7 @@ use corner_impact::simulate::{Event, Machine, Observer, Work, angular_velocity};
 use serde_json::json;
 
 use crate::common;
+use crate::random::{cases_of_every_law, cases_of_many_segments, drawn};
 
 #[derive(Default)]
 struct Counted {
@@ -68,4 +69,55 @@ fn a_flight_over_many_segments_is_looked_at_where_it_comes_down() {
     let _ = machine.advance(&mut motion, goal, &mut counted).unwrap();
     let each = counted.work.gaps as f64 / counted.events as f64;
     assert!(each < 3.5, "{each} evaluations for each of {} contacts", counted.events);
+}
+
+/// What looking for contacts took: windows that were not marched over, and their gaps and steps; those that were, and their gaps.
+#[derive(Default)]
+struct Looks {
+    taken: [u64; 5],
+    events: u64,
+}
+
+impl Observer for Looks {
+    const COUNTS: bool = true;
+
+    fn event(&mut self, _event: &Event) -> ControlFlow<()> {
+        self.events += 1;
+        if self.events.is_multiple_of(50) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+
+    fn work(&mut self, work: Work) {
+        let [windows, gaps, steps, marches, marched] = &mut self.taken;
+        if work.marches > 0 {
+            *marches += work.marches;
+            *marched += work.gaps;
+        } else {
+            *windows += 1;
+            *gaps += work.gaps;
+            *steps += work.steps;
+        }
+    }
+}
+
+/// Whatever the cam, the follower and the start, to the few that the last digits of a sine decide.
+#[test]
+fn any_machine_takes_what_it_took() {
+    let taken = |cases: Vec<crate::random::Case>| {
+        let mut looks = Looks::default();
+        for case in cases {
+            let mut motion = case.motion().unwrap();
+            let goal = crate::properties::goal(&motion, case.turns(2.0));
+            let _ = case.machine.advance(&mut motion, goal, &mut looks);
+            looks.events = looks.events.next_multiple_of(50);
+        }
+        looks.taken
+    };
+    for (cases, took) in [
+        (drawn(cases_of_every_law(), 500), [6394, 15443, 9471, 1583, 26979]),
+        (drawn(cases_of_many_segments(), 150), [1756, 4017, 2677, 609, 5261]),
+    ] {
+        let takes = taken(cases);
+        let is_more = takes.iter().zip(&took).any(|(takes, took)| *takes as f64 > 1.001 * *took as f64);
+        assert!(!is_more, "{takes:?}, and it was {took:?}");
+    }
 }

@@ -44,6 +44,8 @@ ARITHMETIC = {"+": "-*", "-": "+/", "*": "+/", "/": "*%", "%": "/+"}
 COMPARISONS = {"==": ["!="], "!=": ["=="], "<": ["<=", ">"], ">": [">=", "<"], "<=": ["<", ">"], ">=": [">", "<"]}
 LOGICAL = ["left alone", "right alone"]
 VALUES = {"bool": ["true", "false"], "f64": ["0.0", "1.0", "-1.0"], "usize": ["0", "1"], "u32": ["0", "1"], "u64": ["0", "1"]}
+# Of random cases a hundred: a test of thousands would take too long to be asked at all.
+ENVIRONMENT = {"RAYON_NUM_THREADS": "1", "INSTA_UPDATE": "no", "PROPTEST_CASES": "100"}
 # Where nothing can be switched at run time, or where an operator is no arithmetic.
 PASSED_OVER = {"const_item", "static_item", "const_block", "attribute_item", "macro_invocation", "macro_definition", "type_arguments",
                "array_type", "enum_variant", "string_literal", "line_comment", "block_comment", "use_declaration"}
@@ -402,7 +404,7 @@ def became(binary, tests, seconds, mutant):
     words = [binary, "--include-ignored", "--exact", "--test-threads=1", *tests]
     # Into a file, which is read once the test has ended: what it has started may still hold a pipe.
     with tempfile.TemporaryFile() as said:
-        run = subprocess.Popen(words, cwd=COPY, env=os.environ | {"MUTANT": mutant, "RAYON_NUM_THREADS": "1", "INSTA_UPDATE": "no"},
+        run = subprocess.Popen(words, cwd=COPY, env=os.environ | {"MUTANT": mutant} | ENVIRONMENT,
                                stdout=said, stderr=subprocess.DEVNULL, preexec_fn=lambda: limited(math.ceil(seconds)))
         waited = threading.Timer(10 * seconds, lambda: ended(run.pid))
         waited.start()
