@@ -274,16 +274,22 @@ fn mutants_are_looked_for_where_there_is_something() {
     let stages = stages(&root.join("src"));
     assert!(named.len() > 10 && named.iter().all(|name| stages.iter().any(|stage| stage == name)), "{named:?}");
     let explained: toml::Table = toml::from_str(&text("tests/mutants/explained.toml")).unwrap();
-    for mutant in explained["mutant"].as_array().unwrap() {
-        let of = |name: &str| mutant[name].as_str().unwrap_or_else(|| panic!("{mutant:?}: no {name}"));
-        let source = text(of("file")).split_whitespace().collect::<Vec<_>>().join(" ");
-        let function = of("function").rsplit("::").next().unwrap();
-        let is_there = source.split(&format!("fn {function}")).skip(1).any(|rest| {
-            let body = rest.split(" fn ").next().unwrap();
-            body.contains(of("code"))
-        });
-        let replacements = mutant["replacements"].as_array().unwrap();
-        let are_other = !replacements.is_empty() && replacements.iter().all(|other| other.as_str() != Some(""));
-        assert!(is_there && are_other && of("why").len() > 20, "{mutant:?}");
+    for reason in explained["reason"].as_array().unwrap() {
+        assert!(reason["why"].as_str().unwrap().len() > 20, "{reason:?}");
+        let files = reason.as_table().unwrap().iter().filter(|(name, _)| *name != "why");
+        for (file, known) in files {
+            let source = text(file).split_whitespace().collect::<Vec<_>>().join(" ");
+            for mutant in known.as_array().unwrap() {
+                let words: Vec<&str> = mutant.as_array().unwrap().iter().map(|word| word.as_str().unwrap()).collect();
+                let [function, code, others @ ..] = words.as_slice() else { panic!("{file}: {mutant:?}") };
+                let function = function.rsplit("::").next().unwrap();
+                let is_there = source.split(&format!("fn {function}")).skip(1).any(|rest| {
+                    let body = rest.split(" fn ").next().unwrap();
+                    body.contains(code)
+                });
+                let are_other = !others.is_empty() && others.iter().all(|other| !other.is_empty());
+                assert!(is_there && are_other, "{file}: {mutant:?}");
+            }
+        }
     }
 }

@@ -475,10 +475,10 @@ def main():
     ask.add_argument("--list", action="store_true", help="list them, and run none")
     asked = ask.parse_args()
     begun = time.monotonic()
-    explained = [entry for entry in tomllib.loads((ROOT / "tests/mutants/explained.toml").read_text()).get("mutant", [])]
+    explained = tomllib.loads((ROOT / "tests/mutants/explained.toml").read_text())["reason"]
     name = lambda mutant: tuple(mutant[key] for key in ("file", "function", "code", "replacement"))
-    told = {name(entry | {"replacement": other}) for entry in explained if Path(entry["file"]) in sources(asked.words)
-            for other in entry["replacements"]}
+    told = {(file, function, code, other) for reason in explained for file, known in reason.items()
+            if file != "why" and Path(file) in sources(asked.words) for function, code, *others in known for other in others}
 
     binary, mutants = built(asked.words)
     gone = told - {name(mutant) for mutant in mutants}
