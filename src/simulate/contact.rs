@@ -28,11 +28,9 @@ pub(super) enum Outcome {
     None,
     /// The first contact, s after the start.
     Contact(f64),
-    /// On the cam, at rest against it, with nothing that would lift the follower; s after the start.
-    Resting(f64),
     /// Inside the cam already.
     Below { depth: f64, time: f64 },
-    /// More steps than a window may take; s after the start.
+    /// More steps than a window may take, or one that takes no time; s after the start.
     NoProgress(f64),
     /// The gap is not a number; s after the start.
     NotFinite(f64),
@@ -58,8 +56,8 @@ pub(super) fn first_contact(gap_at: impl Fn(f64) -> Gap, third_bound: impl Fn(f6
             return Outcome::None;
         }
         if time + step == time {
-            // Contact to the last digit: approaching it is an impact, resting on it is not.
-            return if gap.rate < 0.0 { Outcome::Contact(time) } else { Outcome::Resting(time) };
+            // Contact to the last digit, where the follower approaches it.
+            return if gap.rate < 0.0 { Outcome::Contact(time) } else { Outcome::NoProgress(time) };
         }
         time += step;
     }

@@ -367,22 +367,11 @@ impl Machine {
                 self.enter_next(motion);
                 Ok(Step::Moved)
             }
-            Passage::Advanced { time, state, gap } => {
-                observer.flight(&self.flight, start, time);
-                (motion.state, motion.gap, motion.lift) = (state, gap, None);
-                motion.turn(omega * time);
-                Ok(Step::Moved)
-            }
             Passage::Contact { time, velocity, lift } => {
                 observer.flight(&self.flight, start, time);
                 // A contact found at the segment's end belongs to it, whatever the last bit says.
                 motion.cam_angle = (motion.cam_angle + omega * time).min(segment.end);
                 Ok(self.strike(motion, velocity, &lift, left - omega * time, observer))
-            }
-            Passage::Resting { time } => {
-                motion.turn(omega * time);
-                let lift = segment.law.lift(motion.cam_angle);
-                Ok(self.stick(motion, &lift, observer))
             }
             Passage::Below { depth, time } => Err(SimulateError::BelowCam {
                 depth,

@@ -68,9 +68,4 @@ impl Motion {
         let within = goal.cam_angle - self.cam_angle;
         if turns == 0.0 { within } else { turns * TAU + within }
     }
-
-    /// Moves the cam on by `turn`, rad, within the same segment.
-    pub(super) fn turn(&mut self, turn: f64) {
-        self.cam_angle += turn;
-    }
 }

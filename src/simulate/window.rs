@@ -54,21 +54,11 @@ pub(super) enum Passage {
         state: State,
         gap: Option<f64>,
     },
-    /// None up to a time, s, before the end.
-    Advanced {
-        time: f64,
-        state: State,
-        gap: Option<f64>,
-    },
     /// The first contact, s after the start, with the velocity that it is met with.
     Contact {
         time: f64,
         velocity: f64,
         lift: Lift,
-    },
-    /// At rest on the cam with nothing that would lift the follower off it.
-    Resting {
-        time: f64,
     },
     Below {
         depth: f64,
@@ -235,12 +225,9 @@ impl<'a, T: Tally> Window<'a, T> {
             }
             if now.value > 0.0 {
                 if time >= reach {
+                    // A parabola has fallen below 0 at twice its root: only by rounding is the gap still open.
                     let (state, gap) = (now.state, self.gap.map(|_| now.value));
-                    return if reach < end {
-                        Passage::Advanced { time, state, gap }
-                    } else {
-                        Passage::Free { state, gap }
-                    };
+                    return if reach < end { self.march(end) } else { Passage::Free { state, gap } };
                 }
                 low = time;
             } else {
@@ -258,14 +245,7 @@ impl<'a, T: Tally> Window<'a, T> {
                 return self.met(high, 0.0, &self.at(high));
             }
         }
-        let last = self.at(high);
-        if high_is_closed || last.value <= 0.0 {
-            self.met(high, 0.0, &last)
-        } else if reach < end {
-            self.advanced(reach)
-        } else {
-            self.free(end)
-        }
+        if high_is_closed { self.met(high, 0.0, &self.at(high)) } else { self.march(end) }
     }
 
     /// Whether the last step is so small that the follower and the cam go through it by their Taylor sums.
@@ -286,19 +266,9 @@ impl<'a, T: Tally> Window<'a, T> {
     }
 
     fn free(&self, end: f64) -> Passage {
-        let (state, gap) = self.moved(end);
+        let (displacement, state) = self.flight.fly(self.start, end);
+        let gap = self.gap.map(|gap| gap + displacement - self.segment.law.rise(self.angle, self.omega * end));
         Passage::Free { state, gap }
-    }
-
-    fn advanced(&self, time: f64) -> Passage {
-        let (state, gap) = self.moved(time);
-        Passage::Advanced { time, state, gap }
-    }
-
-    fn moved(&self, time: f64) -> (State, Option<f64>) {
-        let (displacement, state) = self.flight.fly(self.start, time);
-        let gap = self.gap.map(|gap| gap + displacement - self.segment.law.rise(self.angle, self.omega * time));
-        (state, gap)
     }
 
     fn at_start(&self) -> Seen {
@@ -355,7 +325,6 @@ impl<'a, T: Tally> Window<'a, T> {
                 let now = if time == 0.0 { self.at_start() } else { self.at(time) };
                 Passage::Contact { time, velocity: now.state.velocity, lift: now.lift }
             }
-            Outcome::Resting(time) => Passage::Resting { time },
             Outcome::Below { depth, time } => Passage::Below { depth, time },
             Outcome::NoProgress(time) => Passage::NoProgress { time },
             Outcome::NotFinite(_) => Passage::NotFinite,

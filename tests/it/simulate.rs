@@ -2,13 +2,14 @@
 
 use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;
+use std::path::Path;
 
 use crate::common;
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use corner_impact::cam::Side;
 use corner_impact::flight::State;
 use corner_impact::model::Model;
-use corner_impact::simulate::{Event, EventKind, Goal, Machine, SimulateError};
+use corner_impact::simulate::{Event, EventKind, Goal, Machine, Observer, SimulateError, Variation};
 use corner_impact::study::verify::{External, verify};
 
 fn machine(model: &Model, rpm: f64) -> Machine {
@@ -325,6 +326,25 @@ fn an_impact_at_a_whole_turn_is_at_angle_0() {
         // Carried down and kicked up once a revolution, in the last instant or in the first of the next run.
         assert!(at_0 >= 3, "{at_0}");
     }
+}
+
+/// What an impact at a whole turn does to a deviation, the end of its segment decides, and not the segment's law a turn before.
+#[test]
+fn an_impact_at_a_whole_turn_is_carried_on_from_the_end_of_its_segment() {
+    let machine = machine(&common::read(Path::new("models/laws/table-cubic.toml")), 670.0);
+    let segment = machine.cam().segments().len() - 1;
+    let matrix = |cam_angle: f64| {
+        let lift = machine.cam().segments()[segment].law.lift(TAU);
+        let cam_velocity = machine.angular_velocity() * lift.slope;
+        let (velocity_before, velocity_after) = (cam_velocity - 1.0, cam_velocity + 0.8);
+        let (kind, position) = (EventKind::Impact, lift.value);
+        let event =
+            Event { kind, revolution: 1, cam_angle, position, velocity_before, velocity_after, cam_velocity, segment };
+        let mut variation = Variation::new(&machine, &machine.start_on_cam(0.0, 1.0).unwrap());
+        let _ = variation.event(&event);
+        variation.matrix()
+    };
+    assert_relative_eq!(matrix(0.0), matrix(TAU.next_down()), max_relative = 1e-12);
 }
 
 /// An overdamped follower has come to rest far above the lowest point of the cam when that passes under it: there the gap
