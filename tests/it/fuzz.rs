@@ -5,6 +5,7 @@
 
 use std::f64::consts::TAU;
 use std::io::{BufRead, BufReader, Write};
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::{Child, ChildStdout, Command, Stdio};
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -19,7 +20,7 @@ use proptest::test_runner::TestCaseResult;
 
 use crate::common;
 use crate::properties::{Leg, first_contacts_from, legs};
-use crate::random::{Case, cases_of_every_law, cases_of_few_laws, cases_of_many_segments, check_all};
+use crate::random::{Case, cases_of_every_law, cases_of_few_laws, cases_of_many_segments, check_all, drawn};
 
 /// What a flight is aimed at.
 #[derive(Clone, Copy, Debug)]
@@ -125,6 +126,38 @@ fn planted_flights_come_down_first_where_a_scan_says() {
     };
     check_all(planted(cases_of_few_laws()), 400, holds);
     check_all(planted(cases_of_many_segments()), 200, holds);
+}
+
+/// A flight that ends below the cam has met it on the way, however shallow, and over however many segments it leaps.
+#[test]
+fn what_ends_below_the_cam_has_met_it() {
+    let mut flights = 0;
+    for case in drawn(cases_of_many_segments(), 80) {
+        let (machine, omega) = (&case.machine, case.machine.angular_velocity());
+        for index in 0..60 {
+            let part = |root: f64| (f64::from(index + 1) * root.sqrt()).fract();
+            let angle = TAU * part(2.0);
+            let lift = machine.cam().lift(angle);
+            let depth = case.stroke * 10.0_f64.powf(-3.0 - 8.0 * part(3.0));
+            let end = State { position: lift.value - depth, velocity: omega * lift.slope };
+            // Where it bends away from the cam it comes from above.
+            let turn = 3.0 * part(5.0).powi(2);
+            let state = machine.flight().fly(end, -turn / omega).1;
+            let begin = (angle - turn).rem_euclid(TAU);
+            let is_far = state.velocity.abs() > 10.0 * case.velocity();
+            if machine.flight().acceleration(end) <= omega * omega * lift.curvature || begin >= TAU || is_far {
+                continue;
+            }
+            let mut met = false;
+            let done = machine.turn(begin, state, turn, |_| {
+                met = true;
+                ControlFlow::Break(())
+            });
+            flights += u32::from(done.is_ok());
+            assert!(met || done.is_err(), "{depth} m below the cam at {angle}, {turn} rad on: {case:?}");
+        }
+    }
+    assert!(flights > 500, "{flights}");
 }
 
 static FLIGHTS: AtomicU32 = AtomicU32::new(0);
