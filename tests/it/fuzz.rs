@@ -14,12 +14,12 @@ use std::sync::{LazyLock, Mutex};
 use corner_impact::cam::Cam;
 use corner_impact::flight::State;
 use corner_impact::model::Model;
-use corner_impact::simulate::{EventKind, Motion};
+use corner_impact::simulate::{Event, EventKind, Motion};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 
 use crate::common;
-use crate::properties::{Leg, first_contacts_from, legs};
+use crate::properties::{Leg, first_contacts_from, goal, legs};
 use crate::random::{Case, cases_of_every_law, cases_of_few_laws, cases_of_many_segments, check_all, drawn};
 
 /// What a flight is aimed at.
@@ -131,7 +131,7 @@ fn planted_flights_come_down_first_where_a_scan_says() {
 /// A flight that ends below the cam has met it on the way, however shallow, and over however many segments it leaps.
 #[test]
 fn what_ends_below_the_cam_has_met_it() {
-    let mut flights = 0;
+    let mut flights = 0_u32;
     for case in drawn(cases_of_many_segments(), 80) {
         let (machine, omega) = (&case.machine, case.machine.angular_velocity());
         for index in 0..60 {
@@ -148,13 +148,16 @@ fn what_ends_below_the_cam_has_met_it() {
             if machine.flight().acceleration(end) <= omega * omega * lift.curvature || begin >= TAU || is_far {
                 continue;
             }
-            let mut met = false;
-            let done = machine.turn(begin, state, turn, |_| {
-                met = true;
+            let Ok(mut motion) = machine.start(begin, state) else { continue };
+            let goal = goal(&motion, turn + 1.0);
+            let mut first = None;
+            let done = machine.advance(&mut motion, goal, &mut |event: &Event| {
+                first = Some(event.turned_since(begin));
                 ControlFlow::Break(())
             });
-            flights += u32::from(done.is_ok());
-            assert!(met || done.is_err(), "{depth} m below the cam at {angle}, {turn} rad on: {case:?}");
+            flights += 1;
+            let is_met = done.is_ok() && first.is_some_and(|first| first <= turn + 1e-12);
+            assert!(is_met, "{depth} m below the cam at {angle}, {turn} rad on, and {first:?}: {case:?}");
         }
     }
     assert!(flights > 500, "{flights}");
