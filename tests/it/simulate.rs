@@ -215,6 +215,28 @@ fn a_run_may_be_split_anywhere() {
     }
 }
 
+/// A turn that ends at a whole one ends there, and not a whole one before or later; so does what is turned to an angle.
+#[test]
+fn a_turn_may_end_at_angle_0() {
+    let machine = machine(&common::osorio(), 690.0);
+    let start = State { position: 5.3, velocity: 1.0 };
+    let end = |turn: f64| run(&machine, PI, start, turn).0.unwrap();
+    for (whole, more) in [(0.0, 1.0), (TAU, 1.0 + TAU)] {
+        let (at_0, before, after) = (end(PI + whole), end(PI.next_down() + whole), end(PI + more));
+        assert_abs_diff_eq!(at_0.position, before.position, epsilon = 1e-11);
+        let mut motion = machine.start(PI, start).unwrap();
+        if whole > 0.0 {
+            machine.revolve(&mut motion, 1).unwrap();
+        }
+        machine.turn_to(&mut motion, 0.0).unwrap();
+        assert_eq!((motion.cam_angle, motion.revolution), (0.0, 1 + u64::from(whole > 0.0)));
+        assert_abs_diff_eq!(motion.state.position, at_0.position, epsilon = 1e-11);
+        machine.turn_to(&mut motion, 1.0).unwrap();
+        assert_abs_diff_eq!(motion.state.position, after.position, epsilon = 1e-9);
+        assert!((at_0.position - after.position).abs() > 1e-3);
+    }
+}
+
 #[test]
 fn an_observer_ends_the_run() {
     let model = common::osorio();
@@ -236,8 +258,10 @@ fn starts_that_cannot_be_are_refused() {
         }
         other => panic!("{other:?}"),
     }
-    let start = State { position: f64::NAN, velocity: 0.0 };
-    assert!(matches!(run(&machine, 0.5, start, 1.0).0, Err(SimulateError::NotFinite { .. })));
+    for (position, velocity) in [(f64::NAN, 0.0), (f64::INFINITY, 0.0), (0.5, f64::NAN), (0.5, f64::NEG_INFINITY)] {
+        let start = machine.start(0.5, State { position, velocity });
+        assert!(matches!(start, Err(SimulateError::NotFinite { cam_angle: 0.5, .. })), "{start:?}");
+    }
     let start = State { position: 0.5, velocity: 0.0 };
     for angle in [-0.1, TAU, f64::NAN] {
         assert!(matches!(machine.start(angle, start), Err(SimulateError::Start { .. })), "{angle}");

@@ -249,3 +249,31 @@ fn a_follower_rests_on_the_cam_in_the_stretches_of_rest_and_nowhere_else() {
     let left = LEFT.load(Ordering::Relaxed);
     assert!(left >= 200, "{left} stretches with an end");
 }
+
+/// A cam that is put on its shaft by some angle has its stretches of rest by that angle further on, through angle 0 too.
+#[test]
+fn stretches_of_rest_turn_with_the_cam() {
+    let rests = |turned: f64| {
+        let phases = [40.0 - turned, 100.0 - 2.0 * turned];
+        let law = format!("law = \"harmonic\"\noffset = 1.0\namplitudes = [0.3, 0.1]\nphases_deg = {phases:?}");
+        machine(&over(&law, 0.5, 0.8), 105.0).rests().unwrap()
+    };
+    let first = rests(0.0);
+    assert!(first.len() == 2 && first.iter().all(|[from, to]| to - from < TAU), "{first:?}");
+    let mut through_0 = 0;
+    for index in 1..24 {
+        let turned = 15.0 * f64::from(index);
+        let found = rests(turned);
+        assert_eq!(found.len(), 2, "{turned} deg: {found:?}");
+        for [from, to] in &first {
+            let same = |[other_from, other_to]: &&[f64; 2]| {
+                apart(*from + turned.to_radians(), *other_from) < 1e-9
+                    && (other_to - other_from - (to - from)).abs() < 1e-9
+            };
+            let other = found.iter().find(same).unwrap_or_else(|| panic!("{turned} deg: {first:?} {found:?}"));
+            assert!(-TAU < other[0] && other[0] < TAU && 0.0 < other[1] && other[1] <= TAU, "{other:?}");
+            through_0 += u32::from(other[0] < 0.0);
+        }
+    }
+    assert!((3..24).contains(&through_0), "{through_0}");
+}
