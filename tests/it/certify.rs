@@ -156,7 +156,7 @@ fn fixed(decimal: &str) -> i128 {
 fn the_printed_digits_are_off_by_so_many_units_of_the_last() {
     let found = certified(&["models/osorio-2008.toml"]);
     let proved = &found["corner_impacts"][0];
-    let paper = std::fs::read_to_string("golden/published/osorio-2008.json").unwrap();
+    let paper = std::fs::read_to_string(Path::new(common::ROOT).join("golden/published/osorio-2008.json")).unwrap();
     let paper: Value = serde_json::from_str(&paper).unwrap();
     let flat = |value: &Value| -> Vec<String> {
         fn mids(value: &Value) -> Vec<String> {
@@ -249,7 +249,7 @@ fn a_flight_that_touches_is_refused_and_one_that_is_clear_by_a_hair_is_not() {
     let file = "models/laws/polynomial.toml";
     let found = certified(&[file, "--rpm", "443:444"]);
     let place = place_of(&found["corner_impacts"][0], &angles_of(&found["corner_impacts"][0]));
-    let text = std::fs::read_to_string(file).unwrap();
+    let text = std::fs::read_to_string(Path::new(common::ROOT).join(file)).unwrap();
     let with_bump = |height: f64| {
         let width = 20.0_f64.to_radians();
         let bend = -0.02 + height * width * width;
@@ -295,7 +295,7 @@ fn a_root_off_the_piece_that_its_equations_are_of_is_refused() {
     let u = cut - 270.0_f64.to_radians();
     assert!((0.0..1.5).contains(&u), "{other}");
     let (value, slope) = (a0 + u * (a1 + u * a2), a1 + 2.0 * a2 * u);
-    let text = std::fs::read_to_string(file).unwrap()
+    let text = std::fs::read_to_string(Path::new(common::ROOT).join(file)).unwrap()
         + &format!("\n[[cam.segment]]\nstart_deg = {}\ncoefficients = [{value}, {slope}, {a2}]\n", cut.to_degrees());
     let cut = Model::parse("cut.toml", &text).unwrap();
     refused(&cut, place(other - 2e-8), 128, "off the piece of the cam");

@@ -89,8 +89,9 @@ pub fn stem(file: &Path) -> String {
     file.file_stem().unwrap().to_string_lossy().into_owned()
 }
 
+/// A model of the project, by its path from there; tests run in `tests/`.
 pub fn read(file: &Path) -> Model {
-    Model::read(file).unwrap()
+    Model::read(&Path::new(ROOT).join(file)).unwrap()
 }
 
 pub fn osorio() -> Model {
