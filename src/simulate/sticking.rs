@@ -75,7 +75,7 @@ impl Machine {
     }
 
     /// Puts the follower on the cam, to stay.
-    pub(super) fn stick(&self, motion: &mut Motion, lift: &Lift, observer: &mut impl Observer) -> Step {
+    fn stick(&self, motion: &mut Motion, lift: &Lift, observer: &mut impl Observer) -> Step {
         motion.state = on_cam(lift, self.angular_velocity);
         (motion.contact, motion.gap, motion.lift) = (true, Some(0.0), Some(*lift));
         self.report(motion, EventKind::Stick, observer)

@@ -225,7 +225,8 @@ impl<'a, T: Tally> Window<'a, T> {
             }
             if now.value > 0.0 {
                 if time >= reach {
-                    // A parabola has fallen below 0 at twice its root: only by rounding is the gap still open.
+                    // Short of the window's end, twice the root b of a parabola bent down by A: g <= -A b^2 + third (2b)^3/6 < -A b^2/3.
+                    // Only by rounding is the gap still open there.
                     let (state, gap) = (now.state, self.gap.map(|_| now.value));
                     return if reach < end { self.march(end) } else { Passage::Free { state, gap } };
                 }

@@ -254,7 +254,7 @@ fn least_clearance(map: &StroboscopicMap, orbit: &PeriodicOrbit) -> f64 {
 }
 
 fn models() -> Vec<(PathBuf, f64, &'static str, [f64; 2])> {
-    let file = |name: &str| Path::new(env!("PROJECT")).join("models").join(name);
+    let file = |name: &str| Path::new(common::ROOT).join("models").join(name);
     vec![
         (file("osorio-2008.toml"), 700.0, "rpm", [600.0, 800.0]),
         (file("osorio-2008.toml"), 442.0, "rpm", [400.0, 480.0]),
@@ -391,7 +391,7 @@ fn settled_orbit(model: &Model, rpm: f64, revolutions: u64) -> PeriodicOrbit {
 /// runs settle on what branches off.
 #[test]
 fn what_branches_off_with_twice_the_period_is_followed() {
-    let flip = Path::new(env!("PROJECT")).join("models/nonsmooth-flip.toml");
+    let flip = Path::new(common::ROOT).join("models/nonsmooth-flip.toml");
     for (model, from, range, doublings, settles, at) in [
         (common::osorio(), 700.0, [660.0, 750.0], 1, 739.36, 739.319_780_216_001_6),
         (common::read(&flip), 890.0, [840.0, 950.0], 2, 878.5, 877.655_930_381_899),
@@ -442,7 +442,7 @@ fn a_branch_is_the_same_from_both_ends() {
 /// Where the cam's velocity jumps the orbit has no continuation: it ends there, and says so.
 #[test]
 fn a_jump_of_the_cams_velocity_is_a_gap() {
-    let file = Path::new(env!("PROJECT")).join("models/laws/rectified-sine.toml");
+    let file = Path::new(common::ROOT).join("models/laws/rectified-sine.toml");
     let model = common::read(&file);
     let mut gaps = 0;
     for orbit in orbits(&model, 25.0, 1).iter().filter(|orbit| orbit.impacts().count() > 0) {
@@ -467,7 +467,7 @@ fn a_jump_of_the_cams_velocity_is_a_gap() {
 #[test]
 fn a_cascade_of_grazes_ends_in_chattering() {
     for (file, rpm, range) in [("harmonic", 500.0, [350.0, 700.0]), ("polynomial", 800.0, [400.0, 1000.0])] {
-        let model = common::read(&Path::new(env!("PROJECT")).join(format!("models/laws/{file}.toml")));
+        let model = common::read(&Path::new(common::ROOT).join(format!("models/laws/{file}.toml")));
         for orbit in orbits(&model, rpm, 1) {
             let parameter = Parameter::Speed;
             let following = Following { parameter, range, longest_step: 0.05, most_points: 2000 };

@@ -17,7 +17,7 @@ fn cam_of(table: &str) -> Cam {
 }
 
 fn law_file(name: &str) -> String {
-    Path::new(env!("PROJECT")).join("models/laws").join(name).to_string_lossy().into_owned()
+    Path::new(common::ROOT).join("models/laws").join(name).to_string_lossy().into_owned()
 }
 
 fn law_cam(name: &str) -> Cam {

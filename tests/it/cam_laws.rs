@@ -10,7 +10,7 @@ use corner_impact::model::{HarmonicProfile, Model, Motion};
 
 /// One model file for every law but `arcs`, which all others have.
 fn law_files() -> Vec<PathBuf> {
-    let folder = Path::new(env!("PROJECT")).join("models/laws");
+    let folder = Path::new(common::ROOT).join("models/laws");
     let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
     let mut files: Vec<PathBuf> = files.filter(|file| file.extension().is_some_and(|end| end == "toml")).collect();
     files.sort();

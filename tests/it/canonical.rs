@@ -10,7 +10,7 @@ use crate::common;
 
 #[test]
 fn a_text_is_read_as_the_same_model() {
-    let root = Path::new(env!("PROJECT")).join("models");
+    let root = Path::new(common::ROOT).join("models");
     let folders = [root.clone(), root.join("laws"), root.join("jump-order")];
     let files = folders.iter().flat_map(|folder| std::fs::read_dir(folder).unwrap()).map(|entry| entry.unwrap().path());
     let files: Vec<_> = files.filter(|file| file.extension().is_some_and(|end| end == "toml")).collect();

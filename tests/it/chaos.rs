@@ -215,7 +215,7 @@ fn the_command_keeps_its_fields() {
 }
 
 fn heavy() -> Model {
-    common::read(&Path::new(env!("PROJECT")).join("models/damped-heavy.toml"))
+    common::read(&Path::new(common::ROOT).join("models/damped-heavy.toml"))
 }
 
 /// The region that the impacts of a run begin, in so many squares of a degree.

@@ -31,7 +31,7 @@ fn case(model: Model, rpm: f64, revolutions: u64) -> Case {
 }
 
 fn read(file: &str) -> Model {
-    common::read(&Path::new(env!("PROJECT")).join("models").join(file))
+    common::read(&Path::new(common::ROOT).join("models").join(file))
 }
 
 /// One impact, two in one revolution, two in two, and three in three; three cams, with and without damping.

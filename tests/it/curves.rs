@@ -13,7 +13,7 @@ use corner_impact::simulate::{Machine, angular_velocity};
 use corner_impact::study::curve::{Curves, curves};
 
 fn model(name: &str) -> Model {
-    common::read(&Path::new(env!("PROJECT")).join(format!("models/{name}.toml")))
+    common::read(&Path::new(common::ROOT).join(format!("models/{name}.toml")))
 }
 
 fn followed(model: &Model, rpm: [f64; 2], events: &[Bifurcation], name: &str, range: [f64; 2]) -> Curves {

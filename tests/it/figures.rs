@@ -136,7 +136,7 @@ fn every_model_has_its_figures_or_a_reason() {
         }
     }
     let mut files = Vec::new();
-    models(&Path::new(env!("PROJECT")).join("models"), &mut files);
+    models(&Path::new(crate::common::ROOT).join("models"), &mut files);
     assert!(files.len() >= 15, "{files:?}");
     files.par_iter().for_each(|file| {
         let model = Model::read(file).unwrap();

@@ -206,7 +206,7 @@ fn two_results_do_not_go_to_one_file() {
     assert!(!absolute.exists() && fs::read_to_string(folder.path().join("b.csv")).unwrap() == "mine");
     // Apart they are two.
     let words = ["simulate", MODEL, "--rpm", "183", "--events", "a.csv", "--strobe", "1", "--strobe-out", "sub/a.csv"];
-    let model = std::path::Path::new(env!("PROJECT")).join(MODEL);
+    let model = std::path::Path::new(crate::common::ROOT).join(MODEL);
     let words = words.map(|word| if word == MODEL { model.to_str().unwrap() } else { word });
     assert_eq!(program(words).current_dir(&folder).output().unwrap().status.code(), Some(0));
 }

@@ -22,7 +22,7 @@ fn compared() -> Vec<(&'static Example, Compared)> {
 }
 
 fn law(name: &str) -> Model {
-    common::read(&Path::new(env!("PROJECT")).join("models/laws").join(name))
+    common::read(&Path::new(common::ROOT).join("models/laws").join(name))
 }
 
 /// A flight onto `corner` that closes at `closing`, m/s, at `omega`, rad/s.
@@ -225,7 +225,7 @@ fn kept(table: &str) -> Vec<Vec<&str>> {
 
 #[test]
 fn the_page_in_docs_has_the_measured_table() {
-    let path = Path::new(env!("PROJECT")).join(PAGE);
+    let path = Path::new(common::ROOT).join(PAGE);
     let page = std::fs::read_to_string(&path).unwrap();
     let (head, rest) = page.split_once(MARKS[0]).unwrap();
     let (stored, tail) = rest.split_once(MARKS[1]).unwrap();

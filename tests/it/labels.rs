@@ -45,7 +45,7 @@ const NOT_TAKEN: [(&str, &str); 5] = [
 
 /// The code of the crate but for the ledger, which names every equation.
 fn code() -> Vec<(String, String)> {
-    let root = Path::new(env!("PROJECT")).join("src");
+    let root = Path::new(crate::common::ROOT).join("src");
     let files = rust_files(&root).into_iter().map(|file| {
         let name = file.strip_prefix(&root).unwrap().to_str().unwrap().to_owned();
         (name, std::fs::read_to_string(&file).unwrap())
@@ -79,7 +79,7 @@ fn every_equation_of_the_paper_is_found_in_the_code() {
 /// The table of derivations names files and paths of the code: each of them exists.
 #[test]
 fn what_the_derivations_name_exists() {
-    let root = Path::new(env!("PROJECT"));
+    let root = Path::new(crate::common::ROOT);
     let page = std::fs::read_to_string(root.join("derivations/README.md")).unwrap();
     let code = code();
     let mut checked = 0;

@@ -33,7 +33,7 @@ fn uses(text: &str) -> Vec<(usize, String)> {
 
 #[test]
 fn no_stage_uses_one_below_it() {
-    let root = Path::new(env!("PROJECT")).join("src");
+    let root = Path::new(crate::common::ROOT).join("src");
     let stages = stages(&root);
     assert!(stages.len() > 10, "{stages:?}");
     let mut checked = 0;
@@ -173,7 +173,7 @@ fn multiplied_out(tree: &str) -> Vec<String> {
 /// `mod.rs` only hands on belongs to the file that it comes from.
 #[test]
 fn no_two_files_use_each_other() {
-    let house = House::read(&Path::new(env!("PROJECT")).join("src"));
+    let house = House::read(&Path::new(crate::common::ROOT).join("src"));
     let uses = house.uses();
     assert!(uses.values().map(BTreeSet::len).sum::<usize>() > 500, "too few uses seen");
     // The shortest way from each file back to itself, once for the files on it.
@@ -200,7 +200,7 @@ fn no_two_files_use_each_other() {
 /// Routes to the map share the model, the cam and the place, and nothing else with one another.
 #[test]
 fn routes_do_not_use_each_other() {
-    let corner = Path::new(env!("PROJECT")).join("src/corner");
+    let corner = Path::new(crate::common::ROOT).join("src/corner");
     let text = |file: &str| std::fs::read_to_string(corner.join(file)).unwrap();
     for forbidden in ["flight", "simulate", "section", "impact", "one_sided", "finite_difference", "least_squares"] {
         for (line, used) in uses(&text("closed_form.rs").replace("super::", "crate::")) {
@@ -221,7 +221,7 @@ fn routes_do_not_use_each_other() {
 /// What a jump of any order makes of the map is predicted without a run, and measured without a formula of it.
 #[test]
 fn prediction_and_measurement_share_nothing() {
-    let folder = Path::new(env!("PROJECT")).join("src/corner/jump_order");
+    let folder = Path::new(crate::common::ROOT).join("src/corner/jump_order");
     let code = |file: &str| {
         let text = std::fs::read_to_string(folder.join(file)).unwrap();
         text.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n")
@@ -238,7 +238,7 @@ fn prediction_and_measurement_share_nothing() {
 /// One event loop, one tolerance table: small numbers that decide something stand in the table.
 #[test]
 fn thresholds_stand_in_the_table() {
-    let root = Path::new(env!("PROJECT")).join("src");
+    let root = Path::new(crate::common::ROOT).join("src");
     for file in rust_files(&root) {
         if file.ends_with("tolerance.rs") {
             continue;
@@ -266,7 +266,7 @@ fn thresholds_stand_in_the_table() {
 /// `make mutants` looks into stages that are there, and what is explained of mutants that survive is about the source as it is.
 #[test]
 fn mutants_are_looked_for_where_there_is_something() {
-    let root = Path::new(env!("PROJECT"));
+    let root = Path::new(crate::common::ROOT);
     let text = |path: &str| std::fs::read_to_string(root.join(path)).unwrap();
     let script = text("tests/mutants/mutants.py");
     let (_, after) = script.split_once("STAGES = [").unwrap();

@@ -44,7 +44,7 @@ fn claims_and_checks_are_the_same_set() {
 /// Nothing that the derivations judged, or that the paper prints in digits, is left out of the ledger.
 #[test]
 fn every_equation_and_every_number_has_its_claim() {
-    let root = Path::new(env!("PROJECT"));
+    let root = Path::new(common::ROOT);
     let read = |file: &str| -> serde_json::Value {
         serde_json::from_str(&std::fs::read_to_string(root.join(file)).unwrap()).unwrap()
     };
@@ -179,7 +179,7 @@ fn another_model_leaves_the_papers_numbers_open() {
 fn the_page_in_docs_is_fresh() {
     let (lead, sections) = pages::claims::document(papers()).unwrap();
     let page = markdown::page(&lead, &sections).unwrap();
-    let stored = std::fs::read_to_string(Path::new(env!("PROJECT")).join("docs/claims.md")).unwrap();
+    let stored = std::fs::read_to_string(Path::new(common::ROOT).join("docs/claims.md")).unwrap();
     assert!(page == stored, "docs/claims.md is stale: `make claims` writes it");
 }
 

@@ -136,7 +136,7 @@ fn the_local_map_is_a_tenth_off_where_its_range_ends() {
 }
 
 fn read(name: &str) -> Model {
-    common::read(&Path::new(env!("PROJECT")).join(format!("models/{name}.toml")))
+    common::read(&Path::new(common::ROOT).join(format!("models/{name}.toml")))
 }
 
 /// The machine at a period `dt` from T*.

@@ -14,7 +14,7 @@ use serde_json::Value;
 const MODEL: &str = concat!(env!("PROJECT"), "/models/osorio-2008.toml");
 
 fn law(name: &str) -> String {
-    format!("{}/models/laws/{name}.toml", env!("PROJECT"))
+    format!("{}/models/laws/{name}.toml", common::ROOT)
 }
 
 fn locate(arguments: &[&str]) -> Output {
@@ -372,7 +372,7 @@ fn parts_of_ranges_have_their_parts_of_the_corner_impacts() {
         ]);
     }
     for (name, range, revolutions, least) in ranges {
-        let file = format!("{}/models/{name}.toml", env!("PROJECT"));
+        let file = format!("{}/models/{name}.toml", common::ROOT);
         parts_are_the_whole(&common::read(file.as_ref()), range, revolutions, least);
     }
 }

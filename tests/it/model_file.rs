@@ -26,7 +26,7 @@ struct Row {
 }
 
 fn page() -> Page {
-    Page::read(Path::new(env!("PROJECT")), Path::new("docs/model-file.md"))
+    Page::read(Path::new(common::ROOT), Path::new("docs/model-file.md"))
 }
 
 fn sections(page: &Page) -> Vec<Section> {
@@ -119,7 +119,7 @@ fn every_sample_is_a_cam() {
 
 #[test]
 fn every_law_has_a_model() {
-    let root = Path::new(env!("PROJECT")).join("models");
+    let root = Path::new(common::ROOT).join("models");
     let folders = [root.clone(), root.join("laws")];
     let files = folders.iter().flat_map(|folder| std::fs::read_dir(folder).unwrap()).map(|entry| entry.unwrap().path());
     let models = files.filter(|file| file.extension().is_some_and(|end| end == "toml"));

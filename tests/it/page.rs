@@ -236,7 +236,7 @@ fn report(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
 #[ignore = "slow"]
 fn a_model_without_a_corner_impact_has_a_page_that_says_why() {
     let folder = tempfile::tempdir().unwrap();
-    let model = Path::new(env!("PROJECT")).join("models/laws/harmonic.toml");
+    let model = Path::new(common::ROOT).join("models/laws/harmonic.toml");
     let model = model.to_str().unwrap();
     // One that does not bounce has few motions to look for.
     let (code, out, _) = report(folder.path(), &[model, "--set", "restitution=0"]);

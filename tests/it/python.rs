@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 /// The interpreter that `make` sets up; without it these questions cannot be asked, and that is a failure, not a pass.
 fn interpreter() -> PathBuf {
-    let python = Path::new(env!("PROJECT")).join(".venv/bin/python");
+    let python = Path::new(common::ROOT).join(".venv/bin/python");
     assert!(python.is_file(), "run `make test`, which sets up .venv");
     python
 }
@@ -230,7 +230,7 @@ fn a_rounded_corner_is_none() {
         ("simulate_scipy.py", "no corner impact"),
         ("certify.py", "cam.corner_rounding_deg"),
     ] {
-        let path = Path::new(env!("PROJECT")).join("derivations").join(script);
+        let path = Path::new(common::ROOT).join("derivations").join(script);
         let mut command = Command::new(interpreter());
         let piped = std::process::Stdio::piped;
         let mut child = command.arg(path).stdin(piped()).stdout(piped()).stderr(piped()).spawn().unwrap();

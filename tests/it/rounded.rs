@@ -14,7 +14,7 @@ use corner_impact::study::verify::{External, verify};
 const ROUNDING: &str = "cam.corner_rounding_deg";
 
 fn model(name: &str) -> Model {
-    common::read(&Path::new(env!("PROJECT")).join(format!("models/{name}.toml")))
+    common::read(&Path::new(common::ROOT).join(format!("models/{name}.toml")))
 }
 
 /// The folds near a speed, from the smallest rounding on.
