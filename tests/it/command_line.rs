@@ -116,7 +116,11 @@ fn help_and_version_go_to_standard_output() {
         assert!(output.stderr.is_empty(), "{line}");
         let said = text(output.stdout);
         assert!(
-            if line == "--version" { said.starts_with("corner-impact ") } else { said.contains("Usage: ") },
+            if line == "--version" {
+                said.starts_with("corner-impact ")
+            } else {
+                said.contains("Usage: corner-impact ")
+            },
             "{said}"
         );
         assert!(said.contains("Exit code: 0") || line.starts_with("--"), "{said}");

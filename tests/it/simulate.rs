@@ -355,7 +355,7 @@ fn an_impact_at_a_whole_turn_is_at_angle_0() {
 /// What an impact at a whole turn does to a deviation, the end of its segment decides, and not the segment's law a turn before.
 #[test]
 fn an_impact_at_a_whole_turn_is_carried_on_from_the_end_of_its_segment() {
-    let machine = machine(&common::read(Path::new("models/laws/table-cubic.toml")), 670.0);
+    let machine = machine(&common::read(Path::new("models/laws/program.toml")), 670.0);
     let segment = machine.cam().segments().len() - 1;
     let matrix = |cam_angle: f64| {
         let lift = machine.cam().segments()[segment].law.lift(TAU);
