@@ -62,6 +62,7 @@ fn events(found: &Speeds) -> Vec<(Kind, Cause, f64)> {
 /// `-a omega sin(theta) = (1 - r)/(1 + r) g T/2`: it has that from `a omega^2 (1 + r) = pi g (1 - r)` on, and there the motion begins
 /// in a fold.
 #[test]
+#[ignore = "slow"]
 fn a_ball_on_a_table_has_the_motions_of_the_textbook_from_any_range() {
     let (a, g, r) = (0.001, 9.81, 0.8_f64);
     let rpm = |omega: f64| omega * 60.0 / std::f64::consts::TAU;
@@ -353,6 +354,7 @@ fn a_part_of_a_range_has_its_part_of_the_answer() {
 /// Orbits that live between few speeds, at two resolutions: one of five revolutions whose branch comes back to its own start, and those of
 /// twice the period that begin in flips, one of them over a twentieth of a revolution a minute. None is there twice.
 #[test]
+#[ignore = "slow"]
 fn orbits_between_two_speeds_are_found() {
     let model = common::read(&std::path::Path::new(common::ROOT).join("models/nonsmooth-flip.toml"));
     for step in [2.0, 1.0] {

@@ -65,6 +65,7 @@ fn sign(impact: &Value, name: &str) -> i64 {
 }
 
 #[test]
+#[ignore = "slow"]
 fn every_corner_impact_is_proved_to_its_digits() {
     for (model, speed, verdict) in [
         ("damped-light", "680.406599562249702281862", "nonsmooth-fold"),
@@ -245,6 +246,7 @@ fn place_of(proved: &Value, angles: &[f64]) -> Value {
 
 /// The second parabola has a bump from 200 to 220 degrees, as high as a flight over it.
 #[test]
+#[ignore = "slow"]
 fn a_flight_that_touches_is_refused_and_one_that_is_clear_by_a_hair_is_not() {
     let file = "models/laws/polynomial.toml";
     let found = certified(&[file, "--rpm", "443:444"]);
@@ -279,6 +281,7 @@ fn a_sign_that_is_not_decided_is_refused() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn a_root_off_the_piece_that_its_equations_are_of_is_refused() {
     let file = "models/laws/polynomial.toml";
     let found = certified(&[file, "--rpm", "443:444"]);
@@ -303,6 +306,7 @@ fn a_root_off_the_piece_that_its_equations_are_of_is_refused() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn a_cam_whose_decimals_meet_nearly_is_certified_with_that_hypothesis() {
     let found = certified(&["models/laws/polynomial.toml", "--rpm", "443:444"]);
     let assumed = &found["corner_impacts"][0]["assumed"];
@@ -319,6 +323,7 @@ fn a_cam_whose_decimals_meet_nearly_is_certified_with_that_hypothesis() {
 
 /// The list is found by another program than `orbit`'s, and neither may have an orbit that the other lacks.
 #[test]
+#[ignore = "slow"]
 fn all_orbits_of_one_and_of_two_impacts_are_proved_and_orbit_has_the_same() {
     let file = "models/osorio-2008.toml";
     let found = certified(&[file, "--orbits", "--rpm", "700"]);

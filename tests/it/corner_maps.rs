@@ -200,6 +200,7 @@ fn the_border_says_on_which_side_the_impact_falls() {
 
 /// A border is compared with its sign: with -(e, f) both fixed points would turn from faster to slower.
 #[test]
+#[ignore = "slow"]
 fn a_border_whose_sign_is_turned_disagrees() {
     for Case { model, cam, at } in cases().iter().take(3) {
         let mut product = variational::route(model, cam, at);

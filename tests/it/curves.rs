@@ -60,6 +60,7 @@ fn is_on_branches(name: &str, rpm: [f64; 2], event: Bifurcation, parameter: &str
 }
 
 #[test]
+#[ignore = "slow"]
 fn events_of_a_curve_are_where_branches_have_them() {
     use Bifurcation::{Corner, Flip, Fold, Graze};
     is_on_branches("osorio-2008", [740.0, 745.0], Fold, "restitution", [0.7, 0.9]);
@@ -73,6 +74,7 @@ fn events_of_a_curve_are_where_branches_have_them() {
 
 /// Of a follower that rests: by bisection of its branch's own runs.
 #[test]
+#[ignore = "slow"]
 fn detachment_and_the_onset_of_resting_are_where_branches_have_them() {
     use Bifurcation::{Detachment, Resting};
     is_on_branches("osorio-2008", [114.0, 116.0], Detachment, "stiffness", [1200.0, 1700.0]);
@@ -86,6 +88,7 @@ fn detachment_and_the_onset_of_resting_are_where_branches_have_them() {
 /// Where an impact on the way to the rest comes to a corner, the curve of the onset of resting has a kink, and may turn back sharply; it is
 /// followed around each, and is on branches beyond them.
 #[test]
+#[ignore = "slow"]
 fn the_onset_of_resting_goes_on_around_kinks() {
     let model = common::osorio();
     let found = followed(&model, [198.0, 199.0], &[Bifurcation::Resting], "restitution", [0.7, 0.9]);
@@ -143,6 +146,7 @@ fn curves_end_on_each_other() {
 /// Restitution 0 and 1 are bounds of the model: a curve that comes to one says so, and where the number alone is what ends it,
 /// the last point is on it.
 #[test]
+#[ignore = "slow"]
 fn a_bound_of_the_model_ends_a_curve_with_a_sentence() {
     use Bifurcation::{Corner, Flip, Fold, Graze};
     let all = &[Corner, Fold, Flip, Graze];

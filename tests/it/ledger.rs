@@ -99,6 +99,7 @@ fn consequences_lead_to_the_slips_that_they_are_of() {
 
 /// What somebody read is known by reading, the others by what was proved, computed or sampled; and every word occurs.
 #[test]
+#[ignore = "slow"]
 fn every_verdict_says_how_it_is_known() {
     let claims = &papers().claims;
     for held in claims {
@@ -113,6 +114,7 @@ fn every_verdict_says_how_it_is_known() {
 
 /// What the ledger tells of the drawn cams, from the coordinates as a reader of the source finds them.
 #[test]
+#[ignore = "slow"]
 fn the_drawn_cams_are_as_the_ledger_says() {
     let claims = &papers().claims;
     let says = |id: &str, parts: &[&str]| {

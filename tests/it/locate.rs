@@ -85,6 +85,7 @@ fn an_orbit_of_two_revolutions_reaches_the_noses_end() {
 
 /// A follower without spring that flies for two revolutions from the corner back to it.
 #[test]
+#[ignore = "slow"]
 fn one_impact_in_two_revolutions_is_found() {
     let model = common::read(concat!(env!("PROJECT"), "/models/ballistic.toml").as_ref());
     let found = surveyed(&model, 332.0, 332.6, 2);
@@ -273,6 +274,7 @@ fn what_one_way_of_looking_misses_the_other_finds() {
 
 /// One impact is on the seam at angle 0, where rounding decides which revolution it is in.
 #[test]
+#[ignore = "slow"]
 fn what_both_ways_find_is_one() {
     let model = common::read("models/laws/program.toml".as_ref());
     let found = surveyed(&model, 1329.0, 1330.5, 1).found;
@@ -325,6 +327,7 @@ fn parts_are_the_whole(model: &Model, range: [f64; 2], revolutions: u64, least: 
 }
 
 #[test]
+#[ignore = "slow"]
 fn a_part_of_a_range_has_its_part_of_the_corner_impacts() {
     parts_are_the_whole(&common::osorio(), [600.0, 760.0], 1, 2);
     parts_are_the_whole(&common::tutorial("own.toml"), [1290.0, 1380.0], 1, 5);
@@ -332,6 +335,7 @@ fn a_part_of_a_range_has_its_part_of_the_corner_impacts() {
 
 /// Shots are made beyond either end of a range, as far as Newton's method may go from one.
 #[test]
+#[ignore = "slow"]
 fn a_range_around_one_corner_impact_has_it_by_the_same_ways() {
     let model = common::read("models/sharp-nose.toml".as_ref());
     let find = |rpm_min: f64, rpm_max: f64| {

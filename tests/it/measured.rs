@@ -99,6 +99,7 @@ fn shifted(cam: &Cam, places: i32, by: f64) -> Vec<(f64, f64)> {
 /// Rows that fall on other angles, with other noise and with the ends of dwells elsewhere between them: of 54 tables two are farther
 /// off than they say, by less than half.
 #[test]
+#[ignore = "slow"]
 fn separation_does_not_hang_on_where_the_rows_fall() {
     let (mut outside, mut part) = (0, 0.0);
     for motion in ["cycloidal", "modified-sine", "poly345"] {
@@ -121,6 +122,7 @@ fn separation_does_not_hang_on_where_the_rows_fall() {
 /// The loads of tables are within their ± of those of the exact cam, right above the separation as well, where a cam that separates a
 /// little later has none at all.
 #[test]
+#[ignore = "slow"]
 fn loads_are_within_their_error() {
     let asked = Asked { rpm: Some([3600.0, 6000.0]), speeds: 13, ..Asked::default() };
     let (mut outside, mut count) = (0, 0);
@@ -180,6 +182,7 @@ fn separation(cam: Value) -> (f64, f64) {
 /// Cams that all leave at 3285.37 rpm, each in three roundings: the smoothed ones leave there within what they say, the cubic
 /// splines within what is said of them, and the roundest of these by less than half of that speed.
 #[test]
+#[ignore = "slow"]
 fn separation_is_known_to_within_what_is_said() {
     for (motion, span, top) in [
         ("cycloidal", 74.0201, 0.0),
@@ -210,6 +213,7 @@ fn separation_is_known_to_within_what_is_said() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn corners_and_dwells_are_found() {
     let measured = |motion: &str, span: f64, places: i32, more: &Value| {
         let cam = Cam::new(&machine(program(motion, span, 13.71, 40.3)).unwrap()).unwrap();
@@ -415,6 +419,7 @@ fn real_files() {
 
 /// The paper's cam measured to a micrometre, its corners found: the corner impact and its map are the paper's to within what is said.
 #[test]
+#[ignore = "slow"]
 fn a_measured_corner_impact() {
     let paper = crate::common::osorio();
     let measured = |places: i32| {
@@ -508,6 +513,7 @@ fn a_measured_corner_impact() {
 /// Orbits of a rounded cam: those of the exact one are within what is said, of multipliers, states and impacts, where a spline goes
 /// through the rows and where it goes near them; an exact cam has no ±.
 #[test]
+#[ignore = "slow"]
 fn orbits_of_a_measured_cam_are_known_to_within_what_is_said() {
     let truth = machine(program("cycloidal", 74.0201, 13.71, 0.0)).unwrap();
     let cam = Cam::new(&truth).unwrap();
@@ -580,6 +586,7 @@ fn orbits_of_a_measured_cam_are_known_to_within_what_is_said() {
 /// Commands whose numbers have no ± of their own say how well the cam is known that they are about, once, on standard error; those
 /// whose numbers have one do not, and of exact rows none does.
 #[test]
+#[ignore = "slow"]
 fn an_answer_without_an_error_says_how_well_its_cam_is_known() {
     let folder = tempfile::tempdir().unwrap();
     let run = |line: &str| {
@@ -650,6 +657,7 @@ fn an_answer_without_an_error_says_how_well_its_cam_is_known() {
 
 /// The measured machine that `new` writes: what is told of its cam, and ± on what depends on it.
 #[test]
+#[ignore = "slow"]
 fn a_new_measured_machine() {
     let folder = tempfile::tempdir().unwrap();
     let run = |words: &[&str]| {
@@ -761,6 +769,7 @@ fn what_is_found_does_not_hang_on_the_unit() {
 /// A slip in one row is found with the row and how far it is off, whatever the spline and wherever it is; noise, rounding, corners,
 /// dwells and coarse rows are none.
 #[test]
+#[ignore = "slow"]
 fn a_slip_in_one_row_is_told() {
     let strays = |rows: &[(f64, f64)], spline: &str| {
         let mut cam = smoothing(rows, &json!({}));

@@ -52,6 +52,7 @@ fn cams() -> Vec<(String, Model)> {
 }
 
 #[test]
+#[ignore = "slow"]
 fn lifts_are_those_of_the_scripts() {
     let models = cams();
     let study = Study { rpm_min: 100.0, rpm_max: 1000.0 };
@@ -97,6 +98,7 @@ fn measured(more: &Value) -> Model {
 
 /// A cam of motions, one of which jumps, one of polynomials, and a measured one, of which no ball knows the spline.
 #[test]
+#[ignore = "slow"]
 fn every_route_runs_on_every_cam_with_corners() {
     let new = |law: &str| {
         let file = text(common::corner_impact(["new", "--law", law]).stdout);

@@ -107,6 +107,7 @@ fn unescaped(text: &[u8]) -> Vec<u8> {
 }
 
 #[test]
+#[ignore = "slow"]
 fn a_figure_is_as_wide_and_its_letters_as_high_as_asked() {
     let figure = parabola();
     for (mm, size) in [(85.0, 8.0), (85.0, 6.0), (170.0, 10.0), (60.0, 5.0)] {

@@ -110,6 +110,7 @@ fn the_paper_s_machine_has_no_orbit_of_one_impact_below_its_corner_impact_and_tw
 }
 
 #[test]
+#[ignore = "slow"]
 fn folds_and_grazes_are_proved_where_branches_have_them() {
     let proved = held("models/persistence.toml", "485:570", "500");
     event(&proved, "fold", "493.811509867092714", 131.75);
@@ -146,6 +147,7 @@ fn orbits_of_two_impacts_are_all_there_where_a_flight_may_last_a_half_swing() {
 
 /// The speed of a graze, but for 1e-14 rpm: an impact of two is a touch there.
 #[test]
+#[ignore = "slow"]
 fn where_a_flight_touches_the_list_is_not_said_to_be_complete() {
     let arguments = ["certify", "--orbits", "--rpm", "786.7196856957516", "--bits", "53"];
     let proved = document(&arguments);

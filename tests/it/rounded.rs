@@ -28,6 +28,7 @@ fn folds(model: &Model, rpm: f64) -> Curves {
 /// The speed of the fold goes to that of the corner impact, with the slope of the closed form; by how much it is off is in
 /// proportion to the angle.
 #[test]
+#[ignore = "slow"]
 fn a_rounded_corner_moves_the_fold_in_proportion() {
     for name in ["osorio-2008", "damped-light", "damped-heavy", "overdamped", "sharp-nose", "preloaded", "ballistic"] {
         let model = model(name);

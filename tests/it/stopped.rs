@@ -115,6 +115,7 @@ const LONG: [&str; 11] = [
 
 /// Whatever a command is at, it ends at once, with the scripts that it has written and the Python that runs them.
 #[test]
+#[ignore = "slow"]
 fn ctrl_c_ends_every_command_at_once_and_leaves_nothing() {
     const AT_ONCE: Duration = Duration::from_secs(5);
     let lines = PYTHON.map(|line| (line, true)).into_iter().chain(LONG.map(|line| (line, false)));
