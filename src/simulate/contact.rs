@@ -28,7 +28,7 @@ pub(super) enum Outcome {
     None,
     /// The first contact, s after the start.
     Contact(f64),
-    /// Inside the cam already.
+    /// Inside the cam, and on the way out of it.
     Below { depth: f64, time: f64 },
     /// More steps than a window may take, or one that takes no time; s after the start.
     NoProgress(f64),
@@ -45,7 +45,7 @@ pub(super) fn first_contact(gap_at: impl Fn(f64) -> Gap, third_bound: impl Fn(f6
         if !(gap.value.is_finite() && gap.rate.is_finite() && gap.curvature.is_finite()) {
             return Outcome::NotFinite(time);
         }
-        if gap.value < -gap.rounding && (time == 0.0 || gap.rate >= 0.0) {
+        if gap.value < -gap.rounding && gap.rate >= 0.0 {
             return Outcome::Below { depth: -gap.value, time };
         }
         if gap.value <= gap.rounding && gap.rate < -gap.rate_rounding {

@@ -230,7 +230,7 @@ impl Machine {
                 }
                 Step::Broken => {
                     self.counted(motion)?;
-                    self.wrap(motion);
+                    self.wrap(motion, observer)?;
                     return Ok(ControlFlow::Break(()));
                 }
             }
@@ -339,7 +339,7 @@ impl Machine {
             observer.flight(&self.flight, start, leap.time);
             (motion.state, motion.gap) = (self.flight.fly(start, leap.time).1, None);
             motion.segment = leap.segment;
-            self.enter_next(motion);
+            self.enter_next(motion)?;
             if leap.lands {
                 motion.expected = Some(motion.cam_angle);
             }
@@ -364,7 +364,7 @@ impl Machine {
                 if last {
                     return Ok(Step::Reached);
                 }
-                self.enter_next(motion);
+                self.enter_next(motion)?;
                 Ok(Step::Moved)
             }
             Passage::Contact { time, velocity, lift } => {
@@ -426,8 +426,8 @@ impl Machine {
         }
     }
 
-    /// Goes over to the next segment, at its start.
-    fn enter_next(&self, motion: &mut Motion) {
+    /// Goes over to the next segment, at its start; an error where the lift steps up through the follower.
+    fn enter_next(&self, motion: &mut Motion) -> Result<(), SimulateError> {
         let segments = self.cam().segments();
         motion.segment += 1;
         if motion.segment == segments.len() {
@@ -439,20 +439,33 @@ impl Machine {
         let entry = self.terrain.entries[motion.segment];
         if entry.lift_step != 0.0 {
             motion.gap = motion.gap.map(|gap| gap - entry.lift_step);
+            let gap = self.gap(motion);
+            if gap < -self.gap_rounding(motion.state.position) {
+                let Motion { revolution, cam_angle, .. } = *motion;
+                return Err(SimulateError::BelowCam { depth: -gap, revolution, cam_angle });
+            }
         } else if let Some(lift) = entry.seam {
             // The gap goes on as it was.
             motion.gap.get_or_insert(motion.state.position - lift);
         }
+        Ok(())
     }
 
-    /// Brings a motion that an observer has stopped at a whole turn to the start of the next.
-    fn wrap(&self, motion: &mut Motion) {
-        if motion.cam_angle >= TAU {
-            self.enter_next(motion);
-            let entry = self.terrain.entries[motion.segment];
-            // What the corner does to a follower that sticks is found when it goes on.
-            motion.contact &= entry.slope_jump == 0.0 && entry.lift_step == 0.0;
+    /// Brings a motion that an observer has stopped at a whole turn to the start of the next, where no lift steps.
+    fn wrap(&self, motion: &mut Motion, observer: &mut impl Observer) -> Result<(), SimulateError> {
+        if motion.cam_angle < TAU {
+            return Ok(());
         }
+        self.enter_next(motion)?;
+        let slope_jump = self.terrain.entries[motion.segment].slope_jump;
+        if motion.contact && slope_jump != 0.0 {
+            // A release is shown with what led to it; that the cam strikes is found when the motion goes on.
+            motion.contact = false;
+            if slope_jump < 0.0 {
+                self.report(motion, EventKind::Release, observer);
+            }
+        }
+        Ok(())
     }
 
     /// An impact at the motion's angle, where `lift` holds, `left` rad before the end of the run.

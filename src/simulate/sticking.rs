@@ -100,22 +100,15 @@ impl Machine {
             return Ok(self.let_go(motion, &lift, on_cam(&lift, omega), observer));
         }
         let before = on_cam(&segment.law.lift(motion.cam_angle + span), omega);
-        motion.cam_angle += span;
+        (motion.state, motion.gap, motion.lift) = (before, Some(0.0), None);
         if last {
-            motion.state = before;
-            (motion.gap, motion.lift) = (Some(0.0), None);
             return Ok(Step::Reached);
         }
-        motion.gap = Some(0.0);
-        self.enter_next(motion);
+        self.enter_next(motion)?;
         let entry = self.terrain.entries[motion.segment];
         let next = &self.cam().segments()[motion.segment];
         let lift = next.law.lift(next.start);
         let after = on_cam(&lift, omega);
-        if entry.lift_step > 0.0 {
-            let (revolution, cam_angle) = (motion.revolution, motion.cam_angle);
-            return Err(SimulateError::BelowCam { depth: entry.lift_step, revolution, cam_angle });
-        }
         if entry.slope_jump > 0.0 && entry.lift_step == 0.0 {
             // The cam's velocity jumps towards the follower.
             return Ok(self.strike(motion, before.velocity, &lift, left - span, observer));

@@ -69,6 +69,7 @@ mod set;
 mod settled;
 mod simulate;
 mod snapshots;
+mod steps;
 mod sticking;
 mod stopped;
 mod targets;

@@ -27,7 +27,7 @@ pub struct Log {
 }
 
 /// Most events that one case is followed through.
-const EVENTS: usize = 300;
+pub const EVENTS: usize = 300;
 
 impl Observer for Log {
     fn event(&mut self, event: &Event) -> ControlFlow<()> {

@@ -1,0 +1,202 @@
+//! Does the event loop go over the steps of a lift? No model has one: a law that is continued past a corner leaves one where it ends.
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::ops::ControlFlow;
+
+use crate::common;
+use crate::properties::{EVENTS, first_contacts_from, goal};
+use crate::random::{Case, cases_of_every_law, cases_of_many_segments, drawn};
+use approx::{assert_abs_diff_eq, assert_relative_eq};
+use corner_impact::cam::{Cam, Side};
+use corner_impact::flight::State;
+use corner_impact::model::Model;
+use corner_impact::simulate::{Event, EventKind, Machine, Motion, SimulateError, angular_velocity};
+
+/// A follower that gravity alone pulls over polynomials from each of these angles, rad, on.
+fn machine(restitution: f64, gravity: f64, pieces: &[(f64, &[f64])]) -> Machine {
+    let piece = |(start, coefficients): &(f64, &[f64])| {
+        format!("[[cam.segment]]\nstart_deg = {:?}\ncoefficients = {coefficients:?}\n", start.to_degrees())
+    };
+    let text = format!(
+        "[follower]\nmass = 1.0\ndamping = 0.0\nstiffness = 0.0\ngravity = {gravity:?}\nrest_position = 0.0\n\
+         restitution = {restitution:?}\n[cam]\nlaw = \"polynomial\"\n{}",
+        pieces.iter().map(piece).collect::<String>()
+    );
+    let model = Model::parse("steps.toml", &text).unwrap();
+    Machine::new(common::cam(&model), &model.follower, 1.0)
+}
+
+fn continued(machine: &Machine, corner: usize, side: Side, reach: f64) -> Machine {
+    let cam = machine.cam().continued(&machine.cam().corners()[corner], side, reach).unwrap();
+    machine.with_cam(cam)
+}
+
+/// A run up to its end or to so many events, and these.
+fn run(machine: &Machine, mut motion: Motion, turn: f64) -> (Result<Motion, SimulateError>, Vec<Event>) {
+    let mut events = Vec::new();
+    let goal = goal(&motion, turn);
+    let end = machine.advance(&mut motion, goal, &mut |event: &Event| {
+        events.push(*event);
+        if events.len() < EVENTS { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    });
+    (end.map(|_| motion), events)
+}
+
+/// From a dwell at 0 the lift goes over to x^2 - x^3/3, which is level again, 4/3 higher, at x = 2.
+const HILL: [(f64, &[f64]); 3] = [(0.0, &[0.0]), (1.0, &[0.0, 0.0, 1.0, -1.0 / 3.0]), (4.0, &[0.0])];
+
+/// A follower that rests on the cam is below it where the lift steps up, is let go where it steps down, whatever the slope does there, and
+/// the stretches of rest end there.
+#[test]
+fn a_follower_that_rests_meets_a_step() {
+    let whole = machine(0.0, 30.0, &HILL);
+    // Up by the hill's 2/3 at 1, where it is steep, and by 4/3 at 2, where it is as level as the dwell.
+    for (reach, depth) in [(1.0, 2.0 / 3.0), (1.5, 1.125)] {
+        let machine = continued(&whole, 0, Side::Minus, reach);
+        let (end, events) = run(&machine, machine.start_on_cam(0.5, 0.0).unwrap(), TAU);
+        match end {
+            Err(SimulateError::BelowCam { depth: found, revolution: 0, cam_angle }) => {
+                assert_relative_eq!(found, depth, max_relative = 1e-14);
+                assert_abs_diff_eq!(cam_angle, 1.0 + reach, epsilon = 1e-14);
+            }
+            other => panic!("{other:?} {events:?}"),
+        }
+        let rests = machine.rests().unwrap();
+        assert!(rests.iter().any(|[_, to]| (to - 1.0 - reach).abs() < 1e-14), "{rests:?}");
+    }
+    // Down from the hill, or from its valley's far side, to the dwell: where the slope is level, falls and rises.
+    for (pieces, reach) in [
+        (&HILL[..], 1.0),
+        (&HILL[..], 1.2),
+        (&[(0.0, &[0.0][..]), (1.0, &[0.0, 0.0, 1.0, -1.0 / 3.0]), (4.0, &[0.0])][..], 0.8),
+    ] {
+        let whole = machine(0.0, 30.0, pieces);
+        let machine = continued(&whole, 1, Side::Plus, reach);
+        let at = 4.0 - reach;
+        let before = whole.cam().lift(at);
+        let (end, events) = run(&machine, machine.start_on_cam(2.0, 0.0).unwrap(), 0.99 * (TAU - 2.0));
+        let end = end.unwrap();
+        let [release, impact, ..] = events[..] else { panic!("{events:?}") };
+        assert_eq!(release.kind, EventKind::Release);
+        assert_abs_diff_eq!(release.cam_angle, at, epsilon = 1e-14);
+        assert_relative_eq!(release.position, before.value, max_relative = 1e-14);
+        assert_relative_eq!(release.velocity_after, before.slope, epsilon = 1e-14, max_relative = 1e-13);
+        // q = c + c' t - 15 t^2 is 0 again.
+        let time = (before.slope + (before.slope.powi(2) + 60.0 * before.value).sqrt()) / 30.0;
+        assert_eq!(impact.kind, EventKind::Impact);
+        assert_abs_diff_eq!(impact.cam_angle, at + time, epsilon = 1e-13);
+        assert!(end.contact);
+        let rests = machine.rests().unwrap();
+        assert!(rests.iter().any(|[_, to]| (to - at).abs() < 1e-14), "{rests:?}");
+    }
+}
+
+/// Flights over a step find their contacts where a scan does, and know their gap; who is below it is as deep as the lift is higher.
+#[test]
+fn flights_go_over_steps() {
+    const TURNS: f64 = 1.5;
+    let (mut below, mut over) = (0, 0);
+    let cases = drawn(cases_of_every_law(), 200).into_iter().chain(drawn(cases_of_many_segments(), 40));
+    for mut case in cases {
+        let cam = case.machine.cam();
+        let unit = |factor: f64| (case.rpm * factor).fract();
+        let Some(corner) = cam.corners().get((unit(1e3) * cam.corners().len() as f64) as usize) else { continue };
+        let side = if unit(1e4) < 0.5 { Side::Minus } else { Side::Plus };
+        let least = cam.segments().iter().map(|segment| segment.end - segment.start).fold(TAU, f64::min);
+        let Some(cam) = cam.continued(corner, side, least * (0.1 + 0.4 * unit(1e5))) else { continue };
+        let steps = steps(&cam);
+        // Smaller ones are none: the gap goes on as it was.
+        let largest = steps.iter().fold(0.0_f64, |largest, (_, step)| largest.max(step.abs()));
+        if largest < 1e-6 * case.stroke {
+            continue;
+        }
+        case.machine = case.machine.with_cam(cam);
+        let Ok(motion) = case.motion() else { continue };
+        let turn = case.turns(TURNS);
+        match run(&case.machine, motion, turn) {
+            (Ok(_), _) => {
+                first_contacts_from(&case, motion, TURNS, 20).unwrap();
+                over += u32::from(knows_its_gap(&case, motion, turn));
+            }
+            (Err(SimulateError::BelowCam { depth, cam_angle, .. }), events) => {
+                let (at, step) =
+                    *steps.iter().find(|(at, step)| (at - cam_angle).abs() < 1e-12 && *step > 0.0).unwrap();
+                let last = events.last();
+                let (angle, state, sticks) = last.map_or((motion.cam_angle, motion.state, motion.contact), |event| {
+                    let state = State { position: event.position, velocity: event.velocity_after };
+                    (event.turned_since(0.0), state, event.kind == EventKind::Stick)
+                });
+                let lift = case.machine.cam().lift(at).value;
+                let time = (at - angle).rem_euclid(TAU) / case.machine.angular_velocity();
+                let position = case.machine.flight().fly(state, time).1.position;
+                let expected = if sticks { step } else { lift - position };
+                assert!(0.0 < depth && depth <= step * 1.000_001, "{depth} m below a step of {step} m");
+                assert_abs_diff_eq!(depth, expected, epsilon = 1e-9 * case.stroke.max(lift.abs()));
+                below += 1;
+            }
+            (Err(SimulateError::NoProgress { .. }), _) => {}
+            (Err(error), _) => panic!("{error}: {case:?}"),
+        }
+    }
+    assert!(below > 10 && over > 10, "{below} {over}");
+}
+
+/// Where the lift steps, rad, and by how much, m.
+fn steps(cam: &Cam) -> Vec<(f64, f64)> {
+    let pairs = cam.segments().windows(2);
+    pairs
+        .map(|pair| (pair[1].start, pair[1].law.lift(pair[1].start).value - pair[0].law.lift(pair[0].end).value))
+        .collect()
+}
+
+/// The gap of a flight that is stopped at every place is its height above the lift; whether the lift stepped meanwhile.
+fn knows_its_gap(case: &Case, mut motion: Motion, turn: f64) -> bool {
+    let (machine, first) = (&case.machine, motion);
+    for index in 1..=100 {
+        let goal = goal(&first, turn * f64::from(index) / 100.0);
+        if machine.advance(&mut motion, goal, &mut |_: &Event| ControlFlow::Continue(())).is_err() {
+            return false;
+        }
+        let lift = machine.cam().lift(motion.cam_angle).value;
+        let gap = motion.state.position - lift;
+        let size = motion.state.position.abs() + lift.abs() + case.stroke;
+        assert!((machine.gap(&motion) - gap).abs() <= 1e-9 * size, "{} is not {gap}: {case:?}", machine.gap(&motion));
+    }
+    true
+}
+
+/// A follower without gravity or spring that comes down in the last instant of a turn, on a dwell, and sticks: stopped there, it meets the
+/// corner at angle 0 as one that goes on does, whichever way that turns.
+#[test]
+fn a_run_may_be_stopped_in_the_last_instant_of_a_turn() {
+    for slope in [1.0, -1.0] {
+        let machine =
+            machine(0.0, 0.0, &[(0.0, &[0.0, slope, -slope / PI]), (PI, &[0.0])]).at_speed(angular_velocity(60.0));
+        let mut met = 0;
+        for ulps in -200..200 {
+            let start = TAU - FRAC_PI_2;
+            let height = 0.25 * (1.0 + f64::from(ulps) * f64::EPSILON);
+            let motion = machine.start(start, State { position: height, velocity: -1.0 }).unwrap();
+            let (end, whole) = run(&machine, motion, PI);
+            end.unwrap();
+            let Some(first) = whole.first().filter(|first| first.cam_angle == 0.0 && first.segment == 1) else {
+                continue;
+            };
+            assert_eq!(first.kind, EventKind::Impact);
+            met += 1;
+            let mut split = motion;
+            let goal = goal(&motion, PI);
+            let mut events = Vec::new();
+            while machine
+                .advance(&mut split, goal, &mut |event: &Event| {
+                    events.push(*event);
+                    ControlFlow::Break(())
+                })
+                .unwrap()
+                .is_break()
+            {}
+            assert_eq!(events, whole, "{slope}");
+        }
+        assert!(met > 0, "{slope}");
+    }
+}
