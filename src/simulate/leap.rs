@@ -129,8 +129,6 @@ impl Machine {
         let last = self.flight.fourth_bound(state) * (square * square / 24.0);
         let rounding = self.gap_rounding(state.position);
         let (mut segment, mut before, mut turned) = (motion.segment, state.position, 0.0);
-        // Up to here the bound is bent downwards, and above its chords.
-        let bent = if sixth > 0.0 { -half / (3.0 * sixth) } else { -half * f64::INFINITY };
         /// Chords that most leaps begin with.
         const FIRST: usize = 2;
         // Ever more segments as long as they are cleared, and then ever fewer.
@@ -140,11 +138,9 @@ impl Machine {
             let turn = chord.end - motion.cam_angle;
             let after = state.position + turn * (first + turn * (half + turn * (sixth - turn * last)));
             let gaps = [before - chord.lift + chord.slope * (turn - turned), after - chord.lift];
-            let mut least = rounding + chord.rise;
-            if !(turn <= bent) {
-                // By q'' + q''' x at most it is bent upwards, so that it is no further below its chord than that h^2/8.
-                least += (2.0 * half + 6.0 * sixth.max(0.0) * turn).max(0.0) * chord.square;
-            }
+            // By q'' + q''' x at most the bound is bent upwards, so that it is no further below its chord than that h^2/8.
+            let bent = (2.0 * half + 6.0 * sixth.max(0.0) * turn).max(0.0);
+            let least = rounding + chord.rise + bent * chord.square;
             if turn < left && gaps[0] > least && gaps[1] > least {
                 segment += SIZES[level];
                 (before, turned) = (after, turn);

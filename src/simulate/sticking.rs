@@ -54,10 +54,7 @@ impl Machine {
     ) -> Step {
         let pressing = -self.lifting(lift);
         let relative_velocity = motion.state.velocity - self.angular_velocity * lift.slope;
-        if !(pressing > 0.0 && self.restitution < 1.0) {
-            return Step::Event;
-        }
-        // Cheaply first: most impacts are far from the last.
+        // Cheaply first: most impacts are far from the last, and where nothing presses or nothing is lost, all are.
         let first = 2.0 * relative_velocity * self.angular_velocity;
         if first > tolerance::CHATTER_TURN.value * pressing * (1.0 - self.restitution) {
             return Step::Event;

@@ -401,6 +401,12 @@ fn a_run_may_be_split_anywhere() {
     check(2000, |case| splits(case, on));
 }
 
+/// Over many segments, too, some of which it goes over at once.
+#[test]
+fn a_run_over_many_segments_may_be_split_anywhere() {
+    check_many_segments(150, |case| splits(case, on));
+}
+
 /// So has one that is started again from the state that it has come to.
 #[test]
 #[ignore = "slow"]
@@ -419,9 +425,11 @@ fn splits(case: &Case, goes_on: fn(&Machine, Motion) -> Result<Motion, TestCaseE
     // Places that the case decides on, without a second source of chance.
     let share = (case.rpm * 1e3).fract();
     for turn in [0.5 * share * whole_turn, (0.5 + 0.4 * share) * whole_turn] {
-        if machine.advance(&mut split, goal(&first, turn), &mut log).unwrap().is_break() {
+        let goal = goal(&first, turn);
+        if machine.advance(&mut split, goal, &mut log).unwrap().is_break() {
             return Ok(());
         }
+        prop_assert_eq!((split.revolution, split.cam_angle), (goal.revolution, goal.cam_angle));
         split = goes_on(machine, split)?;
     }
     let flow = machine.advance(&mut split, goal(&first, whole_turn), &mut log).unwrap();

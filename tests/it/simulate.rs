@@ -195,6 +195,34 @@ fn a_graze_is_found_however_shallow() {
     }
 }
 
+/// A follower that stands still at -h over x^2 (5 x - 1) is met where x^2 (1 - 5 x) = h, to a few roundings of lifts of 1.
+#[test]
+fn a_shallow_contact_is_known_to_its_digits() {
+    let text = format!(
+        "[follower]\nmass = 1.0\ndamping = 0.0\nstiffness = 0.0\ngravity = 0.0\nrest_position = 0.0\n\
+         restitution = 0.5\n[cam]\nlaw = \"polynomial\"\n\
+         [[cam.segment]]\nstart_deg = 0.0\ncoefficients = [-0.875, 4.75, -8.5, 5.0]\n\
+         [[cam.segment]]\nstart_deg = {:?}\ncoefficients = [0.375, {:?}]\n",
+        1.0_f64.to_degrees(),
+        -1.25 / (TAU - 1.0)
+    );
+    let machine = machine(&Model::parse("shallow.toml", &text).unwrap(), 60.0 / TAU);
+    let mut worst = 0.0_f64;
+    for index in 0..200 {
+        let height = 10.0_f64.powf(-4.0 - 0.04 * f64::from(index));
+        let mut root = -height.sqrt();
+        for _ in 0..50 {
+            root = -(height / (1.0 - 5.0 * root)).sqrt();
+        }
+        let (_, impacts) = run(&machine, 0.0, State { position: -height, velocity: 0.0 }, 0.9);
+        let apart = impacts[0].turned - 0.5 - root;
+        // The slope there is 2 x.
+        let of_the_lift = apart * 2.0 * root;
+        worst = worst.max(of_the_lift.abs());
+    }
+    assert!(worst < 5e-16, "{worst}");
+}
+
 /// The undamped flight reversed in time.
 fn back(machine: &Machine, end: State, time: f64) -> State {
     let mirrored = machine.flight().fly(State { position: end.position, velocity: -end.velocity }, time).1;
@@ -221,6 +249,7 @@ fn a_turn_may_end_at_angle_0() {
     let machine = machine(&common::osorio(), 690.0);
     let start = State { position: 5.3, velocity: 1.0 };
     let end = |turn: f64| run(&machine, PI, start, turn).0.unwrap();
+    assert_eq!(end(0.0), start);
     for (whole, more) in [(0.0, 1.0), (TAU, 1.0 + TAU)] {
         let (at_0, before, after) = (end(PI + whole), end(PI.next_down() + whole), end(PI + more));
         assert_abs_diff_eq!(at_0.position, before.position, epsilon = 1e-11);
@@ -295,31 +324,37 @@ fn a_perfectly_elastic_and_a_perfectly_plastic_follower() {
     assert_eq!(end.unwrap().position, plastic.cam().lift(2.5).value);
 }
 
-/// Where segments meet at lift 0, or at one typed to ten digits, what the two laws differ by is no step: neither a follower
+/// Where segments meet at lift 0, or at one typed to ten digits, what the two laws differ by is no step, in any unit: neither a follower
 /// that sticks nor one that flies close by is told that it is below the cam.
 #[test]
 fn a_cam_that_closes_to_its_digits_is_closed() {
-    // A parabola over the first half, the next digit of its lift at the end, and down again.
-    for end in ["0.0", "0.3000000001", "0.2999999999"] {
-        let lift: f64 = end.parse().unwrap();
-        let text = format!(
-            "[follower]\nmass = 1.0\ndamping = 0.0\nstiffness = 0.0\ngravity = 9.81\nrest_position = 0.0\n\
-             restitution = 0.5\n[cam]\nlaw = \"polynomial\"\n\
-             [[cam.segment]]\nstart_deg = 26.9\ncoefficients = [0.0, {:?}, -0.3, -0.1]\n\
-             [[cam.segment]]\nstart_deg = 206.9\ncoefficients = [{lift:?}, {:?}, -0.3, 0.1]\n",
-            (if lift > 0.0 { 0.3 } else { 0.0 }) / PI + PI * (0.3 + 0.1 * PI),
-            -lift / PI + PI * (0.3 - 0.1 * PI)
-        );
-        let machine = machine(&Model::parse("closed.toml", &text).unwrap(), 0.001);
-        let angle = 206.9_f64.to_radians() - 1e-12;
-        let motion = machine.start_on_cam(3.0, 0.0).unwrap();
-        assert!(motion.contact);
-        for height in [0.0, 1e-12, 2e-11, 1e-9] {
-            // At rest on the cam, or so close above it that it comes down at the joint.
-            let lift = machine.cam().lift(angle);
-            let velocity = machine.angular_velocity() * lift.slope;
-            let start = State { position: lift.value + height, velocity };
-            run(&machine, angle, start, TAU).0.unwrap_or_else(|error| panic!("{end}, {height} m: {error}"));
+    for size in [1.0, 1000.0] {
+        // A parabola over the first half, the next digit of its lift at the end, and down again.
+        for end in [0.0, 0.3000000001, 0.2999999999] {
+            let scaled = |number: f64| number * size;
+            let text = format!(
+                "[follower]\nmass = 1.0\ndamping = 0.0\nstiffness = 0.0\ngravity = {:?}\nrest_position = 0.0\n\
+                 restitution = 0.5\n[cam]\nlaw = \"polynomial\"\n\
+                 [[cam.segment]]\nstart_deg = 26.9\ncoefficients = {:?}\n\
+                 [[cam.segment]]\nstart_deg = 206.9\ncoefficients = {:?}\n",
+                scaled(9.81),
+                [0.0, (if end > 0.0 { 0.3 } else { 0.0 }) / PI + PI * (0.3 + 0.1 * PI), -0.3, -0.1].map(scaled),
+                [end, -end / PI + PI * (0.3 - 0.1 * PI), -0.3, 0.1].map(scaled)
+            );
+            let machine = machine(&Model::parse("closed.toml", &text).unwrap(), 0.001);
+            let angle = 206.9_f64.to_radians() - 1e-12;
+            let motion = machine.start_on_cam(3.0, 0.0).unwrap();
+            assert!(motion.contact);
+            for height in [0.0, 1e-12, 2e-11, 1e-9] {
+                // At rest on the cam, or so close above it that it comes down at the joint, or on its way up from there.
+                for rises in [0.0, 1e-9, 1e-6, 1e-3] {
+                    let lift = machine.cam().lift(angle);
+                    let velocity = machine.angular_velocity() * lift.slope + scaled(rises);
+                    let start = State { position: lift.value + scaled(height), velocity };
+                    let end = run(&machine, angle, start, TAU).0;
+                    end.unwrap_or_else(|error| panic!("{size}, {height} m, {rises} m/s: {error}"));
+                }
+            }
         }
     }
 }

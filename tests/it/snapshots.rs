@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 
 const DIGITS: i32 = 10;
 
-fn settings() -> insta::Settings {
+pub fn settings() -> insta::Settings {
     let mut settings = insta::Settings::clone_current();
     settings.set_snapshot_path("../../golden/snapshots");
     settings.set_prepend_module_to_snapshot(false);

@@ -91,6 +91,32 @@ fn a_follower_that_rests_meets_a_step() {
     }
 }
 
+/// However fast a follower leaves the cam just before a step, it is below it, also on a cam whose slope jumps downwards alone.
+#[test]
+fn no_start_is_fast_enough_for_a_step() {
+    let segment = |(motion, rise): (&str, f64)| {
+        format!("[[cam.segment]]\nmotion = \"{motion}\"\nspan_deg = 90.0\nrise = {rise:?}\n")
+    };
+    let segments = [("dwell", 0.0), ("cycloidal", 1.0), ("dwell", 0.0), ("cycloidal", -1.0)].map(segment).concat();
+    let text = format!(
+        "[follower]\nmass = 1.0\ndamping = 0.0\nstiffness = 0.0\ngravity = 30.0\nrest_position = 0.0\n\
+         restitution = 0.5\n[cam]\nlaw = \"program\"\nbase = 0.0\n{segments}"
+    );
+    let model = Model::parse("steps.toml", &text).unwrap();
+    let whole = Machine::new(common::cam(&model), &model.follower, 1.0);
+    let corner = whole.cam().corners().iter().position(|corner| (corner.angle - PI).abs() < 1e-9).unwrap();
+    let machine = continued(&whole, corner, Side::Plus, 0.6);
+    let (before, at) = (1e-4, PI - 0.6);
+    let lift = whole.cam().lift(at);
+    let motion = machine.start_on_cam(at - before, 50.0).unwrap();
+    match run(&machine, motion, 1.0).0 {
+        Err(SimulateError::BelowCam { depth, .. }) => {
+            assert_abs_diff_eq!(depth, 1.0 - lift.value - 50.0 * before, epsilon = 1e-6);
+        }
+        other => panic!("{other:?}"),
+    }
+}
+
 /// Flights over a step find their contacts where a scan does, and know their gap; who is below it is as deep as the lift is higher.
 #[test]
 fn flights_go_over_steps() {
@@ -165,13 +191,15 @@ fn knows_its_gap(case: &Case, mut motion: Motion, turn: f64) -> bool {
     true
 }
 
-/// A follower without gravity or spring that comes down in the last instant of a turn, on a dwell, and sticks: stopped there, it meets the
-/// corner at angle 0 as one that goes on does, whichever way that turns.
+/// A follower without gravity or spring that comes down in the last instant of a turn, on a dwell, and sticks or bounces: stopped there, it meets
+/// what begins at angle 0 as one that goes on does, whichever way the slope jumps, if it does.
 #[test]
 fn a_run_may_be_stopped_in_the_last_instant_of_a_turn() {
-    for slope in [1.0, -1.0] {
-        let machine =
-            machine(0.0, 0.0, &[(0.0, &[0.0, slope, -slope / PI]), (PI, &[0.0])]).at_speed(angular_velocity(60.0));
+    // Where the first half begins with a slope, and where it begins level.
+    let halves = [1.0, -1.0].map(|slope| [0.0, slope, -slope / PI, 0.0, 0.0]);
+    let level = [0.0, 0.0, 0.1 * PI * PI, -0.2 * PI, 0.1];
+    for (half, restitution) in [(halves[0], 0.0), (halves[1], 0.0), (level, 0.0), (halves[0], 0.5), (halves[1], 0.5)] {
+        let machine = machine(restitution, 0.0, &[(0.0, &half), (PI, &[0.0])]).at_speed(angular_velocity(60.0));
         let mut met = 0;
         for ulps in -200..200 {
             let start = TAU - FRAC_PI_2;
@@ -195,8 +223,8 @@ fn a_run_may_be_stopped_in_the_last_instant_of_a_turn() {
                 .unwrap()
                 .is_break()
             {}
-            assert_eq!(events, whole, "{slope}");
+            assert_eq!(events, whole, "{half:?} {restitution}");
         }
-        assert!(met > 0, "{slope}");
+        assert!(met > 0, "{half:?} {restitution}");
     }
 }

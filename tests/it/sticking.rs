@@ -5,12 +5,12 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use crate::common;
-use crate::random::check;
+use crate::random::{cases_of_every_law, check, drawn};
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use corner_impact::cam::{apart, within_a_turn};
+use corner_impact::cam::{Lift, apart, within_a_turn};
 use corner_impact::flight::State;
 use corner_impact::model::Model;
-use corner_impact::simulate::{Event, EventKind, Machine, Motion, SimulateError, angular_velocity};
+use corner_impact::simulate::{Event, EventKind, Goal, Machine, Motion, SimulateError, angular_velocity};
 use proptest::prelude::*;
 
 fn machine(model: &Model, rpm: f64) -> Machine {
@@ -99,6 +99,48 @@ fn a_velocity_jump_hits_a_follower_that_sticks() {
     assert_eq!(events.iter().filter(|event| event.cam_angle == 0.0).count(), 1);
 }
 
+/// A run that ends at the corner, or between the last of many impacts and where they end, ends there, and goes on as one that does not.
+#[test]
+fn a_run_may_end_where_something_happens() {
+    let hits = machine(&over("law = \"rectified-sine\"\noffset = 0.0\namplitude = 0.01", 0.6, -0.5), 47.0);
+    let chatters = machine(&common::osorio(), 183.0);
+    // So small a kick ends at once.
+    let pieces = "[[cam.segment]]\nstart_deg = 0.0\ncoefficients = [0.01]\n\
+                  [[cam.segment]]\nstart_deg = 180.0\ncoefficients = [0.01, 1e-8, -3.183098861837907e-9]";
+    let kicks = machine(&over(&format!("law = \"polynomial\"\n{pieces}"), 0.6, -0.5), 47.0);
+    let kicked = run(&kicks, kicks.start_on_cam(0.5 * PI, 0.0).unwrap(), 1).1;
+    let kinds: Vec<EventKind> = kicked.iter().map(|event| event.kind).collect();
+    assert_eq!(kinds, [EventKind::Impact, EventKind::Stick, EventKind::Impact, EventKind::Stick], "{kicked:?}");
+    let stuck = run(&hits, hits.start_on_cam(0.5 * PI, 0.0).unwrap(), 1).1;
+    let whole = run(&chatters, chatters.start_on_cam(0.0, 0.0).unwrap(), 1).1;
+    let [.., last, stick] = &whole[..] else { panic!("{whole:?}") };
+    assert_eq!((last.kind, stick.kind), (EventKind::Impact, EventKind::Stick));
+    for (machine, start, events, end) in [
+        (&hits, 0.5 * PI, &stuck, PI),
+        (&chatters, 0.0, &whole, 0.5 * (last.cam_angle + stick.cam_angle)),
+        (&chatters, 0.0, &whole, last.cam_angle + 0.99 * (stick.cam_angle - last.cam_angle)),
+        (&chatters, 0.0, &whole, whole[0].cam_angle),
+        (&kicks, 0.5 * PI, &kicked, 0.5 * (kicked[0].cam_angle + kicked[1].cam_angle)),
+    ] {
+        let mut motion = machine.start_on_cam(start, 0.0).unwrap();
+        let mut found = Vec::new();
+        for goal in [Goal { cam_angle: end, ..motion.after(0) }, motion.after(1)] {
+            let _ = machine
+                .advance(&mut motion, goal, &mut |event: &Event| {
+                    found.push(*event);
+                    ControlFlow::Continue(())
+                })
+                .unwrap();
+            assert_eq!((motion.revolution, motion.cam_angle), (goal.revolution, goal.cam_angle));
+        }
+        // The end of the impacts is summed up from later ones: each leaves out the more the nearer it is.
+        let (one, two) = (found.last().unwrap(), events.last().unwrap());
+        assert_eq!(one.kind, two.kind);
+        assert_abs_diff_eq!(one.turned_since(0.0), two.turned_since(0.0), epsilon = 1e-12);
+        assert!((events.len()..events.len() + 30).contains(&found.len()), "{end}: {}", found.len());
+    }
+}
+
 /// c = -a |sin theta|: there the velocity jumps down, and the follower goes on with the one it had.
 #[test]
 fn a_velocity_jump_downwards_lets_go() {
@@ -161,6 +203,13 @@ fn a_start_on_the_cam_sticks_flies_or_is_hit() {
     let machine = machine(&model, 183.0);
     assert!(machine.start_on_cam(0.3, 0.0).unwrap().contact);
     assert!(!machine.start_on_cam(0.3, 1e-9).unwrap().contact);
+    // A velocity that is the cam's but for its last digit is the cam's.
+    let Lift { value: position, slope, .. } = machine.cam().lift(2.0);
+    for velocity in
+        [machine.angular_velocity() * slope].map(|velocity| [velocity.next_up(), velocity.next_down()]).concat()
+    {
+        assert!(machine.start(2.0, State { position, velocity }).unwrap().contact);
+    }
     // On the nose the cam turns away faster than the spring follows.
     assert!(!machine.start_on_cam(2.7, 0.0).unwrap().contact);
     // With the cam's velocity and a bit less it is hit where it starts.
@@ -250,6 +299,36 @@ fn a_follower_rests_on_the_cam_in_the_stretches_of_rest_and_nowhere_else() {
     assert!(left >= 200, "{left} stretches with an end");
 }
 
+/// Pieces of motions that meet smoothly are no corners, in whatever unit: pressed everywhere, a follower rests all round.
+#[test]
+fn a_follower_that_is_pressed_rests_all_round_in_any_unit() {
+    for size in [1e-6, 1.0, 1e6] {
+        for motion in
+            ["modified-trapezoid", "modified-sine", "cycloidal", "poly345", "poly4567", "parabolic", "harmonic"]
+        {
+            let segment = |(motion, rise): (&str, f64)| {
+                format!("[[cam.segment]]\nmotion = \"{motion}\"\nspan_deg = 90.0\nrise = {:?}\n", rise * size)
+            };
+            let segments = [(motion, 0.7), ("dwell", 0.0), (motion, 0.3), (motion, -1.0)].map(segment).concat();
+            let text = format!(
+                "[follower]\nmass = 1.0\ndamping = 0.1\nstiffness = 0.0\ngravity = {:?}\nrest_position = 0.0\n\
+                 restitution = 0.5\n[cam]\nlaw = \"program\"\nbase = {:?}\n{segments}",
+                10.0 * size,
+                0.1 * size
+            );
+            let machine = machine(&Model::parse("smooth.toml", &text).unwrap(), 1.0);
+            assert_eq!(machine.rests().unwrap(), [[0.0, TAU]], "{motion} {size}");
+        }
+    }
+}
+
+/// Over a corner at angle 0 no stretch of rest goes on.
+#[test]
+fn a_stretch_of_rest_ends_at_a_corner_at_angle_0() {
+    let machine = machine(&over("law = \"rectified-sine\"\noffset = 0.0\namplitude = 0.01", 0.6, -0.5), 47.0);
+    assert_eq!(machine.rests().unwrap(), [[0.0, PI], [PI, TAU]]);
+}
+
 /// A cam that is put on its shaft by some angle has its stretches of rest by that angle further on, through angle 0 too.
 #[test]
 fn stretches_of_rest_turn_with_the_cam() {
@@ -276,4 +355,69 @@ fn stretches_of_rest_turn_with_the_cam() {
         }
     }
     assert!((3..24).contains(&through_0), "{through_0}");
+}
+
+/// Where the force of contact is least on the way, a rest position that takes it up to a little above 0 keeps the follower there, and one that
+/// takes it to as little below lets go of it, just before.
+#[test]
+fn a_force_that_only_just_vanishes_lets_go() {
+    let mut looked_at = 0;
+    for case in drawn(cases_of_every_law(), 400) {
+        let (machine, omega) = (&case.machine, case.machine.angular_velocity());
+        let stiffness = machine.flight().omega0_squared();
+        let segments = machine.cam().segments();
+        let segment = &segments[((case.rpm * 1e3).fract() * segments.len() as f64) as usize];
+        let lifting = |angle: f64| {
+            let lift = segment.law.lift(angle);
+            let state = State { position: lift.value, velocity: omega * lift.slope };
+            machine.flight().acceleration(state) - omega * omega * lift.curvature
+        };
+        let angle = |index: u32| segment.start + (segment.end - segment.start) * f64::from(index) / 2000.0;
+        let most = (1..2000).max_by(|one, two| lifting(angle(*one)).total_cmp(&lifting(angle(*two)))).unwrap();
+        if stiffness == 0.0 || most == 1 || most == 1999 {
+            continue;
+        }
+        let (mut from, mut to) = (angle(most - 1), angle(most + 1));
+        for _ in 0..100 {
+            let (left, right) = (from + 0.382 * (to - from), from + 0.618 * (to - from));
+            if lifting(left) >= lifting(right) { to = right } else { from = left }
+        }
+        let (at, largest) = (from, lifting(from));
+        let spread = (0..=2000).map(|index| largest - lifting(angle(index))).fold(0.0, f64::max);
+        // What rounding leaves of the force.
+        let rounding = 1e-13
+            * (spread
+                + largest.abs()
+                + stiffness * (segment.law.lift(at).value.abs() + case.model.follower.rest_position.abs()));
+        for part in [1e-2, 1e-4, 1e-6, 1e-8] {
+            let left = part * spread;
+            if left < 100.0 * rounding {
+                continue;
+            }
+            for lets_go in [true, false] {
+                let mut follower = case.model.follower;
+                follower.rest_position += (if lets_go { left } else { -left } - largest) / stiffness;
+                let other = Machine::new(machine.cam().clone(), &follower, omega);
+                let (mut motion, mut first) = (other.start_on_cam(segment.start, 0.0).unwrap(), None);
+                let goal = Goal { cam_angle: at.max(segment.end.next_down()), ..motion.after(0) };
+                if !motion.contact {
+                    continue;
+                }
+                let run = other.advance(&mut motion, goal, &mut |event: &Event| {
+                    first = Some(*event);
+                    ControlFlow::Break(())
+                });
+                let said = (part, lets_go, at, run, first);
+                match first {
+                    Some(event) => assert!(
+                        lets_go && event.kind == EventKind::Release && event.cam_angle <= at,
+                        "{said:?} {case:?}"
+                    ),
+                    None => assert!(!lets_go && motion.contact, "{said:?} {case:?}"),
+                }
+                looked_at += 1;
+            }
+        }
+    }
+    assert!(looked_at > 200, "{looked_at}");
 }

@@ -11,6 +11,7 @@ use serde_json::json;
 use crate::common;
 use crate::properties::goal;
 use crate::random::{cases_of_every_law, cases_of_many_segments, drawn};
+use crate::snapshots;
 
 /// What all looks for a contact took, and those alone that marched, up to so many events.
 struct Counted {
@@ -69,11 +70,7 @@ fn finding_contacts_takes_what_it_took() {
             "marches": marches, "repeats": repeats,
         })
     });
-    let mut settings = insta::Settings::clone_current();
-    settings.set_snapshot_path("../../golden/snapshots");
-    settings.set_prepend_module_to_snapshot(false);
-    settings.set_omit_expression(true);
-    settings.bind(|| insta::assert_json_snapshot!("work", counts));
+    snapshots::settings().bind(|| insta::assert_json_snapshot!("work", counts));
 }
 
 /// Over the 360 segments of a table a flight leaps to the segment that it comes down on, from wherever it is: a window of its own for what is
