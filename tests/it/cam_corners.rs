@@ -175,6 +175,14 @@ fn laws_are_continued_past_any_corner() {
     {
         is_continued(&cam, corner, 0.04);
     }
+    // Two halves of cosines that meet at 0.
+    let halves = cam_of(
+        "law = \"program\"\nbase = 0.1\n[[cam.segment]]\nmotion = \"harmonic\"\nspan_deg = 100\nrise = 0.1\n\
+         [[cam.segment]]\nmotion = \"dwell\"\nspan_deg = 40\n\
+         [[cam.segment]]\nmotion = \"harmonic\"\nspan_deg = 220\nrise = -0.1\n",
+    );
+    assert_eq!((halves.corners()[0].angle, halves.corners()[0].jump_order), (0.0, 2));
+    is_continued(&halves, &halves.corners()[0], 0.1);
     // One segment that meets itself at 0.
     let wrapped = cam_of(
         "law = \"polynomial\"\n[[cam.segment]]\nstart_deg = 0\ncoefficients = [0.1, 0.06283185307179587, -0.01]\n",

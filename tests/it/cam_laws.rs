@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::common;
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use corner_impact::cam::{Arc, Cam, Harmonics, Law, Polynomial, Sinusoid};
+use corner_impact::cam::{Arc, Cam, Harmonics, Law, Lift, Polynomial, Sinusoid};
 use corner_impact::model::{HarmonicProfile, Model, Motion};
 
 /// One model file for every law but `arcs`, which all others have.
@@ -19,11 +19,16 @@ fn law_files() -> Vec<PathBuf> {
     files
 }
 
-/// A cam from the text of its table.
-fn cam_of(table: &str) -> Cam {
+/// A cam from the text of its table, or what is wrong with it.
+fn read(table: &str) -> Result<Cam, String> {
     let follower =
         "[follower]\nmass = 1\ndamping = 0\nstiffness = 1\ngravity = 0\nrest_position = 0\nrestitution = 1\n";
-    Cam::new(&Model::parse("test.toml", &format!("{follower}[cam]\n{table}")).unwrap()).unwrap()
+    let model = Model::parse("test.toml", &format!("{follower}[cam]\n{table}")).map_err(|error| error.to_string())?;
+    Cam::new(&model).map_err(|error| error.to_string())
+}
+
+fn cam_of(table: &str) -> Cam {
+    read(table).unwrap()
 }
 
 /// One motion and what undoes it.
@@ -263,6 +268,93 @@ fn bounds_on_the_fourth_derivative() {
     assert_eq!(arc(0.5, 0.1).fourth_bound(0.1, 0.21), f64::INFINITY);
 }
 
+/// An arc or a sinusoid that is a million times as large has bounds that are, to the last bit where that is a power of two.
+#[test]
+fn bounds_of_a_law_are_as_large_as_it_is() {
+    let arc = |distance: f64, radius: f64, size: f64| {
+        Law::Arc(Arc { distance: distance * size, direction: 0.3, radius: radius * size })
+    };
+    let sinusoid = |frequency: f64, size: f64| {
+        let (value, tilt, sine, cosine) = (0.1 * size, 0.02 * size, 0.3 * size, -0.2 * size);
+        Law::Sinusoid(Sinusoid { start: 0.3, value, tilt, sine, cosine, frequency })
+    };
+    let laws: [&dyn Fn(f64) -> Law; 6] = [
+        &|size| arc(0.45, 0.85, size),
+        &|size| arc(-0.45, 0.85, size),
+        &|size| arc(0.404, 0.15, size),
+        &|size| arc(0.1, 0.4, size),
+        &|size| sinusoid(1.0, size),
+        &|size| sinusoid(7.3, size),
+    ];
+    for law in laws {
+        let (one, size) = (law(1.0), 2.0_f64.powi(20));
+        for sample in 0..60 {
+            let middle = 0.1 * f64::from(sample);
+            for reach in [1e-9, 1e-4, 0.01, 0.1, 0.5, 2.0] {
+                let bounds = |law: &Law| {
+                    let (from, to) = (middle - reach, middle + reach);
+                    [law.third_bound(from, to), law.fourth_bound(from, to)]
+                };
+                for larger in [size, 1.0 / size] {
+                    assert_eq!(bounds(&law(larger)), bounds(&one).map(|bound| bound * larger), "{middle} {reach}");
+                }
+            }
+            // What is farther from a middle is bounded by no less.
+            let fourth = |part: i32| one.fourth_bound(middle - 0.02 * f64::from(part), middle + 0.02 * f64::from(part));
+            for part in 1..80 {
+                assert!(fourth(part + 1) >= fourth(part) * (1.0 - 1e-12), "{middle} {part}");
+            }
+        }
+    }
+}
+
+/// The least of what lift and derivatives make with any weights is that of a fine scan, of a cam of six hundred cosines and of a small one too, and is where it says.
+#[test]
+fn the_least_is_that_of_a_scan() {
+    let amplitudes: Vec<f64> = (1..=600).map(|k| 0.1 * f64::from(k * k % 7 - 3) / f64::from(k * k)).collect();
+    let phases: Vec<f64> = (1..=600).map(|k| f64::from(k * 47 % 360)).collect();
+    let waves =
+        cam_of(&format!("law = \"harmonic\"\noffset = 0.5\namplitudes = {amplitudes:?}\nphases_deg = {phases:?}\n"));
+    let cams = law_files().into_iter().chain(common::model_files()).map(|file| common::cam(&common::read(&file)));
+    let small = cam_of("law = \"harmonic\"\noffset = 1e-6\namplitudes = [1e-6, 3e-7]\nphases_deg = [10.0, 50.0]\n");
+    for cam in cams.chain([waves, small]) {
+        let lifts: Vec<Vec<Lift>> = cam
+            .segments()
+            .iter()
+            .map(|segment| {
+                let count = 50 + (4000.0 * (segment.end - segment.start)) as u32;
+                let part = |index: u32| (segment.end - segment.start) * f64::from(index) / f64::from(count);
+                (0..=count).map(|index| segment.law.lift(segment.start + part(index))).collect()
+            })
+            .collect();
+        for weights in [
+            [1.0, 0.0, 0.0, 0.0],
+            [-1.0, 0.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0, 0.0],
+            [0.3, -0.1, 1.0, 0.0],
+            [0.0, 0.0, 0.0, 1.0],
+            [0.0, 0.0, 0.0, -1.0],
+            [0.2, 0.1, 0.4, -0.1],
+        ] {
+            let [a0, a1, a2, a3] = weights;
+            let value = |lift: &Lift| a0 * lift.value + a1 * lift.slope + a2 * lift.curvature + a3 * lift.third;
+            let values = lifts.iter().map(|segment| segment.iter().map(value).collect::<Vec<_>>());
+            let (mut least, mut step, mut size) = (f64::INFINITY, 0.0_f64, 0.0_f64);
+            for segment in values {
+                step = segment.windows(2).fold(step, |step, pair| step.max((pair[1] - pair[0]).abs()));
+                (least, size) = segment
+                    .iter()
+                    .fold((least, size), |(least, size), value| (least.min(*value), size.max(value.abs())));
+            }
+            let found = cam.least(weights);
+            assert!(found.value <= least + 1e-13 * size, "{weights:?}: {found:?}, and {least}");
+            assert!(found.value >= least - step, "{weights:?}: {found:?}, and {least}");
+            let lift = cam.segments()[found.segment].law.lift(found.angle);
+            assert_eq!((value(&lift), lift), (found.value, found.lift));
+        }
+    }
+}
+
 /// Peak velocity (in rise/span) and acceleration (in rise/span^2) as the handbooks give them, to four digits.
 #[test]
 fn motions_have_the_peaks_of_the_handbooks() {
@@ -310,6 +402,77 @@ fn the_last_return_ends_on_the_base_to_the_last_bit() {
     let last = &cam.segments()[cam.segments().len() - 2];
     let end = last.law.lift(last.end);
     assert_eq!((end.value, end.slope, end.curvature), (0.01, 0.0, 0.0));
+}
+
+/// Spans, rises and lifts that were typed to ten digits close the cam, in any unit; to nine they do not.
+#[test]
+fn what_typing_leaves_open_is_closed() {
+    let program = |spans: [f64; 2], rises: [f64; 2]| {
+        let segment = |(span, rise): (f64, f64)| {
+            format!("[[cam.segment]]\nmotion = \"cycloidal\"\nspan_deg = {span:?}\nrise = {rise:?}\n")
+        };
+        let segments: String = spans.into_iter().zip(rises).map(segment).collect();
+        format!("law = \"program\"\nbase = 0.0\n{segments}")
+    };
+    let polynomial = |size: f64, open: f64| {
+        format!(
+            "law = \"polynomial\"\n[[cam.segment]]\nstart_deg = 0.0\ncoefficients = [{:?}]\n\
+             [[cam.segment]]\nstart_deg = 180.0\ncoefficients = [{:?}]\n",
+            size,
+            size * (1.0 + open)
+        )
+    };
+    for size in [1e-6, 1.0, 1e6] {
+        // A part in 1e9 of 360 degrees, of 2 rises, and of the largest lift.
+        for open in [0.9e-9, -0.9e-9, 1.1e-9, -1.1e-9] {
+            let spans = program([120.0, 240.0 + 360.0 * open], [size, -size]);
+            let rises = program([120.0, 240.0], [size, -size * (1.0 + 2.0 * open)]);
+            for table in [spans, rises, polynomial(size, open)] {
+                let cam = read(&table);
+                assert_eq!(cam.is_ok(), open.abs() < 1e-9, "{table} {cam:?}");
+            }
+        }
+    }
+}
+
+/// A jump of the lift is told with the piece that begins there, whether the first one starts at angle 0 or past it.
+#[test]
+fn a_jump_is_told_with_its_piece() {
+    for (start, lifts, field) in
+        [(0.0, [0.1, 0.1, 0.2], 0), (0.0, [0.1, 0.2, 0.1], 1), (30.0, [0.1, 0.1, 0.2], 0), (30.0, [0.1, 0.2, 0.1], 1)]
+    {
+        let piece = |(index, lift): (usize, &f64)| {
+            let start = start + 100.0 * index as f64;
+            format!("[[cam.segment]]\nstart_deg = {start:?}\ncoefficients = [{lift:?}]\n")
+        };
+        let pieces: String = lifts.iter().enumerate().map(piece).collect();
+        let told = read(&format!("law = \"polynomial\"\n{pieces}")).unwrap_err();
+        assert!(told.contains(&format!("cam.segment[{field}].coefficients[0]")), "{start} {lifts:?}: {told}");
+    }
+}
+
+/// The largest nose circle that touches the flank's is as large as is told where it is larger, whether the nose lies before a right angle from where
+/// the flank starts or past it.
+#[test]
+fn a_nose_may_be_as_large_as_is_told() {
+    for (start, end, largest) in [(80.0, 150.0, 0.5), (50.0, 170.0, 1.5 - 120.0_f64.to_radians().sin())] {
+        let cam = |nose: f64| {
+            read(&format!(
+                "law = \"arcs\"\nbase_radius = 0.5\nflank_radius = 1.5\nnose_radius = {nose:?}\n\
+                 flank_start_deg = {start:?}\nnose_end_deg = {end:?}\n"
+            ))
+        };
+        cam(largest * (1.0 - 1e-9)).unwrap();
+        let none = read(&format!(
+            "law = \"arcs\"\nbase_radius = 0.5\nflank_radius = 1.5\nnose_radius = 0.1\n\
+             flank_start_deg = {start:?}\nnose_end_deg = {start:?}\n"
+        ));
+        assert!(none.unwrap_err().contains("cam.nose_end_deg"));
+        let told = cam(largest * (1.0 + 1e-9)).unwrap_err();
+        let limit = told.split("must be below ").nth(1).unwrap().split(' ').next().unwrap();
+        assert!(told.contains("cam.nose_radius"), "{told}");
+        assert_relative_eq!(limit.parse::<f64>().unwrap(), largest, max_relative = 1e-12);
+    }
 }
 
 /// Within a motion nothing jumps below the acceleration's own derivatives, and the lift nowhere.

@@ -1,7 +1,7 @@
 //! Is a measured cam smoothed as it should be, are its corners and dwells found, and does what is told of it hold of the true cam?
 
 use approx::assert_abs_diff_eq;
-use corner_impact::cam::{Cam, Law, Side};
+use corner_impact::cam::{Cam, Corner, Law, Segment, Side};
 use corner_impact::figures::corner_marks;
 use corner_impact::measured::Likely;
 use corner_impact::model::{Model, Study};
@@ -16,6 +16,8 @@ use corner_impact::study::orbit::{Wanted, orbits};
 use corner_impact::study::speeds::{Speeds, speeds};
 use corner_impact::study::verify::{External, Verification, verify};
 use serde_json::{Value, json};
+
+use crate::snapshots;
 
 const SPLINES: &str = include_str!("../../golden/derived/smoothing_spline.json");
 
@@ -263,6 +265,84 @@ fn corners_and_dwells_are_found() {
     assert_abs_diff_eq!(told.dwells_deg[0].as_slice(), [182.0, 373.0].as_slice(), epsilon = 1e-9);
     let orders: Vec<usize> = cam.corners().iter().map(|corner| corner.jump_order).filter(|order| *order < 5).collect();
     assert_eq!(orders, [3, 2, 2, 3]);
+}
+
+/// Corners, dwells and lifts of tables of every kind, as they were when the slower tests held them against the cams that the rows are of: coarse,
+/// rounded, noisy, uneven, many, turned so that a dwell and a corner lie on either side of angle 0, and with what a model may give.
+#[test]
+fn what_rows_become_is_what_it_was() {
+    let cam = |motion: &str, span: f64| Cam::new(&machine(program(motion, span, 13.71, 40.3)).unwrap()).unwrap();
+    let (sudden, smooth) = (cam("harmonic", 63.689), cam("cycloidal", 70.0));
+    let cosines = |second: f64, phase: f64| {
+        let law = json!({ "law": "harmonic", "offset": 5.0, "amplitudes": [-5.0, second], "phases_deg": [0.0, phase] });
+        Cam::new(&machine(law).unwrap()).unwrap()
+    };
+    let (waves, flat) = (cosines(0.3, 20.0), cosines(1.0, 0.0));
+    let rows = |cam: &Cam, count: u32, by: f64, places: i32, noise: f64| -> Vec<(f64, f64)> {
+        let power = 10.0_f64.powi(places);
+        let row = |index: u32| {
+            let angle = 360.0 * f64::from(index) / f64::from(count);
+            let lift = cam.lift((angle + by).rem_euclid(360.0).to_radians()).value;
+            let noisy = lift + noise * (977.0 * f64::from(index + 1).sin()).sin();
+            (angle, (noisy * power).round() / power)
+        };
+        (0..count).map(row).collect()
+    };
+    let uneven = |mut rows: Vec<(f64, f64)>| {
+        let mut index = 0;
+        rows.retain(|_| {
+            index += 1;
+            index % 7 != 3 && index % 11 != 5
+        });
+        rows
+    };
+    let none = json!({});
+    let tables = [
+        ("sudden", rows(&sudden, 180, 0.0, 6, 0.0), none.clone()),
+        ("sudden, turned", rows(&sudden, 180, 100.0, 6, 0.0), none.clone()),
+        ("sudden, corner at 0", rows(&sudden, 120, 77.0, 5, 0.0), none.clone()),
+        ("sudden, corner before 0", rows(&sudden, 120, 77.5, 5, 0.0), none.clone()),
+        ("sudden, coarse", rows(&sudden, 90, 0.0, 3, 0.0), none.clone()),
+        ("sudden, noisy", rows(&sudden, 240, 31.0, 9, 0.001), none.clone()),
+        ("sudden, uneven", uneven(rows(&sudden, 240, 0.0, 5, 0.0)), none.clone()),
+        ("sudden, 1100 rows", rows(&sudden, 1100, 0.0, 5, 0.0), none.clone()),
+        ("sudden, 40 rows", rows(&sudden, 40, 0.0, 5, 0.0), none.clone()),
+        ("smooth", rows(&smooth, 180, 0.0, 3, 0.0), none.clone()),
+        ("smooth, turned", rows(&smooth, 150, 200.0, 2, 0.0), none.clone()),
+        ("smooth, noisy", rows(&smooth, 180, 0.0, 9, 0.01), none.clone()),
+        ("no dwell", rows(&waves, 90, 0.0, 2, 0.0), none.clone()),
+        ("hardly a dwell", rows(&flat, 360, 0.0, 2, 0.0), none.clone()),
+        ("hardly a dwell, turned", rows(&flat, 360, 320.0, 2, 0.0), none.clone()),
+        ("no dwell, noisy", rows(&waves, 90, 0.0, 9, 0.02), none.clone()),
+        ("corners given", rows(&sudden, 120, 0.0, 3, 0.0), json!({ "corners_deg": [77.4, -242.3] })),
+        ("dwells given", rows(&sudden, 120, 0.0, 3, 0.0), json!({ "dwells_deg": [[182, 13]] })),
+        ("both given", rows(&sudden, 120, 0.0, 3, 0.0), json!({ "corners_deg": [77.4], "dwells_deg": [[182, 13]] })),
+        ("tolerance given", rows(&smooth, 120, 0.0, 3, 0.0), json!({ "tolerance": 0.002 })),
+    ];
+    let mut became = String::new();
+    for (name, rows, more) in tables {
+        let model = machine(smoothing(&rows, &more)).unwrap();
+        let cam = Cam::new(&model).unwrap();
+        let degrees = |angle: f64| format!("{:.4}", angle.to_degrees());
+        let corners = cam.corners().iter().filter(|corner| corner.jump_order < 5);
+        let corner = |at: &Corner| format!("{} by {:.4e} of order {}", degrees(at.angle), at.jump, at.jump_order);
+        let dwells = cam.segments().iter().filter(|segment| matches!(segment.law, Law::Dwell(_)));
+        let dwell = |dwell: &Segment| format!("{} to {}", degrees(dwell.start), degrees(dwell.end));
+        let lift = |place: u32| format!("{:.3}", cam.lift(0.7 * f64::from(place)).value * 1e6);
+        let list = |of: Vec<String>| of.join(", ");
+        let [corners, dwells] = [list(corners.map(corner).collect()), list(dwells.map(dwell).collect())];
+        let lifts = list((0..9).map(lift).collect());
+        became += &format!("{name}\n  corners: {corners}\n  dwells: {dwells}\n  lifts, 1e-6: {lifts}\n");
+        if name.ends_with("noisy") {
+            let told = Likely::of(&model).unwrap().unwrap().measured;
+            let corners = list(told.corners_deg.iter().map(|corner| format!("{corner:.4}")).collect());
+            became += &format!(
+                "  noise: {:.7e}, at most {:.7e} from a row\n  corners: {corners}\n  curvature: {:.7e} ± {:.4e}\n",
+                told.noise_m, told.largest_distance_m, told.largest_curvature, told.curvature_error
+            );
+        }
+    }
+    snapshots::settings().bind(|| insta::assert_snapshot!("rows", became));
 }
 
 /// The tolerance is the largest distance from a row, and what cannot be kept is told.
@@ -763,6 +843,28 @@ fn what_is_found_does_not_hang_on_the_unit() {
         }
         assert_abs_diff_eq!(*rpm, found[0].1, epsilon = 1e-6 * rpm);
         assert_abs_diff_eq!(*error, found[0].2, epsilon = 1e-3 * error);
+    }
+}
+
+/// Of coarse rows without noise a jump of the acceleration, or the bend of the cam, is no slip, nor is noise of fine ones; a slip that is larger than
+/// both is one.
+#[test]
+fn a_slip_is_larger_than_what_the_cam_bends() {
+    let strays = |rows: &[(f64, f64)]| {
+        Likely::of(&machine(smoothing(rows, &json!({}))).unwrap()).unwrap().unwrap().measured.strays
+    };
+    for motion in ["harmonic", "poly345"] {
+        let cam = Cam::new(&machine(program(motion, 63.7, 13.71, 40.3)).unwrap()).unwrap();
+        let mut rows: Vec<_> = rounded(&cam, 9).into_iter().step_by(5).collect();
+        let noisy = |index: usize| 0.004 * (977.0 * (index as f64).sin()).sin();
+        let noise: Vec<_> =
+            rounded(&cam, 9).iter().enumerate().map(|(index, row)| (row.0, row.1 + noisy(index))).collect();
+        assert!(strays(&rows).is_empty() && strays(&noise).is_empty(), "{motion}: {:?}", strays(&rows));
+        rows[20].1 += 0.4;
+        let found = strays(&rows);
+        let [one] = found[..] else { panic!("{motion}: {found:?}") };
+        assert_eq!((one.line, one.cam_angle_deg), (21, 100.0));
+        assert_abs_diff_eq!(one.off_m, 0.4, epsilon = 0.02);
     }
 }
 

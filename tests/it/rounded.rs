@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::common;
+use approx::assert_abs_diff_eq;
 use corner_impact::cam::Cam;
 use corner_impact::model::Model;
 use corner_impact::orbit::branch::{Bifurcation, Following};
@@ -75,6 +76,15 @@ fn a_rounded_cam_meets_the_sharp_one() {
                 !corners.is_empty() && round.corners().iter().all(|corner| corner.jump_order > 2),
                 "{name} {degrees}"
             );
+            let segments = round.segments();
+            for (after, segment) in segments.iter().enumerate() {
+                let before = &segments[round.before(after)];
+                let (minus, plus) = (before.law.lift(before.end), segment.law.lift(segment.start));
+                let room = 1e-15 / degrees.to_radians().powi(2);
+                assert_abs_diff_eq!(minus.value, plus.value, epsilon = 1e-15);
+                assert_abs_diff_eq!(minus.slope, plus.slope, epsilon = 1e-15 + room * degrees.to_radians());
+                assert_abs_diff_eq!(minus.curvature, plus.curvature, epsilon = 1e-14 + room);
+            }
             for corner in corners {
                 let half = 0.5 * degrees.to_radians();
                 for beside in
@@ -105,5 +115,19 @@ fn a_rounding_that_cannot_be_is_refused() {
     assert_eq!(refused("osorio-2008", 1e-5), "must be 0, or from 0.0001 on");
     // From P, at 150.18 degrees, to Q, at 160.
     assert!(refused("osorio-2008", 9.9).starts_with("must be below 9.82"), "{}", refused("osorio-2008", 9.9));
+    // A dwell of 2 degrees that only begins at a corner has room for half of 3.9, and not for half of 4.1.
+    let motions = [("dwell", 90.0, 0.0), ("harmonic", 60.0, 0.1), ("dwell", 2.0, 0.0), ("cycloidal", 208.0, -0.1)];
+    let segment = |(motion, span, rise): (&str, f64, f64)| {
+        format!("[[cam.segment]]\nmotion = \"{motion}\"\nspan_deg = {span:?}\nrise = {rise:?}\n")
+    };
+    let cam = |degrees: f64| {
+        let text = format!(
+            "[follower]\nmass = 1.0\ndamping = 0.0\nstiffness = 1.0\ngravity = 0.0\nrest_position = 0.0\nrestitution = 0.5\n\
+             [cam]\nlaw = \"program\"\nbase = 0.1\n{}",
+            motions.map(segment).concat()
+        );
+        Cam::new(&Model::parse("room.toml", &text).unwrap().with_number(ROUNDING, degrees).unwrap())
+    };
+    assert!(cam(3.9).is_ok() && cam(4.1).is_err());
     assert!(refused("laws/harmonic", 1.0).starts_with("must be 0: the acceleration of this cam has no jump"));
 }
