@@ -285,7 +285,8 @@ fn mutants_are_looked_for_where_there_is_something() {
                 let function = function.rsplit("::").next().unwrap();
                 let is_there = source.split(&format!("fn {function}")).skip(1).any(|rest| {
                     let body = rest.split(" fn ").next().unwrap();
-                    body.contains(code)
+                    // What a function returns is told by its name.
+                    body.contains(code) || code == &function
                 });
                 let are_other = !others.is_empty() && others.iter().all(|other| !other.is_empty());
                 assert!(is_there && are_other, "{file}: {mutant:?}");
