@@ -26,7 +26,8 @@ fn machine([damping, stiffness, gravity, rest, restitution]: [f64; 5], cam: &str
     Machine::new(Cam::new(&model).unwrap(), &model.follower, angular_velocity(rpm))
 }
 
-fn program(base: f64, segments: &[(&str, f64, f64)]) -> String {
+/// `[cam]` of standard motions, each with its span in degrees and its rise.
+pub fn program(base: f64, segments: &[(&str, f64, f64)]) -> String {
     let segment = |(motion, span, rise): &(&str, f64, f64)| {
         format!("[[cam.segment]]\nmotion = \"{motion}\"\nspan_deg = {span:?}\nrise = {rise:?}\n")
     };

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::common;
+use crate::progress::program;
 use approx::assert_abs_diff_eq;
 use corner_impact::cam::Cam;
 use corner_impact::model::Model;
@@ -117,14 +118,11 @@ fn a_rounding_that_cannot_be_is_refused() {
     assert!(refused("osorio-2008", 9.9).starts_with("must be below 9.82"), "{}", refused("osorio-2008", 9.9));
     // A dwell of 2 degrees that only begins at a corner has room for half of 3.9, and not for half of 4.1.
     let motions = [("dwell", 90.0, 0.0), ("harmonic", 60.0, 0.1), ("dwell", 2.0, 0.0), ("cycloidal", 208.0, -0.1)];
-    let segment = |(motion, span, rise): (&str, f64, f64)| {
-        format!("[[cam.segment]]\nmotion = \"{motion}\"\nspan_deg = {span:?}\nrise = {rise:?}\n")
-    };
     let cam = |degrees: f64| {
         let text = format!(
             "[follower]\nmass = 1.0\ndamping = 0.0\nstiffness = 1.0\ngravity = 0.0\nrest_position = 0.0\nrestitution = 0.5\n\
-             [cam]\nlaw = \"program\"\nbase = 0.1\n{}",
-            motions.map(segment).concat()
+             [cam]\n{}",
+            program(0.1, &motions)
         );
         Cam::new(&Model::parse("room.toml", &text).unwrap().with_number(ROUNDING, degrees).unwrap())
     };

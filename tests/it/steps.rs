@@ -4,6 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::ops::ControlFlow;
 
 use crate::common;
+use crate::progress::program;
 use crate::properties::{EVENTS, first_contacts_from, goal};
 use crate::random::{Case, cases_of_every_law, cases_of_many_segments, drawn};
 use approx::{assert_abs_diff_eq, assert_relative_eq};
@@ -94,13 +95,13 @@ fn a_follower_that_rests_meets_a_step() {
 /// However fast a follower leaves the cam just before a step, it is below it, also on a cam whose slope jumps downwards alone.
 #[test]
 fn no_start_is_fast_enough_for_a_step() {
-    let segment = |(motion, rise): (&str, f64)| {
-        format!("[[cam.segment]]\nmotion = \"{motion}\"\nspan_deg = 90.0\nrise = {rise:?}\n")
-    };
-    let segments = [("dwell", 0.0), ("cycloidal", 1.0), ("dwell", 0.0), ("cycloidal", -1.0)].map(segment).concat();
+    let cam = program(
+        0.0,
+        &[("dwell", 90.0, 0.0), ("cycloidal", 90.0, 1.0), ("dwell", 90.0, 0.0), ("cycloidal", 90.0, -1.0)],
+    );
     let text = format!(
         "[follower]\nmass = 1.0\ndamping = 0.0\nstiffness = 0.0\ngravity = 30.0\nrest_position = 0.0\n\
-         restitution = 0.5\n[cam]\nlaw = \"program\"\nbase = 0.0\n{segments}"
+         restitution = 0.5\n[cam]\n{cam}"
     );
     let model = Model::parse("steps.toml", &text).unwrap();
     let whole = Machine::new(common::cam(&model), &model.follower, 1.0);
@@ -175,7 +176,7 @@ fn steps(cam: &Cam) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// The gap of a flight that is stopped at every place is its height above the lift; whether the lift stepped meanwhile.
+/// The gap of a flight that is stopped at every place is its height above the lift; whether it came to the end of the run.
 fn knows_its_gap(case: &Case, mut motion: Motion, turn: f64) -> bool {
     let (machine, first) = (&case.machine, motion);
     for index in 1..=100 {

@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use crate::common;
+use crate::progress::program;
 use crate::random::{cases_of_every_law, check, drawn};
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use corner_impact::cam::{Lift, apart, within_a_turn};
@@ -205,9 +206,8 @@ fn a_start_on_the_cam_sticks_flies_or_is_hit() {
     assert!(!machine.start_on_cam(0.3, 1e-9).unwrap().contact);
     // A velocity that is the cam's but for its last digit is the cam's.
     let Lift { value: position, slope, .. } = machine.cam().lift(2.0);
-    for velocity in
-        [machine.angular_velocity() * slope].map(|velocity| [velocity.next_up(), velocity.next_down()]).concat()
-    {
+    let velocity = machine.angular_velocity() * slope;
+    for velocity in [velocity.next_up(), velocity.next_down()] {
         assert!(machine.start(2.0, State { position, velocity }).unwrap().contact);
     }
     // On the nose the cam turns away faster than the spring follows.
@@ -306,15 +306,12 @@ fn a_follower_that_is_pressed_rests_all_round_in_any_unit() {
         for motion in
             ["modified-trapezoid", "modified-sine", "cycloidal", "poly345", "poly4567", "parabolic", "harmonic"]
         {
-            let segment = |(motion, rise): (&str, f64)| {
-                format!("[[cam.segment]]\nmotion = \"{motion}\"\nspan_deg = 90.0\nrise = {:?}\n", rise * size)
-            };
-            let segments = [(motion, 0.7), ("dwell", 0.0), (motion, 0.3), (motion, -1.0)].map(segment).concat();
+            let segments = [(motion, 90.0, 0.7), ("dwell", 90.0, 0.0), (motion, 90.0, 0.3), (motion, 90.0, -1.0)];
+            let cam = program(0.1 * size, &segments.map(|(motion, span, rise)| (motion, span, rise * size)));
             let text = format!(
                 "[follower]\nmass = 1.0\ndamping = 0.1\nstiffness = 0.0\ngravity = {:?}\nrest_position = 0.0\n\
-                 restitution = 0.5\n[cam]\nlaw = \"program\"\nbase = {:?}\n{segments}",
-                10.0 * size,
-                0.1 * size
+                 restitution = 0.5\n[cam]\n{cam}",
+                10.0 * size
             );
             let machine = machine(&Model::parse("smooth.toml", &text).unwrap(), 1.0);
             assert_eq!(machine.rests().unwrap(), [[0.0, TAU]], "{motion} {size}");
