@@ -1,13 +1,14 @@
 //! Are the events of a curve where a branch of the model with that number has them, does a curve end with a reason, and do
 //! curves meet where they must?
 
+use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
 use crate::common;
 use corner_impact::cam::Cam;
 use corner_impact::model::Model;
 use corner_impact::orbit::branch::{Bifurcation, Branch, End, Following, Kind};
-use corner_impact::orbit::{Parameter, Search, search};
+use corner_impact::orbit::{Course, Parameter, Search, search};
 use corner_impact::progress::Unwatched;
 use corner_impact::simulate::{Machine, angular_velocity};
 use corner_impact::study::curve::{Curves, curves};
@@ -83,6 +84,72 @@ fn detachment_and_the_onset_of_resting_are_where_branches_have_them() {
     is_on_branches("laws/harmonic", [315.0, 316.0], Detachment, "damping", [0.0, 5.0]);
     // The cam lets go of it where no derivative jumps.
     is_on_branches("laws/harmonic", [380.0, 382.0], Resting, "damping", [0.0, 0.5]);
+}
+
+/// The curve of where the follower leaves the cam, from the speed at which the branch of those that rest at `rpm` has it.
+fn of_detachment(model: &Model, rpm: f64, speeds: [f64; 2], name: &str, range: [f64; 2]) -> Branch {
+    let machine = Machine::new(Cam::new(model).unwrap(), &model.follower, angular_velocity(rpm));
+    let orbits = search(&machine, &Search { revolutions: 1, impacts: None }).unwrap();
+    let rests = orbits.iter().find(|orbit| matches!(orbit.course, Course::Sticking(_))).unwrap();
+    let following = |parameter, range| Following { parameter, range, longest_step: 0.05, most_points: 400 };
+    let branch = Branch::through(model, rpm, rests, &following(Parameter::Speed, speeds)).unwrap();
+    let is_detachment = |kind| kind == Kind::Detachment;
+    let leaves = branch.points.iter().find(|point| point.special.is_some_and(|it| is_detachment(it.kind))).unwrap();
+    let parameter = Parameter::named(model, name).unwrap();
+    Branch::of_event(model, leaves, speeds, &following(parameter, range)).unwrap().unwrap()
+}
+
+/// A cam of two like lobes, one the mirror image of the other, throws a follower off at two places at once; turned a little one way it throws
+/// it off first at the one, turned the other way at the other.
+#[test]
+fn a_follower_leaves_at_two_places_at_once_where_they_are_alike() {
+    let name = "cam.phases_deg[1]";
+    let like = model("laws/harmonic").with_number("cam.amplitudes[1]", -0.003).unwrap();
+    // Once with the change in the last step, and once where the two curves part slowly.
+    for (own, range) in [(7.0, [-20.0, 20.0]), (7.0, [-0.5, 20.0]), (0.05, [-0.1, 0.1])] {
+        let own = like.with_number(name, own).unwrap();
+        let curve = of_detachment(&own, 330.0, [300.0, 400.0], name, range);
+        assert_eq!(curve.ends, [End::Range, End::Range]);
+        let specials = curve.points.iter().filter_map(|point| Some((point, point.special?)));
+        let places: Vec<_> = specials.filter(|(_, special)| special.kind == Kind::Place).collect();
+        let [(place, special)] = places[..] else { panic!("{range:?} {places:?}") };
+        assert!(place.value.abs() < 1e-9 && special.bracket[0] <= 1e-12 && -1e-12 <= special.bracket[1], "{special:?}");
+        let mut sides = [0, 0];
+        for point in &curve.points {
+            let cam = Cam::new(&own.with_number(name, point.value).unwrap()).unwrap();
+            let omega = angular_velocity(point.rpm);
+            // a - w^2 c'' of a follower without damping, by which it leaves a cam that it goes with.
+            let follower = &own.follower;
+            let pulled = |angle: f64| {
+                let lift = cam.lift(angle);
+                let force =
+                    follower.stiffness * (follower.rest_position - lift.value) / follower.mass - follower.gravity;
+                force - omega * omega * lift.curvature
+            };
+            let most = (0..2000).map(|part| pulled(TAU * f64::from(part) / 2000.0)).fold(f64::NEG_INFINITY, f64::max);
+            let (size, here) = (omega * omega * 0.02, point.held.as_ref().unwrap().cam_angle);
+            assert!(pulled(here).abs() < 1e-9 * size && most < 1e-9 * size, "{most} {point:?}");
+            // Either side has a lobe of its own.
+            if point.value.abs() > 1e-6 {
+                sides[usize::from((here > PI) == (point.value > 0.0))] += 1;
+            }
+        }
+        assert!(sides.contains(&0) && curve.points.len() > 10, "{range:?} {sides:?}");
+    }
+}
+
+/// All along a curve of a cam that is its own mirror image there are two, and none is told.
+#[test]
+fn a_cam_that_is_its_own_mirror_image_has_one_curve() {
+    for name in ["nose_radius", "flank_start_deg"] {
+        let range = if name == "nose_radius" { [0.1, 0.3] } else { [60.0, 120.0] };
+        let curve = of_detachment(&model("osorio-2008"), 110.0, [100.0, 120.0], name, range);
+        assert_eq!(curve.ends, [End::Range, End::Range], "{name}");
+        let specials: Vec<_> = curve.points.iter().filter_map(|point| point.special).collect();
+        assert!(matches!(specials[..], [special] if special.kind == Kind::Detachment), "{name} {specials:?}");
+        let goes_on = curve.points.windows(2).all(|pair| pair[0].value < pair[1].value);
+        assert!(goes_on, "{name}");
+    }
 }
 
 /// Where an impact on the way to the rest comes to a corner, the curve of the onset of resting has a kink, and may turn back sharply; it is

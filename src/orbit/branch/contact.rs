@@ -1,7 +1,8 @@
 //! What becomes of a follower on the cam: where it first leaves the cam, and where it no longer comes to rest on it. Each is one
 //! equation in two numbers of the model.
 //!
-//! Detachment: the acceleration of the gap of a follower that goes with the cam is 0 where it is greatest.
+//! Detachment: the acceleration of the gap of a follower that goes with the cam is 0 where it is greatest, at a place that is
+//! held until another is first.
 //!
 //! Onset of resting: the infinitely many impacts after a release end just where the cam lets go. Where it lets go at a corner,
 //! this is where their sum ends (`accumulation`), by the law before the corner. Where it lets go smoothly, the gap's
@@ -22,7 +23,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::Kind;
 use crate::bracket::{Width, halve};
-use crate::cam::Lift;
+use crate::cam::{Lift, apart};
 use crate::orbit::curve::Equations;
 use crate::orbit::cycle::lift_size;
 use crate::orbit::{Course, Family, FamilyError, PeriodicOrbit};
@@ -66,19 +67,19 @@ pub(super) struct Rest<'a> {
     pub(super) contact: Contact,
 }
 
-/// The acceleration of the gap over omega^2, m/rad^2, where it is greatest, and where that is.
-pub(super) fn greatest(machine: &Machine) -> (f64, Place) {
+/// The acceleration of the gap over omega^2, m/rad^2, where it is greatest of all places that are wanted, and where that is.
+pub(super) fn greatest(machine: &Machine, is_wanted: impl Fn(Place) -> bool) -> Option<(f64, Place)> {
     /// Places of a segment between which there is one extreme at most, of designed cams.
-    pub(super) const SAMPLES: usize = 64;
+    const SAMPLES: usize = 64;
     let segments = machine.cam().segments();
-    let mut best = (f64::NEG_INFINITY, Place { segment: 0, cam_angle: 0.0, is_corner: false });
+    let mut best: Option<(f64, Place)> = None;
     for (index, segment) in segments.iter().enumerate() {
         let at = |part: usize| segment.start + (segment.end - segment.start) * part as f64 / SAMPLES as f64;
         let lift = |angle: f64| segment.law.lift(angle);
         let mut keep = |cam_angle: f64, place: Place| {
             let lifting = machine.lifting(&lift(cam_angle)) / machine.angular_velocity().powi(2);
-            if lifting > best.0 {
-                best = (lifting, place);
+            if is_wanted(place) && best.is_none_or(|(most, _)| lifting > most) {
+                best = Some((lifting, place));
             }
         };
         let next = (index + 1) % segments.len();
@@ -97,6 +98,11 @@ pub(super) fn greatest(machine: &Machine) -> (f64, Place) {
 }
 
 impl Place {
+    /// Whether it is the same place of the cam as another, a step along the curve apart: a smooth one may run into a corner.
+    fn is_near(self, other: Self) -> bool {
+        apart(self.cam_angle, other.cam_angle) < tolerance::NEIGHBOURING.value
+    }
+
     /// Where the cam lets go at `event`.
     pub(super) fn of(event: &Event, machine: &Machine) -> Self {
         let start = machine.cam().segments()[event.segment].start;
@@ -149,11 +155,31 @@ pub(super) fn alike(restitution: f64) -> f64 {
 }
 
 impl Contact {
+    /// Where a follower that goes with the cam leaves it first.
+    pub(super) fn first(machine: &Machine) -> Option<Self> {
+        greatest(machine, |_| true).map(|(_, place)| Self::Detachment(place))
+    }
+
+    /// By how much more a follower is thrown off the cam at another place, of the cam's lift a radian squared: 0 or more, and
+    /// 0 of a rest.
+    pub(super) fn behind(self, machine: &Machine) -> f64 {
+        let Self::Detachment(here) = self else { return 0.0 };
+        let of = |found: Option<(f64, Place)>| found.map_or(f64::NEG_INFINITY, |(lifting, _)| lifting);
+        let [here, first] = [greatest(machine, |place| place.is_near(here)), greatest(machine, |_| true)].map(of);
+        (first - here) / lift_size(machine)
+    }
+
+    /// Whether a follower that leaves the cam leaves it nowhere before here, by more than rounding: it leaves a cam that is its own mirror
+    /// image at two places at once all along a curve.
+    pub(super) fn is_first(self, machine: &Machine) -> bool {
+        self.behind(machine) <= tolerance::CYCLE_CLOSED.value
+    }
+
     /// What it comes to on a machine; `None` where the follower goes another way.
     pub(super) fn reached(self, machine: &Machine) -> Option<Reached> {
         match self {
-            Self::Detachment(_) => {
-                let (off, place) = greatest(machine);
+            Self::Detachment(place) => {
+                let (off, place) = greatest(machine, |other| other.is_near(place))?;
                 let off = off / lift_size(machine);
                 Some(Reached { off, contact: Self::Detachment(place), impacts: Vec::new() })
             }
@@ -255,7 +281,7 @@ impl Equations for Rest<'_> {
 pub(super) fn contact(kind: Kind, orbit: &PeriodicOrbit, machine: &Machine) -> Option<Contact> {
     let Course::Sticking(anchor) = orbit.course else { return None };
     if kind == Kind::Detachment {
-        return Some(Contact::Detachment(greatest(machine).1));
+        return Contact::first(machine);
     }
     // The rest around the anchor is the one that goes: from the release before it to that after it.
     let period = orbit.revolutions as f64 * TAU;
@@ -268,18 +294,4 @@ pub(super) fn contact(kind: Kind, orbit: &PeriodicOrbit, machine: &Machine) -> O
     let [from, to] = [from, to].map(|event| Place::of(event, machine));
     let all = Contact::Resting { from, to, turned, impact: usize::MAX };
     Some(all.told(machine, &all.reached(machine)?))
-}
-
-impl Contact {
-    /// Whether it is the same place of the cam as another's, a step along the curve apart.
-    pub(super) fn is_at(self, other: Self) -> bool {
-        let near = |one: Place, two: Place| {
-            let same = (one.segment, one.is_corner) == (two.segment, two.is_corner);
-            same && (one.is_corner || (one.cam_angle - two.cam_angle).abs() < tolerance::NEIGHBOURING.value)
-        };
-        match (self, other) {
-            (Self::Detachment(one), Self::Detachment(two)) => near(one, two),
-            _ => true,
-        }
-    }
 }

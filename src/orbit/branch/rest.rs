@@ -18,6 +18,9 @@ use crate::tolerance;
 /// How far from a kink a curve is looked for, of the longest step.
 const AROUND: f64 = 0.05;
 
+/// A small step, of the spans, to see which way a curve goes on.
+const TRIAL: f64 = 1e-6;
+
 /// Halvings that leave nothing of an interval of doubles.
 const BINARY_DIGITS: u32 = 60;
 
@@ -106,29 +109,34 @@ impl Walk<'_> {
         if regions.iter().zip(&self.regions).any(|(one, other)| one != other) {
             return Err(NoPoint::NotClosed);
         }
-        if self.rest.contact.is_at(reached.contact) {
+        if self.rest.contact.is_first(&machine) {
             self.regions = regions;
             self.points.push(self.rest.branch_point(&next, self.revolutions, None)?);
             self.rest.contact = self.rest.contact.told(&machine, &reached);
             self.from = next;
             return Ok(None);
         }
-        // Two places at once: up to there, and on from there in the direction of the other.
+        // Two places at once: up to there, and on from there with the other.
         let is_beyond = |step: f64| {
-            let reached = self.rest.reached(&reach(step)?.unknowns)?;
-            Ok::<_, NoPoint<Nowhere>>(!self.rest.contact.is_at(reached.contact))
+            let (machine, _) = self.rest.machine(&reach(step)?.unknowns)?;
+            Ok::<_, NoPoint<Nowhere>>(self.rest.contact.behind(&machine) > 0.0)
         };
         let ends = halve([0.0, step], Width::Halvings(BINARY_DIGITS), is_beyond)?;
         let [before, beyond] = [reach(ends[0])?, reach(ends[1])?];
         let mut bracket = [value(&before), value(&beyond)];
         bracket.sort_by(f64::total_cmp);
-        let residual = ends[1] - ends[0];
-        let special = Special { kind: Kind::Place, bracket, residual };
+        let special = Special { kind: Kind::Place, bracket, residual: ends[1] - ends[0] };
+        let contact = Contact::first(&self.rest.machine(&beyond.unknowns)?.0).ok_or(Nowhere::OtherWay)?;
+        let other = Rest { contact, ..self.rest };
+        let tangent = curve::first_tangent(&other, &beyond.unknowns)?;
+        // One way along its curve the follower leaves the cam there first, the other way where it did before.
+        let behind = [TRIAL, -TRIAL].map(|step| {
+            let machine = other.machine(&(&beyond.unknowns + &tangent * step));
+            machine.map_or(f64::INFINITY, |(machine, _)| contact.behind(&machine))
+        });
+        let tangent = if behind[0] < behind[1] { tangent } else { -tangent };
         self.points.push(self.rest.branch_point(&before, self.revolutions, Some(special))?);
-        self.rest.contact = reached.contact;
-        let tangent = curve::first_tangent(&self.rest, &beyond.unknowns)?;
-        let onward = tangent.dot(&self.from.tangent) >= 0.0;
-        self.from = CurvePoint { tangent: if onward { tangent } else { -tangent }, ..beyond };
+        (self.rest, self.from) = (other, CurvePoint { tangent, ..beyond });
         Ok(None)
     }
 
@@ -225,6 +233,9 @@ impl Walk<'_> {
         let mut guess = base.clone();
         guess[0] += slope * (base[1] - self.from.unknowns[1]);
         let point = curve::closed(&self.rest, &base, &DVector::from_vec(vec![0.0, 1.0]), 0.0, guess)?;
+        if !self.rest.contact.is_first(&self.rest.machine(&point.unknowns)?.0) {
+            return Err(NoPoint::NotClosed);
+        }
         self.points.push(self.rest.branch_point(&point, self.revolutions, None)?);
         Ok(())
     }

@@ -45,7 +45,7 @@ pub enum Kind {
     Cusp,
     /// Along a curve of grazes: follower and cam have one acceleration at the touch.
     DegenerateGraze,
-    /// Along a curve of detachment: the follower leaves the cam at two places at once.
+    /// Along a curve of detachment: where the follower leaves the cam first changes from one place to another.
     Place,
     /// A curve turns round in the number that is followed.
     Turn,
