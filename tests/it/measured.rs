@@ -1,5 +1,7 @@
 //! Is a measured cam smoothed as it should be, are its corners and dwells found, and does what is told of it hold of the true cam?
 
+use std::f64::consts::TAU;
+
 use approx::assert_abs_diff_eq;
 use corner_impact::cam::{Cam, Corner, Law, Segment, Side};
 use corner_impact::figures::corner_marks;
@@ -934,4 +936,32 @@ fn a_slip_is_told_with_its_line() {
     let strays = sheet["measured"]["strays"].as_array().unwrap();
     assert_eq!(strays.iter().map(|one| &one["line"]).collect::<Vec<_>>(), [60, 100, 120, 140, 160]);
     assert_abs_diff_eq!(strays[4]["off_mm"].as_f64().unwrap(), -0.05, epsilon = 1e-3);
+}
+
+/// Corner impacts of the paper's cam as it is measured, from another angle on each time, with how far noise may have moved them: once with
+/// the corner next to angle 0, so that on other likely cams it is on the other side of it.
+#[test]
+fn corner_impacts_of_a_measured_cam_are_known_as_well_as_they_were() {
+    let paper = crate::common::osorio();
+    let cam = crate::common::cam(&paper);
+    let mut known = String::new();
+    for from in [0.0, 150.1458, 211.0] {
+        let row = |k: u32| {
+            let lift = cam.lift((f64::from(k) + from).to_radians().rem_euclid(TAU)).value;
+            [f64::from(k), (lift * 1e6).round() / 1e6]
+        };
+        let rows: Vec<[f64; 2]> = (0..360).map(row).collect();
+        let follower = serde_json::to_value(paper.follower).unwrap();
+        let cam = json!({ "law": "table", "spline": "smoothing", "rows": rows });
+        let model = Model::of_document("turned", &json!({ "follower": follower, "cam": cam })).unwrap();
+        let found = locate(&model, Study { rpm_min: 665.0, rpm_max: 680.0 }, 1, &Unwatched).unwrap();
+        assert_eq!(found.found.len(), 1);
+        for it in &found.found {
+            let (speed, angle) = (it.at.speed_rpm(), it.at.corner.angle.to_degrees());
+            let error = it.speed_error.unwrap();
+            assert!((speed - 673.234_445_003_8).abs() <= error && error < 0.1, "{speed} ± {error}");
+            known += &format!("{from}: {speed:.5} ± {error:.3e} rpm at {angle:.4}\n");
+        }
+    }
+    snapshots::settings().bind(|| insta::assert_snapshot!("measured-events", known));
 }

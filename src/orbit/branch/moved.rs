@@ -73,11 +73,12 @@ fn renamed(cycle: &Cycle, held: Held, here: &Machine, there: &Machine) -> Option
                 let order = here.cam().corners().iter().copied().find(|other| other.angle == corner)?.jump_order;
                 let alike = there.cam().corners().iter().copied().filter(|other| other.jump_order == order);
                 let nearest = alike.min_by(|one, two| apart(one.angle, corner).total_cmp(&apart(two.angle, corner)));
-                impact.segment =
-                    nearest.filter(|one| apart(one.angle, corner) <= tolerance::NEIGHBOURING.value)?.segment;
-                if at_end && corner < 0.5 * (segment.start + segment.end) {
-                    (impact.cam_angle, impact.revolution) = (impact.cam_angle - TAU, impact.revolution + 1);
-                }
+                let nearest = nearest.filter(|one| apart(one.angle, corner) <= tolerance::NEIGHBOURING.value)?;
+                // The corner may be on the other side of angle 0 there: the impact stays where it is, in another revolution.
+                let turns = ((nearest.angle - impact.cam_angle) / TAU).round();
+                impact.cam_angle += TAU * turns;
+                impact.revolution -= turns as i64;
+                impact.segment = nearest.segment;
                 let at_start = Pinned { impact: pinned, at_end: false };
                 held = Held::Corner(at_start);
                 // Only where the velocity jumps do the laws on its two sides differ.
