@@ -20,8 +20,20 @@ pub enum FamilyError {
     #[error("{0}")]
     Model(#[from] ModelError),
     /// The cam would not turn.
-    #[error("{rpm} rpm: the speed must be a finite number above 0")]
+    #[error("{rpm} rpm: {ABOVE_0}")]
     Speed { rpm: f64 },
+}
+
+const ABOVE_0: &str = "the speed must be a finite number above 0";
+
+impl FamilyError {
+    /// What is allowed, without the number that is not.
+    pub fn rule(&self) -> String {
+        match self {
+            Self::Model(error) => error.rule(),
+            Self::Speed { .. } => ABOVE_0.into(),
+        }
+    }
 }
 
 impl Parameter {

@@ -1,7 +1,7 @@
 //! Branches of orbits that stick to the cam: there is one for each value of the parameter, found by one simulated period.
 
 use super::{BranchPoint, End, Following, Kind, Special};
-use crate::orbit::{Family, OrbitError, PeriodicOrbit, sticking};
+use crate::orbit::{Family, OrbitError, PeriodicOrbit, curve, sticking};
 use crate::tolerance;
 
 /// The branch in one direction from `value`, of an orbit that sticks at an `anchor`, rad, and repeats after some
@@ -14,7 +14,13 @@ pub(super) fn half(
     direction: f64,
 ) -> Result<(Vec<BranchPoint>, End), OrbitError> {
     let span = following.range[1] - following.range[0];
-    let edge = following.range[usize::from(direction > 0.0)];
+    let (mut edge, mut end) = (following.range[usize::from(direction > 0.0)], End::Range);
+    // Up to the last value that the model allows.
+    if let Err(why) = family.machine(&[edge])
+        && let Some(last) = curve::limit(value, edge, |value| family.machine(&[value]).is_err())
+    {
+        (edge, end) = (last, End::edge(direction > 0.0, &why));
+    }
     let longest = following.longest_step * span;
     let closest = tolerance::SPECIAL_POINT.value * span;
     let orbit_at = |value: f64, anchor: f64| -> Result<(Option<PeriodicOrbit>, f64), OrbitError> {
@@ -30,9 +36,7 @@ pub(super) fn half(
         let next = if (edge - at).abs() <= step { edge } else { at + direction * step };
         let (orbit, rpm) = match orbit_at(next, anchor) {
             Ok(found) => found,
-            Err(OrbitError::Family(error)) => {
-                return Ok((points, End::Edge { largest: direction > 0.0, why: error.to_string() }));
-            }
+            Err(OrbitError::Family(why)) => return Ok((points, End::edge(direction > 0.0, &why))),
             Err(error) => return Err(error),
         };
         // The stretch on the cam moves with the parameter; its middle is the last to go.
@@ -59,5 +63,5 @@ pub(super) fn half(
             }
         }
     }
-    Ok((points, End::Range))
+    Ok((points, end))
 }

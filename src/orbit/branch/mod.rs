@@ -125,11 +125,7 @@ pub enum End {
 impl End {
     /// That the model allows no larger value, or no smaller one, and why.
     fn edge(largest: bool, why: &FamilyError) -> Self {
-        let why = match why {
-            FamilyError::Model(error) => error.rule(),
-            other => other.to_string(),
-        };
-        Self::Edge { largest, why }
+        Self::Edge { largest, why: why.rule() }
     }
 
     /// In words, for a message.
