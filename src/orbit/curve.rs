@@ -101,15 +101,17 @@ pub fn closed<E: Equations>(
             // turns it no further than it is long.
             let across = DVector::from_fn(unknowns.len(), |row, _| f64::from(row + 1 == unknowns.len()));
             let tangent = matrix.solve(&across).ok_or(NoPoint::NotClosed)?;
-            let length = tangent.norm();
-            let is_some = length.is_finite() && length > 0.0;
-            return is_some
-                .then(|| CurvePoint { unknowns, tangent: tangent / length, steps })
-                .ok_or(NoPoint::NotClosed);
+            return Ok(CurvePoint { unknowns, tangent: unit(tangent)?, steps });
         }
         last = length;
     }
     Err(NoPoint::NotClosed)
+}
+
+/// A direction as long as 1; an error where it is none.
+pub fn unit<E>(direction: DVector<f64>) -> Result<DVector<f64>, NoPoint<E>> {
+    let length = direction.norm();
+    if length.is_finite() && length > 0.0 { Ok(direction / length) } else { Err(NoPoint::NotClosed) }
 }
 
 /// The last value that is not refused on the way from one to `beyond`, which is; `None` where it is not.

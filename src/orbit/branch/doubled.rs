@@ -119,9 +119,7 @@ fn apart(problem: &Problem<'_>, at: &DVector<f64>) -> Result<DVector<f64>, NoPoi
         _ if index < 2 * half => -first[index - half],
         _ => 0.0,
     };
-    let direction = DVector::from_fn(at.len(), |index, _| entry(index));
-    let length = direction.norm();
-    if length.is_finite() && length > 0.0 { Ok(direction / length) } else { Err(NoPoint::NotClosed) }
+    curve::unit(DVector::from_fn(at.len(), |index, _| entry(index)))
 }
 
 /// The unit direction from where branches cross across the branch that is known, which goes on `along`: of the two directions that the
@@ -133,7 +131,5 @@ fn across(
 ) -> Result<DVector<f64>, NoPoint<FamilyError>> {
     let (_, jacobian) = problem.linear(at)?;
     let [one, two] = curve::least_seen(jacobian).ok_or(NoPoint::NotClosed)?;
-    let direction = &one * two.dot(along) - &two * one.dot(along);
-    let length = direction.norm();
-    if length.is_finite() && length > 0.0 { Ok(direction / length) } else { Err(NoPoint::NotClosed) }
+    curve::unit(&one * two.dot(along) - &two * one.dot(along))
 }
