@@ -3,19 +3,22 @@
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use proptest::prelude::*;
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use crate::common;
 use crate::random::check;
+use corner_impact::estimate::{ErrorIs, Estimate};
 use corner_impact::model::Model;
-use corner_impact::orbit::ending::{Ending, Kind};
+use corner_impact::orbit::ending::{Ending, Kind, Resting};
 use corner_impact::orbit::fate::{Fate, Run, Settling};
+use corner_impact::orbit::{Course, PeriodicOrbit, Search, search};
 use corner_impact::progress::Unwatched;
 use corner_impact::simulate::{Event, EventKind, Machine, Motion, SimulateError, angular_velocity};
 use corner_impact::study::attractors::{AttractorsError, Cause, Change, Here, Resolution, Starts, Step};
 use corner_impact::study::basins::Grid;
-use corner_impact::study::speeds::{At, Attractor, Speeds, speeds};
+use corner_impact::study::speeds::{At, Attractor, Speeds, speeds, usual_range};
 
 /// A ball on a table that goes up and down by a millimetre.
 fn ball() -> Model {
@@ -461,4 +464,88 @@ fn plain_runs_end_on_what_is_listed() {
         Ok(())
     });
     assert!(LOOKED_AT.load(Ordering::Relaxed) > 15, "{LOOKED_AT:?} speeds");
+}
+
+/// Two that rest are one motion where they have a release in common, or both rest so seldom that it is chance; chaos is one with what rests as
+/// seldom, and an orbit with itself alone.
+#[test]
+fn endings_are_told_apart() {
+    let rests = |releases: &[f64], growth: f64| {
+        let releases = releases.to_vec();
+        Resting { releases, revolutions: 7, impacts: 5, impact_speed: 1.0, growth }
+    };
+    let [short, long] = [1.0, 60.0];
+    assert!(!rests(&[1.0], 22.0).is_long() && rests(&[1.0], 23.0).is_long());
+    assert_eq!(rests(&[1.0, 2.0], short).between_rests(), 3.5);
+    let one = Ending::Resting(rests(&[1.0, 2.0], short));
+    let same = Ending::Resting(rests(&[2.0], short));
+    let other = Ending::Resting(rests(&[3.0], short));
+    let [seldom, as_seldom] = [4.0, 5.0].map(|release| Ending::Resting(rests(&[release], long)));
+    let estimate = |value: f64, error: f64| Estimate { value, error, error_is: ErrorIs::Standard };
+    let [chaotic, undecided] = [Ending::by_growth(estimate(1.0, 0.1)), Ending::by_growth(estimate(0.01, 0.1))];
+    assert_eq!([chaotic.kind(), undecided.kind()], [Kind::Chaotic, Kind::Undecided]);
+    let model = common::osorio();
+    let [orbits, others] = [700.0, 710.0].map(|rpm| {
+        let machine = machine(&model, rpm);
+        search(&machine, &Search { revolutions: 1, impacts: Some(1) }).unwrap()
+    });
+    let orbit = |orbit: &PeriodicOrbit| Ending::Orbit(orbit.clone());
+    let are = |one: &Ending, two: &Ending| one.is_same(two) && two.is_same(one);
+    assert!(
+        are(&one, &same) && are(&seldom, &as_seldom) && are(&seldom, &chaotic) && are(&Ending::Stays, &Ending::Stays)
+    );
+    assert!(are(&orbit(&orbits[0]), &orbit(&orbits[0])) && are(&undecided, &undecided));
+    let apart =
+        [&one, &other, &seldom, &undecided, &Ending::Stays, &orbit(&orbits[0]), &orbit(&orbits[1]), &orbit(&others[0])];
+    for (index, one) in apart.iter().enumerate() {
+        assert!(apart[..index].iter().all(|two| !one.is_same(two) && !two.is_same(one)), "{one:?}");
+    }
+    assert!(!one.is_same(&chaotic) && !chaotic.is_same(&one) && !undecided.is_same(&chaotic));
+    assert_eq!([one.between_rests(), chaotic.between_rests()], [Some(3.5), None]);
+    // Followers that rest all the time, or for a while, and one that never meets the cam.
+    let stuck = |rpm: f64| {
+        let machine = machine(&model, rpm);
+        let all = search(&machine, &Search { revolutions: 1, impacts: None }).unwrap();
+        all.into_iter().find(|orbit| matches!(orbit.course, Course::Sticking(_))).unwrap()
+    };
+    let [always, at_150, at_160] = [100.0, 150.0, 160.0].map(stuck);
+    let free = PeriodicOrbit { course: Course::Free, ..always.clone() };
+    let twice = PeriodicOrbit { revolutions: 2, ..at_150.clone() };
+    let apart = [&always, &at_150, &at_160, &twice, &free, &orbits[0]];
+    for (index, one) in apart.iter().enumerate() {
+        assert!(one.is_same(one), "{one:?}");
+        assert!(apart[..index].iter().all(|two| !one.is_same(two) && !two.is_same(one)), "{one:?}");
+    }
+    assert_eq!([one.is_long(), seldom.is_long(), chaotic.is_long()], [false, true, false]);
+    assert_eq!([one.period(), seldom.period(), Ending::Stays.period()], [Some((7, 5)), None, Some((1, 0))]);
+}
+
+/// From below where the follower leaves the cam, 0.8 of that speed, to twice it; where it never does, from half to twice the speed at
+/// which the cam moves with the follower's own acceleration; to two digits.
+#[test]
+fn a_range_of_speeds_is_chosen_by_the_machine() {
+    let range = |follower: &str, cam: &str| {
+        let text = format!("[follower]\nmass = 2.0\nrestitution = 0.5\n{follower}\n[cam]\nlaw = \"harmonic\"\n{cam}\n");
+        usual_range(&Model::parse("machine.toml", &text).unwrap()).unwrap()
+    };
+    let cam = "offset = 0.1\namplitudes = [0.02]\nphases_deg = [0.0]";
+    let to_two = |value: f64, towards: fn(f64) -> f64| {
+        let scale = 10_f64.powf(1.0 - value.log10().floor());
+        towards(value * scale) / scale
+    };
+    let rpm = |squared: f64| squared.sqrt() * 60.0 / TAU;
+    // w^2 A = k/m (c - rest) + g where the cam is highest, at c = 0.12.
+    let pressed = "damping = 0.0\nstiffness = 800.0\ngravity = 9.81\nrest_position = 0.05";
+    let leaves = rpm((400.0 * 0.07 + 9.81) / 0.02);
+    assert_eq!(range(pressed, cam), [to_two(0.8 * leaves, f64::floor), to_two(2.0 * leaves, f64::ceil)]);
+    // A spring that pulls it off at rest, k/m (rest - c_min) - g at c = 0.08: it is off the cam at any speed.
+    let pulled = "damping = 3.0\nstiffness = 800.0\ngravity = 9.81\nrest_position = 0.25";
+    let own = rpm(400.0 + (400.0 * (0.25 - 0.08) - 9.81) / 0.04);
+    assert_eq!(range(pulled, cam), [to_two(0.5 * own, f64::floor), to_two(2.0 * own, f64::ceil)]);
+    // A damper alone has b/m, and nothing at all no scale.
+    let damped = "damping = 30.0\nstiffness = 0.0\ngravity = 0.0\nrest_position = 0.0";
+    let own = 15.0 * 60.0 / TAU;
+    assert_eq!(range(damped, cam), [to_two(0.5 * own, f64::floor), to_two(2.0 * own, f64::ceil)]);
+    let nothing = "damping = 0.0\nstiffness = 0.0\ngravity = 0.0\nrest_position = 0.0";
+    assert_eq!(range(nothing, cam), [50.0, 200.0]);
 }
