@@ -2,6 +2,7 @@
 //! tests wait for.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod answers;
 mod attractors;
 mod bad_commands;
 mod bad_input;
@@ -46,6 +47,7 @@ mod mirrored;
 mod model_file;
 mod orbit_closed_forms;
 mod orbit_commands;
+mod orbit_numbers;
 mod outside;
 mod page;
 mod physics;
