@@ -105,8 +105,8 @@ fn of_detachment(model: &Model, rpm: f64, speeds: [f64; 2], name: &str, range: [
 fn a_follower_leaves_at_two_places_at_once_where_they_are_alike() {
     let name = "cam.phases_deg[1]";
     let like = model("laws/harmonic").with_number("cam.amplitudes[1]", -0.003).unwrap();
-    // Once with the change in the last step, and once where the two curves part slowly.
-    for (own, range) in [(7.0, [-20.0, 20.0]), (7.0, [-0.5, 20.0]), (0.05, [-0.1, 0.1])] {
+    // From either side, with the change in the last step, and where the two curves part slowly.
+    for (own, range) in [(7.0, [-20.0, 20.0]), (-7.0, [-20.0, 20.0]), (7.0, [-0.001, 20.0]), (0.05, [-0.1, 0.1])] {
         let own = like.with_number(name, own).unwrap();
         let curve = of_detachment(&own, 330.0, [300.0, 400.0], name, range);
         assert_eq!(curve.ends, [End::Range, End::Range]);
