@@ -68,7 +68,7 @@ pub(super) struct Rest<'a> {
 }
 
 /// The acceleration of the gap over omega^2, m/rad^2, where it is greatest of all places that are wanted, and where that is.
-pub(super) fn greatest(machine: &Machine, is_wanted: impl Fn(Place) -> bool) -> Option<(f64, Place)> {
+fn greatest(machine: &Machine, is_wanted: impl Fn(Place) -> bool) -> Option<(f64, Place)> {
     /// Places of a segment between which there is one extreme at most, of designed cams.
     const SAMPLES: usize = 64;
     let segments = machine.cam().segments();
