@@ -215,7 +215,7 @@ impl Cycle {
                 return Err(NotClosed { steps: step, residual: length });
             }
             // Rounding is reached where a correction is no smaller than the one before it.
-            if length <= tolerance::CYCLE_CLOSED.value && (length >= 0.5 * last || length == 0.0) {
+            if length <= tolerance::CYCLE_CLOSED.value && length >= 0.5 * last {
                 return Ok((cycle, length));
             }
             if length > REACH {

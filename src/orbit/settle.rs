@@ -84,7 +84,7 @@ pub(super) fn near_run(
                 Some(anchor) => sticking::through(machine, anchor, turns)?,
                 None => None,
             }
-        } else if motion.contact && !impacts {
+        } else if motion.contact {
             sticking::through(machine, 0.0, turns)?
         } else if impacts {
             let guess = Cycle::of_events(turns, &events);

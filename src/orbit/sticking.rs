@@ -50,32 +50,34 @@ pub fn at_zero(machine: &Machine, anchor: f64) -> Result<State, SimulateError> {
     Ok(motion.state)
 }
 
-/// The middle of the longest stretch on the cam among the events of one period, rad, in `[0, 2 pi)`; for a follower that
-/// never leaves the cam, angle 0.
+/// The middle of the longest stretch on the cam among the events of one period, rad, in `[0, 2 pi)`; `None` where it never comes to rest or
+/// never leaves the cam.
 pub fn anchor(events: &[Event], revolutions: u64) -> Option<f64> {
-    let period = revolutions as f64 * TAU;
-    let sticks: Vec<f64> = turned(events, EventKind::Stick);
-    let releases: Vec<f64> = turned(events, EventKind::Release);
-    let after = |stick: f64| {
-        let later = |release: &f64| if *release < stick { *release + period } else { *release };
-        releases.iter().map(later).fold(f64::INFINITY, f64::min)
-    };
-    let stretches = sticks.iter().map(|stick| (*stick, after(*stick))).filter(|(_, end)| end.is_finite());
-    let longest = stretches.max_by(|one, two| (one.1 - one.0).total_cmp(&(two.1 - two.0)))?;
+    let longest = stretches(events, revolutions).max_by(|one, two| (one.1 - one.0).total_cmp(&(two.1 - two.0)))?;
     Some((0.5 * (longest.0 + longest.1)).rem_euclid(TAU)).filter(|angle| *angle < TAU)
 }
 
-fn turned(events: &[Event], kind: EventKind) -> Vec<f64> {
-    events.iter().filter(|event| event.kind == kind).map(|event| event.turned_since(0.0)).collect()
+/// From where to where the follower is on the cam among the events of one period, rad. It leaves the cam where it is released, or where a
+/// corner that turns up throws it off, as an impact does.
+fn stretches(events: &[Event], revolutions: u64) -> impl Iterator<Item = (f64, f64)> {
+    let period = revolutions as f64 * TAU;
+    let end = move |stick: f64| {
+        let later = |event: &Event| {
+            let end = event.turned_since(0.0);
+            // The impact that a plastic follower sticks after is at the same angle, and before it.
+            let is_before = end < stick || (end == stick && event.kind == EventKind::Impact);
+            if is_before { end + period } else { end }
+        };
+        events.iter().filter(|event| event.kind != EventKind::Stick).map(later).fold(f64::INFINITY, f64::min)
+    };
+    let sticks = events.iter().filter(|event| event.kind == EventKind::Stick).map(|event| event.turned_since(0.0));
+    sticks.map(move |stick| (stick, end(stick))).filter(|(_, end)| end.is_finite())
 }
 
 /// How long the follower sticks in one period, rad.
 pub fn time_on_cam(orbit: &PeriodicOrbit) -> f64 {
-    let period = orbit.revolutions as f64 * TAU;
-    let (sticks, releases) = (turned(&orbit.events, EventKind::Stick), turned(&orbit.events, EventKind::Release));
-    if sticks.is_empty() && releases.is_empty() {
-        return if matches!(orbit.course, Course::Sticking(_)) { period } else { 0.0 };
+    if matches!(orbit.course, Course::Sticking(_)) && orbit.events.is_empty() {
+        return orbit.revolutions as f64 * TAU;
     }
-    let on: f64 = releases.iter().sum::<f64>() - sticks.iter().sum::<f64>();
-    on.rem_euclid(period)
+    stretches(&orbit.events, orbit.revolutions).map(|(stick, end)| end - stick).sum()
 }

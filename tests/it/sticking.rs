@@ -11,6 +11,7 @@ use approx::{assert_abs_diff_eq, assert_relative_eq};
 use corner_impact::cam::{Lift, apart, within_a_turn};
 use corner_impact::flight::State;
 use corner_impact::model::Model;
+use corner_impact::orbit::{Course, Search, search};
 use corner_impact::simulate::{Event, EventKind, Goal, Machine, Motion, SimulateError, angular_velocity};
 use proptest::prelude::*;
 
@@ -417,4 +418,23 @@ fn a_force_that_only_just_vanishes_lets_go() {
         }
     }
     assert!(looked_at > 200, "{looked_at}");
+}
+
+/// A corner that turns up throws a resting follower off by an impact and no release: what it does is an orbit like any other that rests.
+#[test]
+fn a_corner_that_turns_up_ends_a_rest() {
+    for restitution in [0.0, 0.3, 0.8] {
+        let mut model = common::read("models/laws/rectified-sine.toml".as_ref());
+        let follower = &mut model.follower;
+        (follower.mass, follower.damping, follower.stiffness, follower.gravity) = (1.0, 0.1, 1.0, 0.0);
+        (follower.rest_position, follower.restitution) = (-50.0, restitution);
+        let machine = Machine::new(common::cam(&model), &model.follower, angular_velocity(3.0));
+        let found = search(&machine, &Search { revolutions: 1, impacts: None }).unwrap();
+        let [orbit] = found.as_slice() else { panic!("{restitution}: {found:?}") };
+        assert!(matches!(orbit.course, Course::Sticking(_)) && orbit.residual < 1e-12, "{orbit:?}");
+        let count = |kind: EventKind| orbit.events.iter().filter(|event| event.kind == kind).count();
+        // At 0 and at 180 degrees.
+        assert_eq!([count(EventKind::Stick), count(EventKind::Release)], [2, 0], "{orbit:?}");
+        assert!(count(EventKind::Impact) >= 2, "{orbit:?}");
+    }
 }

@@ -110,7 +110,8 @@ fn on_corner(cycle: &Cycle, machine: &Machine, segment: usize) -> impl Iterator<
 /// period, whose halves move against each other.
 fn apart(problem: &Problem<'_>, at: &DVector<f64>) -> Result<DVector<f64>, NoPoint<FamilyError>> {
     let (_, jacobian) = problem.linear(at)?;
-    let half = (at.len() - 1) / 2;
+    // Two unknowns for each impact, and one more.
+    let half = at.len() / 2;
     // J on halves that move against each other: (J_1 - J_2) d = 0 for d of the first half.
     let against = jacobian.columns(0, half) - jacobian.columns(half, half);
     let [first] = curve::least_seen(against).ok_or(NoPoint::NotClosed)?;

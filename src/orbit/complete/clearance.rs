@@ -81,15 +81,14 @@ impl Hop {
             let value = centre.value + away * centre.slope + away.squared().half() * whole.curvature;
             let is_past = !stretch.is_first || middle > self.from.angle.high();
             let is_before = !stretch.is_last || middle < self.to.angle.low();
-            let falls_in = stretch.is_first && !stretch.is_last && slope.is_negative();
+            let falls_in = stretch.is_first && slope.is_negative();
             if (is_past && is_before && centre.value.is_negative()) || falls_in {
                 return Some(false);
             }
-            // It leaves the cam at least as fast as that moves, so it rises as well where it is bent upwards.
-            let rises = stretch.is_first && (slope.is_positive() || whole.curvature.is_positive());
+            let rises = stretch.is_first && slope.is_positive();
             let falls = stretch.is_last && slope.is_negative();
             let is_one = stretch.is_first && stretch.is_last;
-            if !is_one && (rises || falls) || !stretch.is_first && !stretch.is_last && value.is_positive() {
+            if !is_one && (rises || falls) || value.is_positive() {
                 continue;
             }
             if angles.width() <= narrowest || boxes > MOST {

@@ -61,18 +61,19 @@ impl Pair<'_> {
     fn between(&self, [x, y]: &[Interval; 2]) -> [Interval; 2] {
         let segments = self.machine.cam().segments();
         let [first, last] = self.segments;
-        if first == last && self.turns == 0 {
+        // Borders on the way: a cam of one segment has one where it is passed at angle 0.
+        let borders = last + self.turns as usize * segments.len() - first;
+        if borders == 0 {
             let lift = segments[first].law.lift_over(x.hull(*y));
             return [lift.slope, lift.curvature];
         }
-        let (mut at, mut slope) =
-            (first, segments[first].law.lift_over(Interval::new(x.low(), segments[first].end)).slope);
-        while at != last {
-            at = (at + 1) % segments.len();
-            let end = if at == last { y.high() } else { segments[at].end };
-            slope = slope.hull(segments[at].law.lift_over(Interval::new(segments[at].start, end)).slope);
-        }
-        [slope, Interval::EVERYTHING]
+        let slope = |border: usize| {
+            let segment = &segments[(first + border) % segments.len()];
+            let from = if border == 0 { x.low() } else { segment.start };
+            let to = if border == borders { y.high() } else { segment.end };
+            segment.law.lift_over(Interval::new(from, to)).slope
+        };
+        [(1..=borders).map(slope).fold(slope(0), Interval::hull), Interval::EVERYTHING]
     }
 
     fn flights(&self, place: &[Interval; 2]) -> Flights {
