@@ -502,6 +502,8 @@ fn endings_are_told_apart() {
     }
     assert!(!one.is_same(&chaotic) && !chaotic.is_same(&one) && !undecided.is_same(&chaotic));
     assert_eq!([one.between_rests(), chaotic.between_rests()], [Some(3.5), None]);
+    assert_eq!([chaotic.growth(), undecided.growth()], [Some(estimate(1.0, 0.1)), Some(estimate(0.01, 0.1))]);
+    assert_eq!([one.growth(), Ending::Stays.growth()], [None, None]);
     // Followers that rest all the time, or for a while, and one that never meets the cam.
     let stuck = |rpm: f64| {
         let machine = machine(&model, rpm);

@@ -395,13 +395,13 @@ fn bad_ranges_are_refused() {
     let output = locate(&[MODEL, "--rpm", "1e-9:700"]);
     let words = String::from_utf8(output.stderr).unwrap();
     assert!(output.status.code() == Some(2) && words.contains("spans too much"), "{words}");
-    let wide = corner_impact::study::locate::locate(
-        &common::osorio(),
-        Study { rpm_min: 700.0, rpm_max: 600.0 },
-        1,
-        &Unwatched,
-    );
-    assert!(matches!(wide, Err(LocateError::Range(RangeError::NoRange { .. }))));
+    // As a range, whatever the command line makes of it.
+    for (rpm_min, rpm_max) in [(700.0, 600.0), (0.0, 700.0), (600.0, f64::INFINITY), (600.0, 600.0), (f64::NAN, 600.0)]
+    {
+        let range = Study { rpm_min, rpm_max };
+        let found = corner_impact::study::locate::locate(&common::osorio(), range, 1, &Unwatched);
+        assert!(matches!(found, Err(LocateError::Range(RangeError::NoRange { .. }))), "{rpm_min} {rpm_max}");
+    }
 }
 
 #[test]
@@ -417,4 +417,16 @@ fn routes_agree_where_a_follower_chatters_before_the_corner() {
         assert_eq!(off.collect::<Vec<_>>(), [], "{name}");
         assert!(survey.found.iter().any(|located| located.at.cycle.impacts.len() >= impacts));
     }
+}
+
+/// The speeds of the grid are half-way between whole powers of 1.02, eight of them make a cell, and two more on either side are looked at.
+#[test]
+fn orbits_are_searched_for_at_the_speeds_of_a_whole_cell_and_its_margins() {
+    let model = common::read(law("polynomial").as_ref());
+    let searched = surveyed(&model, 620.0, 622.0, 1).looked_at.searched;
+    let cell = (621.0_f64.ln() / 1.02_f64.ln() / 8.0).floor();
+    let expected: Vec<f64> = (-2..10).map(|step| 1.02_f64.powf(8.0 * cell + f64::from(step) + 0.5)).collect();
+    assert_eq!(searched.speeds.len(), expected.len(), "{:?}", searched.speeds);
+    assert!(searched.speeds.iter().zip(&expected).all(|(one, two)| (one / two - 1.0).abs() < 1e-12), "{searched:?}");
+    assert!((1..=searched.speeds.len()).contains(&searched.branches) && searched.failed.is_none(), "{searched:?}");
 }

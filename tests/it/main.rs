@@ -2,6 +2,7 @@
 //! tests wait for.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod along_branches;
 mod answers;
 mod attractors;
 mod bad_commands;
@@ -23,6 +24,7 @@ mod compare;
 mod complete;
 mod corner_maps;
 mod curves;
+mod cycles;
 mod derived;
 mod design;
 mod digits;
@@ -69,6 +71,7 @@ mod scales;
 mod second_order;
 mod set;
 mod settled;
+mod settling;
 mod simulate;
 mod snapshots;
 mod steps;
@@ -77,6 +80,7 @@ mod stopped;
 mod targets;
 mod tolerance;
 mod trapping;
+mod turned_cams;
 mod units;
 mod verify;
 mod whole_files;

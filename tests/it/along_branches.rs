@@ -1,0 +1,291 @@
+//! Does a branch keep what it promises of its points: which orbits are on it, what is told of where something changes, and how many points
+//! there are?
+
+use std::path::Path;
+
+use corner_impact::cam::Cam;
+use corner_impact::model::Model;
+use corner_impact::orbit::branch::{Bifurcation, Branch, BranchPoint, End, Following, Kind};
+use corner_impact::orbit::{Course, Parameter, PeriodicOrbit, Search, search};
+use corner_impact::simulate::{Machine, angular_velocity};
+
+use crate::common;
+
+fn model(name: &str) -> Model {
+    common::read(Path::new(&format!("models/{name}.toml")))
+}
+
+fn machine(model: &Model, rpm: f64) -> Machine {
+    Machine::new(Cam::new(model).unwrap(), &model.follower, angular_velocity(rpm))
+}
+
+fn orbits(model: &Model, rpm: f64, revolutions: u64) -> Vec<PeriodicOrbit> {
+    search(&machine(model, rpm), &Search { revolutions, impacts: None }).unwrap()
+}
+
+fn following(model: &Model, parameter: &str, range: [f64; 2], longest_step: f64) -> Following {
+    Following { parameter: Parameter::named(model, parameter).unwrap(), range, longest_step, most_points: 400 }
+}
+
+fn is_special(point: &BranchPoint, is_wanted: impl Fn(Kind) -> bool) -> bool {
+    point.special.is_some_and(|special| is_wanted(special.kind))
+}
+
+/// The branch of the orbits that rest at a speed, rpm, and the first point where a kind of thing changes.
+fn resting(model: &Model, rpm: f64, speeds: [f64; 2], kind: Kind) -> (Branch, BranchPoint) {
+    let orbits = orbits(model, rpm, 1);
+    let rests = orbits.iter().find(|orbit| matches!(orbit.course, Course::Sticking(_))).unwrap();
+    let branch = Branch::through(model, rpm, rests, &following(model, "rpm", speeds, 0.05)).unwrap();
+    let point = branch.points.iter().find(|point| is_special(point, |it| it == kind)).unwrap().clone();
+    (branch, point)
+}
+
+#[test]
+fn each_event_that_has_a_curve_is_of_its_kind() {
+    let graze = Kind::Graze { before: 1, after: 2, turned: 1.0 };
+    let corner = Kind::Corner { impact: 0, segment: 1, jump_order: 2 };
+    let kinds = [corner, Kind::Fold, Kind::Flip, graze, Kind::Detachment, Kind::Chatter];
+    assert_eq!(kinds.map(|kind| kind.bifurcation().unwrap()), Bifurcation::ALL);
+    let others = [Kind::Branching, Kind::Cusp, Kind::DegenerateGraze, Kind::Place, Kind::Turn];
+    assert!(others.iter().all(|kind| kind.bifurcation().is_none()));
+}
+
+/// Nothing but the speeds on its two sides is known of it.
+#[test]
+fn what_is_left_of_a_detachment_is_the_width_of_its_bracket() {
+    let (_, point) = resting(&model("osorio-2008"), 90.0, [80.0, 130.0], Kind::Detachment);
+    let special = point.special.unwrap();
+    let [low, high] = special.bracket;
+    assert_eq!(special.residual, high - low);
+    assert!(low < high && (high - low) < 1e-9 * high, "{special:?}");
+}
+
+/// Also the first and the last, whichever way the branch goes there.
+#[test]
+fn each_point_of_a_branch_is_on_it() {
+    for (name, rpm, range) in [
+        ("osorio-2008", 700.0, [660.0, 760.0]),
+        ("laws/harmonic", 500.0, [470.0, 560.0]),
+        ("osorio-2008", 442.0, [425.0, 460.0]),
+    ] {
+        let model = model(name);
+        let all: Vec<Branch> = orbits(&model, rpm, 1)
+            .iter()
+            .map(|orbit| Branch::through(&model, rpm, orbit, &following(&model, "rpm", range, 0.05)).unwrap())
+            .collect();
+        for branch in &all {
+            let off = branch.points.iter().find(|point| !branch.holds(point.value, &point.orbit));
+            assert!(off.is_none(), "{name} {rpm} {off:?}");
+            let lines = branch.lines();
+            assert!(lines.iter().all(|line| line.points.len() > 1), "{name}");
+        }
+    }
+}
+
+/// The same motion may be told from any of its revolutions on; one of other revolutions is another, whatever its angles.
+#[test]
+fn an_orbit_is_known_by_its_revolutions_and_from_any_of_them_on() {
+    let model = model("osorio-2008");
+    let found = orbits(&model, 760.0, 3);
+    for orbit in &found {
+        let branch = Branch::through(&model, 760.0, orbit, &following(&model, "rpm", [755.0, 765.0], 0.05)).unwrap();
+        let Course::Impacts(cycle) = &orbit.course else { continue };
+        for later in 1..cycle.revolutions as i64 {
+            let mut told = cycle.clone();
+            for impact in &mut told.impacts {
+                impact.revolution += later;
+            }
+            let again = PeriodicOrbit { course: Course::Impacts(told.in_order()), ..orbit.clone() };
+            assert!(branch.holds(760.0, &again), "{later} {again:?}");
+        }
+        let mut longer = cycle.clone();
+        longer.revolutions += 1;
+        let other = PeriodicOrbit { course: Course::Impacts(longer), ..orbit.clone() };
+        assert!(branch.holds(760.0, orbit) && !branch.holds(760.0, &other), "{other:?}");
+    }
+}
+
+/// With the phase of the second harmonic the branch turns round twice and comes back to where it began.
+#[test]
+fn a_branch_that_comes_back_to_its_start_is_followed_once() {
+    let model = model("laws/harmonic").with_number("cam.amplitudes[1]", 0.004).unwrap();
+    let following = following(&model, "phases_deg[1]", [-180.0, 180.0], 0.1);
+    let branches = orbits(&model, 500.0, 1)
+        .into_iter()
+        .map(|orbit| Branch::through(&model, 500.0, &orbit, &following).unwrap())
+        .filter(|branch| branch.ends != [End::Range, End::Range]);
+    let mut closed = 0;
+    for branch in branches {
+        assert_eq!(branch.ends, [End::Closed, End::Closed]);
+        let values: Vec<f64> = branch.points.iter().map(|point| point.value).collect();
+        // A step along it is so long at most.
+        let longest = 0.1 * 360.0;
+        assert!((values[0] - values[values.len() - 1]).abs() <= longest, "{values:?}");
+        // It left its start, which is 0, on one side, and comes back from the other.
+        assert!(values[0] * values[values.len() - 2] < 0.0, "{values:?}");
+        // It turns round at two grazes, and passes each once.
+        let specials: Vec<Kind> = branch.points.iter().filter_map(|it| it.special).map(|it| it.kind).collect();
+        assert!(matches!(specials[..], [Kind::Graze { .. }, Kind::Graze { .. }]), "{specials:?}");
+        closed += 1;
+    }
+    assert_eq!(closed, 2);
+}
+
+/// The model allows no restitution above 1: what is there to the other side leads on as it does anywhere.
+#[test]
+fn a_branch_from_the_last_value_that_is_allowed_begins_with_the_steps_of_any() {
+    let model = model("laws/harmonic").with_number("follower.restitution", 1.0).unwrap();
+    for orbit in orbits(&model, 500.0, 1) {
+        let following = following(&model, "restitution", [0.5, 1.0], 0.05);
+        let branch = Branch::through(&model, 500.0, &orbit, &following).unwrap();
+        let below: Vec<f64> =
+            branch.points.iter().rev().map(|it| it.value).filter(|value| *value < 1.0).take(4).collect();
+        // Each step is half as long again as the one before.
+        let steps: Vec<f64> = [&[1.0], &below[..]].concat().windows(2).map(|pair| pair[0] - pair[1]).collect();
+        assert!(branch.ends[0] == End::Range && steps.len() == 4, "{:?}", branch.ends);
+        assert!(steps.windows(2).all(|pair| (pair[1] / pair[0] - 1.5).abs() < 0.02), "{steps:?}");
+    }
+}
+
+/// The curve of a special point in a number of the model.
+fn curve(model: &Model, point: &BranchPoint, speeds: [f64; 2], following: &Following) -> Branch {
+    let curve = Branch::of_event(model, point, speeds, following).unwrap().unwrap();
+    for point in &curve.points {
+        let place = point.held.as_ref().unwrap().cam_angle;
+        assert!(matches!(point.orbit.course, Course::Sticking(anchor) if anchor == place), "{point:?}");
+    }
+    curve
+}
+
+/// The more an impact gives back, the more of them there are before the follower rests.
+#[test]
+fn an_onset_of_resting_ends_where_impacts_are_without_number() {
+    let model = model("laws/harmonic");
+    let speeds = [310.0, 420.0];
+    let (_, chatter) = resting(&model, 340.0, speeds, Kind::Chatter);
+    let curve = curve(&model, &chatter, speeds, &following(&model, "restitution", [0.599, 1.2], 0.1));
+    assert_eq!(curve.ends, [End::Range, End::Endless]);
+    let last = curve.points.last().unwrap().value;
+    assert!((0.999..0.9999).contains(&last), "{last}");
+}
+
+/// However long a step is: of the impacts before a smooth release a late one tells where they end, and small differences move it far.
+#[test]
+fn an_onset_of_resting_is_one_curve_at_any_step() {
+    let model = model("laws/harmonic");
+    let speeds = [310.0, 420.0];
+    let (_, chatter) = resting(&model, 340.0, speeds, Kind::Chatter);
+    let ends = [0.1, 0.05, 0.02].map(|step| {
+        let curve = curve(&model, &chatter, speeds, &following(&model, "stiffness", [100.0, 900.0], step));
+        assert_eq!(curve.ends, [End::Range, End::Range], "{step}");
+        [curve.points.first(), curve.points.last()].map(|point| point.unwrap().rpm)
+    });
+    for [low, high] in ends {
+        assert!((low - ends[0][0]).abs() < 1e-6 && (high - ends[0][1]).abs() < 1e-6, "{ends:?}");
+    }
+}
+
+/// The speed goes to 0 where the spring at the lowest lift is as strong as the weight: from there on the follower hangs above the cam.
+#[test]
+fn a_detachment_ends_where_the_spring_carries_the_follower() {
+    let model = model("laws/harmonic");
+    let speeds = [310.0, 420.0];
+    let (_, leaves) = resting(&model, 340.0, speeds, Kind::Detachment);
+    let curve = curve(&model, &leaves, speeds, &following(&model, "rest_position", [0.07, 0.2], 0.2));
+    assert_eq!(curve.ends, [End::Range, End::OtherWay]);
+    let lowest = 0.1 - 0.02 + 0.001;
+    let last = curve.points.last().unwrap().value;
+    assert!((last - (lowest + 9.81 / 400.0)).abs() < 1e-9, "{last}");
+}
+
+/// On a cam that is its own mirror image a damper holds the follower down before the top and lifts it behind it: it lets go where the nose
+/// ends, in closed form.
+#[test]
+fn a_damped_follower_leaves_where_the_nose_ends() {
+    let model = model("osorio-2008");
+    let speeds = [100.0, 130.0];
+    let (_, leaves) = resting(&model, 112.0, speeds, Kind::Detachment);
+    let curve = curve(&model, &leaves, speeds, &following(&model, "damping", [-1.0, 5.0], 0.1));
+    let edge = matches!(&curve.ends, [End::Edge { largest: false, .. }, End::Range]);
+    assert!(edge && curve.points.len() > 8, "{:?}", curve.ends);
+    let cam = Cam::new(&model).unwrap();
+    let corners = cam.corners();
+    for point in curve.points.iter().filter(|point| point.value > 1e-6) {
+        let place = point.held.as_ref().unwrap().cam_angle;
+        let end = corners.iter().find(|corner| corner.angle == place).unwrap();
+        assert!(place > std::f64::consts::PI, "{point:?}");
+        let segments = cam.segments();
+        let lift = segments[(end.segment + segments.len() - 1) % segments.len()].law.lift(place);
+        let (follower, omega) = (&model.follower, angular_velocity(point.rpm));
+        let force = follower.stiffness * (follower.rest_position - lift.value) - point.value * omega * lift.slope;
+        let off = force / follower.mass - omega * omega * lift.curvature;
+        assert!(off.abs() < 1e-9 * omega * omega, "{off} {point:?}");
+    }
+}
+
+/// An orbit that rests once in two revolutions: its flight goes from one release to the next but one.
+#[test]
+fn an_onset_of_resting_may_be_of_two_revolutions() {
+    let model = model("osorio-2008");
+    let speeds = [205.0, 240.0];
+    let orbits = orbits(&model, 220.0, 2);
+    let rests = orbits.iter().find(|orbit| matches!(orbit.course, Course::Sticking(_))).unwrap();
+    let branch = Branch::through(&model, 220.0, rests, &following(&model, "rpm", speeds, 0.1)).unwrap();
+    assert_eq!(branch.ends, [End::Chatter, End::Chatter]);
+    let number = following(&model, "restitution", [0.795, 0.805], 0.2);
+    let [down, up] = [&branch.points[0], branch.points.last().unwrap()].map(|at| curve(&model, at, speeds, &number));
+    assert_eq!((&down.ends, &up.ends), (&[End::OtherWay, End::Range], &[End::Range, End::Range]));
+    assert!(up.points.len() > 5 && up.points.windows(2).all(|pair| pair[0].rpm > pair[1].rpm), "{:?}", up.points.len());
+}
+
+/// A curve is given up after so many points in either direction.
+#[test]
+fn a_curve_has_as_many_points_as_are_asked_for() {
+    let model = model("osorio-2008");
+    let speeds = [205.0, 240.0];
+    let (_, leaves) = resting(&model, 112.0, [100.0, 130.0], Kind::Detachment);
+    let following = Following { most_points: 3, ..following(&model, "stiffness", [1000.0, 2000.0], 0.02) };
+    let curve = curve(&model, &leaves, speeds, &following);
+    assert_eq!((curve.ends, curve.points.len()), ([End::MostPoints, End::MostPoints], 3 + 1 + 3));
+}
+
+/// A nose of no width is the last that there is; the curve has its last point there.
+#[test]
+fn a_detachment_goes_on_to_the_last_value_that_is_allowed() {
+    let model = model("osorio-2008");
+    let speeds = [100.0, 130.0];
+    let (_, leaves) = resting(&model, 112.0, speeds, Kind::Detachment);
+    let curve = curve(&model, &leaves, speeds, &following(&model, "nose_end_deg", [150.0, 180.0], 0.1));
+    assert!(matches!(&curve.ends, [End::Range, End::Edge { largest: true, .. }]), "{:?}", curve.ends);
+    let specials: Vec<Kind> = curve.points.iter().filter_map(|point| point.special).map(|it| it.kind).collect();
+    assert_eq!((curve.points.last().unwrap().value, &specials[..]), (180.0, &[Kind::Detachment][..]));
+}
+
+/// A branch of twice the period goes to the flip that it comes from and no further: nothing else is a flip there.
+#[test]
+fn a_branch_of_twice_the_period_ends_at_its_flip() {
+    let model = model("persistence");
+    let orbits = orbits(&model, 493.0, 2);
+    let of_three = orbits.iter().find(|orbit| orbit.events.len() == 3).unwrap();
+    let branch = Branch::through(&model, 493.0, of_three, &following(&model, "rpm", [400.0, 600.0], 0.05)).unwrap();
+    assert_eq!(branch.ends, [End::Range, End::Shorter]);
+    let flips: Vec<f64> =
+        branch.points.iter().filter(|at| is_special(at, |it| it == Kind::Flip)).map(|it| it.rpm).collect();
+    let last = branch.points.last().unwrap();
+    assert!(matches!(flips[..], [rpm] if rpm == last.rpm) && last.orbit.revolutions == 1, "{flips:?} {last:?}");
+}
+
+/// The corner goes towards the impact, and not the other way round.
+#[test]
+fn a_branch_goes_on_beyond_a_corner_that_moves() {
+    let model = model("osorio-2008");
+    let orbits = orbits(&model, 700.0, 1);
+    let of_two = orbits.iter().find(|orbit| orbit.events.len() == 2).unwrap();
+    let number = following(&model, "flank_start_deg", [60.0, 120.0], 0.1);
+    let branch = Branch::through(&model, 700.0, of_two, &number).unwrap();
+    assert_eq!(branch.ends, [End::Range, End::Range]);
+    let is_corner = |kind| matches!(kind, Kind::Corner { .. });
+    let corners: Vec<&BranchPoint> = branch.points.iter().filter(|point| is_special(point, is_corner)).collect();
+    let [corner] = corners[..] else { panic!("{}", corners.len()) };
+    assert!((corner.orbit.events[0].cam_angle - corner.value.to_radians()).abs() < 1e-9, "{corner:?}");
+}
