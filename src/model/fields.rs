@@ -333,6 +333,9 @@ impl Fields {
         let Some((path, field)) = unknown.min_by_key(|(_, field)| field.line) else {
             return Ok(());
         };
+        if tables.contains(path) {
+            return Err(self.reject(path, format!("must be a table, [{path}]")));
+        }
         let table = table_of(path);
         // An array is listed by its own name, not once more for each element.
         let listed = |known: &&String| !known.ends_with(']') && table_of(known) == table;

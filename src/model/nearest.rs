@@ -18,16 +18,3 @@ pub fn nearest<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> Opti
     let near = distances.filter(|(distance, most, _)| distance <= most).map(|(distance, _, name)| (distance, name));
     near.min_by_key(|(distance, _)| *distance).map(|(_, name)| name)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_of_one_table_are_near_by_themselves_alone() {
-        let names = ["follower.mass", "cam.base_radius"];
-        assert_eq!(nearest("follower.mas", names), Some("follower.mass"));
-        assert_eq!(nearest("folower.mass", names), Some("follower.mass"));
-        assert_eq!(nearest("follower.bogus", names), None);
-    }
-}

@@ -362,17 +362,21 @@ impl Table<'_> {
         let first = rows.first().map_or(0.0, |row| row.angle_deg);
         // A turn is 2 pi to as many digits as were written.
         let slack = tolerance::TURN_CLOSED.value * 360.0 / rows.len() as f64;
+        let mut before_written = first;
         for index in 1..rows.len() {
             let (before, row) = (rows[index - 1], &mut rows[index]);
             let written = row.angle_deg;
-            if turns == 0.0 && before.angle_deg - written > BACK {
+            let begins_turn = turns == 0.0 && before.angle_deg - written > BACK;
+            if begins_turn {
                 turns = 360.0;
             }
             row.angle_deg += turns;
             let row = *row;
-            self.in_order(&before, &row, written)?;
+            self.in_order([(&before, before_written), (&row, written)], begins_turn)?;
+            before_written = written;
             if row.angle_deg - first > 360.0 + slack {
-                let words = format!("must be within a turn of the first row, from {first} to {}", first + 360.0);
+                let [from, to] = [first - turns, first + 360.0 - turns];
+                let words = format!("must be within a turn of the first row, from {from} to {to}");
                 return Err(self.reject(row.line, "angle_deg", &written.to_string(), words));
             }
         }
@@ -385,7 +389,10 @@ impl Table<'_> {
         let start = rows.iter().enumerate().min_by(|one, two| one.1.angle_deg.total_cmp(&two.1.angle_deg));
         let start = start.map_or(0, |(index, _)| index);
         rows.rotate_left(start);
-        rows.windows(2).try_for_each(|pair| self.in_order(&pair[0], &pair[1], pair[1].angle_deg))?;
+        rows.windows(2).try_for_each(|pair| {
+            let [before, row] = [&pair[0], &pair[1]].map(|row| (row, row.angle_deg));
+            self.in_order([before, row], false)
+        })?;
         if rows.len() >= FEWEST_ROWS {
             self.even(rows, are_degrees)?;
         }
@@ -396,14 +403,17 @@ impl Table<'_> {
         format!("{} {}", if self.has_lines { "line" } else { "row" }, row.line)
     }
 
-    fn in_order(&self, before: &Row, row: &Row, written: f64) -> Result<(), ModelError> {
+    /// Refuses a row that is not above the one before it, each with its angle as it is written, degrees.
+    fn in_order(&self, rows: [(&Row, f64); 2], begins_turn: bool) -> Result<(), ModelError> {
+        let [(before, above), (row, written)] = rows;
         // What cannot be told apart in radians is one angle.
         if row.angle_deg.to_radians() > before.angle_deg.to_radians() {
             return Ok(());
         }
         let repeats = row.angle_deg >= before.angle_deg;
         let what = if repeats { "repeats the angle of the row before" } else { "angles must rise" };
-        let words = format!("{what}: must be above {}, {}", before.angle_deg, self.place(before));
+        let of_turn = if begins_turn { " less a turn" } else { "" };
+        let words = format!("{what}: must be above {above}{of_turn}, {}", self.place(before));
         Err(self.reject(row.line, "angle_deg", &written.to_string(), words))
     }
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::common;
-use corner_impact::model::Model;
+use corner_impact::model::{Model, nearest};
 
 fn folder() -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("pointed");
@@ -158,4 +158,21 @@ fn near_parameters_are_asked_for() {
             "{message}"
         );
     }
+}
+
+/// That both are in one table says nothing about how near they are.
+#[test]
+fn names_of_one_table_are_near_by_themselves_alone() {
+    let names = ["follower.mass", "cam.base_radius"];
+    assert_eq!(nearest("follower.mas", names), Some("follower.mass"));
+    assert_eq!(nearest("folower.mass", names), Some("follower.mass"));
+    assert_eq!(nearest("follower.bogus", names), None);
+    // Nor is a name near that is another table's.
+    assert_eq!(nearest("study.mass", names), None);
+    assert_eq!(nearest("FOLLOWER.Mass", names), Some("follower.mass"));
+    // A third of a long name may be wrong, of a short one a letter.
+    assert_eq!(nearest("bsae_raduis", ["base_radius"]), Some("base_radius"));
+    assert_eq!(nearest("msas", ["mass"]), Some("mass"));
+    assert_eq!(nearest("mxyz", ["mass"]), None);
+    assert_eq!(nearest("mas-_s", ["mass"]), None);
 }
