@@ -77,6 +77,34 @@ fn where_corner_impacts_are() {
 }
 
 #[test]
+fn which_corner_impacts_are_none() {
+    are_as_they_were(
+        "answers-locate-refused",
+        &[
+            "locate --rpm 600:640 --json",
+            "locate --rpm 134.5:134.6 --json",
+            "locate --rpm 163.4:163.5 --json",
+            "locate models/laws/polynomial.toml --rpm 301.9:302 --json",
+            "locate models/laws/rectified-sine.toml --rpm 19:20 --json",
+        ],
+    );
+}
+
+#[test]
+fn corner_impacts_of_many_impacts() {
+    are_as_they_were(
+        "answers-locate-many",
+        &[
+            "locate --rpm 194.2:194.3 --json",
+            "locate --rpm 195.5:195.7 --json",
+            "locate models/ballistic.toml --rpm 331.9:332.1 --json",
+            "locate models/overdamped.toml --rpm 557:558 --json",
+            "locate models/laws/polynomial.toml --rpm 408:411 --json",
+        ],
+    );
+}
+
+#[test]
 fn which_motions_there_are() {
     are_as_they_were(
         "answers-speeds",

@@ -3,12 +3,15 @@
 //! The conditions are derived in `derivations/border_collision.py` and stand here once more; the map is simulated on grids
 //! of parameters and must end where they say.
 
+use std::fmt::Write;
+
 use crate::common;
+use crate::orbit_numbers::is_as_it_was;
 use approx::assert_relative_eq;
-use corner_impact::border_collision::LocalMap;
 use corner_impact::border_collision::local_map::PeriodicOrbit;
 use corner_impact::border_collision::long_run::{End, Escape};
 use corner_impact::border_collision::word::Word;
+use corner_impact::border_collision::{LocalMap, passage};
 use corner_impact::cam::Side;
 use corner_impact::estimate::Estimate;
 use corner_impact::interval::Interval;
@@ -405,4 +408,97 @@ fn a_motion_does_not_settle_on_an_orbit_of_the_other_side() {
     let map = common::of_the_line([0.999, 0.5]);
     let end = map.end(Vector2::new(-1e6, 0.0), 1.0);
     assert_eq!(kind(&end), "R", "{end:?}");
+}
+
+/// To five digits; what is nothing but rounding is 0.
+fn digits(number: f64) -> String {
+    if number.abs() < 1e-12 { "0".into() } else { format!("{number:.4e}") }
+}
+
+/// What a map does at one sign of mu: its orbits, the theorem, and where motions end.
+fn told(map: &LocalMap, mu: f64) -> String {
+    let outcome = map.outcome(mu);
+    let mut text = String::new();
+    for orbit in outcome.fixed_points.iter().chain(&outcome.period_two) {
+        let points = orbit.points.iter().map(|point| format!("({}, {})", digits(point[0]), digits(point[1])));
+        let points: Vec<_> = points.collect();
+        writeln!(text, "  orbit {} {} margin {}", orbit.word, points.join(" "), digits(orbit.margin)).unwrap();
+    }
+    // Of longer ones the word says where the points are.
+    let words = outcome.orbits.iter().map(|orbit| orbit.word.to_string());
+    writeln!(text, "  there: {}", words.collect::<Vec<_>>().join(" ")).unwrap();
+    if let Some(theorem) = outcome.robust_chaos {
+        let distances = theorem.hypotheses.map(|condition| digits(condition.distance));
+        let holds = theorem.holds();
+        writeln!(text, "  saddle {:?} {} holds {holds}", theorem.saddle, distances.join(" ")).unwrap();
+    }
+    for fate in outcome.fates {
+        let more = match &fate.end {
+            End::Chaotic(chaos) => {
+                let (exponent, region) = (chaos.exponent, chaos.region);
+                format!(" {} in {} polygons of {} corners", digits(exponent.value), region.polygons, region.corners)
+            }
+            // How fast what never settles parts is known to its error.
+            End::Undecided(exponent) => format!(" above {:.3}", exponent.value - 5.0 * exponent.error),
+            End::Escapes(Escape::Follows { word, multiplier }) => format!(" by {word}, {}", digits(*multiplier)),
+            _ => String::new(),
+        };
+        writeln!(text, "  {} {}{more}", fate.starts, kind(&fate.end)).unwrap();
+    }
+    text
+}
+
+/// Sums, products and comparisons alone decide where the motion from 0 goes, which is the first that is told; of starts on circles it is told
+/// how many go where.
+#[test]
+fn what_local_maps_do_is_as_it_was() {
+    let mut text = String::new();
+    for (traces, determinants) in [
+        ([0.4, -1.7], [0.3, 0.2]),
+        ([2.4, 0.3], [0.4, 0.5]),
+        ([1.7, -1.5], [0.3, 0.2]),
+        ([1.8, -1.954043], [0.3, 0.3]),
+        ([2.1, -1.4777777777777779], [0.4, 0.4]),
+        ([-1.2, -0.9], [0.3, 0.4]),
+        ([0.4, 2.05], [0.3, 1.048]),
+        ([-0.3, -1.4], [0.9, 0.85]),
+        ([0.9, -1.9], [-0.3, 1.4]),
+    ] {
+        // Where coordinates are not those of the normal form, and the border does not go through 0.
+        let map = common::normal_form(traces, determinants);
+        let moved = LocalMap { border: (map.border.0 * 2.0, 0.3), ..map };
+        for (name, map) in [("", map), ("moved ", moved)] {
+            let scales = map.scales();
+            let scales = format!("{} {}", digits(scales[0]), digits(scales[1]));
+            writeln!(text, "{name}traces {traces:?}, determinants {determinants:?}: scales {scales}").unwrap();
+            for mu in [1.0, -1.0, 0.0] {
+                let decade = passage::revolutions_per_decade(&map).map_or("none".into(), digits);
+                let leaves = passage::linear(&map, 1e-4 * mu, 10.0, 1000);
+                writeln!(text, " mu {mu}: a decade in {decade}, away after {leaves:?}").unwrap();
+                text += &told(&map, mu);
+            }
+        }
+    }
+    for slopes in [[0.5, -1.3], [-1.5, -2.0], [0.3, -4.0]] {
+        writeln!(text, "the line with slopes {slopes:?}").unwrap();
+        text += &told(&common::of_the_line(slopes), 1.0);
+    }
+    is_as_it_was("local-maps", &text);
+}
+
+/// One revolution more or less, and a hundredth of them; who never leaves agrees with nobody.
+#[test]
+fn passages_agree_within_a_hundredth() {
+    for (linear, simulated, agree) in [
+        (Some(100), Some(102), true),
+        (Some(100), Some(98), true),
+        (Some(100), Some(103), false),
+        (Some(1), Some(2), true),
+        (Some(1), Some(3), false),
+        (Some(300), Some(305), false),
+        (None, None, false),
+        (Some(5), None, false),
+    ] {
+        assert_eq!(passage::agree(linear, simulated), agree, "{linear:?} {simulated:?}");
+    }
 }

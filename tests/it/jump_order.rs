@@ -163,7 +163,9 @@ fn what_cannot_be_compared_says_why() {
     let model = law("rectified-sine.toml");
     let cam = common::cam(&model);
     let corner = cam.corners()[1];
-    for (omega, velocity) in [(1.0, 5.0), (1.0, f64::NAN), (0.0, -5.0), (f64::INFINITY, -5.0), (-1.0, -5.0)] {
+    for (omega, velocity) in
+        [(1.0, 5.0), (1.0, f64::NAN), (0.0, -5.0), (f64::INFINITY, -5.0), (-1.0, -5.0), (1.0, f64::NEG_INFINITY)]
+    {
         let error = Approach::new(corner, omega, velocity).unwrap_err();
         assert!(matches!(error, JumpOrderError::NotFromAbove { .. }), "{omega} {velocity}: {error}");
     }

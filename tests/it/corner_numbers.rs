@@ -1,0 +1,300 @@
+//! Have the maps at corner impacts moved? To the digits that they are known to, in a snapshot; and do what they are made of, periods of
+//! parts of an orbit, begin and end where they must?
+
+use std::f64::consts::TAU;
+use std::fmt::Write;
+
+use approx::assert_relative_eq;
+use corner_impact::cam::{Cam, Side};
+use corner_impact::corner::jump_order::Approach;
+use corner_impact::corner::jump_order::compared::{Compared, compare};
+use corner_impact::corner::jump_order::measured::Sides;
+use corner_impact::corner::jump_order::predicted::{self, Hits};
+use corner_impact::corner::map::Uncertainty;
+use corner_impact::corner::one_sided::OneSidedMap;
+use corner_impact::corner::range::{RangeError, find_corner_impacts};
+use corner_impact::corner::varied::Varied;
+use corner_impact::corner::{CornerImpact, finite_difference, least_squares, second_order, variational};
+use corner_impact::estimate::Estimate;
+use corner_impact::model::{CamProfile, Model, Study};
+use corner_impact::paper::jump_order::EXAMPLES;
+use corner_impact::progress::Unwatched;
+use nalgebra::{Matrix2, Vector2, Vector3};
+
+use crate::common;
+use crate::orbit_numbers::is_as_it_was;
+
+/// The corner impacts between two speeds.
+fn found(model: &Model, [rpm_min, rpm_max]: [f64; 2], revolutions: u64) -> (Cam, Vec<CornerImpact>) {
+    let cam = common::cam(model);
+    let found = find_corner_impacts(model, &cam, Study { rpm_min, rpm_max }, revolutions, &Unwatched);
+    (cam, found.unwrap().found)
+}
+
+fn read(file: &str) -> Model {
+    common::read(format!("models/{file}.toml").as_ref())
+}
+
+/// The paper's machine with a damper, gravity, a preload, and masses in grams.
+fn in_grams() -> Model {
+    let text = common::osorio_text(&[("mass", "1221"), ("damping", "1.0"), ("gravity", "9.8")]);
+    let text = text.replace("rest_position = 0.3", "preload = 143.08");
+    Model::parse("preloaded.toml", &format!("{text}\n[units]\nmass = \"g\"\n")).unwrap()
+}
+
+/// To six digits; what is nothing but rounding is 0.
+fn digits(number: f64) -> String {
+    if number.abs() < 1e-9 { "0".into() } else { format!("{number:.5e}") }
+}
+
+fn pair(vector: Vector2<f64>) -> String {
+    format!("({}, {})", digits(vector[0]), digits(vector[1]))
+}
+
+#[test]
+fn b_by_every_number_is_as_it_was() {
+    let mut text = String::new();
+    let machines = [(in_grams(), [739.0, 739.1], 1), (read("persistence"), [493.0, 494.0], 1)];
+    for (model, speeds, revolutions) in machines {
+        let (cam, all) = found(&model, speeds, revolutions);
+        let at = &all[0];
+        let (rpm, impacts) = (digits(at.speed_rpm()), at.cycle.impacts.len());
+        writeln!(text, "{} at {rpm} rpm, impacts {impacts}", model.name).unwrap();
+        // Corners that are not rounded have no neighbour below.
+        for (name, _) in model.numbers().filter(|(name, _)| *name != "cam.corner_rounding_deg") {
+            let route = variational::route_by(&model, &cam, at, &Varied::Number(name.into())).unwrap();
+            let Some(Uncertainty::Extrapolation(off)) = route.uncertainty else { panic!("{name}: {route:?}") };
+            for (b, off) in [(route.map.minus.b, off.minus.b), (route.map.plus.b, off.plus.b)] {
+                assert!(off.min() >= 0.0 && off.norm() <= 1e-8 * b.norm() + 1e-10, "{name}: {off} of {b}");
+            }
+            writeln!(text, "  {name}: {} {}", pair(route.map.minus.b), pair(route.map.plus.b)).unwrap();
+        }
+        let curved = second_order::second_order(&model, &cam, at);
+        for side in [Side::Minus, Side::Plus] {
+            let [first, second] = curved.of(side).fixed_point().unwrap();
+            writeln!(text, "  fixed point {side:?}: {} {}", pair(first), pair(second)).unwrap();
+        }
+    }
+    is_as_it_was("corner-numbers", &text);
+}
+
+/// Each from the middle of a flight to that of the next: unmoved it ends where the next begins, a unit in any direction leaves the
+/// impact the orbit's, and the differences of all multiply to A of the product of propagators.
+#[test]
+fn parts_of_an_orbit_begin_and_end_on_it() {
+    let machines = [
+        (common::osorio(), [736.0, 736.2], 1),
+        (common::osorio(), [739.3, 739.4], 2),
+        (read("laws/polynomial"), [410.9, 411.0], 1),
+        (read("laws/polynomial"), [419.8, 419.9], 1),
+        (in_grams(), [739.0, 739.1], 1),
+    ];
+    for (model, speeds, revolutions) in machines {
+        let (cam, all) = found(&model, speeds, revolutions);
+        let at = &all[0];
+        let exact = variational::route(&model, &cam, at).map;
+        for side in [Side::Minus, Side::Plus] {
+            let case = format!("{} at {} rpm, {side:?}", model.name, at.speed_rpm());
+            let whole = OneSidedMap::new(&model, &cam, at, side).unwrap();
+            let pieces = OneSidedMap::pieces(&model, &cam, at, side, &Varied::Period).unwrap();
+            assert_eq!(pieces.len(), at.cycle.impacts.len());
+            let (mut a, mut b) = (Matrix2::identity(), Vector2::zeros());
+            for (index, map) in std::iter::once(&whole).chain(&pieces).enumerate() {
+                let unmoved = map.sample(Vector3::zeros()).unwrap();
+                let rounding = map.rounding();
+                assert!(unmoved.end.abs() <= rounding * 1e4, "{case} {index}: {unmoved:?} {rounding}");
+                assert!(unmoved.past_corner.abs() < 1e-8, "{case} {index}: {unmoved:?}");
+                let (mut part, mut by_period) = (Matrix2::zeros(), Vector2::zeros());
+                for direction in 0..3 {
+                    let mut unit = Vector3::zeros();
+                    unit[direction] = map.scales()[direction];
+                    let difference = |unit: Vector3<f64>| {
+                        let [ahead, behind] = [unit, -unit].map(|unit| map.sample(unit).unwrap());
+                        (ahead.end - behind.end) / (ahead.perturbation - behind.perturbation)[direction]
+                    };
+                    assert!(difference(unit).norm().is_finite());
+                    // A hundredth of a unit keeps the map straight.
+                    let column = difference(unit * 0.01);
+                    match direction {
+                        2 => by_period = column,
+                        _ => part.set_column(direction, &column),
+                    }
+                }
+                if index > 0 {
+                    (a, b) = (part * a, part * b + by_period);
+                }
+            }
+            let exact = if side == Side::Minus { exact.minus } else { exact.plus };
+            let off = [(a - exact.a).norm() / exact.a.norm(), (b - exact.b).norm() / exact.b.norm()];
+            assert!(off.iter().all(|off| *off < 1e-4), "{case}: {off:?}");
+        }
+    }
+}
+
+/// Differences and fits over several impacts, of the map and of the border, are off by no more than ten times what they say, which is little.
+#[test]
+fn estimates_over_several_impacts_know_their_errors() {
+    for (model, speeds) in [(common::osorio(), [736.0, 736.2]), (in_grams(), [739.0, 739.1])] {
+        let (cam, all) = found(&model, speeds, 1);
+        let at = &all[0];
+        let exact = variational::route(&model, &cam, at);
+        for side in [Side::Minus, Side::Plus] {
+            let of = if side == Side::Minus { exact.map.minus } else { exact.map.plus };
+            let (value, error) = finite_difference::side_map(&model, &cam, at, side, &Varied::Period).unwrap();
+            let off = (value.map.a - of.a).abs();
+            assert!(off <= error.map.a * 10.0 && error.map.a.norm() < 1e-6 * of.a.norm(), "{off} {}", error.map.a);
+            let off = (value.map.b - of.b).abs();
+            assert!(off <= error.map.b * 10.0 && error.map.b.norm() < 1e-6 * of.b.norm(), "{off} {}", error.map.b);
+            assert!(error.map.a.min() > 0.0 && error.map.b.min() > 0.0 && error.gap.min() > 0.0);
+        }
+        let fit = least_squares::route(&model, &cam, at).unwrap();
+        for (fit, of) in [(fit.map.minus, exact.map.minus), (fit.map.plus, exact.map.plus)] {
+            assert!((fit.a - of.a).norm() < 1e-5 * of.a.norm() && (fit.b - of.b).norm() < 1e-5 * of.b.norm());
+        }
+    }
+}
+
+/// Also by a number that is 0, whose own size says nothing, and by one that the cam is made of.
+#[test]
+fn differences_by_a_number_are_those_of_the_product() {
+    let model = common::osorio();
+    let (cam, all) = found(&model, [673.0, 673.5], 1);
+    for name in ["follower.gravity", "follower.mass", "follower.restitution", "cam.nose_radius"] {
+        let by = Varied::Number(name.into());
+        let exact = variational::route_by(&model, &cam, &all[0], &by).unwrap().map;
+        let found = finite_difference::route_by(&model, &cam, &all[0], &by).unwrap().map;
+        for (found, exact) in [(found.minus.b, exact.minus.b), (found.plus.b, exact.plus.b)] {
+            assert!((found - exact).norm() <= 1e-7 * exact.norm().max(1e-3), "{name}: {found} {exact}");
+        }
+    }
+}
+
+/// The follower's motion from the longest period of a range to the shortest: (w0 + zeta) n (T_2 - T_1).
+#[test]
+fn too_wide_a_range_says_how_many_radians_it_spans() {
+    let model = common::osorio_with(&[("damping", "3.0")]);
+    let range = Study { rpm_min: 1e-2, rpm_max: 700.0 };
+    let follower = &model.follower;
+    let rate = (follower.stiffness / follower.mass).sqrt() + 3.0 / (2.0 * follower.mass);
+    for revolutions in [1, 3] {
+        match find_corner_impacts(&model, &common::cam(&model), range, revolutions, &Unwatched).map(|_| ()) {
+            Err(RangeError::TooWide { radians, .. }) => {
+                let expected = rate * revolutions as f64 * (60.0 / 1e-2 - 60.0 / 700.0);
+                assert_relative_eq!(radians, expected, max_relative = 1e-12);
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+}
+
+/// A corner of velocity under a follower with every force: a heavy one with a spring, a damper and gravity.
+fn of_every_force() -> Compared {
+    let mut model = read("laws/rectified-sine");
+    let CamProfile::RectifiedSine(_) = &model.cam else { panic!("{:?}", model.cam) };
+    let follower = &mut model.follower;
+    (follower.mass, follower.damping, follower.stiffness) = (1.7, 0.9, 2.3);
+    (follower.gravity, follower.rest_position) = (0.7, 0.4);
+    let cam = common::cam(&model);
+    let (corner, omega) = (cam.corners()[1], 1.3);
+    compare(&model, &cam, &Approach::new(corner, omega, omega * corner.minus.slope - 6.0).unwrap()).unwrap()
+}
+
+#[test]
+fn a_jump_is_as_predicted_under_every_force() {
+    let compared = of_every_force();
+    assert!(compared.agrees() && compared.rows.len() == 5, "{compared:#?}");
+    for row in &compared.rows {
+        let off = (row.measured.coefficient.value / row.predicted.coefficient - 1.0).abs();
+        assert_relative_eq!(row.relative_difference(), off, max_relative = 1e-3, epsilon = 1e-15);
+        // In parts of a scale or in whole ones, the error is that of the coefficient.
+        let Estimate { value, error, .. } = row.measured.coefficient;
+        assert!(error > 0.0 && error <= 1e-5 * value.abs(), "{row:?}");
+    }
+}
+
+/// Deviations that move the impact by comparable times, reach/omega: in position by what the gap closes in that time, in velocity by what
+/// takes the whole flight to come to as much.
+#[test]
+fn deviations_of_flights_move_their_impact_alike() {
+    for example in
+        EXAMPLES.iter().filter(|example| !example.name.contains("sine,") && !example.name.contains("hollows"))
+    {
+        let (model, cam, approach) = example.build().unwrap();
+        let sides = Sides::new(&model, &cam, &approach).unwrap();
+        let (closing, omega, scales) = (approach.closing_velocity(), approach.angular_velocity, sides.scales());
+        let time = scales[0] / closing;
+        let reach = time * omega;
+        // A tenth of a radian, or a part of it by halving.
+        let halvings = (0.1 / reach).log2();
+        assert!((halvings - halvings.round()).abs() < 1e-9 && halvings > -1e-9, "{}: {reach}", example.name);
+        assert_relative_eq!(scales[1], closing * reach / sides.span(), max_relative = 1e-12);
+        let slower = closing / (closing + approach.velocity_before.abs());
+        assert_relative_eq!(scales[2], time * slower, max_relative = 1e-12);
+        let gradient = predicted::over(&model.follower, &approach, sides.span(), sides.span()).gradient;
+        for direction in 0..3 {
+            let mut z = Vector3::zeros();
+            z[direction] = 1e-3 * scales[direction];
+            let offset = sides.pair(z).unwrap().offset;
+            assert_relative_eq!((gradient * z)[0], offset, max_relative = 0.05);
+        }
+    }
+}
+
+/// At the bounds themselves: a follower as fast as the cam falls away misses it, one that rebounds as fast as it rises hits it once.
+#[test]
+fn the_bounds_of_a_velocity_jump_belong_to_one_side() {
+    for (amplitude, closing, hits) in [
+        (-1.0, 2.0, Hits::NeverAfter),
+        (-1.0, 2.0 + 1e-12, Hits::Once),
+        (1.0, 2.5, Hits::Once),
+        (1.0, 2.5 - 1e-12, Hits::TwiceBefore),
+    ] {
+        let mut model = read("laws/rectified-sine");
+        let CamProfile::RectifiedSine(profile) = &mut model.cam else { panic!("{:?}", model.cam) };
+        profile.amplitude = amplitude;
+        model.follower.restitution = 0.8;
+        let mut corner = common::cam(&model).corners()[1];
+        (corner.minus.slope, corner.plus.slope, corner.jump) = (-amplitude, amplitude, 2.0 * amplitude);
+        let approach = Approach::new(corner, 1.0, -amplitude - closing).unwrap();
+        assert_eq!(predicted::hits(&model.follower, &approach), hits, "{amplitude} {closing}");
+    }
+}
+
+/// It agrees with no other exponent, coefficient or number of impacts, nor where nothing was compared.
+#[test]
+fn a_jump_that_is_not_as_predicted_disagrees() {
+    let right = of_every_force();
+    for index in 0..right.rows.len() {
+        let mut wrong = right.clone();
+        wrong.rows[index].measured.coefficient.value *= 1.01;
+        assert!(!wrong.agrees(), "{index}");
+        let mut wrong = right.clone();
+        wrong.rows[index].measured.exponent.value += 0.1;
+        assert!(!wrong.agrees(), "{index}");
+    }
+    let mut miscounted = right.clone();
+    miscounted.gap.as_mut().unwrap().impacts = [2, 1];
+    let empty = Compared { rows: Vec::new(), ..right };
+    assert!(!miscounted.agrees() && !empty.agrees());
+}
+
+/// The deviation that is carried once around from x* is that of the state at its section, at each of its impacts.
+#[test]
+fn the_course_of_an_orbit_comes_round() {
+    for (model, speeds, revolutions) in
+        [(common::osorio(), [736.0, 736.2], 1), (common::osorio(), [739.3, 739.4], 2), (in_grams(), [739.0, 739.1], 1)]
+    {
+        let (_, all) = found(&model, speeds, revolutions);
+        let at = &all[0];
+        let (flights, last) = at.course();
+        let mut angle = at.section_angle();
+        for (turn, impact) in &flights {
+            angle += turn;
+            let there = at.cycle.impacts[*impact].cam_angle;
+            let off = (angle - there) / TAU;
+            assert!((off - off.round()).abs() < 1e-12, "{angle} {there}");
+        }
+        assert_relative_eq!(angle + last, at.section_angle() + revolutions as f64 * TAU, max_relative = 1e-12);
+        assert!(!at.is_simple());
+    }
+}
