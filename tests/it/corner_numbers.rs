@@ -112,7 +112,7 @@ fn parts_of_an_orbit_begin_and_end_on_it() {
                         let [ahead, behind] = [unit, -unit].map(|unit| map.sample(unit).unwrap());
                         (ahead.end - behind.end) / (ahead.perturbation - behind.perturbation)[direction]
                     };
-                    assert!(difference(unit).norm().is_finite());
+                    assert!([unit, -unit].iter().all(|unit| map.sample(*unit).is_ok()), "{case} {index} {direction}");
                     // A hundredth of a unit keeps the map straight.
                     let column = difference(unit * 0.01);
                     match direction {

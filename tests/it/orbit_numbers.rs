@@ -17,15 +17,15 @@ use crate::common;
 use crate::random::{Case, cases_of_every_law, drawn};
 use crate::snapshots;
 
-fn model(name: &str) -> Model {
+pub fn model(name: &str) -> Model {
     common::read(Path::new(&format!("models/{name}.toml")))
 }
 
-fn machine(model: &Model, rpm: f64) -> Machine {
+pub fn machine(model: &Model, rpm: f64) -> Machine {
     Machine::new(Cam::new(model).unwrap(), &model.follower, angular_velocity(rpm))
 }
 
-fn orbits(model: &Model, rpm: f64, revolutions: u64) -> Vec<PeriodicOrbit> {
+pub fn orbits(model: &Model, rpm: f64, revolutions: u64) -> Vec<PeriodicOrbit> {
     search(&machine(model, rpm), &Search { revolutions, impacts: None }).unwrap()
 }
 

@@ -99,6 +99,9 @@ pub fn in_units(name: &str, scales: Scales) -> Model {
     Model::parse("scaled.toml", &lines.filter_map(line).collect::<Vec<_>>().join("\n")).unwrap()
 }
 
+/// What is listed where no run goes on.
+const NO_RUN: &str = "no run goes on";
+
 /// All orbits of one revolution with so many impacts, and where that is not known: angles alone, to the last bit.
 fn listed(model: &Model, rpm: f64, impacts: usize) -> String {
     let machine = Machine::new(Cam::new(model).unwrap(), &model.follower, angular_velocity(rpm));
@@ -108,7 +111,7 @@ fn listed(model: &Model, rpm: f64, impacts: usize) -> String {
             let orbits: Vec<_> = orbits.iter().map(|orbit| (orbit.known, angles(orbit))).collect();
             format!("{complete:?} {undecided:?} {orbits:?}")
         }
-        Err(_) => "no run goes on".into(),
+        Err(_) => NO_RUN.into(),
     }
 }
 
@@ -119,6 +122,7 @@ fn lists_are_the_same(impacts: usize, numbers: &[usize]) {
     for number in numbers {
         let case = &drawn[*number];
         let expected = listed(&case.model, case.rpm, impacts);
+        assert_ne!(expected, NO_RUN, "{case:?}");
         for scales in SCALED {
             let folder = tempfile::tempdir().unwrap();
             let scaled = read(&written(case, scales, folder.path()));
