@@ -282,13 +282,13 @@ impl<'a> OneSidedMap<'a> {
             Turned::Remade { family, value } => {
                 let side = self.side;
                 let moved = value + perturbation;
-                let remade =
-                    family.machine(&[moved]).map_err(|error| SampleError::Varied { side, error: error.into() })?;
+                let remade = family
+                    .machine_of_cycles(&[moved])
+                    .map_err(|error| SampleError::Varied { side, error: error.into() })?;
                 let cam = remade.0.cam().clone();
                 let angle = cam.segments().get(corner.segment).map_or(f64::NAN, |segment| segment.start);
                 let there = Corner { angle, ..corner };
-                let continued = cam.continued(&there, side, self.reach);
-                let Some(continued) = continued.filter(|_| cam.segments().len() == self.whole.segments().len()) else {
+                let Some(continued) = cam.continued(&there, side, self.reach) else {
                     return Err(SampleError::NotContinued { side, cam_angle: angle, least: self.reach });
                 };
                 let machine = remade.0.with_cam(continued);

@@ -111,7 +111,7 @@ pub fn closed<E: Equations>(
 /// A direction as long as 1; an error where it is none.
 pub fn unit<E>(direction: DVector<f64>) -> Result<DVector<f64>, NoPoint<E>> {
     let length = direction.norm();
-    if length.is_finite() && length > 0.0 { Ok(direction / length) } else { Err(NoPoint::NotClosed) }
+    if length.is_normal() { Ok(direction / length) } else { Err(NoPoint::NotClosed) }
 }
 
 /// The last value that is not refused on the way from one to `beyond`, which is; `None` where it is not.

@@ -22,6 +22,9 @@ pub enum FamilyError {
     /// The cam would not turn.
     #[error("{rpm} rpm: {ABOVE_0}")]
     Speed { rpm: f64 },
+    /// A segment of the cam would have no width, or one that has none would have some: the segments of impacts would be others.
+    #[error("the cam would have {found} segments instead of {own}")]
+    Segments { own: usize, found: usize },
 }
 
 const ABOVE_0: &str = "the speed must be a finite number above 0";
@@ -32,6 +35,7 @@ impl FamilyError {
         match self {
             Self::Model(error) => error.rule(),
             Self::Speed { .. } => ABOVE_0.into(),
+            Self::Segments { own, .. } => format!("must leave the cam its {own} segments"),
         }
     }
 }
@@ -103,6 +107,15 @@ impl Family {
             Some(model) => Machine::new(Cam::new(&model)?, &model.follower, omega),
         };
         Ok((machine, rpm))
+    }
+
+    /// The same, refused where the cam has another number of segments: cycles name theirs by index.
+    pub fn machine_of_cycles(&self, values: &[f64]) -> Result<(Machine, f64), FamilyError> {
+        let (machine, rpm) = self.machine(values)?;
+        match [&self.machine, &machine].map(|machine| machine.cam().segments().len()) {
+            [own, found] if own != found => Err(FamilyError::Segments { own, found }),
+            _ => Ok((machine, rpm)),
+        }
     }
 }
 

@@ -28,12 +28,16 @@ impl Eigenvalue {
 /// ```text
 /// m = (a + d)/2,  h = (a - d)/2        m +- sqrt(h^2 + b c) = d + z, d - b c/z,  z = h +- sqrt(h^2 + b c), which does not cancel
 /// ```
+///
+/// with d the smaller of a and d: of the larger, d - b c/z would keep no digits of an eigenvalue that is far smaller still.
 pub fn eigenvalues(matrix: &Matrix2<f64>) -> [Eigenvalue; 2] {
     let real = |re: f64| Eigenvalue { re, im: 0.0 };
     if !matrix.iter().all(|entry| entry.is_finite()) {
         return [real(f64::NAN); 2].map(|unknown| Eigenvalue { im: f64::NAN, ..unknown });
     }
-    let (a, d, across) = (matrix[(0, 0)], matrix[(1, 1)], matrix[(0, 1)] * matrix[(1, 0)]);
+    let across = matrix[(0, 1)] * matrix[(1, 0)];
+    let [a, d] = [matrix[(0, 0)], matrix[(1, 1)]];
+    let (a, d) = if d.abs() <= a.abs() { (a, d) } else { (d, a) };
     let half = 0.5 * (a - d);
     let square = half * half + across;
     if square < 0.0 {

@@ -186,13 +186,11 @@ impl<'a> Found<'a> {
     fn shoot(&mut self, cam_angle: f64, relative_velocity: f64) -> Result<(), SimulateError> {
         let mut motion = self.machine.start_on_cam(cam_angle, relative_velocity)?;
         let most = self.wanted.impacts.unwrap_or(MOST_IMPACTS);
-        let events = period(self.machine, &mut motion, self.wanted.revolutions, most + 1)?;
-        let count = events.iter().filter(|event| event.kind == EventKind::Impact).count();
+        let events = period(self.machine, &mut motion, self.wanted.revolutions, most)?;
         let sticks = events.iter().any(|event| event.kind == EventKind::Stick);
-        if sticks || count == 0 || count > most + 1 {
-            return Ok(());
+        if !sticks && events.len() <= most {
+            self.close(&Cycle::of_events(self.wanted.revolutions, &events).in_order());
         }
-        self.close(&Cycle::of_events(self.wanted.revolutions, &events).in_order());
         Ok(())
     }
 }

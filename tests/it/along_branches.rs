@@ -4,8 +4,10 @@
 use corner_impact::cam::Cam;
 use corner_impact::model::Model;
 use corner_impact::orbit::branch::{Bifurcation, Branch, BranchPoint, End, Following, Kind};
-use corner_impact::orbit::{Course, Parameter, PeriodicOrbit};
+use corner_impact::orbit::{Course, Parameter, PeriodicOrbit, Search};
+use corner_impact::progress::Unwatched;
 use corner_impact::simulate::angular_velocity;
+use corner_impact::study::continuation::branches;
 
 use crate::orbit_numbers::{model, orbits};
 
@@ -280,4 +282,101 @@ fn a_branch_goes_on_beyond_a_corner_that_moves() {
     let corners: Vec<&BranchPoint> = branch.points.iter().filter(|point| is_special(point, is_corner)).collect();
     let [corner] = corners[..] else { panic!("{}", corners.len()) };
     assert!((corner.orbit.events[0].cam_angle - corner.value.to_radians()).abs() < 1e-9, "{corner:?}");
+}
+
+/// The angle that corners are rounded over is 0, or more than next to nothing: what is between ends a branch at its smallest.
+#[test]
+fn a_branch_of_a_follower_that_rests_ends_where_no_smaller_value_is_allowed() {
+    let model = model("osorio-2008").with_number("cam.corner_rounding_deg", 2.0).unwrap();
+    let orbits = orbits(&model, 150.0, 1);
+    let rests = orbits.iter().find(|orbit| matches!(orbit.course, Course::Sticking(_))).unwrap();
+    let number = following(&model, "corner_rounding_deg", [0.0, 4.0], 0.05);
+    let branch = Branch::through(&model, 150.0, rests, &number).unwrap();
+    assert!(matches!(&branch.ends, [End::Edge { largest: false, .. }, End::Range]), "{:?}", branch.ends);
+}
+
+/// A line goes from one orbit to another: an impact that passes angle 0 between two orbits has none on either side.
+#[test]
+fn a_line_is_of_two_points_or_more() {
+    let model = model("osorio-2008");
+    let mut passes = 0;
+    for orbit in orbits(&model, 320.0, 1) {
+        let branch = Branch::through(&model, 320.0, &orbit, &following(&model, "rpm", [310.0, 340.0], 0.05)).unwrap();
+        for pair in branch.points.windows(2) {
+            let piece = Branch { points: pair.to_vec(), ends: branch.ends.clone() };
+            let count = |point: &BranchPoint| point.orbit.impacts().count();
+            let lines = piece.lines();
+            assert!(lines.iter().all(|line| line.points.len() == 2), "{lines:?}");
+            passes += usize::from(count(&pair[0]) == count(&pair[1]) && lines.len() < count(&pair[0]));
+        }
+    }
+    assert!(passes > 0);
+}
+
+/// Branches of as many doublings of the orbits at a speed, rpm.
+fn doubled(name: &str, rpm: f64, range: [f64; 2], doublings: u32) -> Vec<Branch> {
+    let model = model(name);
+    let following = Following { most_points: 150, ..following(&model, "rpm", range, 0.05) };
+    branches(&model, rpm, &Search { revolutions: 1, impacts: None }, following, doublings, &Unwatched).unwrap().branches
+}
+
+fn revolutions(branch: &Branch) -> u64 {
+    branch.points[branch.points.len() / 2].orbit.revolutions
+}
+
+/// Where an orbit of one revolution grazes, one begins that touches the cam in each second revolution.
+#[test]
+fn a_branch_of_twice_the_period_begins_at_a_graze() {
+    for (name, rpm, range, graze) in
+        [("damped-heavy", 752.0, [700.0, 800.0], 752.164816), ("nonsmooth-flip", 890.0, [800.0, 950.0], 814.65)]
+    {
+        let found = doubled(name, rpm, range, 1);
+        let begins = found.iter().filter(|branch| revolutions(branch) == 2).any(|branch| {
+            let last = branch.points.last().unwrap();
+            let is_graze = is_special(last, |kind| matches!(kind, Kind::Graze { .. }));
+            branch.ends == [End::Range, End::Shorter] && is_graze && (last.rpm - graze).abs() < 1e-3
+        });
+        assert!(begins, "{name} {:?}", found.iter().map(|branch| &branch.ends).collect::<Vec<_>>());
+    }
+}
+
+/// Orbits of four revolutions end where those of two have a flip, and not at another flip, however many impacts they have.
+#[test]
+fn branches_of_four_times_the_period_end_where_those_of_twice_flip() {
+    let range = [730.0, 800.0];
+    let found = doubled("osorio-2008", 735.0, range, 2);
+    let all = |branch: &Branch| branch.points.iter().all(|point| (range[0]..=range[1]).contains(&point.rpm));
+    assert!(found.iter().all(all));
+    let [two, four] = [2, 4].map(|count| found.iter().filter(|it| revolutions(it) == count).collect::<Vec<_>>());
+    let flips: Vec<f64> = two
+        .iter()
+        .flat_map(|it| &it.points)
+        .filter(|it| is_special(it, |kind| kind == Kind::Flip))
+        .map(|it| it.rpm)
+        .collect();
+    let is_flip = |point: &BranchPoint| flips.iter().any(|rpm| (rpm - point.rpm).abs() < 1e-9 * rpm);
+    let ending = four.iter().filter(|it| it.ends == [End::Range, End::Shorter] && is_flip(it.points.last().unwrap()));
+    assert_eq!(ending.count(), 1, "{flips:?}");
+    let ends = |wanted: End| four.iter().filter(|branch| branch.ends.contains(&wanted)).count();
+    // No orbit of theirs has as many as two dozen impacts a revolution, and where one of them ends no impact is a touch.
+    assert_eq!([ends(End::Chatter), ends(End::Graze), ends(End::Lost)], [0, 0, 1]);
+}
+
+/// At 180 degrees the nose goes round the whole back of the cam: the dwell opposite it has no width, and impacts are told by segments.
+#[test]
+fn a_branch_ends_where_a_segment_of_the_cam_would_have_no_width() {
+    let model = model("osorio-2008");
+    let edge = End::Edge { largest: true, why: "cam.nose_end_deg must be a finite number from 0 to 180".into() };
+    for highest in [180.0, 208.0] {
+        let number = following(&model, "nose_end_deg", [112.0, highest], 0.05);
+        let mut seen = 0;
+        for orbit in &orbits(&model, 320.0, 1) {
+            let branch = Branch::through(&model, 320.0, orbit, &number).unwrap();
+            for (end, point) in branch.ends.iter().zip([branch.points.first(), branch.points.last()]) {
+                let value = point.unwrap().value;
+                seen += usize::from(*end == edge && value < 180.0 && value > 180.0 - 1e-9);
+            }
+        }
+        assert!(seen > 0, "{highest}");
+    }
 }

@@ -105,6 +105,15 @@ fn a_corner_is_left_undecided() {
     assert!(at.undecided.iter().all(|it| near(it.cam_angles[0][0]) && near(it.cam_angles[0][1])), "{at:?}");
 }
 
+/// On its way, at angles beyond that of the impact: no flight, and nothing is left undecided.
+#[test]
+fn a_flight_that_meets_the_cam_beyond_the_angle_that_it_comes_back_to_is_refused() {
+    let case = &random::drawn(random::cases_of_every_law(), 7)[6];
+    for part in [0.7, 0.9] {
+        are(&all(&machine(&case.model, part * case.rpm), 1), &[]);
+    }
+}
+
 /// All corner impacts of one impact from 600 to 760 rpm are one, and a flight that leaves into the cam is refused with a proof.
 #[test]
 fn the_papers_corner_impacts_are_all_found() {

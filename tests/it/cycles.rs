@@ -157,7 +157,12 @@ fn the_equations_of_all_flights_are_singular_at_the_multipliers_and_nowhere_else
 /// The product of both is the determinant, however far apart they are.
 #[test]
 fn of_two_eigenvalues_far_apart_the_small_one_keeps_its_digits() {
-    for (matrix, product) in [(Matrix2::new(1e8, 1.0, 1.0, 0.0), -1.0), (Matrix2::new(3e7, 1.0, -4.0, 1e-7), 7.0)] {
+    for (matrix, product) in [
+        (Matrix2::new(1e8, 1.0, 1.0, 0.0), -1.0),
+        (Matrix2::new(3e7, 1.0, -4.0, 1e-7), 7.0),
+        (Matrix2::new(0.0, 2.0, 1.0, -1e9), -2.0),
+        (Matrix2::new(1e-7, 1.0, -4.0, 3e7), 7.0),
+    ] {
         let [one, two] = eigenvalues(&matrix);
         assert_relative_eq!(one.re * two.re, product, max_relative = 1e-14);
         assert!(one.re > two.re && one.im == 0.0 && two.im == 0.0, "{one:?} {two:?}");

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod along_branches;
+mod along_curves;
 mod answers;
 mod attractors;
 mod bad_commands;

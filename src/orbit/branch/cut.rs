@@ -94,7 +94,7 @@ impl Stride<'_> {
             }
             values
         };
-        let machine_at = |value: f64| self.family.machine(&values(value)).ok().map(|(machine, _)| machine);
+        let machine_at = |value: f64| self.family.machine_of_cycles(&values(value)).ok().map(|(machine, _)| machine);
         let Some(flipped) = halved::flip(machine_at, ends) else { return Ok(None) };
         let Some(machine) = machine_at(flipped.value) else { return Ok(None) };
         let unknowns = problem.unknowns(&flipped.cycle, &machine, &values(flipped.value));

@@ -87,7 +87,7 @@ fn stepped(
     // At this value alone Newton's method would as well lead back to the orbit that is known.
     let (cycle, machine, _) = problem.unpack(&point.unknowns).ok()?;
     let residual = cycle.residual(&machine).amax() / lift_size(&machine);
-    let is_orbit = matches!(cycle.departure(&machine), Ok(None)) && !cycle.repeats_sooner();
+    let is_orbit = matches!(cycle.departure(&machine), Ok(None));
     let value = *problem.values(&point.unknowns).first()?;
     is_orbit.then(|| (value, PeriodicOrbit::of_cycle(&machine, cycle, residual)))
 }

@@ -257,12 +257,8 @@ impl Walk<'_> {
             }
             let at = |point: &CurvePoint| self.stride.measure(&problem, cut, point);
             // Just short of a graze, where the matrix has a pole.
-            if (at(&self.stride.from)? > 0.0) != (at(&clear)? > 0.0) && self.fresh.is_none() {
-                let located = match self.stride.locate(&problem, cut, reach) {
-                    // Where branches cross, the equations are singular, and may not close that near.
-                    Err(_) if cut == Cut::Branching => continue,
-                    located => located?,
-                };
+            if (at(&self.stride.from)? < 0.0) != (at(&clear)? < 0.0) && self.fresh.is_none() {
+                let located = self.stride.locate(&problem, cut, reach)?;
                 folds |= cut == Cut::Fold;
                 // A sign that changes through infinity is no root.
                 let small = if cut == Cut::Branching { tolerance::BRANCHING } else { tolerance::SAME_ORBIT };
@@ -337,7 +333,9 @@ impl Walk<'_> {
         }
         let Some(beyond) = switch::beyond(exit, &cycle, &machine) else { return Ok(Some(End::Graze)) };
         let ended = if matches!(exit, Exit::Corner { .. }) { End::Corner } else { End::Graze };
-        let held = match self.stride.held.map(|held| switch::held_beyond(held, exit)) {
+        // A flight that meets the cam in a touch alone is no orbit of impacts.
+        let hits = |held: &Held| !held.orbit(&beyond).impacts.is_empty();
+        let held = match self.stride.held.map(|held| switch::held_beyond(held, exit).filter(hits)) {
             Some(None) => return Ok(Some(ended)),
             held => held.flatten(),
         };

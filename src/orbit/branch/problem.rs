@@ -71,7 +71,7 @@ impl<'a> Problem<'a> {
 
     /// The cycle and the machine that unknowns stand for, and its speed, rpm.
     pub fn unpack(&self, unknowns: &DVector<f64>) -> Result<(Cycle, Machine, f64), FamilyError> {
-        let (machine, rpm) = self.family.machine(&self.values(unknowns))?;
+        let (machine, rpm) = self.family.machine_of_cycles(&self.values(unknowns))?;
         let cycle = self.cycle(unknowns, &machine);
         Ok((cycle, machine, rpm))
     }

@@ -170,10 +170,8 @@ impl Walk<'_> {
         let away = |point: &BranchPoint| {
             DVector::from_vec(vec![point.rpm / self.rest.spans[0], point.value / self.rest.spans[1]]) - kink
         };
-        // Where it came through the circle, as a straight line between two points.
-        let outside = self.points.iter().rposition(|point| away(point).norm() >= radius)?;
-        let (far, near) = (away(&self.points[outside]), self.points.get(outside + 1).map(away)?);
-        let back = (&near + (&far - &near) * ((radius - near.norm()) / (far.norm() - near.norm()))).normalize();
+        // Where it came from, in a straight line from the last point outside of the circle.
+        let back = self.points.iter().rev().map(away).find(|away| away.norm() >= radius)?.normalize();
         let direction = |turn: f64| {
             let (sin, cos) = turn.sin_cos();
             DVector::from_vec(vec![cos * back[0] - sin * back[1], sin * back[0] + cos * back[1]])

@@ -1,5 +1,6 @@
 //! How a branch goes on beyond a corner or a graze: the cycle there, and the direction that leads away from it.
 
+use std::cmp::Ordering;
 use std::f64::consts::TAU;
 
 use nalgebra::DVector;
@@ -146,9 +147,10 @@ pub(super) fn direction(
             }
         })
     };
-    let (ahead, behind) = (measure(TRIAL)?, measure(-TRIAL)?);
-    if !(ahead - behind).is_finite() || ahead == behind {
-        return Err(NoPoint::NotClosed);
+    // Where it cannot be measured, neither is the greater.
+    match measure(TRIAL)?.partial_cmp(&measure(-TRIAL)?) {
+        Some(Ordering::Greater) => Ok(tangent),
+        Some(Ordering::Less) => Ok(-tangent),
+        _ => Err(NoPoint::NotClosed),
     }
-    Ok(if ahead > behind { tangent } else { -tangent })
 }

@@ -81,14 +81,12 @@ impl Hop {
             let value = centre.value + away * centre.slope + away.squared().half() * whole.curvature;
             let is_past = !stretch.is_first || middle > self.from.angle.high();
             let is_before = !stretch.is_last || middle < self.to.angle.low();
-            let falls_in = stretch.is_first && slope.is_negative();
-            if (is_past && is_before && centre.value.is_negative()) || falls_in {
+            if is_past && is_before && centre.value.is_negative() {
                 return Some(false);
             }
             let rises = stretch.is_first && slope.is_positive();
             let falls = stretch.is_last && slope.is_negative();
-            let is_one = stretch.is_first && stretch.is_last;
-            if !is_one && (rises || falls) || value.is_positive() {
+            if rises || falls || value.is_positive() {
                 continue;
             }
             if angles.width() <= narrowest || boxes > MOST {

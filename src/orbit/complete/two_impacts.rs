@@ -156,11 +156,10 @@ impl Pair<'_> {
         }
         let flights = self.flights(place);
         let omega = Interval::from(self.machine.angular_velocity());
-        let Velocities { before, after, is_broken } = flights.velocities(self.machine);
+        let Velocities { after, is_broken, .. } = flights.velocities(self.machine);
         if is_broken {
             return Standing::NoOrbit;
         }
-        let approaches = [0, 1].map(|which: usize| flights.lifts[which].slope * omega - before[which]);
         let struck = |which: usize, turns: u64| Struck { segment: self.segments[which], angle: place[which], turns };
         let hops = [
             Hop { from: struck(0, 0), to: struck(1, self.turns), velocity: after[0], omega },
@@ -169,13 +168,9 @@ impl Pair<'_> {
         let clear = hops.map(|hop| hop.is_clear(self.machine.cam(), self.machine.flight()));
         match clear {
             [Some(false), _] | [_, Some(false)] => Standing::NoOrbit,
-            // Where s2 may be 0 the equations may be met by what comes back in one way only.
-            [Some(true), Some(true)]
-                if approaches.iter().all(|approach| approach.is_positive())
-                    && !flights.responses[1].impulse.holds_zero() =>
-            {
-                Standing::Orbit
-            }
+            // Both flights are proved clear, and so fall up to their ends: each impact is approached. Where s2 may be 0 the equations may be met by what comes back in
+            // one way only.
+            [Some(true), Some(true)] if !flights.responses[1].impulse.holds_zero() => Standing::Orbit,
             _ => Standing::Undecided,
         }
     }

@@ -1,0 +1,150 @@
+//! Does a curve in two numbers keep what its event promises: where it is on the cam, in whatever unit, and however the cam is turned?
+
+use std::f64::consts::TAU;
+
+use corner_impact::cam::apart;
+use corner_impact::model::Model;
+use corner_impact::orbit::Parameter;
+use corner_impact::orbit::branch::{Branch, BranchPoint, End, Following, Kind};
+use corner_impact::simulate::EventKind;
+
+use crate::orbit_numbers::{model, orbits};
+use crate::random::{cases_of_every_law, drawn};
+use crate::scales::in_units;
+
+fn following(model: &Model, parameter: &str, range: [f64; 2], longest_step: f64) -> Following {
+    Following { parameter: Parameter::named(model, parameter).unwrap(), range, longest_step, most_points: 200 }
+}
+
+/// The points of a kind on the branches of the orbits at a speed, rpm, of so many revolutions.
+fn points(model: &Model, rpm: f64, revolutions: u64, speeds: [f64; 2], name: &str) -> Vec<BranchPoint> {
+    let through = |orbit| Branch::through(model, rpm, orbit, &following(model, "rpm", speeds, 0.05)).unwrap();
+    let branches: Vec<Branch> = orbits(model, rpm, revolutions).iter().map(through).collect();
+    let all = branches.into_iter().flat_map(|branch| branch.points);
+    all.filter(|point| point.special.is_some_and(|it| it.kind.name() == name)).collect()
+}
+
+fn curve(model: &Model, point: &BranchPoint, speeds: [f64; 2], following: &Following) -> Branch {
+    Branch::of_event(model, point, speeds, following).unwrap().unwrap()
+}
+
+/// The names of what changes along a curve, but for the event that it begins at.
+fn changes(curve: &Branch, event: &str) -> Vec<&'static str> {
+    let names = curve.points.iter().filter_map(|point| point.special).map(|special| special.kind.name());
+    names.filter(|name| *name != event).collect()
+}
+
+/// The flank begins at the angle that is followed, and an impact that is at its beginning stays there, on whichever side of it.
+#[test]
+fn an_impact_on_a_corner_that_moves_goes_with_it() {
+    let (model, speeds) = (model("osorio-2008"), [640.0, 780.0]);
+    let number = following(&model, "flank_start_deg", [63.0, 117.0], 0.05);
+    let corners = points(&model, 736.0, 1, speeds, "corner");
+    let mut followed = 0;
+    for corner in
+        corners.iter().filter(|corner| matches!(corner.special.unwrap().kind, Kind::Corner { segment: 1, .. }))
+    {
+        let curve = curve(&model, corner, speeds, &number);
+        assert_eq!(curve.ends, [End::Range, End::Range], "{corner:?}");
+        for point in &curve.points {
+            let place = point.held.as_ref().unwrap().cam_angle;
+            assert!((place - point.value.to_radians()).abs() < 1e-9, "{point:?}");
+        }
+        followed += 1;
+    }
+    assert!(followed > 0, "{corners:?}");
+}
+
+/// A curve that has one point, beyond which the touch is none, has not come back to it.
+#[test]
+fn a_curve_of_one_point_is_not_closed() {
+    let (model, speeds) = (model("laws/harmonic"), [420.0, 600.0]);
+    let number = following(&model, "restitution", [0.45, 0.9], 0.05);
+    let grazes = points(&model, 500.0, 2, speeds, "graze");
+    let curves: Vec<Branch> = grazes.iter().map(|graze| curve(&model, graze, speeds, &number)).collect();
+    let short: Vec<&Branch> = curves.iter().filter(|curve| curve.points.len() == 1).collect();
+    assert!(!short.is_empty() && short.iter().all(|curve| curve.ends == [End::Graze, End::Graze]), "{short:?}");
+}
+
+/// Of places that are alike but for rounding none comes before the other, whatever rounding is in the model's units.
+#[test]
+fn a_cam_that_is_its_own_mirror_image_lets_go_at_two_places_in_any_unit() {
+    for scales in [[0, 0, 0], [40, 0, 0], [-40, 0, 0], [0, -20, 0], [0, 0, -20], [0, 0, 20]] {
+        let model = in_units("osorio-2008", scales);
+        let [low, rpm, high] = [100.0, 110.0, 120.0].map(|rpm: f64| rpm * 2.0_f64.powi(-scales[2]));
+        let leaves = points(&model, rpm, 1, [low, high], "detachment");
+        let number = following(&model, "flank_start_deg", [60.0, 120.0], 0.05);
+        let curve = curve(&model, &leaves[0], [low, high], &number);
+        assert_eq!(curve.ends, [End::Range, End::Range], "{scales:?}");
+        assert_eq!(changes(&curve, "detachment"), Vec::<&str>::new(), "{scales:?}");
+        assert!(curve.points.iter().all(|point| point.orbit.residual < 1e-9), "{scales:?}");
+    }
+}
+
+/// An eccentric that is turned on its shaft throws a follower off at the same speed, at a place that turns with it.
+#[test]
+fn a_cam_that_is_turned_lets_go_at_one_speed() {
+    let model = model("laws/harmonic").with_number("cam.amplitudes[1]", 0.0).unwrap();
+    let speeds = [200.0, 500.0];
+    let leaves = points(&model, 300.0, 1, speeds, "detachment");
+    let number = following(&model, "phases_deg[0]", [30.0, 330.0], 0.1);
+    let curve = curve(&model, &leaves[0], speeds, &number);
+    assert_eq!((&curve.ends, changes(&curve, "detachment")), (&[End::Range, End::Range], Vec::new()));
+    let place = |point: &BranchPoint| point.held.as_ref().unwrap().cam_angle + point.value.to_radians();
+    for point in &curve.points {
+        assert!((point.rpm / curve.points[0].rpm - 1.0).abs() < 1e-9, "{point:?}");
+        let moved = apart(place(point).rem_euclid(TAU), place(&curve.points[0]).rem_euclid(TAU));
+        assert!(moved < 1e-6, "{moved} {point:?}");
+    }
+}
+
+/// The cam has two like lobes, and the follower rests behind each: its flight goes from one rest to the other. Where both end is seen on
+/// the branches of machines that give back a little more.
+#[test]
+fn an_onset_of_resting_may_be_of_two_rests_at_once() {
+    let with = |restitution: f64| {
+        let text = format!(
+            "[follower]\nmass = 1.0\ndamping = 0.0\nstiffness = 400.0\ngravity = 9.81\nrest_position = 0.08\n\
+             restitution = {restitution:?}\n[cam]\nlaw = \"harmonic\"\noffset = 0.1\namplitudes = [0.0, 0.02]\n\
+             phases_deg = [180.0, 0.0]\n"
+        );
+        Model::parse("two-lobes.toml", &text).unwrap()
+    };
+    let (own, speeds) = (with(0.3), [170.0, 300.0]);
+    let ends = points(&own, 190.0, 1, speeds, "chatter");
+    let [end] = &ends[..] else { panic!("{ends:?}") };
+    let releases = end.orbit.events.iter().filter(|event| event.kind == EventKind::Release).count();
+    assert_eq!(releases, 2, "{end:?}");
+    let curve = curve(&own, end, speeds, &following(&own, "restitution", [0.3, 0.35], 0.2));
+    assert_eq!(curve.ends, [End::Range, End::Range], "{:?}", curve.points.len());
+    let last = curve.points.last().unwrap();
+    let there = points(&with(last.value), 190.0, 1, speeds, "chatter");
+    assert!((there[0].rpm / last.rpm - 1.0).abs() < 1e-7, "{} {}", there[0].rpm, last.rpm);
+}
+
+/// Where an impact is next to a touch, a curve ends at a graze, whatever the units of length and of time.
+#[test]
+fn an_end_at_a_graze_is_one_in_any_unit() {
+    for scales in [[0, 0, 0], [20, 0, 0], [-20, 0, 0], [0, 0, -20], [0, 0, 20]] {
+        let model = in_units("laws/rectified-sine", scales);
+        let [length, time] = [scales[0], scales[2]].map(|power: i32| 2.0_f64.powi(power));
+        let speeds = [12.0, 50.0].map(|rpm| rpm / time);
+        let number = following(&model, "rest_position", [-0.5, 2.0].map(|at| at * length), 0.05);
+        let flips = points(&model, 25.0 / time, 1, speeds, "flip");
+        let curve = curve(&model, &flips[0], speeds, &number);
+        assert_eq!(curve.ends, [End::Range, End::Graze], "{scales:?}");
+        assert_eq!(changes(&curve, "flip"), Vec::<&str>::new(), "{scales:?}");
+    }
+}
+
+/// The curve of a touch goes on to where the other impact of the orbit is none: what is left there meets the cam in the touch alone.
+#[test]
+fn a_curve_of_touches_ends_where_no_other_impact_is_left() {
+    let case = drawn(cases_of_every_law(), 28).pop().unwrap();
+    let speeds = [0.8 * case.rpm, 1.25 * case.rpm];
+    let own = case.model.numbers().find(|(name, _)| *name == "follower.stiffness").unwrap().1;
+    let number = following(&case.model, "stiffness", [0.7 * own, 1.3 * own], 0.05);
+    let grazes = points(&case.model, case.rpm, 2, speeds, "graze");
+    let ends: Vec<_> = grazes.iter().flat_map(|graze| curve(&case.model, graze, speeds, &number).ends).collect();
+    assert!(ends.contains(&End::Graze), "{ends:?}");
+}
