@@ -21,7 +21,7 @@ use corner_impact::study::basins::Grid;
 use corner_impact::study::speeds::{At, Attractor, Speeds, speeds, usual_range};
 
 /// A ball on a table that goes up and down by a millimetre.
-fn ball() -> Model {
+pub fn ball() -> Model {
     let text = "[follower]\nmass = 1.0\ndamping = 0.0\nstiffness = 0.0\ngravity = 9.81\nrest_position = 0.0\nrestitution = 0.8\n\
                 [cam]\nlaw = \"harmonic\"\noffset = 0.0\namplitudes = [0.001]\nphases_deg = [0.0]\n";
     Model::parse("ball.toml", text).unwrap()

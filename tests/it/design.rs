@@ -12,7 +12,7 @@ use serde_json::Value;
 
 use crate::common::{self, corner_impact, text};
 
-fn valve(follower: &str, motion: &str) -> Model {
+pub fn valve(follower: &str, motion: &str) -> Model {
     let text = format!(
         "name = \"valve\"\n[units]\nlength = \"mm\"\nstiffness = \"N/mm\"\n[follower]\n{follower}\ngravity = 9.81\nrestitution = 0.3\n[cam]\n\
          law = \"program\"\nbase = 2\n[[cam.segment]]\nmotion = \"{motion}\"\nspan_deg = 80\nrise = 10\n[[cam.segment]]\n\
@@ -21,7 +21,7 @@ fn valve(follower: &str, motion: &str) -> Model {
     Model::parse("valve.toml", &text).unwrap()
 }
 
-fn separation(model: &Model) -> Separation {
+pub fn separation(model: &Model) -> Separation {
     Contact::new(&Cam::new(model).unwrap(), model.follower).separation()
 }
 

@@ -20,7 +20,7 @@ use corner_impact::study::basins::{Curve, Extent, Grid, Reversed, Saddle};
 use corner_impact::study::verify::{External, verify};
 
 /// Half a revolution from P.
-const SECTION: f64 = 5.762717154756;
+pub const SECTION: f64 = 5.762717154756;
 const EXTENT: Extent = Extent { stretches: 27, first: 1e-6, finest: 0.01, farthest: 2.0 };
 
 fn map(model: &Model, rpm: f64) -> StroboscopicMap {

@@ -103,3 +103,19 @@ fn a_cam_that_is_turned_on_its_shaft_has_the_same_branches() {
         }
     }
 }
+
+/// A cosine has its ends where its phase says, also next to where a turn begins and ends.
+#[test]
+fn the_ends_of_a_turned_cosine_are_where_it_is_turned_to() {
+    for degrees in [-0.2, -0.1, -1e-3, 1e-3, 0.05, 0.12, 0.2, 0.3, 180.0, 180.1] {
+        let phases = [("cam.phases_deg[0]", f64::rem_euclid(-degrees, 360.0)), ("cam.amplitudes[1]", 0.0)];
+        let cam = Cam::new(&with(&harmonic(), &phases)).unwrap();
+        let (lowest, highest) = (cam.lowest(), cam.least([-1.0, 0.0, 0.0, 0.0]));
+        for (found, value, at) in [(lowest.value, 0.08, degrees + 180.0), (-highest.value, 0.12, degrees)] {
+            assert!((found - value).abs() < 1e-15, "{degrees}: {found}");
+            let angle = if value < 0.1 { lowest.angle } else { highest.angle };
+            let off = (angle - at.to_radians() + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU);
+            assert!((off - std::f64::consts::PI).abs() < 1e-7, "{degrees}: {angle}");
+        }
+    }
+}

@@ -250,10 +250,7 @@ fn coexistence(rows: &[Row], grid: &rows::Grid) -> Vec<Coexistence> {
                 })
         });
         if over.len() > 1 && seen {
-            match found.last_mut() {
-                Some(last) if last.rows == over && last.rpm[1] == low => last.rpm[1] = high,
-                _ => found.push(Coexistence { rpm: [low, high], rows: over }),
-            }
+            found.push(Coexistence { rpm: [low, high], rows: over });
         }
     }
     found

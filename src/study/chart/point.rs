@@ -77,7 +77,8 @@ impl Point {
                 let rest = lengths.transient.saturating_add(lengths.record);
                 settling = waiting(rest);
                 run = settling.run(&mut motion, rest)?;
-            } else if Ending::by_growth(record.growth()).kind() == Kind::Chaotic {
+            } else if record.met.impacts > 0 && Ending::by_growth(record.growth()).kind() == Kind::Chaotic {
+                // A deviation of a flight without end grows as well, if ever more slowly.
                 return Ok(Self::wandering(Kind::Chaotic, &record));
             } else {
                 run = settling.run(&mut motion, LOOK)?;

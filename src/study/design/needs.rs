@@ -353,9 +353,11 @@ pub(super) fn find(of: &Changed<'_>, need: &Need, lever: Lever) -> Result<Found,
         let tried = if need.what == What::NoSeparation { "" } else { ", of those tried," };
         return Ok(told_stuck(none(format!("no {lever} {side} {last:.1e} {unit}{tried} does it, the others kept"))));
     };
+    // A preload moves the spring's rest from the lowest lift, which hides what rounds away beside that.
+    let hidden = if lever == Lever::Preload { stiffness * of.lowest.abs() } else { 0.0 };
     let before = match first.checked_sub(1) {
         // Where nothing of it fails for want of any, no least value is to be found.
-        Some(before) if values[before] == 0.0 && does(width * values[first])? => None,
+        Some(before) if values[before] == 0.0 && does(width * values[first].max(hidden))? => None,
         Some(before) => Some(edge(values[before], values[first])?),
         None => None,
     };

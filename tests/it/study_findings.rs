@@ -1,0 +1,243 @@
+//! Do runs, sweeps, branches, verifications and corner impacts tell what they promise at the ends of what they may be asked?
+
+use std::f64::consts::TAU;
+
+use approx::{assert_abs_diff_eq, assert_relative_eq};
+use corner_impact::cam::Side;
+use corner_impact::corner::map::RouteName;
+use corner_impact::diagram::{Placed, Places, Section as Shows, Speeds, Start, Starts, Sweep};
+use corner_impact::flight::State;
+use corner_impact::model::{Model, Study};
+use corner_impact::orbit::branch::Following;
+use corner_impact::orbit::{Parameter, Search};
+use corner_impact::progress::Unwatched;
+use corner_impact::simulate::EventKind;
+use corner_impact::study::StudyError;
+use corner_impact::study::chart::{Lengths, Point};
+use corner_impact::study::continuation::branches;
+use corner_impact::study::diagram::{Shown, loads, on_attractors, one_row};
+use corner_impact::study::locate::{Happens, locate};
+use corner_impact::study::simulate::{Sight, Simulation, Until, Wanted};
+use corner_impact::study::verify::{External, verify};
+use serde_json::{Value, json};
+
+use crate::chart_store::START;
+use crate::common;
+use crate::orbit_numbers::{machine, model};
+
+/// Revolutions that are drawn are the last ones, a strobe shows each passage of its angle, and impacts are counted up to their number.
+#[test]
+fn a_run_shows_what_is_asked_for() {
+    let paper = common::osorio();
+    let start = Start { cam_angle: 1.0, follower: Placed::OnCam(2.0) };
+    let simulation = Simulation::new(&paper, 700.0, start).unwrap();
+    let wanted = Wanted { until: Until::Revolutions(5), events: true, strobe: Some(2.0), drawn: 2, lyapunov: false };
+    let (mut events, mut states) = (Vec::new(), Vec::new());
+    let run = |wanted: Wanted, see: &mut dyn FnMut(Sight<'_>)| {
+        simulation.run(wanted, &Unwatched, |sight| -> Result<(), StudyError> {
+            see(sight);
+            Ok(())
+        })
+    };
+    let found = run(wanted, &mut |sight| match sight {
+        Sight::Events(some) => events.extend_from_slice(some),
+        Sight::State(motion) => states.push(*motion),
+    })
+    .unwrap();
+    assert_eq!((found.revolutions, found.end.cam_angle_rad), (5.0, 1.0));
+    let before = found.before_drawn;
+    assert_eq!((before.revolution, before.cam_angle), (3, 1.0));
+    assert_eq!(
+        states.iter().map(|it| (it.revolution, it.cam_angle)).collect::<Vec<_>>(),
+        [0, 1, 2, 3, 4].map(|it| (it, 2.0))
+    );
+    let count = |kind: EventKind| events.iter().filter(|event| event.kind == kind).count() as u64;
+    let counts = [EventKind::Impact, EventKind::Stick, EventKind::Release].map(count);
+    assert_eq!([found.impacts, found.sticks, found.releases], counts);
+    assert!(counts[0] > 3, "{counts:?}");
+    // The same by the event loop alone.
+    let mut motion = simulation.first;
+    simulation.machine.revolve(&mut motion, 3).unwrap();
+    assert_abs_diff_eq!(motion.state.position, before.state.position, epsilon = 1e-9);
+    simulation.machine.revolve(&mut motion, 2).unwrap();
+    assert_abs_diff_eq!(motion.state.position, found.end.position_m, epsilon = 1e-9);
+    let whole = run(Wanted { drawn: 9, strobe: None, events: false, ..wanted }, &mut |sight| {
+        assert!(matches!(sight, Sight::Events([])));
+    });
+    let (before, first) = (whole.unwrap().before_drawn, simulation.first);
+    assert_eq!((before.revolution, before.cam_angle, before.state), (first.revolution, first.cam_angle, first.state));
+    let counted = run(Wanted { until: Until::Impacts(3), strobe: None, ..wanted }, &mut |_| ()).unwrap();
+    assert_eq!(counted.impacts, 3);
+    let third = events.iter().filter(|it| it.kind == EventKind::Impact).nth(2).unwrap();
+    assert_abs_diff_eq!(counted.end.cam_angle_rad, third.cam_angle, epsilon = 1e-9);
+    assert_relative_eq!(
+        counted.revolutions,
+        third.revolution as f64 + (third.cam_angle - 1.0) / TAU,
+        max_relative = 1e-12
+    );
+}
+
+/// A follower that nothing draws to the cam comes to it once, after thousands of revolutions, and is waited for a hundred thousand more.
+#[test]
+fn the_next_impact_is_waited_for_from_the_last_one_on() {
+    let free = "[follower]\nmass = 1\ndamping = 0\nstiffness = 0\ngravity = 0\nrest_position = 0\nrestitution = 0.5\n[cam]\n\
+                law = \"harmonic\"\noffset = 0.0\namplitudes = [0.001]\nphases_deg = [0.0]\n";
+    let free = Model::parse("free.toml", free).unwrap();
+    // A metre at a millimetre a second is 11,667 revolutions.
+    let start = Start { cam_angle: 0.0, follower: Placed::At(State { position: 1.0, velocity: -0.001 }) };
+    let wanted = Wanted { until: Until::Impacts(5), events: false, strobe: None, drawn: 0, lyapunov: false };
+    let simulation = Simulation::new(&free, 700.0, start).unwrap();
+    let found = simulation.run(wanted, &Unwatched, |_| -> Result<(), StudyError> { Ok(()) }).unwrap_err();
+    let StudyError::NoImpact { waited, impacts, revolution, .. } = found else { panic!("{found}") };
+    assert_eq!(waited, 100_000);
+    assert!((1..4).contains(&impacts) && (111_600..116_500).contains(&revolution), "{impacts} {revolution}");
+}
+
+fn sweep(model: &Model, low: f64, high: f64, count: usize, section: Shows) -> Sweep {
+    Sweep {
+        machine: machine(model, low),
+        speeds: Speeds { low, high, count },
+        starts: Starts::One(START),
+        following: corner_impact::diagram::Following::Nothing,
+        transient: 20,
+        record: 3,
+        section,
+        growth: None,
+    }
+}
+
+/// Impacts in degrees, positions as they are; of one speed a hundredth of it to either side, and one exponent a speed.
+#[test]
+fn a_picture_of_a_sweep_shows_its_places() {
+    let paper = common::osorio();
+    let places = |shown: Shown| shown.places();
+    let mut one = Shown::new(&sweep(&paper, 700.0, 700.0, 1, Shows::Impacts));
+    one.take(&Places { places: vec![[693.5, 1.0], [692.9, 1.0], [706.5, 2.0], [707.1, 2.0]], exponent: None });
+    let (density, exponents) = places(one);
+    assert_eq!((density.outside(), exponents.len()), (2, 0));
+    let [low, high] = density.extent().unwrap();
+    assert!((low - 1.0_f64.to_degrees()).abs() < 1.0 && (high - 2.0_f64.to_degrees()).abs() < 1.0, "{low} {high}");
+    let mut several = Shown::new(&sweep(&paper, 600.0, 700.0, 3, Shows::Strobe(1.0)));
+    let block = |rpm: f64, exponent: f64| Places { places: vec![[rpm, 1.0]], exponent: Some([rpm, exponent]) };
+    [block(600.0, 0.1), block(600.0, 0.2), block(650.0, 0.3)].iter().for_each(|it| several.take(it));
+    let (density, exponents) = places(several);
+    assert_eq!((density.outside(), exponents), (0, vec![[600.0, 0.1], [650.0, 0.3]]));
+    let [low, high] = density.extent().unwrap();
+    assert!(low > 0.5 && high < 1.5);
+}
+
+/// What a sweep tells of a speed is what a run from the start comes to there; and a start on each attractor begins in revolution 0.
+#[test]
+fn a_sweep_is_a_run_at_each_speed() {
+    let paper = common::osorio();
+    let lengths = Lengths { transient: 20, record: 3 };
+    let speeds = Speeds { low: 690.0, high: 710.0, count: 3 };
+    let row = one_row(&machine(&paper, 690.0), &speeds, START, lengths, Some(1), &Unwatched).unwrap();
+    let sweep = sweep(&paper, 690.0, 710.0, 3, Shows::Impacts);
+    let bears = loads(&paper, &sweep, START, lengths, Some(1), &Unwatched).unwrap();
+    assert_eq!([row.len(), bears.len()], [3, 3]);
+    for ((rpm, point), bears) in [690.0, 700.0, 710.0].into_iter().zip(&row).zip(&bears) {
+        let machine = machine(&paper, rpm);
+        let expected = Point::of(&machine, START.motion(&machine).unwrap(), lengths).unwrap();
+        assert_eq!(point.as_ref().unwrap(), &expected);
+        assert_eq!(bears.len(), 3);
+        assert!(bears.iter().all(|it| it.rpm == rpm && it.impact_speed > 0.0));
+    }
+    let motions = on_attractors(&machine(&paper, 678.0)).unwrap();
+    assert!(motions.len() == 2 && motions.iter().all(|motion| motion.revolution == 0), "{motions:?}");
+}
+
+/// What changes is looked for within its range, of which the ends are part; runs settle at the middles of as many parts.
+#[test]
+fn branches_begin_within_their_range() {
+    let paper = common::osorio();
+    let wanted = Search { revolutions: 1, impacts: Some(1) };
+    let following =
+        |range: [f64; 2]| Following { parameter: Parameter::Speed, range, longest_step: 0.5, most_points: 20 };
+    let from = |rpm: f64, range: [f64; 2]| branches(&paper, rpm, &wanted, following(range), 0, &Unwatched);
+    for range in [[700.0, 702.0], [698.0, 700.0]] {
+        let found = from(700.0, range).unwrap();
+        assert!(found.branches.iter().all(|it| it.points.iter().all(|at| range[0] <= at.rpm && at.rpm <= range[1])));
+        assert_eq!(found.title(), "osorio-2008: orbits found at 700 rpm, followed in speed");
+        let settled = found.settled(2, &Unwatched).unwrap();
+        let mut speeds: Vec<f64> = settled.iter().map(|[rpm, _]| *rpm).collect();
+        speeds.dedup();
+        assert_eq!(speeds, [range[0] + 0.5, range[0] + 1.5]);
+        // A hundred revolutions of one impact each.
+        assert_eq!(settled.len(), 200);
+    }
+    for range in [[700.1, 702.0], [698.0, 699.9]] {
+        let outside = from(700.0, range).map(|_| ()).unwrap_err();
+        let StudyError::Outside { name, value, range: told, .. } = outside else { panic!("{outside}") };
+        assert_eq!((name.as_str(), value, told), ("rpm", 700.0, range));
+    }
+    let none = from(50.0, [40.0, 60.0]).map(|_| ()).unwrap_err();
+    assert!(matches!(none, StudyError::NothingToFollow { revolutions: 1, rpm: 50.0, .. }), "{none}");
+    let parameter = Parameter::named(&paper, "restitution").unwrap();
+    let following = Following { parameter, ..following([0.7999, 0.8001]) };
+    let found = branches(&paper, 700.0, &wanted, following, 0, &Unwatched).unwrap();
+    assert!(found.title().ends_with("followed in follower.restitution"));
+}
+
+/// Numbers of pairs and of printed digits by what came of them, and entries by each route in the order of their names.
+#[test]
+fn a_verification_counts_what_came_of_it() {
+    let mut found = verify(&common::osorio(), External::LeftOut).unwrap();
+    let tally = found.tally();
+    let following = found.comparisons.iter().filter(|pair| pair.follows).count();
+    assert!(following > 0 && tally.following == following && tally.comparisons == found.comparisons.len() - following);
+    assert_eq!((tally.agreeing, tally.following_agreeing), (tally.comparisons, tally.following));
+    assert_eq!(tally.printed, found.published.len());
+    assert_eq!(tally.printed_right + tally.printed_wrong, tally.printed);
+    let wrong = found.published.iter().filter(|it| !it.agreement.agrees).count();
+    assert!(wrong > 0 && tally.printed_wrong == wrong && tally.printed_otherwise == 0);
+    for side in [Side::Minus, Side::Plus] {
+        let entries = found.entries(side);
+        let names: Vec<RouteName> = found.routes_by_name().map(|route| route.name).collect();
+        assert!(names.is_sorted() && names.len() == found.routes.len());
+        for (index, entry) in entries.iter().enumerate() {
+            let values: Vec<f64> = found.routes_by_name().map(|route| route.map.of(side).entries()[index]).collect();
+            assert_eq!(entry.values, values);
+            let apart = values.iter().flat_map(|one| values.iter().map(move |two| one - two)).fold(0.0, f64::max);
+            assert_eq!(entry.spread, apart, "{}", entry.entry);
+            assert!(entry.printed.as_ref().is_some_and(|it| it.parse::<f64>().is_ok()), "{entry:?}");
+        }
+    }
+    let pair = found.comparisons.iter().position(|pair| !pair.follows).unwrap();
+    found.comparisons[pair].agrees = false;
+    let pair = found.comparisons.iter().position(|pair| pair.follows).unwrap();
+    found.comparisons[pair].agrees = false;
+    let right = found.published.iter().position(|it| it.agreement.agrees).unwrap();
+    found.published[right].as_found = false;
+    let then = found.tally();
+    assert_eq!((then.agreeing, then.following_agreeing), (tally.agreeing - 1, tally.following - 1));
+    assert_eq!((then.printed_right, then.printed_otherwise, then.printed_wrong), (tally.printed_right - 1, 1, wrong));
+}
+
+/// Of a corner of velocity the side alone that the orbit is on has a map; a higher derivative leaves one matrix.
+#[test]
+fn a_corner_impact_is_told_by_its_order() {
+    let range = Study { rpm_min: 673.0, rpm_max: 673.5 };
+    let found = locate(&common::osorio(), range, 1, &Unwatched).unwrap();
+    assert!(found.agrees && found.measured.is_none());
+    let at = |jump_order: usize, side: Side, local: Happens| {
+        let mut found = found.found[0].clone();
+        (found.at.corner.jump_order, found.at.side, found.local) = (jump_order, side, local);
+        serde_json::to_value(&found).unwrap()
+    };
+    for (side, name) in [(Side::Minus, "minus"), (Side::Plus, "plus")] {
+        let gap = at(1, side, Happens::Gap);
+        assert_eq!((&gap["side"], gap["classification"]["scenario"].as_str()), (&json!(name), Some("gap")));
+        assert_eq!(gap["map"].as_object().unwrap().keys().collect::<Vec<_>>(), [name]);
+    }
+    for (order, local, scenario) in
+        [(2, found.found[0].local.clone(), "nonsmooth-fold"), (3, Happens::Smooth, "smooth")]
+    {
+        let told = at(order, Side::Plus, local);
+        assert_eq!((&told["side"], told["classification"]["scenario"].as_str()), (&Value::Null, Some(scenario)));
+        assert_eq!(told["map"].as_object().unwrap().len(), 2);
+    }
+    let polynomial = model("laws/polynomial");
+    let none = locate(&polynomial, Study { rpm_min: 700.0, rpm_max: 701.0 }, 1, &Unwatched).unwrap();
+    assert!(none.found.is_empty() && none.agrees);
+}

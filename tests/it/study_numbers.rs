@@ -1,0 +1,352 @@
+//! Are the attractors of a few speeds, where they begin and end, and how many starts end on each, what theory says where it says something, and
+//! else what they were?
+
+use std::f64::consts::{PI, TAU};
+use std::fmt::Write;
+
+use approx::{assert_abs_diff_eq, assert_relative_eq};
+use corner_impact::flight::State;
+use corner_impact::model::Model;
+use corner_impact::orbit::branch::{Branch, Following, Kind as Event};
+use corner_impact::orbit::ending::{Ending, Kind};
+use corner_impact::orbit::{Parameter, Search, search};
+use corner_impact::progress::Unwatched;
+use corner_impact::simulate::angular_velocity;
+use corner_impact::study::attractors::{
+    Attractors, Cause, Change, Here, Part, Resolution, Starts, Step, Wandering, attractors, detachment, detachment_near,
+};
+use corner_impact::study::speeds::{At, speeds};
+
+use crate::attractors::ball;
+use crate::common;
+use crate::design_numbers::rpm;
+use crate::orbit_numbers::{ending, is_as_it_was, machine, model};
+
+pub fn resolution(step: f64, starts: usize) -> Resolution {
+    Resolution { step: Step::at_most(step), starts, two_impacts: false }
+}
+
+/// Where an attractor begins or ends: what was solved to nine digits, what runs tell to a bracket.
+fn end(change: Option<&Change>) -> String {
+    let Some(it) = change else { return "the range".into() };
+    let [low, high] = it.bracket;
+    if it.is_located() {
+        assert!(low <= it.rpm && it.rpm <= high && high - low < 1e-6 * it.rpm, "{it:?}");
+        assert!(it.error.is_none());
+        // An angle is known to fewer digits than it has.
+        let cause = match it.cause {
+            Cause::CornerImpact { cam_angle, jump_order } => format!("corner of order {jump_order} at {cam_angle:.6}"),
+            other => format!("{other:?}"),
+        };
+        return format!("{cause} at {:.8e}", it.rpm);
+    }
+    assert_eq!((it.cause, it.point.is_none()), (Cause::Runs, true));
+    assert_abs_diff_eq!(it.rpm, 0.5 * (low + high), epsilon = 1e-9);
+    format!("runs between {low:.6} and {high:.6}")
+}
+
+/// An attractor at a speed: how many starts end on it, what it is, and its impacts, where it has few.
+fn at(it: &At, starts: usize) -> String {
+    let share = it.share;
+    let (count, all) = ((share.value * starts as f64).round(), starts as f64);
+    // As of one more that ends on it and one that does not.
+    let likely = (count + 1.0) / (all + 2.0);
+    assert_relative_eq!(share.error, (likely * (1.0 - likely) / all).sqrt(), max_relative = 1e-12);
+    let mut told = format!("    {} rpm, {count} starts: {}\n", it.rpm, ending(&it.ending));
+    if it.ending.period().is_some_and(|(_, impacts)| impacts < 8) {
+        let impacts: Vec<String> = it.impact_angles.iter().map(|angle| format!("{angle:.5}")).collect();
+        let fastest = it.impact_speed.map(|speed| format!("{speed:.5e}"));
+        writeln!(told, "      {:?} {}", fastest.unwrap_or_default(), impacts.join(" ")).unwrap();
+    }
+    told
+}
+
+fn told(model: &Model, range: [f64; 2], resolution: Resolution) -> String {
+    let found = speeds(model, range, resolution, &Unwatched).unwrap();
+    let mut told = format!("{} {range:?} by {} from {}\n", found.model, found.step, found.starts);
+    assert!(found.failed.is_empty() && found.rpm == range);
+    for it in &found.attractors {
+        let [low, high] = it.rpm;
+        let numbers = [it.revolutions, it.impacts].map(|number| number.map_or("-".into(), |number| number.to_string()));
+        let (birth, death) = (end(it.birth.as_ref()), end(it.death.as_ref()));
+        let name = format!("  {} {} {} {low:.6} to {high:.6}", it.id, it.kind, numbers.join(" "));
+        writeln!(told, "{name}: from {birth} to {death}").unwrap();
+        told.extend(it.at.iter().map(|it| at(it, found.starts)));
+    }
+    for it in &found.coexistence {
+        writeln!(told, "  {:.6} to {:.6}: {}", it.from_rpm, it.to_rpm, it.attractors.join(" ")).unwrap();
+    }
+    writeln!(told, "  leaves the cam at {:.8e}", found.detachment.unwrap_or(f64::NAN)).unwrap();
+    told
+}
+
+/// Holmes' ball: the motion of one impact a revolution begins in a fold where `a omega^2 (1 + r) = pi g (1 - r)`, beside a ball that stays on
+/// the table as long as `a omega^2 < g`, and doubles once the table's acceleration at the impact is `2 g (1 + r^2)/(1 + r)^2`.
+#[test]
+fn a_ball_begins_to_bounce_to_leave_and_to_double() {
+    let (a, g, r) = (0.001, 9.81, 0.8);
+    let fold = rpm((PI * g * (1.0 - r) / (a * (1.0 + r))).sqrt());
+    let leaves = rpm((g / a).sqrt());
+    // With K = a omega^2/g and K cos(theta) = pi (1 - r)/(1 + r) at the impact, K sin(theta) = 2 (1 + r^2)/(1 + r)^2 there.
+    let flip = rpm((g / a * (PI * (1.0 - r) / (1.0 + r)).hypot(2.0 * (1.0 + r * r) / (1.0 + r).powi(2))).sqrt());
+    let events = |range: [f64; 2]| -> Vec<(Cause, f64)> {
+        let found = speeds(&ball(), range, resolution(1.0, 1), &Unwatched).unwrap();
+        let ends = found.attractors.iter().flat_map(|it| [it.birth.clone(), it.death.clone()]).flatten();
+        ends.map(|it| (it.cause, it.rpm)).collect()
+    };
+    for (range, cause, rpm, count) in [
+        ([558.0, 560.0], Cause::Fold, fold, 1),
+        ([945.0, 946.0], Cause::Detachment, leaves, 2),
+        ([978.0, 979.0], Cause::Flip, flip, 2),
+    ] {
+        let found = events(range);
+        assert_eq!(found.len(), count, "{found:?}");
+        for (told, at) in found {
+            assert_eq!(told, cause);
+            assert_relative_eq!(at, rpm, max_relative = 1e-8);
+        }
+    }
+}
+
+#[test]
+fn attractors_of_a_ball_are_as_they_were() {
+    let text = told(&ball(), [556.0, 562.0], resolution(2.0, 4)) + &told(&ball(), [977.0, 979.0], resolution(1.0, 2));
+    is_as_it_was("attractors-ball", &text);
+}
+
+#[test]
+fn attractors_of_a_cam_of_parabolas_are_as_they_were() {
+    let polynomial = model("laws/polynomial");
+    let text = told(&polynomial, [330.0, 350.0], resolution(5.0, 4))
+        + &told(&polynomial, [400.0, 430.0], resolution(5.0, 4))
+        + &told(&polynomial, [420.0, 422.0], resolution(0.5, 3));
+    is_as_it_was("attractors-parabolas", &text);
+}
+
+#[test]
+fn attractors_that_rest_are_as_they_were() {
+    let paper = common::osorio();
+    let text = told(&paper, [110.0, 120.0], resolution(5.0, 2))
+        + &told(&paper, [197.0, 200.0], resolution(1.0, 2))
+        + &told(&model("ballistic"), [331.0, 333.0], resolution(1.0, 2));
+    is_as_it_was("attractors-resting", &text);
+}
+
+#[test]
+fn attractors_that_end_at_a_corner_are_as_they_were() {
+    is_as_it_was("attractors-corner", &told(&common::osorio(), [739.0, 739.4], resolution(0.2, 2)));
+}
+
+/// A grid is a margin of eight steps around the range, of speeds above 0; where its first is above the range, that begins the grid.
+#[test]
+fn a_grid_is_the_range_and_its_margin() {
+    let paper = common::osorio();
+    let grid = |range: [f64; 2], step: f64| -> Vec<f64> {
+        let Attractors { grid, range: told, .. } = attractors(&paper, range, resolution(step, 1), &Unwatched).unwrap();
+        assert_eq!(told, range);
+        grid.iter().map(|it| it.as_ref().unwrap().rpm).collect()
+    };
+    let found = grid([20.0, 23.0], 1.0);
+    assert_eq!(found, (12..=31).map(f64::from).collect::<Vec<_>>());
+    let found = grid([20.5, 23.5], 1.0);
+    assert_eq!(found, (12..=32).map(f64::from).collect::<Vec<_>>());
+    let found = grid([2.0, 3.0], 0.5);
+    assert_eq!(found, (1..=14).map(|it| f64::from(it) * 0.5).collect::<Vec<_>>());
+    let found = grid([0.1, 0.3], 0.2);
+    assert_eq!(found[..3], [0.1, 0.2, 0.4]);
+    // Tenths are the decimal numbers, and not a tenth added up.
+    assert!(grid([20.0, 20.2], 0.1).contains(&20.3));
+}
+
+#[test]
+fn a_step_is_the_longest_of_its_digits() {
+    for (longest, step) in [
+        (1.0, 1.0),
+        (1.99, 1.0),
+        (2.0, 2.0),
+        (2.99, 2.0),
+        (3.0, 3.0),
+        (4.99, 3.0),
+        (5.0, 5.0),
+        (9.99, 5.0),
+        (10.0, 10.0),
+    ] {
+        for power in [-6, -3, -1, 0, 1, 2] {
+            let scale = 10_f64.powi(power);
+            assert_relative_eq!(Step::at_most(longest * scale).rpm(), step * scale, max_relative = 1e-12);
+        }
+    }
+    // What rounding has taken from a digit is one of it.
+    assert_eq!(Step::at_most(0.1 * 3.0).rpm(), 0.3);
+    assert_eq!(Step::at_most(3.0 - 1e-13).rpm(), 2.0);
+    assert_eq!(Step::for_speeds([600.0, 700.0], 0).rpm(), 100.0);
+    assert_eq!(Step::for_speeds([600.0, 700.0], 50), Step::at_most(2.0));
+}
+
+/// `2 V + w` of the cam's largest velocity V and the velocity w of the way down its lift, times what impacts keep up of it.
+#[test]
+fn starts_reach_up_to_what_impacts_keep_up() {
+    let fastest = |restitution: f64, gravity: f64| {
+        let mut of = model("laws/polynomial");
+        (of.follower.restitution, of.follower.gravity) = (restitution, gravity);
+        let found = Starts::of(&machine(&of, 300.0)).fastest;
+        // 2 * 0.02 * pi/2 m/rad at the corners; from 0.1 + 0.02 pi^2/4 down as far again, under 1000 N/m from 0.05 on and gravity.
+        let half = 0.02 * PI * PI / 4.0;
+        let force = (1000.0 * (0.1 + half - 0.05) + gravity).abs().max((1000.0 * (0.1 - half - 0.05) + gravity).abs());
+        found / (2.0 * angular_velocity(300.0) * 0.02 * PI + (2.0 * force * 2.0 * half).sqrt())
+    };
+    for (restitution, kept) in [(0.0, 1.0), (0.3, 1.0), (0.5, 1.0), (0.8, 4.0), (0.95, 10.0), (1.0, 10.0)] {
+        assert_relative_eq!(fastest(restitution, 0.0), kept, max_relative = 1e-6);
+    }
+    assert_relative_eq!(fastest(0.8, 9.81), 4.0, max_relative = 1e-6);
+    // Where it is pulled off the cam, the lowest lift has the larger force.
+    assert_relative_eq!(fastest(0.8, -400.0), 4.0, max_relative = 1e-6);
+    let starts = Starts { fastest: 2.0 };
+    // The plastic number and its square, which divide the turn and the velocities.
+    let plastic = 1.324_717_957_244_746_f64;
+    for index in 0..4 {
+        let half = index as f64 + 0.5;
+        let [angle, velocity] = starts.at(index);
+        assert_relative_eq!(angle, TAU * (half / plastic).fract(), max_relative = 1e-12);
+        assert_relative_eq!(velocity, 2.0 * (half / (plastic * plastic)).fract(), max_relative = 1e-12);
+    }
+    let machine = machine(&common::osorio(), 700.0);
+    let (motion, [angle, velocity]) = (starts.motion(&machine, 5).unwrap(), starts.at(5));
+    let lift = machine.cam().lift(angle);
+    assert_eq!((motion.cam_angle, motion.state.position), (angle, lift.value));
+    assert_relative_eq!(
+        motion.state.velocity,
+        machine.angular_velocity() * lift.slope + velocity,
+        max_relative = 1e-12
+    );
+}
+
+/// Between two speeds, or nearby: up to 0.64 of a speed on either side of it.
+#[test]
+fn the_follower_is_found_to_leave_within_reach() {
+    let ball = ball();
+    let leaves = rpm((9.81_f64 / 0.001).sqrt());
+    let between = |low: f64, high: f64| detachment(&ball, [low * leaves, high * leaves]).unwrap();
+    for range in [[0.5, 1.5], [0.9, 1.001], [0.999, 3.0]] {
+        assert_relative_eq!(between(range[0], range[1]).unwrap(), leaves, max_relative = 1e-9);
+    }
+    assert_eq!([between(0.5, 0.999), between(1.001, 2.0)], [None, None]);
+    let cam = common::cam(&ball);
+    let near = |part: f64| detachment_near(&ball, &cam, part * leaves);
+    for part in [0.995, 1.005, 0.62, 0.9, 1.2, 2.7] {
+        assert_abs_diff_eq!(near(part).unwrap(), leaves, epsilon = 1e-6);
+    }
+    assert_eq!([near(0.6), near(2.8)], [None, None]);
+}
+
+/// What a run of a neighbouring speed comes to counts as an attractor but where it may be on its way yet.
+#[test]
+fn a_motion_of_another_speed_comes_to_what_there_is() {
+    let paper = common::osorio();
+    let here = |rpm: f64, left: u64| Here {
+        rpm,
+        parts: Vec::new(),
+        sampled: 0,
+        rests: 0,
+        wandering: Wandering { revolutions: 100_000, left, rested: 0 },
+    };
+    let comes_to = |from: f64, to: f64, left: u64| {
+        let from = machine(&paper, from);
+        let motion = from.start_on_cam(0.0, 1.0).unwrap();
+        here(to, left).come_to(&from, &motion).unwrap()
+    };
+    let kind = |part: &Option<Part>| part.as_ref().map(|part| part.ending.kind());
+    let found = comes_to(690.0, 700.0, 0).unwrap();
+    assert!(found.starts.is_empty() && found.ending.period() == Some((1, 1)), "{found:?}");
+    // An orbit is there whatever others have left, and so is what rests or stays.
+    for (to, is) in [(700.0, Kind::Periodic), (150.0, Kind::Resting), (100.0, Kind::Stays)] {
+        assert_eq!([kind(&comes_to(690.0, to, 0)), kind(&comes_to(690.0, to, 3))], [Some(is), Some(is)], "{to}");
+    }
+    assert_eq!([kind(&comes_to(690.0, 670.0, 0)), kind(&comes_to(690.0, 670.0, 3))], [Some(Kind::Chaotic), None]);
+    // On the cam of another machine the follower may be inside of this one's.
+    let low = machine(&model("laws/polynomial"), 690.0);
+    let motion = low.start(0.0, State { position: 0.1, velocity: 0.0 }).unwrap();
+    assert_eq!(here(690.0, 0).come_to(&machine(&paper, 700.0), &motion).unwrap(), None);
+}
+
+/// Starts below so many are the sample's, those after them from rest; what no start ends on was come to from another speed.
+#[test]
+fn what_only_its_own_orbit_begins_on_is_not_reached() {
+    let motion = machine(&common::osorio(), 700.0).start_on_cam(0.0, 1.0).unwrap();
+    let here = Here { rpm: 700.0, parts: Vec::new(), sampled: 4, rests: 2, wandering: Wandering::default() };
+    for (starts, reached, count) in
+        [(vec![], true, 0), (vec![6], false, 0), (vec![5, 6], true, 0), (vec![4], true, 0), (vec![3, 4], true, 1)]
+    {
+        let part = Part { ending: Ending::Stays, starts: starts.clone(), motion };
+        assert_eq!((here.is_reached(&part), here.count(&part)), (reached, count), "{starts:?}");
+    }
+    let one = Wandering { revolutions: 1, left: 2, rested: 3 };
+    let other = Wandering { revolutions: 10, left: 20, rested: 30 };
+    assert_eq!(one.with(other), Wandering { revolutions: 11, left: 22, rested: 33 });
+}
+
+/// A special point of a branch says why what was followed ends there; what is none of an orbit by the speed leaves it to the runs.
+#[test]
+fn a_point_of_a_branch_is_a_cause() {
+    let paper = common::osorio();
+    let all = search(&machine(&paper, 680.0), &Search { revolutions: 1, impacts: Some(1) }).unwrap();
+    let orbit = all.into_iter().find(|it| it.is_stable()).unwrap();
+    let following =
+        Following { parameter: Parameter::Speed, range: [670.0, 684.0], longest_step: 0.1, most_points: 100 };
+    let branch = Branch::through(&paper, 680.0, &orbit, &following).unwrap();
+    let corner = branch.points.iter().find(|it| matches!(it.special, Some(it) if it.kind.name() == "corner")).unwrap();
+    let angle = corner.orbit.impacts().next().unwrap().cam_angle.rem_euclid(TAU);
+    let cause = |kind: Event| {
+        let mut point = corner.clone();
+        point.special.as_mut().unwrap().kind = kind;
+        let change = Change::of_point(&point);
+        assert_eq!((change.rpm, change.bracket), (point.rpm, point.special.unwrap().bracket));
+        assert!(change.point.as_deref() == Some(&point) && change.error.is_none());
+        assert_eq!(change.is_located(), change.cause != Cause::Runs);
+        change.cause
+    };
+    assert_eq!(
+        [cause(Event::Fold), cause(Event::Branching), cause(Event::Flip)],
+        [Cause::Fold, Cause::Fold, Cause::Flip]
+    );
+    let graze = Event::Graze { before: 1, after: 2, turned: 0.3 };
+    assert_eq!([cause(graze), cause(Event::Detachment)], [Cause::Graze { impacts: [1, 2] }, Cause::Detachment]);
+    let at = |jump_order: usize| Event::Corner { impact: 0, segment: 3, jump_order };
+    assert_eq!(
+        [2, 3].map(|order| cause(at(order))),
+        [2, 3].map(|jump_order| Cause::CornerImpact { cam_angle: angle, jump_order })
+    );
+    let kinds = [Event::Chatter, Event::Cusp, Event::DegenerateGraze, Event::Place, Event::Turn];
+    assert!(kinds.into_iter().all(|kind| cause(kind) == Cause::Runs));
+    assert_eq!(cause(Event::Type { after_corner: None, multiplier: 1.0 }), Cause::Runs);
+    let plain = branch.points.iter().find(|it| it.special.is_none()).unwrap();
+    assert_eq!(Change::of_point(plain), Change::by_runs([plain.rpm; 2]));
+    let runs = Change::by_runs([3.0, 4.0]);
+    assert_eq!((runs.rpm, runs.bracket, runs.cause, runs.is_located()), (3.5, [3.0, 4.0], Cause::Runs, false));
+}
+
+/// An end that is known by runs, of a machine that differs by little: there it is known by runs again.
+#[test]
+fn an_end_by_runs_moves_with_the_machine() {
+    let text = |stiffness: f64| model("laws/polynomial").with_number("follower.stiffness", stiffness).unwrap();
+    let ends = |of: &Model| {
+        let found = attractors(of, [420.0, 422.0], resolution(0.5, 3), &Unwatched).unwrap();
+        let row = found.rows.iter().position(|row| row.kind(&found.grid) == Kind::Resting && row.period().is_none());
+        (row.unwrap(), found)
+    };
+    let (row, found) = ends(&text(1000.0));
+    let row = &found.rows[row];
+    let side = usize::from(row.ends[0].is_none());
+    let end = row.ends[side].as_ref().unwrap();
+    let moved = |of: &Model| row.moved(&machine(of, 421.0), &found.grid, side);
+    let width = end.bracket[1] - end.bracket[0];
+    assert_abs_diff_eq!(moved(&text(1000.0)).unwrap(), end.rpm, epsilon = 2.0 * width);
+    for stiffness in [999.9, 1000.5] {
+        let other = text(stiffness);
+        let (row, there) = ends(&other);
+        let there = there.rows[row].ends[side].as_ref().unwrap().rpm;
+        assert_abs_diff_eq!(moved(&other).unwrap(), there, epsilon = 10.0 * width);
+    }
+    // Of another machine altogether it is nowhere near.
+    assert_eq!(moved(&text(1200.0)), None);
+}
