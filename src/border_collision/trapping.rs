@@ -47,6 +47,10 @@ struct Scaled<'a> {
 impl Scaled<'_> {
     /// The same with one polygon for each word of `memory` sides.
     fn region(&self, visited: &[Vector2<f64>], memory: u32) -> Option<Region> {
+        // Of too few points no word is known, and where nothing is, nothing is held.
+        if visited.len() <= memory as usize {
+            return None;
+        }
         let words = 1_usize << memory;
         let next = |word: usize, side: Side| ((word << 1) | usize::from(side == Side::Plus)) & (words - 1);
         let mut clouds = vec![Vec::new(); words];

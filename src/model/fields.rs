@@ -344,9 +344,11 @@ impl Fields {
         let allowed: Vec<&str> =
             siblings.chain(tables).map(|known| known.rsplit('.').next().unwrap_or(known)).collect();
         let place = if table.is_empty() { "at the top of the file".to_owned() } else { format!("in [{table}]") };
-        let words = format!("unknown field; allowed {place}: {}", allowed.join(", "));
-        let name = path.rsplit('.').next().unwrap_or(path);
         let is_table = matches!(field.value, Value::Table);
+        // A table has no value between its name and these words.
+        let is = if is_table { "is an " } else { "" };
+        let words = format!("{is}unknown field; allowed {place}: {}", allowed.join(", "));
+        let name = path.rsplit('.').next().unwrap_or(path);
         let shown = |name: &str| if is_table { format!("[{name}]") } else { name.to_owned() };
         let meant = nearest(name, allowed.iter().copied()).map(|name| format!("did you mean {}?", shown(name)));
         Err(self.reject(path, words).meaning(meant).at(self.text.clone(), Some(field.key.clone())))

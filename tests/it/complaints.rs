@@ -159,6 +159,14 @@ fn fields_beside_a_table_are_read_as_they_were() {
         let model = format!("{FOLLOWER}[cam]\nlaw = \"table\"\nfile = \"lift.csv\"\n{fields}\n");
         writeln!(text, "{}\n  {}", fields.replace('\n', "; "), told(&model, &even)).unwrap();
     }
+    // Five degrees of a turn, in either unit: only of degrees may radians be meant.
+    for unit in ["deg", "rad"] {
+        let model = format!(
+            "{FOLLOWER}[cam]\nlaw = \"table\"\nfile = \"lift.csv\"\nspline = \"cubic\"\nangle_unit = \"{unit}\"\n"
+        );
+        let narrow = format!("angle_{unit},lift\n0,1\n0.02,2\n0.04,2\n0.06,1\n0.08,1\n");
+        writeln!(text, "five rows in {unit}\n  {}", told(&model, &narrow)).unwrap();
+    }
     for rows in [
         "[[0, 1], [120, 2], [240, 1]]",
         "[[0, 1], [120, 2], [240, 1], [360, 1]]",

@@ -113,6 +113,7 @@ fn a_follower_leaves_at_two_places_at_once_where_they_are_alike() {
         let specials = curve.points.iter().filter_map(|point| Some((point, point.special?)));
         let places: Vec<_> = specials.filter(|(_, special)| special.kind == Kind::Place).collect();
         let [(place, special)] = places[..] else { panic!("{range:?} {places:?}") };
+        assert!((0.0..1e-12).contains(&special.residual), "{special:?}");
         assert!(place.value.abs() < 1e-9 && special.bracket[0] <= 1e-12 && -1e-12 <= special.bracket[1], "{special:?}");
         let mut sides = [0, 0];
         for point in &curve.points {
@@ -267,5 +268,38 @@ fn a_cusp_of_folds_is_where_its_equations_are_zero() {
             // The place of a double root is known to half of the digits.
             assert!((lift.curvature - ratio * lift.third).abs() < 1e-5 * size, "{cusp:?}");
         }
+    }
+}
+
+/// Of another curve something differs: where it ends, for what reason, of what event; a single point is no curve.
+#[test]
+fn a_curve_is_the_same_from_either_end() {
+    let parameter = Parameter::Field("follower.restitution".into());
+    let following = Following { parameter, range: [0.79, 0.81], longest_step: 0.2, most_points: 2000 };
+    let (wanted, events) = (Search { revolutions: 1, impacts: None }, [Bifurcation::Corner]);
+    let found = curves(&common::osorio(), [670.0, 676.0], &wanted, &events, &following, &Unwatched).unwrap();
+    let curve = &found.curves[0];
+    let mut turned = curve.clone();
+    turned.points.reverse();
+    turned.ends.reverse();
+    assert!(curve.is_same(curve) && curve.is_same(&turned) && turned.is_same(curve));
+    for change in 0..9 {
+        let mut other = curve.clone();
+        let last = other.points.len() - 1;
+        match change {
+            0 => other.points[0].rpm *= 1.001,
+            1 => other.points[0].value *= 1.001,
+            2 => other.points[last].rpm *= 1.001,
+            3 => other.points[last].value *= 1.001,
+            4 => other.ends[0] = End::Kink,
+            5 => other.ends[1] = End::Kink,
+            6 => other.kind = Kind::Fold,
+            7 => other.points.truncate(1),
+            _ => other.points.clear(),
+        }
+        for one in [curve, &turned] {
+            assert!(!one.is_same(&other) && !other.is_same(one), "{change}");
+        }
+        assert_eq!(other.is_same(&other), other.points.len() > 1, "{change}");
     }
 }

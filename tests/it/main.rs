@@ -27,6 +27,7 @@ mod complaints;
 mod complete;
 mod corner_maps;
 mod corner_numbers;
+mod corner_units;
 mod curves;
 mod cycles;
 mod derived;
