@@ -182,7 +182,8 @@ fn extreme_cams_and_speeds() {
             for follower in [[0.0, 0.0, 9.81, 0.0, 0.5], [0.0, 1000.0, 0.0, 0.0, 0.0], [200.0, 1000.0, 9.81, -1.0, 0.8]]
             {
                 let machine = machine(follower, cam, rpm);
-                for velocity in [0.0, 1.0] {
+                // At the one speed that is none of the extremes also without any.
+                for velocity in [1.0, 0.0].into_iter().take(if rpm == 1.0 { 2 } else { 1 }) {
                     let start = machine.start_on_cam(0.0, velocity).unwrap();
                     let end = run(machine.clone(), start, 2);
                     let allowed = match &end.result {
