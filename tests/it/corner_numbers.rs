@@ -14,11 +14,12 @@ use corner_impact::corner::map::Uncertainty;
 use corner_impact::corner::one_sided::OneSidedMap;
 use corner_impact::corner::range::{RangeError, find_corner_impacts};
 use corner_impact::corner::varied::Varied;
-use corner_impact::corner::{CornerImpact, finite_difference, least_squares, second_order, variational};
+use corner_impact::corner::{CornerImpact, Way, finite_difference, least_squares, second_order, variational};
 use corner_impact::estimate::Estimate;
 use corner_impact::model::{CamProfile, Model, Study};
 use corner_impact::paper::jump_order::EXAMPLES;
 use corner_impact::progress::Unwatched;
+use corner_impact::tolerance;
 use nalgebra::{Matrix2, Vector2, Vector3};
 
 use crate::common;
@@ -319,4 +320,16 @@ fn the_course_of_an_orbit_comes_round() {
     {
         assert_eq!(found(&read(name), speeds, 1).1[0].is_simple(), is_simple, "{name}");
     }
+}
+
+/// No branch comes to it: its period is known to where Newton's method closed.
+#[test]
+fn a_corner_impact_that_shots_alone_find_has_its_period_in_a_bracket() {
+    let (_, all) = found(&read("sharp-nose"), [225.7, 225.8], 1);
+    let at = &all[0];
+    assert_eq!(at.ways, [Way::Shot]);
+    let [low, high] = at.bracket.map(|end| end / at.period - 1.0);
+    let width = tolerance::CYCLE_CLOSED.value;
+    assert!((low / -width - 1.0).abs() < 1e-2 && (high / width - 1.0).abs() < 1e-2, "{low:e} {high:e}");
+    assert!(at.residual < 1e-9, "{at:?}");
 }
