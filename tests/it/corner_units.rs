@@ -47,6 +47,8 @@ fn of_route(route: &Route) -> Numbers {
         Some(Uncertainty::Fit { standard, systematic, condition_number }) => {
             all.extend(of_map(standard));
             all.extend(systematic.iter().flat_map(of_map));
+            // The design is the same in all machines but for rounding: its cube is in scales of the impact's own.
+            assert!((25.0..40.0).contains(condition_number), "{condition_number}");
             all.push((*condition_number, 0));
         }
         Some(Uncertainty::Extrapolation(error)) => all.extend(of_map(error)),
