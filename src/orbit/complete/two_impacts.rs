@@ -168,8 +168,8 @@ impl Pair<'_> {
         let clear = hops.map(|hop| hop.is_clear(self.machine.cam(), self.machine.flight()));
         match clear {
             [Some(false), _] | [_, Some(false)] => Standing::NoOrbit,
-            // Both flights are proved clear, and so fall up to their ends: each impact is approached. Where s2 may be 0 the equations may be met by what comes back in
-            // one way only.
+            // Both flights are proved clear, and so fall up to their ends: each impact is approached. Where s2 may be 0 the equations
+            // may be met by what comes back in one way only.
             [Some(true), Some(true)] if !flights.responses[1].impulse.holds_zero() => Standing::Orbit,
             _ => Standing::Undecided,
         }
