@@ -255,7 +255,8 @@ fn a_detachment_goes_on_to_the_last_value_that_is_allowed() {
     assert_eq!((curve.points.last().unwrap().value, &specials[..]), (180.0, &[Kind::Detachment][..]));
 }
 
-/// A branch of twice the period goes to the flip that it comes from and no further: nothing else is a flip there.
+/// A branch of twice the period goes to the flip that it comes from and no further. It is stable there, and for 0.004 rpm only: a flip
+/// so near to the end is told, too.
 #[test]
 fn a_branch_of_twice_the_period_ends_at_its_flip() {
     let model = model("persistence");
@@ -263,10 +264,15 @@ fn a_branch_of_twice_the_period_ends_at_its_flip() {
     let of_three = orbits.iter().find(|orbit| orbit.events.len() == 3).unwrap();
     let branch = Branch::through(&model, 493.0, of_three, &following(&model, "rpm", [400.0, 600.0], 0.05)).unwrap();
     assert_eq!(branch.ends, [End::Range, End::Shorter]);
-    let flips: Vec<f64> =
-        branch.points.iter().filter(|at| is_special(at, |it| it == Kind::Flip)).map(|it| it.rpm).collect();
-    let last = branch.points.last().unwrap();
-    assert!(matches!(flips[..], [rpm] if rpm == last.rpm) && last.orbit.revolutions == 1, "{flips:?} {last:?}");
+    let flips: Vec<usize> =
+        (0..branch.points.len()).filter(|&at| is_special(&branch.points[at], |it| it == Kind::Flip)).collect();
+    let (points, last) = (&branch.points, branch.points.last().unwrap());
+    let [flip, end] = flips[..] else { panic!("{flips:?} of {}", points.len()) };
+    assert!(end == points.len() - 1 && last.orbit.revolutions == 1, "{end} {last:?}");
+    let least = |at: &BranchPoint| at.orbit.multipliers().map(|one| one.re).into_iter().fold(f64::INFINITY, f64::min);
+    let [before, there] = [flip - 1, flip].map(|index| least(&points[index]));
+    assert!(before < -1.0 && (there + 1.0).abs() < 1e-6, "{before} {there}");
+    assert!((points[flip].rpm - 576.22111).abs() < 1e-5 && last.rpm - points[flip].rpm < 0.004, "{}", points[flip].rpm);
 }
 
 /// The corner goes towards the impact, and not the other way round.
@@ -293,6 +299,22 @@ fn a_branch_of_a_follower_that_rests_ends_where_no_smaller_value_is_allowed() {
     let number = following(&model, "corner_rounding_deg", [0.0, 4.0], 0.05);
     let branch = Branch::through(&model, 150.0, rests, &number).unwrap();
     assert!(matches!(&branch.ends, [End::Edge { largest: false, .. }, End::Range]), "{:?}", branch.ends);
+}
+
+/// Of a machine at a value beside which the cam has other segments, or none, no branch goes either way: the bounds are told, and not that
+/// an orbit was lost.
+#[test]
+fn a_value_beside_which_the_cam_has_other_segments_is_a_bound_both_ways() {
+    let model = model("osorio-2008");
+    let orbits = orbits(&model, 700.0, 1);
+    let number = following(&model, "corner_rounding_deg", [-1.0, 2.0], 0.1);
+    let branch = Branch::through(&model, 700.0, &orbits[0], &number).unwrap();
+    let [End::Edge { largest: false, why: least }, End::Edge { largest: true, why: most }] = &branch.ends else {
+        panic!("{:?}", branch.ends)
+    };
+    assert_eq!(branch.points.len(), 1);
+    assert!(least.contains("0") && !least.contains("segments"), "{least}");
+    assert_eq!(most, &format!("must leave the cam its {} segments", Cam::new(&model).unwrap().segments().len()));
 }
 
 /// A line goes from one orbit to another: an impact that passes angle 0 between two orbits has none on either side.

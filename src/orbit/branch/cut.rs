@@ -99,8 +99,7 @@ impl Stride<'_> {
         let Some(machine) = machine_at(flipped.value) else { return Ok(None) };
         let unknowns = problem.unknowns(&flipped.cycle, &machine, &values(flipped.value));
         let point = CurvePoint { unknowns, ..self.from.clone() };
-        // What comes before is looked at half way there, where the equations are regular.
-        let part = halved::apart(&one).zip(halved::apart(&two)).map_or(0.0, |(one, two)| 0.5 * one / (one - two));
+        let part = halved::apart(&one).zip(halved::apart(&two)).map_or(0.0, |(one, two)| one / (one - two));
         let (bracket, residual) = (flipped.bracket, flipped.residual);
         Ok(Some(Located { step: part * self.step, cut: Cut::Halved, point, bracket, residual }))
     }

@@ -44,11 +44,18 @@ impl<'a> Stride<'a> {
     /// The branch in one direction: the sign of the last free number's first change.
     fn half(mut self, direction: f64) -> Result<HalfBranch, OrbitError> {
         let Ok(tangent) = curve::first_tangent(&self.problem(), &self.from.unknowns) else {
-            return Ok((Vec::new(), End::Lost));
+            return Ok((Vec::new(), self.stuck(direction)));
         };
         let ahead = tangent[tangent.len() - 1] * direction >= 0.0;
         self.from.tangent = if ahead { tangent } else { -tangent };
         Walk { stride: self, fresh: None, points: Vec::new() }.run()
+    }
+
+    /// Why there is no way from the start: the model may allow a step to neither side, for two reasons.
+    fn stuck(&self, direction: f64) -> End {
+        let mut beside = self.from.unknowns.clone();
+        beside[self.from.unknowns.len() - 1] += direction * self.step;
+        self.problem().unpack(&beside).map_or_else(|why| End::edge(direction > 0.0, &why), |_| End::Lost)
     }
 }
 
@@ -226,21 +233,25 @@ impl Walk<'_> {
             keep(located);
         }
         // And those that only the simulator sees, on the way there.
-        let (mut clear, mut reach) = match &first {
-            Some(located) => {
-                let reach = located.step * (1.0 - 1e-3);
-                (curve::step(&problem, &self.stride.from.unknowns, &self.stride.from.tangent, reach)?, reach)
-            }
+        let part_way = |step: f64| {
+            Ok::<_, NoPoint<FamilyError>>((
+                curve::step(&problem, &self.stride.from.unknowns, &self.stride.from.tangent, step)?,
+                step,
+            ))
+        };
+        let mut clear = match &first {
+            // Where the halves of a period meet, the equations of both together are singular, and a multiplier is 1.
+            Some(Located { cut: Cut::Halved, step, .. }) => part_way(0.5 * step)?,
+            Some(Located { step, .. }) => part_way(step * (1.0 - 1e-3))?,
             None => (next.clone(), self.stride.step),
         };
-        let (cycle, at, _) = problem.unpack(&clear.unknowns)?;
+        let (cycle, at, _) = problem.unpack(&clear.0.unknowns)?;
         match self.stride.departure(&cycle, &at) {
             Ok(None) => {}
             Ok(Some(Departure::Earlier { impact, turned, .. })) => {
                 let touch = Exit::Touch { impact, turned };
-                let located = self.stride.locate(&problem, Cut::Exit(touch), reach)?;
-                reach = located.step;
-                clear = located.point.clone();
+                let located = self.stride.locate(&problem, Cut::Exit(touch), clear.1)?;
+                clear = (located.point.clone(), located.step);
                 first = Some(located);
             }
             // So near to a cut that the simulator sees it already, or nothing that a shorter step would not show better.
@@ -256,9 +267,14 @@ impl Walk<'_> {
                 continue;
             }
             let at = |point: &CurvePoint| self.stride.measure(&problem, cut, point);
+            let (clear, reach) = match &first {
+                // There none is -1, so that it is told from one that is already as the halves come near to each other.
+                Some(Located { cut: Cut::Halved, step, .. }) if cut == Cut::Flip => &part_way(0.95 * step)?,
+                _ => &clear,
+            };
             // Just short of a graze, where the matrix has a pole.
-            if (at(&self.stride.from)? < 0.0) != (at(&clear)? < 0.0) && self.fresh.is_none() {
-                let located = self.stride.locate(&problem, cut, reach)?;
+            if (at(&self.stride.from)? < 0.0) != (at(clear)? < 0.0) && self.fresh.is_none() {
+                let located = self.stride.locate(&problem, cut, *reach)?;
                 folds |= cut == Cut::Fold;
                 // A sign that changes through infinity is no root.
                 let small = if cut == Cut::Branching { tolerance::BRANCHING } else { tolerance::SAME_ORBIT };
