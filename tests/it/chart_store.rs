@@ -9,7 +9,7 @@ use corner_impact::orbit::Parameter;
 use corner_impact::orbit::ending::Kind;
 use corner_impact::progress::Unwatched;
 use corner_impact::study::chaos::chaos;
-use corner_impact::study::chart::store::{Shard, Store, StoreError, VARIABLES, blocks_of, status};
+use corner_impact::study::chart::store::{CLASSES, Shard, Store, StoreError, VARIABLES, blocks_of, status};
 use corner_impact::study::chart::{Axis, Blocks, Chart, ChartError, Lengths, Point};
 use serde_json::{Value, json};
 
@@ -22,7 +22,7 @@ fn axis(model: &Model, name: &str, low: f64, high: f64, count: usize) -> Axis {
     Axis::even(Parameter::named(model, name).unwrap(), &Speeds { low, high, count })
 }
 
-fn chart(model: &Model, record: u64) -> Chart {
+pub fn chart(model: &Model, record: u64) -> Chart {
     let axes = [axis(model, "rpm", 100.0, 180.0, 5), axis(model, "restitution", 0.1, 0.7, 4)];
     Chart::new(model, None, axes, START, Lengths { transient: 20, record }).unwrap()
 }
@@ -75,6 +75,47 @@ fn a_store_of_small_blocks_is_the_chart() {
             matches!(refused, StoreError::Sides { columns: c, rows: r, most } if [c, r, most] == [columns, rows, 1 << 24])
         );
     }
+}
+
+/// The class says that a point failed, the other arrays have there what no point has; and only of classes there are names.
+#[test]
+fn a_point_that_failed_is_none_in_any_array() {
+    let failed = Err("no cam turns at it".to_string());
+    let told: Vec<f64> = VARIABLES.iter().map(|variable| variable.of(&failed)).collect();
+    assert_eq!(told[..2], [-1.0, -1.0]);
+    assert!(told[2..6].iter().all(|value| value.is_nan()), "{told:?}");
+    let units = common::osorio().units;
+    for (variable, value) in VARIABLES.iter().zip(told) {
+        let attributes = &variable.document(&units)["attributes"];
+        let names = attributes["flag_meanings"].as_str().map(|names| names.split(' ').count());
+        let is_class = variable.name == "class";
+        assert_eq!(names, is_class.then_some(CLASSES.len()), "{}", variable.name);
+        assert!(!is_class || CLASSES[value as usize].is_none() && attributes["flag_values"][value as usize] == value);
+    }
+}
+
+/// What stands where a store's own description is to be, and cannot be read, is not written over; and the times of blocks are added up.
+#[test]
+fn a_store_that_cannot_be_read_is_not_begun_anew() {
+    let (folder, chart) = (tempfile::TempDir::new().unwrap(), chart(&common::osorio(), 8));
+    std::fs::create_dir(folder.path().join("zarr.json")).unwrap();
+    let refused = Store::open(folder.path(), &chart, [2, 3]).map(|_| ()).unwrap_err();
+    assert!(matches!(&refused, StoreError::None { .. }), "{refused}");
+    std::fs::remove_dir(folder.path().join("zarr.json")).unwrap();
+    let store = Store::open(folder.path(), &chart, [2, 3]).unwrap();
+    assert!(store.fill_block(0, Some(1)).unwrap().unwrap().1[1] > 0.0);
+}
+
+/// Processors count in hundredths of a second: of blocks that take several each, the times are added up.
+#[test]
+fn the_times_of_blocks_are_added_up() {
+    let paper = common::osorio();
+    let axes = [axis(&paper, "rpm", 670.0, 671.0, 4), axis(&paper, "restitution", 0.8, 0.801, 2)];
+    let chart = Chart::new(&paper, None, axes, START, Lengths { transient: 60_000, record: 10 }).unwrap();
+    let folder = tempfile::TempDir::new().unwrap();
+    let store = Store::open(folder.path(), &chart, [2, 2]).unwrap();
+    let [processor, clock] = store.fill(Shard::ALL, Some(1), &Unwatched).unwrap().times;
+    assert!(processor > 0.02 && clock > 0.02 && processor < 1.5 * clock + 0.1, "{processor} {clock}");
 }
 
 /// By the first thing that is another; and what is no store is told from one.

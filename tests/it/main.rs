@@ -95,5 +95,6 @@ mod trapping;
 mod turned_cams;
 mod units;
 mod verify;
+mod watched;
 mod whole_files;
 mod work;
