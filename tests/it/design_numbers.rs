@@ -8,13 +8,14 @@ use corner_impact::progress::Unwatched;
 use corner_impact::simulate::angular_velocity;
 use corner_impact::study::StudyError;
 use corner_impact::study::design::contact::{Contact, Separation};
+use corner_impact::study::design::loads::{Load, Loads};
 use corner_impact::study::design::needs::{Answer, Lever};
 use corner_impact::study::design::{Asked, Design, design};
 use corner_impact::tolerance;
 
 use crate::common;
 use crate::design::{separation, valve};
-use crate::orbit_numbers::model;
+use crate::orbit_numbers::{machine, model};
 
 /// A mass on an eccentric, `c = 0.1 + 0.02 cos(theta)` in m.
 #[derive(Clone, Copy)]
@@ -369,4 +370,73 @@ fn forces_are_at_the_speeds_that_are_asked_for() {
     kink.study = Some(Study { rpm_min: 20.0, rpm_max: 21.0 });
     let found = design(&kink, &Asked::default(), &Unwatched).unwrap();
     assert_eq!((speeds(&found), found.loads.len()), (Vec::new(), 2));
+}
+
+/// A mass under its weight alone on a cam that falls away at a sharp top only, `c'' = a (1 - F)` with Fejer's kernel F of order 8,
+/// which is 8 at the top and below 1 farther than half a radian from it: it leaves at the top, at `w^2 = g / (7 a)`.
+#[test]
+fn a_follower_leaves_at_a_top_that_is_narrow() {
+    const ORDER: u32 = 8;
+    const A: f64 = 0.01;
+    for top in [1.1_f64, 2.25, 3.4, 4.55] {
+        let numbers = |number: &dyn Fn(f64) -> f64| {
+            let told: Vec<String> = (1..=ORDER).map(|order| format!("{:?}", number(f64::from(order)))).collect();
+            told.join(", ")
+        };
+        let amplitudes = numbers(&|order| A * 2.0 * (1.0 - order / f64::from(ORDER)) / (order * order));
+        let phases = numbers(&|order| -(order * top).to_degrees());
+        let text = format!(
+            "name = \"top\"\n[follower]\nmass = 0.5\ndamping = 0.0\nstiffness = 0.0\ngravity = 9.81\nrestitution = 0.5\nrest_position = 0.0\n\
+             [cam]\nlaw = \"harmonic\"\noffset = 0.0\namplitudes = [{amplitudes}]\nphases_deg = [{phases}]\n"
+        );
+        let model = Model::parse("top.toml", &text).unwrap();
+        let found = separation(&model);
+        let Separation::At { rpm: leaves, cam_angle, .. } = found else { panic!("{top}: {found:?}") };
+        assert_relative_eq!(leaves, rpm((GRAVITY / (7.0 * A)).sqrt()), max_relative = 1e-12);
+        assert_abs_diff_eq!(cam_angle, top, epsilon = 1e-6);
+    }
+}
+
+/// Of a follower that a spring holds off the cam there is no speed at which it first leaves, rounded or not.
+#[test]
+fn what_is_never_on_the_cam_leaves_at_no_speed() {
+    let lifted = model("osorio-2008").with_number("follower.rest_position", 1e3).unwrap();
+    let found = design(&lifted, &Asked { rpm: Some([100.0, 100.0]), ..Asked::default() }, &Unwatched).unwrap();
+    assert!(matches!(found.separation, Separation::NotPressed { .. }));
+    assert!(
+        !found.rounded.is_empty() && found.rounded.iter().all(|it| it.separation_rpm.is_none()),
+        "{:?}",
+        found.rounded
+    );
+}
+
+/// At the very speed of the separation the follower is on the cam yet, which presses; a little above, it is off and lands.
+#[test]
+fn at_the_separation_itself_the_cam_presses() {
+    let own = OWN.model(false, false);
+    let leaves = separation(&own).speed();
+    for (rpm, loads) in [(leaves, 0), (leaves * (1.0 + 1e-9), 1)] {
+        let asked = Asked { rpm: Some([rpm; 2]), limits: vec![(Load::Force, OWN.mean())], ..Asked::default() };
+        let found = design(&own, &asked, &Unwatched).unwrap();
+        assert_eq!((found.loads.len(), found.limits[0].speed_rpm), (loads, Some(rpm)));
+    }
+    assert_relative_eq!(Loads::at(&own, &machine(&own, 2.0 * leaves)).unwrap().rpm, 2.0 * leaves, max_relative = 1e-15);
+}
+
+/// Without damping and weight the least force is `P + 2 k a - m a w^2`: a little above `m w^2 = 2 k` a preload is needed that is a
+/// hundred-millionth of what the spring does otherwise, and is none of those that are tried first.
+#[test]
+fn a_preload_that_is_next_to_nothing_is_found() {
+    let (stiffness, mass, beyond) = (2000.0_f64, 0.5, 1e-8);
+    let text = format!(
+        "name = \"light\"\n[follower]\nmass = {mass:?}\ndamping = 0.0\nstiffness = {stiffness:?}\ngravity = 0.0\nrestitution = 0.5\npreload = 1.0\n\
+         [cam]\nlaw = \"harmonic\"\noffset = {HEIGHT:?}\namplitudes = [{HEIGHT:?}]\nphases_deg = [0.0]\n"
+    );
+    let model = Model::parse("light.toml", &text).unwrap();
+    let omega = (2.0 * stiffness / mass * (1.0 + beyond)).sqrt();
+    let need = format!("no separation to {:?} rpm", rpm(omega));
+    let found = answers(&model, &need).into_iter().find(|it| it.lever == Lever::Preload).unwrap();
+    // The force is a difference of numbers that are a hundred million times as large.
+    assert_relative_eq!(found.value.unwrap(), 2.0 * stiffness * HEIGHT * beyond, max_relative = 1e-6);
+    assert_eq!((found.other, found.note.as_str()), (None, ""));
 }
