@@ -12,6 +12,7 @@ use corner_impact::interval::Interval;
 use corner_impact::model::Model;
 use corner_impact::progress::Unwatched;
 use corner_impact::simulate::{Event, EventKind, Machine, angular_velocity};
+use corner_impact::study::chaos::{chaos, portrait};
 
 use crate::common;
 
@@ -164,6 +165,60 @@ fn at_every_speed_of_a_range_three_strips_cover() {
     assert_eq!(proved.iter().map(|strip| strip.impacts).collect::<Vec<_>>(), [2, 3, 4]);
     let wider = HSet { rpm: [tile.rpm[0] - 8.0, tile.rpm[1]], ..tile.clone() };
     assert!(prove(&machine(&common::osorio(), 670.0), &wider).is_err(), "not for any range");
+}
+
+/// Over a range one h-set follows another without a gap: those that are kept from where they begin to where they end, and where none
+/// is kept, below 640 rpm, one that is found. Where nothing is proved the range is halved down to 0.03 rpm, and over as little one h-set is
+/// looked for as it is at a speed, with cones.
+#[test]
+#[ignore = "slow"]
+fn a_range_is_covered_by_h_sets_from_end_to_end() {
+    let paper = common::osorio();
+    let found = chaos(&paper, [639.98, 640.52], false, &Unwatched).unwrap();
+    let ranges: Vec<[f64; 2]> = found.theorems.iter().map(|theorem| theorem.set.rpm).collect();
+    assert_eq!((ranges, found.open.len()), (vec![[639.98, 640.0], [640.0, 640.5], [640.5, 640.52]], 0));
+    let tiles = known("osorio-2008");
+    let own: Vec<bool> = found
+        .theorems
+        .iter()
+        .map(|theorem| tiles.iter().any(|tile| HSet { rpm: tile.rpm, ..theorem.set.clone() } == *tile))
+        .collect();
+    assert_eq!(own, [false, true, true]);
+    let narrow = chaos(&paper, [640.49, 640.51], false, &Unwatched).unwrap();
+    let kinds: Vec<_> =
+        narrow.theorems.iter().map(|theorem| (theorem.set.rpm, theorem.set.cone_slope.is_some())).collect();
+    assert_eq!(kinds[0], ([640.49, 640.51], true));
+    let none = chaos(&paper, [160.0, 160.05], false, &Unwatched).unwrap();
+    let open: Vec<[f64; 2]> = none.open.iter().map(|open| open.rpm).collect();
+    assert!(none.theorems.is_empty() && open.len() == 2, "{open:?}");
+    assert_eq!((open[0][0], open[0][1], open[1][1]), (160.0, open[1][0], 160.05));
+    assert!(open.iter().all(|[low, high]| high - low < 0.03 && high - low > 0.02), "{open:?}");
+}
+
+/// The outline of a strip's image, along the one side of the strip and back along the other, is where runs from its points arrive.
+#[test]
+fn images_in_a_picture_are_where_runs_arrive() {
+    let (paper, set) = (common::osorio(), kept(670.0));
+    let machine = machine(&paper, 670.0);
+    let found = portrait(&paper, &set).unwrap();
+    // The first 500 are left out.
+    assert_eq!((found.impacts.len(), found.images.len()), (399_500, set.strips.len()));
+    for (strip, image) in set.strips.iter().zip(&found.images) {
+        assert_eq!(image.len(), 2 * 401);
+        for (place, part, y) in
+            [(0, 0, set.y[0]), (150, 150, set.y[0]), (400, 400, set.y[0]), (401, 400, set.y[1]), (801, 0, set.y[1])]
+        {
+            let x = strip.x[0] + (strip.x[1] - strip.x[0]) * f64::from(part) / 400.0;
+            let start = [0, 1].map(|side| set.centre[side] + x * set.unstable[side] + y * set.stable[side]);
+            let arrived = impacts(&machine, start, strip.impacts as usize);
+            let [angle, velocity] = arrived[strip.impacts as usize - 1];
+            let turned = (image[place][0] - angle) / 360.0;
+            assert!(
+                (turned - turned.round()).abs() < 1e-9 && (image[place][1] - velocity).abs() < 1e-6,
+                "{place} {strip:?}"
+            );
+        }
+    }
 }
 
 /// Found from nothing but the model: at a speed of a machine that no h-set is kept for.
