@@ -98,9 +98,8 @@ const NARROWEST: f64 = 0.03;
 pub fn chaos(model: &Model, rpm: [f64; 2], wants_regions: bool, watch: &dyn Watch) -> Result<Chaos, StudyError> {
     let mut found = sets(model, rpm, watch)?;
     if wants_regions {
-        // Of a range the strips of another speed lie elsewhere.
-        let is_there = |set: &&HSet| set.rpm[0] <= rpm[0] && rpm[0] <= set.rpm[1];
-        let strips = found.theorems.iter().map(|theorem| &theorem.set).rfind(is_there);
+        // Of a range the strips of higher speeds lie elsewhere.
+        let strips = found.theorems.iter().map(|theorem| &theorem.set).rfind(|set| set.rpm[0] == rpm[0]);
         found.trapping = Some(trapping(model, rpm[0], strips, watch)?);
     }
     Ok(found)

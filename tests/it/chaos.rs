@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use corner_impact::cam::Cam;
+use corner_impact::corner::locate;
 use corner_impact::covering::find::{Wanted, find};
 use corner_impact::covering::prove::{Relation, prove};
 use corner_impact::covering::region::{Escape, Region, parted, trap};
@@ -337,6 +338,34 @@ fn a_region_is_not_closed_where_motions_rest_or_cells_run_out() {
     let many = region(&heavy(), 706.6, [151.0, 2.0], 1, 1000).unwrap_err();
     assert_eq!(many.flight, None, "{many:?}");
     assert!(many.cells > 1000, "{many:?}");
+}
+
+/// Behind the corner impact of this machine a run stays next to it, without chaos that is proved in it: its region is one, and that of all
+/// motions, which holds the strips, another.
+#[test]
+#[ignore = "slow"]
+fn regions_are_next_to_the_corner_impact_and_of_all_motions() {
+    let model = common::read(&Path::new(common::ROOT).join("models/nonsmooth-flip.toml"));
+    let rpm = 880.0;
+    let found = chaos(&model, [rpm; 2], true, &Unwatched).unwrap();
+    let trapping = found.trapping.unwrap();
+    let told: Vec<_> = trapping.regions.iter().map(|it| (it.region.squares_per_degree, it.holds_chaos)).collect();
+    // 32 squares across what the run takes up, or up to twice as many.
+    assert_eq!((told, trapping.escapes.len()), (vec![(8, false), (1, true)], 0));
+    let [beside, all] = [0, 1].map(|index| &trapping.regions[index].region);
+    let (at, _) = locate(&model, &Cam::new(&model).unwrap()).unwrap();
+    let corner = at.corner.angle.to_degrees();
+    assert!(beside.angles_deg[0] < corner && corner < beside.angles_deg[1] && beside.angles_deg[0] > corner - 6.0);
+    assert!(all.angles_deg[0] < beside.angles_deg[0] && beside.angles_deg[1] < all.angles_deg[1]);
+    let machine = machine(&model, rpm);
+    let start = [corner, at.velocity_after - at.cam_velocity];
+    assert!(impacts(&machine, start, 2000).iter().skip(500).all(|impact| beside.holds(*impact) && all.holds(*impact)));
+    // The set of chaotic motions has impacts in its strips.
+    let set = &found.theorems[0].set;
+    for strip in &set.strips {
+        let x = 0.5 * (strip.x[0] + strip.x[1]);
+        assert!(all.holds([0, 1].map(|side| set.centre[side] + x * set.unstable[side])));
+    }
 }
 
 /// Next to its corner impact there is a region in which no periodic orbit is stable.
