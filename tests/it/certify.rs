@@ -6,6 +6,7 @@ use std::process::{Command, Stdio};
 
 use crate::common::{self, corner_impact, text};
 use corner_impact::model::Model;
+use corner_impact::study::certify::{Certificate, ProvedResting};
 use serde_json::{Value, json};
 
 /// The paper's corner impact, as doubles have it.
@@ -108,6 +109,14 @@ fn the_paper_s_corner_impacts_are_proved_and_its_solution_inside_of_the_cam_is_n
         assert_eq!(one[side]["fixed_point_exists_for"], "faster");
         assert_eq!(one[side]["stable"], side == "plus");
     }
+    // Of the velocity, which is 0 but for its radius, no digit is proved, and none is counted.
+    let certificate: Certificate = serde_json::from_value(one.clone()).unwrap();
+    let map = ["minus", "plus"].map(|side| [&one[side]["A"], &one[side]["B"]]);
+    let map = map.iter().flatten().flat_map(|numbers| numbers.as_array().unwrap());
+    let map = map.flat_map(|entry| entry.as_array().cloned().unwrap_or_else(|| vec![entry.clone()]));
+    let proved = map.chain([one["speed_rpm"].clone(), one["period_s"].clone(), one["state"][0].clone()]);
+    let fewest = proved.map(|ball| significant(ball["mid"].as_str().unwrap())).min().unwrap();
+    assert!(fewest > 20 && certificate.digits() == fewest, "{fewest} {}", certificate.digits());
     beside_it_both_fixed_points_are_followed(one);
     beside_it_both_fixed_points_are_followed(two);
     has(&two["speed_rpm"], "736.110814038711385786420");
@@ -116,6 +125,12 @@ fn the_paper_s_corner_impacts_are_proved_and_its_solution_inside_of_the_cam_is_n
     let [inside] = &found["refused"].as_array().unwrap()[..] else { panic!("{found}") };
     assert!((inside["speed_rpm"].as_f64().unwrap() - 634.331_399).abs() < 1e-6, "{inside}");
     assert!(inside["why"].as_str().unwrap().contains("into the cam"), "{inside}");
+}
+
+/// From the first digit that is not 0 on.
+fn significant(decimal: &str) -> usize {
+    let (mantissa, _) = decimal.split_once('e').unwrap_or((decimal, ""));
+    mantissa.replace(['-', '.'], "").trim_start_matches('0').len()
 }
 
 /// As far as it is said; `orbit` has the orbits that are told of there, on the side of the corner that is.
@@ -390,5 +405,38 @@ fn splines_near_the_rows_are_not_proved() {
         let says = common::text(output.stderr);
         assert_eq!(output.status.code(), Some(2), "{says}");
         assert!(says.contains("cam.spline = \"smoothing\": proofs are of splines through the rows"), "{says}");
+    }
+}
+
+/// Of a thousand rows a proof is tried, which takes Python; of more it is not.
+#[test]
+fn splines_through_a_thousand_rows_are_proved_and_of_more_are_not() {
+    let folder = tempfile::tempdir().unwrap();
+    for (rows, says) in [(1000, "/nonexistent/python"), (1001, "proofs are of splines through the rows")] {
+        let lift = |row: u32| 0.1 + 0.02 * (std::f64::consts::TAU * f64::from(row) / f64::from(rows)).cos();
+        let row = |row: u32| format!("[{:?}, {:?}]", 360.0 * f64::from(row) / f64::from(rows), lift(row));
+        let rows = (0..rows).map(row).collect::<Vec<_>>().join(", ");
+        let follower =
+            "[follower]\nmass = 1\ndamping = 0\nstiffness = 1000\ngravity = 0\nrest_position = 0\nrestitution = 0.5\n";
+        let file = folder.path().join("rows.toml");
+        std::fs::write(&file, format!("{follower}[cam]\nlaw = \"table\"\nspline = \"cubic\"\nrows = [{rows}]\n"))
+            .unwrap();
+        let mut program = common::program(["certify", file.to_str().unwrap(), "--resting", "--rpm", "3500"]);
+        let output = program.env("CORNER_IMPACT_PYTHON", "/nonexistent/python").output().unwrap();
+        let words = text(output.stderr);
+        assert!(output.status.code() == Some(2) && words.contains(says), "{words}");
+    }
+}
+
+/// Only where after each release another is known.
+#[test]
+fn motions_that_rest_all_repeat_where_each_release_has_a_next() {
+    let next = json!({ "impacts": 3, "rests_by_rad": 1.0, "release": 0, "revolutions": 1 });
+    let release = |next: &Value| json!({ "cam_angle_rad": { "mid": "2.0", "rad": "1e-30" }, "next": next });
+    for (second, all) in [(next.clone(), true), (Value::Null, false)] {
+        let releases = [release(&next), release(&second)];
+        let document = json!({ "speed_rpm": 100.0, "bits": 128, "pressed_rad": [], "releases": releases, "looked_at": 9, "periodic": [] });
+        let proved: ProvedResting = serde_json::from_value(document).unwrap();
+        assert_eq!(proved.all_repeat(), all);
     }
 }

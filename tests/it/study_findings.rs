@@ -220,6 +220,8 @@ fn a_corner_impact_is_told_by_its_order() {
     let range = Study { rpm_min: 673.0, rpm_max: 673.5 };
     let found = locate(&common::osorio(), range, 1, &Unwatched).unwrap();
     assert!(found.agrees && found.measured.is_none());
+    // The route whose map is told is held against each other one first.
+    assert_eq!(found.found[0].comparisons[0].routes[0], RouteName::Variational);
     let at = |jump_order: usize, side: Side, local: Happens| {
         let mut found = found.found[0].clone();
         (found.at.corner.jump_order, found.at.side, found.local) = (jump_order, side, local);
