@@ -1,15 +1,17 @@
 //! Does `compare` tell what moved, as `verify` and `design` have it of either model, and by how much more than it may be off?
 
 use std::fs;
+use std::path::Path;
 
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
 use crate::common;
+use corner_impact::agreement::Quantity;
 use corner_impact::model::Model;
 use corner_impact::progress::Unwatched;
 use corner_impact::study::compare::{Comparison, compare};
-use corner_impact::study::verify::External;
+use corner_impact::study::verify::{External, verify};
 
 const PAPER: &str = "models/osorio-2008.toml";
 
@@ -207,8 +209,97 @@ fn what_a_measured_cam_leaves_open_is_no_change() {
     assert!(change.difference.unwrap() != 0.0 && !change.is_one, "{change:?}");
     assert!(change.error.unwrap() > 1e-3, "{change:?}");
     assert!(same.fields.iter().any(|field| field.field == "rows of the table"), "{:?}", same.fields);
+    // Two springs on one cam press by k (c - rest), and what is open about c is in the difference as often as k differs.
+    let preload = |stiffness: f64| {
+        let found = compared(&machine(5, stiffness));
+        found.changes.iter().find(|it| it.quantity == "preload_n").and_then(|it| it.error).unwrap()
+    };
+    let [once, twice] = [1500.0, 1569.2].map(preload);
+    assert!(once > 0.0);
+    approx::assert_relative_eq!(twice, 2.0 * once, max_relative = 1e-6);
     // The same rows leave another spring less open than other rows do: both followers are on one cam, whichever it is.
     let [one_cam, two_cams] = [5, 4].map(|places| speed(&compared(&machine(places, 1500.0))));
     assert!(one_cam.is_one && one_cam.times_error.unwrap() > 3.0, "{one_cam:?}");
     assert!(two_cams.error.unwrap() > 5.0 * one_cam.error.unwrap(), "{one_cam:?} {two_cams:?}");
+}
+
+/// Where routes know the orbit, what they differ by of both models is the error: of the period and the state as it is, and of the speed 60/T
+/// by 60/T^2 of that of the period.
+#[test]
+fn the_orbit_is_known_as_far_as_its_routes_agree() {
+    let models = [common::osorio(), common::osorio_with(&[("restitution", "0.7")])];
+    let found = compare(&models[0], &models[1], External::LeftOut, &Unwatched).unwrap();
+    let (mut period, mut speed, mut state) = (0.0, 0.0, 0.0);
+    for model in &models {
+        let verified = verify(model, External::LeftOut).unwrap();
+        let apart = |quantity: Quantity| {
+            let pairs = verified.comparisons.iter().filter(|pair| pair.quantity == quantity);
+            pairs.map(|pair| pair.max_abs_diff).fold(0.0, f64::max)
+        };
+        period += apart(Quantity::Period);
+        speed += apart(Quantity::Period) * 60.0 / verified.at.period.powi(2);
+        state += apart(Quantity::State);
+    }
+    for (quantity, apart) in [("T_star", period), ("speed_rpm", speed), ("x_star_1", state), ("x_star_2", state)] {
+        let change = found.changes.iter().chain(&found.unchanged).find(|it| it.quantity == quantity).unwrap();
+        let size = [&change.a, &change.b].map(|it| it.as_ref().and_then(Value::as_f64).unwrap().abs());
+        // With a rounding of the difference itself.
+        let rounding = f64::EPSILON * size[0].max(size[1]);
+        assert!(apart > 0.2 * rounding, "{quantity}: {apart:e}");
+        approx::assert_relative_eq!(change.error.unwrap(), apart + rounding, max_relative = 1e-6);
+    }
+}
+
+/// Where the velocity jumps the differences have one side alone, and the entries of the map are known by the other routes.
+#[test]
+fn a_map_at_a_jump_of_the_velocity_is_known_by_the_routes_that_have_both_sides() {
+    let sharp = common::read(Path::new("models/sharp-nose.toml"));
+    let other = sharp.with_number("follower.mass", 1.01 * sharp.follower.mass).unwrap();
+    let found = compare(&sharp, &other, External::LeftOut, &Unwatched).unwrap();
+    for name in ["A_minus_21", "A_plus_21", "B_minus_2", "B_plus_2"] {
+        let of = found.changes.iter().chain(&found.unchanged).find(|it| it.quantity == name).unwrap();
+        let size = of.a.as_ref().and_then(Value::as_f64).unwrap().abs();
+        assert!(of.error.is_some_and(|error| error < 1e-6 * size), "{of:?}");
+    }
+}
+
+/// A number of a cam moves when the cam does, however small that is, and rows of a table are counted that are others.
+#[test]
+fn what_moves_is_told_at_any_size() {
+    let follower =
+        json!({ "mass": 1, "damping": 0, "stiffness": 0, "gravity": 9.81, "rest_position": 0, "restitution": 0.5 });
+    let compared = |cams: [Value; 2]| {
+        let [a, b] = cams.map(|cam| Model::of_document("cam", &json!({ "follower": follower, "cam": cam })).unwrap());
+        compare(&a, &b, External::LeftOut, &Unwatched).unwrap()
+    };
+    for size in [1e-9, 1.0, 1e9] {
+        let cam =
+            |part: f64| json!({ "law": "harmonic", "offset": 0.0, "amplitudes": [part * size], "phases_deg": [0.0] });
+        let found = compared([1.0, 1.0 + 1e-12].map(cam));
+        assert!(found.changes.iter().any(|it| it.quantity == "highest_lift_m"), "{size}: {:?}", found.changes);
+        let found = compared([1.0, 1.0 + f64::EPSILON].map(cam));
+        assert!(found.unchanged.iter().any(|it| it.quantity == "highest_lift_m"), "{size}: {:?}", found.changes);
+    }
+    let rows = |other: f64| -> Vec<[f64; 2]> {
+        (0..36).map(|row| [f64::from(10 * row), if row == 7 { other } else { (f64::from(row) * 0.17).cos() }]).collect()
+    };
+    let found = compared([0.4, 0.41].map(|other| json!({ "law": "table", "rows": rows(other) })));
+    let rows = found.fields.iter().find(|field| field.field == "rows of the table").unwrap();
+    assert_eq!((&rows.a, &rows.b), (&Some(json!("36 rows")), &Some(json!("36 rows, 1 others"))));
+}
+
+/// What one model has alone comes last, whichever of the two has it; and both have to be verified, and alike, for nothing to have changed.
+#[test]
+fn what_one_model_has_alone_comes_last() {
+    let [paper, harmonic] = [PAPER, "models/laws/harmonic.toml"].map(|file| common::read(Path::new(file)));
+    for [one, other] in [[&paper, &harmonic], [&harmonic, &paper]] {
+        let found = compare(one, other, External::LeftOut, &Unwatched).unwrap();
+        let alone: Vec<bool> = found.changes.iter().map(|it| it.a.is_none() || it.b.is_none()).collect();
+        assert!(alone.is_sorted() && alone.contains(&true) && alone.contains(&false), "{:?}", found.changes);
+    }
+    let mut found = compare(&paper, &paper, External::LeftOut, &Unwatched).unwrap();
+    for (a, b) in [(true, true), (true, false), (false, true), (false, false)] {
+        (found.verdict.a.agrees, found.verdict.b.agrees) = (a, b);
+        assert_eq!((found.agrees(), found.verdict_changed()), (a && b, a != b));
+    }
 }

@@ -28,10 +28,11 @@ fn map(model: &Model, rpm: f64) -> StroboscopicMap {
     StroboscopicMap { machine, cam_angle: SECTION }
 }
 
-fn saddle(map: &StroboscopicMap) -> Saddle {
+/// The saddle of one impact, where there is one.
+pub fn saddle(map: &StroboscopicMap) -> Saddle {
     let orbits = search(&map.machine, &Search { revolutions: 1, impacts: Some(1) }).unwrap();
     let of = |orbit: &corner_impact::orbit::PeriodicOrbit| match &orbit.course {
-        Course::Impacts(cycle) => Saddle::new(&map.machine, cycle, SECTION),
+        Course::Impacts(cycle) => Saddle::new(&map.machine, cycle, map.cam_angle),
         _ => None,
     };
     orbits.iter().find_map(of).unwrap()

@@ -8,11 +8,13 @@ use corner_impact::section::StroboscopicMap;
 use corner_impact::simulate::angular_velocity;
 use corner_impact::study::StudyError;
 use corner_impact::study::attractors::Patience;
-use corner_impact::study::basins::boundary::border;
+use corner_impact::study::basins::boundary::{approach, border};
 use corner_impact::study::basins::{Curve, Extent, Grid, Reversed, Saddle, Section};
+use serde_json::{Value, json};
 
+use crate::attractors::ball;
 use crate::common;
-use crate::global::SECTION as STROBE;
+use crate::global::{SECTION as STROBE, saddle};
 use crate::orbit_numbers::machine;
 
 fn map(model: &Model, rpm: f64, cam_angle: f64) -> StroboscopicMap {
@@ -119,9 +121,15 @@ fn starts_of_a_section_are_about_its_orbits() {
     assert_relative_eq!(grid.velocities[1], 2.0 * most - least, max_relative = 1e-6, epsilon = 1e-6);
     let given = section.grid([1, 1], Some([1.0, 2.0]), Some([-3.0, 4.0])).unwrap();
     assert_eq!((given.positions, given.velocities, given.cam_angle), ([1.0, 2.0], [-3.0, 4.0], STROBE));
-    for (positions, velocities) in
-        [([2.0, 2.0], [-3.0, 4.0]), ([1.0, 2.0], [4.0, 4.0]), ([1.0, f64::INFINITY], [-3.0, 4.0])]
-    {
+    let whole = [-f64::MAX, f64::MAX];
+    for (positions, velocities) in [
+        ([2.0, 2.0], [-3.0, 4.0]),
+        ([1.0, 2.0], [4.0, 4.0]),
+        ([1.0, f64::INFINITY], [-3.0, 4.0]),
+        // Whose width is no double.
+        (whole, [-3.0, 4.0]),
+        ([1.0, 2.0], whole),
+    ] {
         let none = section.grid([1, 1], Some(positions), Some(velocities));
         assert!(matches!(none, Err(StudyError::NoStarts)), "{none:?}");
     }
@@ -164,4 +172,245 @@ fn a_grid_of_starts_counts_its_cells() {
     assert_eq!(border(&map, line(0.6, 0.6), Patience::default()).unwrap(), None);
     let across = border(&map, line(0.6, 6.0), Patience::default()).unwrap().unwrap();
     assert!(across.position > 0.6 && across.position < 6.0, "{across:?}");
+}
+
+/// On every section the directions are those that the map stretches by the multipliers, and where it carries a position to the velocity alone,
+/// so that one row of the matrix says nothing, as well as elsewhere.
+#[test]
+fn directions_of_a_saddle_are_those_that_the_map_stretches() {
+    let paper = common::osorio();
+    let at = |cam_angle: f64| {
+        let map = map(&paper, 678.0, cam_angle);
+        let saddle = saddle(&map);
+        let (_, matrix) = map.carry(saddle.state, 1).unwrap();
+        (saddle, matrix, map.machine.angular_velocity())
+    };
+    let holds = |cam_angle: f64| {
+        let (saddle, matrix, omega) = at(cam_angle);
+        for (multiplier, along) in [saddle.stable, saddle.unstable] {
+            assert_relative_eq!(along[0].hypot(along[1] / omega), 1.0, max_relative = 1e-12);
+            let off = matrix * along - along * multiplier;
+            assert!(off[0].hypot(off[1] / omega) < 1e-6, "at {cam_angle} rad: {off}");
+        }
+    };
+    let angles: Vec<f64> = (0..24).map(|index| f64::from(index) * 0.26).collect();
+    angles.iter().for_each(|angle| holds(*angle));
+    // What a velocity does to the position a revolution later is 0 on some sections: the multipliers are on the diagonal there.
+    let (mut found, row) = (0, |angle: f64| at(angle).1[(0, 1)]);
+    for pair in angles.windows(2) {
+        let [mut low, mut high] = [pair[0], pair[1]];
+        let before = row(low) > 0.0;
+        if before == (row(high) > 0.0) {
+            continue;
+        }
+        for _ in 0..50 {
+            let middle = 0.5 * (low + high);
+            *(if (row(middle) > 0.0) == before { &mut low } else { &mut high }) = middle;
+        }
+        // Across the impact it jumps.
+        if row(low).abs() * at(low).2 < 1e-9 {
+            holds(low);
+            found += 1;
+        }
+    }
+    assert!(found > 0);
+}
+
+/// A motion of two revolutions is no fixed point of the map of one.
+#[test]
+fn only_an_orbit_of_one_revolution_is_a_saddle() {
+    // Holmes' ball a flight of n revolutions: a saddle beside each stable one where a omega^2 (1 + r) > n pi g (1 - r).
+    let machine = machine(&ball(), 1000.0);
+    for (revolutions, saddles) in [(1, 1), (2, 0)] {
+        let all = search(&machine, &Search { revolutions, impacts: Some(1) }).unwrap();
+        let cycles =
+            all.iter().filter_map(|it| if let Course::Impacts(cycle) = &it.course { Some((it, cycle)) } else { None });
+        let (mut told, mut grow) = (0, 0);
+        for (orbit, cycle) in cycles {
+            told += usize::from(Saddle::new(&machine, cycle, 0.0).is_some());
+            grow += usize::from(orbit.multipliers().iter().all(|it| it.im == 0.0 && it.re > 0.0) && !orbit.is_stable());
+        }
+        assert_eq!((told, grow), (saddles, 1), "{revolutions}");
+    }
+}
+
+/// From the saddle along its direction, each point farther than the one before, in one piece, and no farther than asked for.
+#[test]
+fn curves_go_away_from_the_saddle() {
+    let paper = common::osorio();
+    // On this section the directions are of position and velocity alike.
+    let map = map(&paper, 678.0, 1.0);
+    let (saddle, omega) = (saddle(&map), map.machine.angular_velocity());
+    let reversed = Reversed::new(&paper.follower, &map).unwrap();
+    let flat =
+        |state: State| [state.position - saddle.state.position, (state.velocity - saddle.state.velocity) / omega];
+    let extent = Extent { stretches: 5, first: 1e-5, finest: 1e-2, farthest: 1.0 };
+    for sign in [1.0, -1.0] {
+        let curves = |extent: &Extent| {
+            let stable = Curve::stable(&reversed, &saddle, sign, extent);
+            [(stable, saddle.stable), (Curve::unstable(&map, &saddle, sign, extent), saddle.unstable)]
+        };
+        for (curve, (multiplier, along)) in curves(&extent) {
+            assert!(along[0].abs() > 0.1 && along[0].abs() < 0.95, "{along}");
+            let [piece] = &curve.pieces[..] else { panic!("{curve:?}") };
+            let away: Vec<f64> = piece.iter().map(|it| flat(*it)[0].hypot(flat(*it)[1])).collect();
+            assert!(away.is_sorted_by(|one, two| one < two), "{away:?}");
+            let first = flat(piece[1]);
+            // What differences of states of 1 leave of 1e-5.
+            assert_abs_diff_eq!(first[0], sign * extent.first * along[0], epsilon = 1e-12);
+            assert_abs_diff_eq!(first[1], sign * extent.first * along[1] / omega, epsilon = 1e-12);
+            // Almost five times the multiplier, but for how the curve bends.
+            let grown = multiplier.max(1.0 / multiplier).powi(5) * extent.first;
+            let last = *away.last().unwrap();
+            assert!(last < 1.1 * grown && last > 0.5 * grown, "{last} {grown}");
+        }
+        for (curve, _) in curves(&Extent { farthest: 2e-5, ..extent }) {
+            let away = curve.points().map(|it| flat(it)[0].hypot(flat(it)[1]));
+            let farthest = away.fold(0.0, f64::max);
+            assert!(farthest <= 2e-5 && farthest > 1.5e-5, "{farthest}");
+        }
+    }
+    // A picture twice as large takes what is twice as far and as coarse.
+    let [one, two] = [0.3, 0.6].map(Extent::of);
+    assert_eq!(two, Extent { first: 2.0 * one.first, finest: 2.0 * one.finest, farthest: 2.0 * one.farthest, ..one });
+    assert!(one.first < one.finest && one.finest < 0.3 && one.farthest > 0.3);
+}
+
+/// The distance from a line of points a known way apart, of which only those that may be nearer than a limit are looked at.
+#[test]
+fn the_distance_from_a_curve_is_that_from_its_lines() {
+    let paper = common::osorio();
+    let map = map(&paper, 678.0, STROBE);
+    let extent = Extent { stretches: 1, first: 1e-6, finest: 10.0, farthest: 1.0 };
+    let mut curve = Curve::unstable(&map, &saddle(&map), 1.0, &extent);
+    let state = |position: f64| State { position, velocity: 0.0 };
+    curve.pieces = vec![vec![state(0.0), state(10.0), state(20.0)]];
+    let omega = map.machine.angular_velocity();
+    for (position, height, distance) in [(5.0, 1.0, 1.0), (-3.0, 4.0, 5.0), (16.0, 2.0, 2.0), (23.0, -4.0, 5.0)] {
+        let from = State { position, velocity: height * omega };
+        assert_relative_eq!(curve.distance(from), distance, max_relative = 1e-12);
+        assert_relative_eq!(curve.distance_below(1.5 * distance, from), distance, max_relative = 1e-12);
+        assert_eq!(curve.distance_below(0.5 * distance, from), 0.5 * distance);
+    }
+}
+
+/// Starts are a hundred-thousandth of the way off and run until they have gone it; what they pass in so many revolutions more counts.
+#[test]
+fn what_leaves_a_saddle_is_as_far_as_it_has_grown() {
+    let paper = common::osorio();
+    let map = map(&paper, 678.0, STROBE);
+    let saddle = saddle(&map);
+    let (multiplier, along) = saddle.unstable;
+    let extent = Extent { stretches: 1, first: 1e-6, finest: 1.0, farthest: 1.0 };
+    let mut curve = Curve::unstable(&map, &saddle, 1.0, &extent);
+    // The nearest to the saddle itself is the start that was the nearest, after the first revolution that counts.
+    curve.pieces = vec![vec![saddle.state]];
+    let away = 1e-3;
+    let leaving = (1e5_f64.ln() / multiplier.ln()).ceil();
+    for sign in [1.0, -1.0] {
+        let found = approach(&map, &saddle, sign, &curve, away, [4, 2]).unwrap();
+        // The map is as good as linear over so short a way.
+        assert_relative_eq!(found.distance, 1e-5 * away * multiplier.powf(leaving + 1.0), max_relative = 0.02);
+        let off = (found.nearest.position - saddle.state.position) * sign * along[0];
+        assert!(off > 0.0, "{found:?}");
+    }
+}
+
+/// The border is on the line that it is looked for on, where position and velocity change.
+#[test]
+fn the_border_is_on_the_line_between_two_starts() {
+    let map = map(&common::osorio(), 678.0, STROBE);
+    let line = [(0.6, -24.0), (6.0, 4.0)].map(|(position, velocity)| State { position, velocity });
+    let found = border(&map, line, Patience::default()).unwrap().unwrap();
+    let share = (found.position - 0.6) / 5.4;
+    assert!(share > 0.0 && share < 1.0, "{found:?}");
+    assert_abs_diff_eq!(found.velocity, -24.0 + 28.0 * share, epsilon = 1e-9);
+}
+
+/// The stable orbits that starts end on, the saddles, and of each saddle a curve to either side.
+#[test]
+fn what_parts_the_basins_is_told_with_the_orbits() {
+    let paper = common::osorio();
+    let section = Section::new(&paper, 678.0, STROBE).unwrap();
+    let saddle = saddle(&section.map);
+    let orbits = search(&section.map.machine, &Search { revolutions: 1, impacts: Some(1) }).unwrap();
+    let stable = orbits.iter().filter(|it| it.is_stable());
+    let crossing = stable.filter_map(|it| match &it.course {
+        Course::Impacts(cycle) => Some(cycle.at_section(&section.map.machine, STROBE).0),
+        _ => None,
+    });
+    let [stable] = crossing.collect::<Vec<_>>()[..] else { panic!("{orbits:?}") };
+    // One start, next to the stable orbit; the curves are followed as far as that picture is wide, twice.
+    let around = |middle: f64, reach: f64| Some([middle - reach, middle + reach]);
+    let grid = section.grid([1, 1], around(stable.position, 1e-3), around(stable.velocity, 1e-2)).unwrap();
+    let basins = grid.basins(&section.map.machine, Patience::default(), Some(1)).unwrap();
+    let found = section.border(&basins);
+    let [told] = found.stable[..] else { panic!("{found:?}") };
+    assert_abs_diff_eq!(told.position, stable.position, epsilon = 1e-9);
+    assert_abs_diff_eq!(told.velocity, stable.velocity, epsilon = 1e-7);
+    assert_eq!(found.saddles, [saddle.state]);
+    let sides: Vec<f64> =
+        found.curves.iter().map(|it| (it.pieces[0][1].position - saddle.state.position).signum()).collect();
+    assert_eq!(sides.iter().sum::<f64>(), 0.0, "{sides:?}");
+    assert_eq!(sides.len(), 2);
+}
+
+/// A run backwards needs a cam that is its own mirror image all round, to the digits that its numbers have whatever their size.
+#[test]
+fn a_cam_that_is_its_own_mirror_image_is_told_at_any_size() {
+    let follower =
+        json!({ "mass": 1, "damping": 0, "stiffness": 0, "gravity": 9.81, "rest_position": 0, "restitution": 0.5 });
+    let is_mirrored = |cam: &Value| {
+        let model = Model::of_document("cam", &json!({ "follower": follower, "cam": cam })).unwrap();
+        Reversed::new(&model.follower, &map(&model, 60.0, 0.0)).is_some()
+    };
+    let harmonics = |size: f64, off: f64| {
+        let amplitudes = [0.2, off].map(|part| part * size);
+        json!({ "law": "harmonic", "offset": size, "amplitudes": amplitudes, "phases_deg": [0.0, 90.0] })
+    };
+    for size in [1e-6, 1.0, 1e3] {
+        assert!(is_mirrored(&harmonics(size, 0.0)), "{size}");
+        // A second harmonic that is a sine is the opposite of its own image.
+        assert!(!is_mirrored(&harmonics(size, 1e-7)), "{size}");
+    }
+    // Rest at lift 0 up to 60 degrees on either side, and on either side of the nose.
+    let program = |spans: [f64; 5]| {
+        let [rest, rise, nose, fall, end] = spans;
+        let segment = |motion: &str, span: f64, rise: f64| json!({ "motion": motion, "span_deg": span, "rise": rise });
+        let all = [
+            segment("dwell", rest, 0.0),
+            segment("cycloidal", rise, 0.01),
+            segment("dwell", nose, 0.0),
+            segment("cycloidal", fall, -0.01),
+            segment("dwell", end, 0.0),
+        ];
+        json!({ "law": "program", "base": 0.0, "segment": all })
+    };
+    assert!(is_mirrored(&program([60.0, 60.0, 120.0, 60.0, 60.0])));
+    assert!(!is_mirrored(&program([60.0, 60.0, 80.0, 90.0, 70.0])));
+}
+
+/// A flight that never meets the cam, run backwards: found to the digits that its own size has, however large that is and whichever of position and
+/// velocity it is of.
+#[test]
+fn a_run_backwards_is_as_exact_as_its_motion_is_large() {
+    let (size, omega) = (1e9, 1e-6_f64);
+    for swings in [0.31, 0.43, 0.57, 0.7, 0.83, 0.97, 1.21, 1.37] {
+        // So many times a revolution, up to `size` on either side of its rest, above a cam that is lower.
+        let stiffness = (swings * omega).powi(2);
+        let follower = json!({
+            "mass": 1, "damping": 0, "stiffness": stiffness, "gravity": 0, "rest_position": 0, "restitution": 0.5
+        });
+        let cam = json!({
+            "law": "harmonic", "offset": -3.0 * size, "amplitudes": [0.1 * size], "phases_deg": [0.0]
+        });
+        let model = Model::of_document("floats", &json!({ "follower": follower, "cam": cam })).unwrap();
+        let map = map(&model, omega * 60.0 / std::f64::consts::TAU, 0.0);
+        let reversed = Reversed::new(&model.follower, &map).unwrap();
+        let before = State { position: 0.0, velocity: swings * omega * size };
+        let after = map.apply(before).unwrap().state;
+        let found = reversed.apply(after).unwrap();
+        assert_abs_diff_eq!(found.position, 0.0, epsilon = 1e-12 * size);
+        assert_relative_eq!(found.velocity, before.velocity, max_relative = 1e-12);
+    }
 }
