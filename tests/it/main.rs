@@ -95,6 +95,7 @@ mod trapping;
 mod turned_cams;
 mod units;
 mod verify;
+mod wandering;
 mod watched;
 mod whole_files;
 mod work;

@@ -2,11 +2,14 @@
 
 use approx::assert_relative_eq;
 use corner_impact::estimate::{ErrorIs, Estimate};
+use corner_impact::model::Model;
 use corner_impact::orbit::ending::{Ending, Kind, Resting};
 use corner_impact::progress::Unwatched;
-use corner_impact::study::attractors::Wandering;
+use corner_impact::study::attractors::{Attractors, AttractorsError, Wandering, attractors};
 use corner_impact::study::speeds::{At, Attractor, Speeds, speeds};
 
+use crate::attractors::ball;
+use crate::common;
 use crate::orbit_numbers::model;
 use crate::study_numbers::resolution;
 
@@ -63,4 +66,66 @@ fn the_hardest_impact_and_the_smallest_basin_are_told() {
     assert_eq!([missed(1), missed(2)], [1.0, 1.0]);
     assert!(missed(3) < 1.0);
     assert_eq!(Speeds { attractors: Vec::new(), ..found }.hardest(), None);
+}
+
+fn over(model: &Model, range: [f64; 2], step: f64, starts: usize) -> Result<Attractors, AttractorsError> {
+    attractors(model, range, resolution(step, starts), &Unwatched)
+}
+
+/// Few speeds are no too many however high they are, but a step that rounding takes.
+#[test]
+fn a_range_is_as_fine_as_its_speeds_are_apart() {
+    let paper = common::osorio();
+    // From eight steps below the range to eight above it.
+    assert_eq!(over(&paper, [100.0, 100.01], 0.001, 1).unwrap().grid.len(), 27);
+    let next = 1000.0 * (1.0 + f64::EPSILON);
+    assert!(matches!(over(&paper, [1000.0, next], 1e-13, 1), Err(AttractorsError::TooFine { .. })));
+    // A range that begins at the first speed of the grid has it once.
+    let found = over(&paper, [5.0, 10.0], 5.0, 1).unwrap();
+    let speeds: Vec<f64> = found.grid.iter().map(|it| it.as_ref().unwrap().rpm).collect();
+    assert_eq!(speeds[..3], [5.0, 10.0, 15.0]);
+}
+
+/// Where the follower leaves the cam is told where that is in the range, and neither from the margin nor where it is off at all speeds.
+#[test]
+fn where_the_cam_is_left_is_told_within_the_range() {
+    // a omega^2 = g of a table that goes up and down by a millimetre.
+    let leaves = crate::design_numbers::rpm((9.81_f64 / 0.001).sqrt());
+    for (range, is_told) in [([945.0, 947.0], true), ([947.0, 949.0], false), ([942.0, 944.0], false)] {
+        let found = over(&ball(), range, 1.0, 1).unwrap().detachment;
+        assert_eq!(found.is_some(), is_told, "{range:?}");
+        assert!(found.is_none_or(|rpm| (rpm - leaves).abs() < 1e-6), "{found:?}");
+    }
+    // A spring that holds it above the cam.
+    let text = "[follower]\nmass = 2.0\nrestitution = 0.5\ndamping = 3.0\nstiffness = 800.0\ngravity = 9.81\nrest_position = 0.25\n\
+                [cam]\nlaw = \"harmonic\"\noffset = 0.1\namplitudes = [0.02]\nphases_deg = [0.0]\n";
+    let held = Model::parse("held.toml", text).unwrap();
+    assert_eq!(over(&held, [50.0, 150.0], 50.0, 1).unwrap().detachment, None);
+}
+
+/// A motion that rests at most of the speeds of a grid, and is chaotic at some, is one that rests.
+#[test]
+fn a_kind_is_that_of_most_speeds() {
+    let found = over(&common::osorio(), [425.0, 445.0], 3.0, 3).unwrap();
+    let mut mixed = 0;
+    for row in &found.rows {
+        let kinds: Vec<Kind> = row
+            .at
+            .iter()
+            .map(|(index, part)| found.grid[*index].as_ref().unwrap().parts[*part].ending.kind())
+            .collect();
+        let count = |kind: Kind| kinds.iter().filter(|it| **it == kind).count();
+        assert!(kinds.iter().all(|kind| count(*kind) <= count(row.kind(&found.grid))), "{kinds:?}");
+        mixed += usize::from(kinds.iter().any(|kind| *kind > row.kind(&found.grid)));
+    }
+    assert!(mixed > 0);
+}
+
+/// At 493.8275 rpm an impact of the orbit goes over a corner, and on both sides the orbit is stable: it is one attractor, that does not end there.
+#[test]
+fn an_orbit_goes_on_over_a_corner() {
+    let found = over(&model("persistence"), [492.0, 495.5], 1.0, 1).unwrap();
+    let orbits: Vec<_> = found.rows.iter().filter(|row| row.period() == Some((1, 1))).collect();
+    let [orbit] = orbits[..] else { panic!("{orbits:?}") };
+    assert!(orbit.rpm[0] < 493.82 && orbit.rpm[1] == 495.5, "{:?}", orbit.rpm);
 }
