@@ -129,3 +129,22 @@ fn an_orbit_goes_on_over_a_corner() {
     let [orbit] = orbits[..] else { panic!("{orbits:?}") };
     assert!(orbit.rpm[0] < 493.82 && orbit.rpm[1] == 495.5, "{:?}", orbit.rpm);
 }
+
+/// Over a sine that is turned up at its zeros two orbits are half a turn apart, each of which runs come to first at some speeds: each is one attractor,
+/// whose impact goes on from speed to speed.
+#[test]
+fn two_orbits_of_one_kind_are_not_mixed_up() {
+    let found = over(&model("laws/rectified-sine"), [20.0, 20.2], 0.1, 8).unwrap();
+    let mut first = Vec::new();
+    for row in &found.rows {
+        assert_eq!((row.period(), row.rpm), (Some((1, 1)), found.range));
+        let angle = |index: &usize| match &found.grid[*index].as_ref().unwrap().parts[row.at[index]].ending {
+            Ending::Orbit(orbit) => orbit.impacts().next().unwrap().cam_angle,
+            other => panic!("{other:?}"),
+        };
+        let angles: Vec<f64> = row.at.keys().map(angle).collect();
+        assert!(angles.windows(2).all(|pair| (pair[1] - pair[0]).abs() < 0.1), "{angles:?}");
+        first.push(row.at.values().filter(|part| **part == 0).count());
+    }
+    assert!(first.len() == 2 && first.iter().all(|count| *count > 0), "{first:?}");
+}
