@@ -3,8 +3,10 @@
 use std::f64::consts::TAU;
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
+use corner_impact::agreement::{Agreement, Quantity, compare_routes};
 use corner_impact::cam::Side;
-use corner_impact::corner::map::RouteName;
+use corner_impact::corner::map::{RouteName, SideMap, Uncertainty};
+use corner_impact::corner::{CornerMap, finite_difference, least_squares, variational};
 use corner_impact::diagram::{Placed, Places, Section as Shows, Speeds, Start, Starts, Sweep};
 use corner_impact::flight::State;
 use corner_impact::model::{Model, Study};
@@ -242,4 +244,51 @@ fn a_corner_impact_is_told_by_its_order() {
     let polynomial = model("laws/polynomial");
     let none = locate(&polynomial, Study { rpm_min: 700.0, rpm_max: 701.0 }, 1, &Unwatched).unwrap();
     assert!(none.found.is_empty() && none.agrees);
+}
+
+/// An estimate is compared where it knows the quantity as closely as is asked, by three standard errors and the bias of a fit, by the errors of
+/// differences: a fit is left out wherever it does not, and differences where they miss by no more than they say. The C of both sides is known as
+/// A is, D as B.
+#[test]
+fn estimates_are_compared_where_they_know_enough() {
+    let paper = common::osorio();
+    let cam = common::cam(&paper);
+    // At the first of two all are known, at the second the fit is not.
+    let found = [[739.3, 739.4], [754.6, 754.7]]
+        .map(|[rpm_min, rpm_max]| locate(&paper, Study { rpm_min, rpm_max }, 2, &Unwatched).unwrap().found);
+    let (mut compared, mut left_out) = (0, 0);
+    for it in found.iter().flatten().filter(|it| it.at.corner.jump_order == 2) {
+        let routes = [
+            variational::route(&paper, &cam, &it.at),
+            finite_difference::route(&paper, &cam, &it.at).unwrap(),
+            least_squares::route(&paper, &cam, &it.at).unwrap(),
+        ];
+        for pair in compare_routes(&routes).into_iter().filter(|pair| pair.routes[0] == RouteName::Variational) {
+            let route = routes.iter().find(|route| route.name == pair.routes[1]).unwrap();
+            let largest = |errors: &CornerMap| {
+                let a = |side: &SideMap| side.a.amax();
+                let b = |side: &SideMap| side.b.amax();
+                match pair.quantity {
+                    Quantity::A(side) | Quantity::Eigenvalues(side) => a(errors.of(side)),
+                    Quantity::B(side) => b(errors.of(side)),
+                    Quantity::C => a(&errors.minus).max(a(&errors.plus)),
+                    _ => b(&errors.minus).max(b(&errors.plus)),
+                }
+            };
+            let (known, is_fit) = match route.uncertainty.as_ref().unwrap() {
+                Uncertainty::Fit { standard, systematic, .. } => {
+                    (3.0 * largest(standard) + systematic.as_ref().map_or(0.0, largest), true)
+                }
+                Uncertainty::Extrapolation(errors) => (largest(errors), false),
+            };
+            let known = if pair.quantity == Quantity::Border { route.own.border_error.unwrap() } else { known };
+            let is_known = known <= pair.bound.value || !(is_fit || !pair.agrees && pair.max_abs_diff <= known);
+            let is_there =
+                |one: &&corner_impact::agreement::Agreement| one.routes == pair.routes && one.quantity == pair.quantity;
+            assert_eq!(it.comparisons.iter().any(is_there), is_known, "{pair:?} {known:e}");
+            *(if is_known { &mut compared } else { &mut left_out }) += 1;
+        }
+        assert!(it.agrees, "{it:?}");
+    }
+    assert!(compared > 0 && left_out > 0, "{compared} {left_out}");
 }
