@@ -229,8 +229,8 @@ fn what_a_measured_cam_leaves_open_is_no_change() {
     assert!(two_cams.error.unwrap() > 5.0 * one_cam.error.unwrap(), "{one_cam:?} {two_cams:?}");
 }
 
-/// Where routes know the orbit, what they differ by of both models is the error: of the period and the state as it is, and of the speed 60/T
-/// by 60/T^2 of that of the period.
+/// Where routes know the orbit, what they differ by of both models is the error: of the period and the state as it is, and of the speed
+/// 60/T by 60/T^2 of that of the period.
 #[test]
 fn the_orbit_is_known_as_far_as_its_routes_agree() {
     let models = [common::osorio(), common::osorio_with(&[("restitution", "0.7")])];

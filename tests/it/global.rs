@@ -124,6 +124,39 @@ fn manifolds_are_invariant() {
     }
 }
 
+/// Starts are a hundred-thousandth of the way off and run until they have gone it; what they pass in so many revolutions more counts.
+#[test]
+fn what_leaves_a_saddle_is_as_far_as_it_has_grown() {
+    let paper = common::osorio();
+    let map = map(&paper, 678.0);
+    let saddle = saddle(&map);
+    let (multiplier, along) = saddle.unstable;
+    let extent = Extent { stretches: 1, first: 1e-6, finest: 1.0, farthest: 1.0 };
+    let mut curve = Curve::unstable(&map, &saddle, 1.0, &extent);
+    // The nearest to the saddle itself is the start that was the nearest, after the first revolution that counts.
+    curve.pieces = vec![vec![saddle.state]];
+    let away = 1e-3;
+    let leaving = (1e5_f64.ln() / multiplier.ln()).ceil();
+    for sign in [1.0, -1.0] {
+        let found = approach(&map, &saddle, sign, &curve, away, [4, 2]).unwrap();
+        // The map is as good as linear over so short a way.
+        approx::assert_relative_eq!(found.distance, 1e-5 * away * multiplier.powf(leaving + 1.0), max_relative = 0.02);
+        let off = (found.nearest.position - saddle.state.position) * sign * along[0];
+        assert!(off > 0.0, "{found:?}");
+    }
+}
+
+/// The border is on the line that it is looked for on, where position and velocity change.
+#[test]
+fn the_border_is_on_the_line_between_two_starts() {
+    let map = map(&common::osorio(), 678.0);
+    let line = [(0.6, -24.0), (6.0, 4.0)].map(|(position, velocity)| State { position, velocity });
+    let found = border(&map, line, Patience::default()).unwrap().unwrap();
+    let share = (found.position - 0.6) / 5.4;
+    assert!(share > 0.0 && share < 1.0, "{found:?}");
+    approx::assert_abs_diff_eq!(found.velocity, -24.0 + 28.0 * share, epsilon = 1e-9);
+}
+
 /// With rising speed the unstable manifold comes nearer to the stable one, and touches it between 682.2 and 682.22 rpm.
 #[test]
 #[ignore = "slow"]

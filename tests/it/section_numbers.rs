@@ -8,7 +8,7 @@ use corner_impact::section::StroboscopicMap;
 use corner_impact::simulate::angular_velocity;
 use corner_impact::study::StudyError;
 use corner_impact::study::attractors::Patience;
-use corner_impact::study::basins::boundary::{approach, border};
+use corner_impact::study::basins::boundary::border;
 use corner_impact::study::basins::{Curve, Extent, Grid, Reversed, Saddle, Section};
 use serde_json::{Value, json};
 
@@ -174,8 +174,8 @@ fn a_grid_of_starts_counts_its_cells() {
     assert!(across.position > 0.6 && across.position < 6.0, "{across:?}");
 }
 
-/// On every section the directions are those that the map stretches by the multipliers, and where it carries a position to the velocity alone,
-/// so that one row of the matrix says nothing, as well as elsewhere.
+/// On every section the directions are those that the map stretches by the multipliers, and where it carries a position to the velocity
+/// alone, so that one row of the matrix says nothing, as well as elsewhere.
 #[test]
 fn directions_of_a_saddle_are_those_that_the_map_stretches() {
     let paper = common::osorio();
@@ -294,39 +294,6 @@ fn the_distance_from_a_curve_is_that_from_its_lines() {
     }
 }
 
-/// Starts are a hundred-thousandth of the way off and run until they have gone it; what they pass in so many revolutions more counts.
-#[test]
-fn what_leaves_a_saddle_is_as_far_as_it_has_grown() {
-    let paper = common::osorio();
-    let map = map(&paper, 678.0, STROBE);
-    let saddle = saddle(&map);
-    let (multiplier, along) = saddle.unstable;
-    let extent = Extent { stretches: 1, first: 1e-6, finest: 1.0, farthest: 1.0 };
-    let mut curve = Curve::unstable(&map, &saddle, 1.0, &extent);
-    // The nearest to the saddle itself is the start that was the nearest, after the first revolution that counts.
-    curve.pieces = vec![vec![saddle.state]];
-    let away = 1e-3;
-    let leaving = (1e5_f64.ln() / multiplier.ln()).ceil();
-    for sign in [1.0, -1.0] {
-        let found = approach(&map, &saddle, sign, &curve, away, [4, 2]).unwrap();
-        // The map is as good as linear over so short a way.
-        assert_relative_eq!(found.distance, 1e-5 * away * multiplier.powf(leaving + 1.0), max_relative = 0.02);
-        let off = (found.nearest.position - saddle.state.position) * sign * along[0];
-        assert!(off > 0.0, "{found:?}");
-    }
-}
-
-/// The border is on the line that it is looked for on, where position and velocity change.
-#[test]
-fn the_border_is_on_the_line_between_two_starts() {
-    let map = map(&common::osorio(), 678.0, STROBE);
-    let line = [(0.6, -24.0), (6.0, 4.0)].map(|(position, velocity)| State { position, velocity });
-    let found = border(&map, line, Patience::default()).unwrap().unwrap();
-    let share = (found.position - 0.6) / 5.4;
-    assert!(share > 0.0 && share < 1.0, "{found:?}");
-    assert_abs_diff_eq!(found.velocity, -24.0 + 28.0 * share, epsilon = 1e-9);
-}
-
 /// The stable orbits that starts end on, the saddles, and of each saddle a curve to either side.
 #[test]
 fn what_parts_the_basins_is_told_with_the_orbits() {
@@ -390,8 +357,8 @@ fn a_cam_that_is_its_own_mirror_image_is_told_at_any_size() {
     assert!(!is_mirrored(&program([60.0, 60.0, 80.0, 90.0, 70.0])));
 }
 
-/// A flight that never meets the cam, run backwards: found to the digits that its own size has, however large that is and whichever of position and
-/// velocity it is of.
+/// A flight that never meets the cam, run backwards: found to the digits that its own size has, however large that is and whichever of
+/// position and velocity it is of.
 #[test]
 fn a_run_backwards_is_as_exact_as_its_motion_is_large() {
     let (size, omega) = (1e9, 1e-6_f64);

@@ -121,7 +121,8 @@ fn a_kind_is_that_of_most_speeds() {
     assert!(mixed > 0);
 }
 
-/// At 493.8275 rpm an impact of the orbit goes over a corner, and on both sides the orbit is stable: it is one attractor, that does not end there.
+/// At 493.8275 rpm an impact of the orbit goes over a corner, and on both sides the orbit is stable: it is one attractor, that does not
+/// end there.
 #[test]
 fn an_orbit_goes_on_over_a_corner() {
     let found = over(&model("persistence"), [492.0, 495.5], 1.0, 1).unwrap();
@@ -130,8 +131,8 @@ fn an_orbit_goes_on_over_a_corner() {
     assert!(orbit.rpm[0] < 493.82 && orbit.rpm[1] == 495.5, "{:?}", orbit.rpm);
 }
 
-/// Over a sine that is turned up at its zeros two orbits are half a turn apart, each of which runs come to first at some speeds: each is one attractor,
-/// whose impact goes on from speed to speed.
+/// Over a sine that is turned up at its zeros two orbits are half a turn apart, each of which runs come to first at some speeds: each is
+/// one attractor, whose impact goes on from speed to speed.
 #[test]
 fn two_orbits_of_one_kind_are_not_mixed_up() {
     let found = over(&model("laws/rectified-sine"), [20.0, 20.2], 0.1, 8).unwrap();

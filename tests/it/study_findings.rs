@@ -246,9 +246,9 @@ fn a_corner_impact_is_told_by_its_order() {
     assert!(none.found.is_empty() && none.agrees);
 }
 
-/// An estimate is compared where it knows the quantity as closely as is asked, by three standard errors and the bias of a fit, by the errors of
-/// differences: a fit is left out wherever it does not, and differences where they miss by no more than they say. The C of both sides is known as
-/// A is, D as B.
+/// An estimate is compared where it knows the quantity as closely as is asked, by three standard errors and the bias of a fit, by the
+/// errors of differences: a fit is left out wherever it does not, and differences where they miss by no more than they say. The C of both
+/// sides is known as A is, D as B.
 #[test]
 fn estimates_are_compared_where_they_know_enough() {
     let paper = common::osorio();
@@ -283,8 +283,7 @@ fn estimates_are_compared_where_they_know_enough() {
             };
             let known = if pair.quantity == Quantity::Border { route.own.border_error.unwrap() } else { known };
             let is_known = known <= pair.bound.value || !(is_fit || !pair.agrees && pair.max_abs_diff <= known);
-            let is_there =
-                |one: &&corner_impact::agreement::Agreement| one.routes == pair.routes && one.quantity == pair.quantity;
+            let is_there = |one: &Agreement| one.routes == pair.routes && one.quantity == pair.quantity;
             assert_eq!(it.comparisons.iter().any(is_there), is_known, "{pair:?} {known:e}");
             *(if is_known { &mut compared } else { &mut left_out }) += 1;
         }

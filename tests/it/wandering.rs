@@ -14,8 +14,8 @@ fn parts(model: &Model, rpm: f64, starts: usize) -> (Vec<(Kind, bool, usize)>, W
     (parts.collect(), here.wandering)
 }
 
-/// They are given a hundred thousand revolutions together, a quarter of it at once, in equal parts of whole revolutions, of which 32 are the
-/// least; the first two hundred of each do not count. A release that chaos follows has been followed for twenty thousand.
+/// They are given a hundred thousand revolutions together, a quarter of it at once, in equal parts of whole revolutions, of which 32 are
+/// the least; the first two hundred of each do not count. A release that chaos follows has been followed for twenty thousand.
 #[test]
 fn runs_that_wander_share_a_hundred_thousand_revolutions() {
     let [paper, polynomial] = [common::osorio(), model("laws/polynomial")];
@@ -31,8 +31,8 @@ fn runs_that_wander_share_a_hundred_thousand_revolutions() {
     }
 }
 
-/// Of 64 starts 47 rest sooner or later, and where the last seven do not in a hundred thousand revolutions that is chance: it is one motion, which
-/// no run has left by resting.
+/// Of 64 starts 47 rest sooner or later, and where the last seven do not in a hundred thousand revolutions that is chance: it is one
+/// motion, which no run has left by resting.
 #[test]
 fn what_rests_as_seldom_as_it_did_at_first_is_one_motion() {
     for (rpm, rested) in [(524.0, 47), (643.0, 27), (307.0, 15)] {
@@ -42,8 +42,8 @@ fn what_rests_as_seldom_as_it_did_at_first_is_one_motion() {
     }
 }
 
-/// Of up to four rests it is not known that there are many: `n - 2 sqrt(n)` of them is none. So runs that do not rest are not told from those few that
-/// did; beside a motion that rests in every few revolutions they are, however few starts come to either.
+/// Of up to four rests it is not known that there are many: `n - 2 sqrt(n)` of them is none. So runs that do not rest are not told from
+/// those few that did; beside a motion that rests in every few revolutions they are, however few starts come to either.
 #[test]
 fn a_few_rests_tell_no_motion_from_chaos() {
     for rpm in [476.0, 481.0] {
