@@ -215,16 +215,15 @@ fn what_a_measured_cam_leaves_open_is_no_change() {
     let found = compared(&larger);
     let highest = found.changes.iter().find(|it| it.quantity == "highest_lift_m").unwrap();
     assert!((highest.relative.unwrap() - 0.01).abs() < 1e-4 && highest.times_error.unwrap() > 2.0, "{highest:?}");
+    // The same rows leave another spring less open than other rows do: both followers are on one cam, whichever it is.
+    let [once, twice, other] = [(5, 1500.0), (5, 1569.2), (4, 1500.0)].map(|(places, k)| compared(&machine(places, k)));
     // Two springs on one cam press by k (c - rest), and what is open about c is in the difference as often as k differs.
-    let preload = |stiffness: f64| {
-        let found = compared(&machine(5, stiffness));
+    let preload = |found: &Comparison| {
         found.changes.iter().find(|it| it.quantity == "preload_n").and_then(|it| it.error).unwrap()
     };
-    let [once, twice] = [1500.0, 1569.2].map(preload);
-    assert!(once > 0.0);
-    approx::assert_relative_eq!(twice, 2.0 * once, max_relative = 1e-6);
-    // The same rows leave another spring less open than other rows do: both followers are on one cam, whichever it is.
-    let [one_cam, two_cams] = [5, 4].map(|places| speed(&compared(&machine(places, 1500.0))));
+    assert!(preload(&once) > 0.0);
+    approx::assert_relative_eq!(preload(&twice), 2.0 * preload(&once), max_relative = 1e-6);
+    let [one_cam, two_cams] = [&once, &other].map(speed);
     assert!(one_cam.is_one && one_cam.times_error.unwrap() > 3.0, "{one_cam:?}");
     assert!(two_cams.error.unwrap() > 5.0 * one_cam.error.unwrap(), "{one_cam:?} {two_cams:?}");
 }
