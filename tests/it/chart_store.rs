@@ -221,3 +221,31 @@ fn what_flies_off_for_good_is_not_chaotic() {
     let hypotheses = |model: &Model, rpm: f64| chaos(model, [rpm; 2], false, &Unwatched).unwrap().hypotheses.len();
     assert_eq!([hypotheses(&away, 100.0), hypotheses(&model("laws/polynomial"), 700.0)], [1, 2]);
 }
+
+/// Of a motion that repeats after several revolutions, a revolution has its part of the impacts and of the growth: that of the distance of
+/// two runs.
+#[test]
+fn what_repeats_after_several_revolutions_is_told_for_one() {
+    let machine = machine(&common::osorio().with_number("follower.restitution", 0.3).unwrap(), 558.6440677966102);
+    let found = Point::of(&machine, START.motion(&machine).unwrap(), Lengths::default()).unwrap();
+    assert_eq!((found.kind, found.revolutions, found.impacts), (Kind::Periodic, 7, 15));
+    assert_eq!(found.impact_rate, 15.0 / 7.0);
+    let mut motion = START.motion(&machine).unwrap();
+    machine.revolve(&mut motion, 7000).unwrap();
+    let after = |off: f64| {
+        let mut motion = motion;
+        motion.state.position += off;
+        machine.revolve(&mut motion, 140).unwrap();
+        motion.state
+    };
+    const OFF: f64 = 1e-7;
+    let [near, far] =
+        [after(0.0), after(OFF)].map(|state| [state.position, state.velocity / machine.angular_velocity()]);
+    let shrunk = (near[0] - far[0]).hypot(near[1] - far[1]) / OFF;
+    // What is lost or won by the direction that the runs are apart in is the same after any number of revolutions.
+    assert!(
+        (shrunk.ln() / 140.0 - found.growth.value).abs() < 0.3 * found.growth.value.abs(),
+        "{shrunk} {:?}",
+        found.growth
+    );
+}

@@ -32,8 +32,8 @@ impl Saddle {
     pub fn new(machine: &Machine, cycle: &Cycle, cam_angle: f64) -> Option<Self> {
         let (state, matrix) = cycle.at_section(machine, cam_angle);
         let [above, below] = eigenvalues(&matrix);
-        let real = above.im == 0.0 && below.im == 0.0;
-        if !(real && above.re > 1.0 && below.re > 0.0 && below.re < 1.0 && cycle.revolutions == 1) {
+        // Their product is 1 at most: where one is above 1 both are real, and the other is below 1.
+        if !(above.re > 1.0 && below.re > 0.0 && cycle.revolutions == 1) {
             return None;
         }
         // Lengths are compared with velocities over omega, as m/rad.

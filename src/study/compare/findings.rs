@@ -13,7 +13,7 @@ use crate::border_collision::feigin::speeds_at;
 use crate::border_collision::validity::Range;
 use crate::border_collision::{LocalMap, LocalOutcome, classify, conditions, normal_form};
 use crate::cam::Cam;
-use crate::corner::map::{Line, RouteName, rows};
+use crate::corner::map::{Line, rows};
 use crate::corner::{self, CornerImpact, LocateError, Route, closed_form, variational};
 use crate::measured::Likely;
 use crate::model::{Converted, Model, Units};
@@ -177,9 +177,7 @@ fn besides(found: &Verification) -> Vec<Value> {
 /// How far the routes differ in each number that follows from the map and its border, and in the orbit.
 fn spreads(found: &Verification, units: &Units) -> Numbers {
     let mut ranges: BTreeMap<String, (usize, [f64; 2])> = BTreeMap::new();
-    // Where the velocity jumps, the differences have one side only.
-    let has_both = |route: &&Route| found.at.corner.jump_order != 1 || route.name != RouteName::FiniteDifference;
-    for route in found.routes.iter().filter(has_both) {
+    for route in &found.routes {
         for (name, value) in flattened(&follows(route, found.border, true), units) {
             let Some(number) = value.as_f64() else { continue };
             let (count, [least, most]) = ranges.entry(name).or_insert((0, [number; 2]));
