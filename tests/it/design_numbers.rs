@@ -3,6 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
+use corner_impact::cam::Cam;
 use corner_impact::model::{Model, Study};
 use corner_impact::progress::Unwatched;
 use corner_impact::simulate::angular_velocity;
@@ -12,6 +13,7 @@ use corner_impact::study::design::loads::{Load, Loads};
 use corner_impact::study::design::needs::{Answer, Lever};
 use corner_impact::study::design::{Asked, Design, design};
 use corner_impact::tolerance;
+use serde_json::json;
 
 use crate::common;
 use crate::design::{separation, valve};
@@ -439,4 +441,46 @@ fn a_preload_that_is_next_to_nothing_is_found() {
     // The force is a difference of numbers that are a hundred million times as large.
     assert_relative_eq!(found.value.unwrap(), 2.0 * stiffness * HEIGHT * beyond, max_relative = 1e-6);
     assert_eq!((found.other, found.note.as_str()), (None, ""));
+}
+
+/// The jerk of a rounded cam is told by its size: of thirds of a turn with second derivatives k, 0 and -k that of the jump by 2 k, up or down.
+#[test]
+fn the_jerk_of_a_rounded_cam_is_its_size_in_either_direction() {
+    const THIRD: f64 = TAU / 3.0;
+    for bend in [0.02, -0.02] {
+        // It closes: the slopes s, s + k L and s again have a mean of 0.
+        let (slope, fast) = (-2.0 / 3.0 * bend * THIRD, bend * THIRD / 3.0);
+        let high = 0.1 + slope * THIRD + 0.5 * bend * THIRD * THIRD;
+        let pieces = [[0.1, slope, 0.5 * bend], [high, fast, 0.0], [high + fast * THIRD, fast, -0.5 * bend]];
+        let piece = |piece: usize| json!({ "start_deg": 120 * piece, "coefficients": pieces[piece] });
+        let cam = json!({ "law": "polynomial", "segment": [piece(0), piece(1), piece(2)] });
+        let document = json!({ "follower": OWN.model(false, false).follower, "cam": cam });
+        let model = Model::of_document("thirds", &document).unwrap();
+        let found = design(&model, &Asked { rpm: Some([300.0; 2]), ..Asked::default() }, &Unwatched).unwrap();
+        assert!(!found.rounded.is_empty());
+        for rounded in &found.rounded {
+            let sharp = model.with_number("cam.corner_rounding_deg", rounded.corner_rounding_deg).unwrap();
+            let cam = Cam::new(&sharp).unwrap();
+            let third = |index: u32| cam.lift(TAU * f64::from(index) / 36_000.0).third;
+            let [least, most] = [f64::min, f64::max].map(|which| (0..36_000).map(third).fold(0.0, which));
+            assert!(if bend > 0.0 { most > -1.5 * least } else { -least > 1.5 * most }, "{least} {most}");
+            let seen = most.max(-least);
+            assert!(rounded.jerk >= seen * (1.0 - 1e-12) && rounded.jerk < 1.001 * seen, "{rounded:?} {seen}");
+        }
+    }
+}
+
+/// What the cam presses with is no impact, of a cam with a kink there is no force to be told, and the document has the force round the cam.
+#[test]
+fn limits_and_forces_are_of_their_own_kind() {
+    let own = OWN.model(false, false);
+    let below = 0.5 * separation(&own).speed();
+    let asked =
+        Asked { rpm: Some([below; 2]), limits: vec![(Load::ImpactSpeed, 1e-3), (Load::Gap, 1e-9)], ..Asked::default() };
+    let found = design(&own, &asked, &Unwatched).unwrap();
+    assert!(found.loads.is_empty() && found.limits.iter().all(|it| it.speed_rpm.is_none()), "{:?}", found.limits);
+    let document = serde_json::to_value(&found).unwrap();
+    assert_eq!(document["force_round_the_cam"].as_array().unwrap().len(), 721);
+    let kink = design(&model("laws/rectified-sine"), &Asked { rpm: Some([20.0; 2]), ..Asked::default() }, &Unwatched);
+    assert!(kink.unwrap().round.is_empty());
 }

@@ -263,7 +263,7 @@ fn thresholds_stand_in_the_table() {
     }
 }
 
-/// `make mutants` looks into stages that are there, and what is explained of mutants that survive is about the source as it is.
+/// `make mutants` looks into stages that are there, and what is told of mutants that survive is about the source as it is.
 #[test]
 fn mutants_are_looked_for_where_there_is_something() {
     let root = Path::new(crate::common::ROOT);
@@ -274,7 +274,8 @@ fn mutants_are_looked_for_where_there_is_something() {
     let stages = stages(&root.join("src"));
     assert!(named.len() > 10 && named.iter().all(|name| stages.iter().any(|stage| stage == name)), "{named:?}");
     let explained: toml::Table = toml::from_str(&text("tests/mutants/explained.toml")).unwrap();
-    for reason in explained["reason"].as_array().unwrap() {
+    let [reasons, open] = ["reason", "open"].map(|kind| explained[kind].as_array().unwrap());
+    for reason in reasons.iter().chain(open) {
         assert!(reason["why"].as_str().unwrap().len() > 20, "{reason:?}");
         let files = reason.as_table().unwrap().iter().filter(|(name, _)| *name != "why");
         for (file, known) in files {

@@ -768,6 +768,12 @@ fn needs_of_a_measured_cam_are_known_to_within_what_is_said() {
             );
         }
     }
+    // Rows to eight places leave next to nothing open, of which runs would tell a thousandth.
+    let rows = rounded(&Cam::new(&exact).unwrap(), 8);
+    let document = json!({ "follower": exact.follower, "cam": smoothing(&rows, &json!({})) });
+    let fine = needs(&Model::of_document("rows", &document).unwrap(), "no separation", 1.1);
+    assert!(fine.iter().any(|it| it.error.is_some()));
+    assert!(fine.iter().all(|it| it.error.is_none_or(|error| error < 3e-4 * it.value.unwrap())), "{fine:?}");
     let open = |it: &Answer| (it.note.is_empty(), it.error.is_some());
     let few: Vec<_> = needs(&model, "no separation", 0.1).iter().map(open).collect();
     assert!(few.contains(&(false, false)) && !few.contains(&(false, true)), "{few:?}");

@@ -10,7 +10,7 @@ that fails. A first run of each test notes what it reaches.
     python tests/mutants/mutants.py --sample 100 --seed 7      so many, drawn by the seed; or --seconds 60, as many as fit
     python tests/mutants/mutants.py --out tried.jsonl          in several sittings: the next goes on where one was broken off
 
-What survives and is not in explained.toml is listed, and the exit code is 1.
+What survives and is not in explained.toml, with a reason or as open, is listed, and the exit code is 1.
 """
 
 import argparse
@@ -63,21 +63,19 @@ pub mod mutants {
     #[inline(always)]
     pub fn is(id: u32) -> bool {
         let now = MUTANT.load(Relaxed);
-        if now >= NOTES { note(id) }
-        now == id
+        (if now >= NOTES { note(id) } else { now }) == id
     }
 
     #[inline(always)]
     pub fn none(first: u32, count: u32) -> bool {
         let now = MUTANT.load(Relaxed);
-        if now >= NOTES { note(first) }
-        now.wrapping_sub(first) >= count
+        (if now >= NOTES { note(first) } else { now }).wrapping_sub(first) >= count
     }
 
     #[cold]
-    fn note(id: u32) {
+    fn note(id: u32) -> u32 {
         use std::io::Write;
-        if MUTANT.load(Relaxed) == NOTES && SEEN[id as usize].load(Relaxed) == 1 { return }
+        if MUTANT.load(Relaxed) == NOTES && SEEN[id as usize].load(Relaxed) == 1 { return NOTES }
         let name = std::env::var("MUTANT").unwrap_or_default();
         let now = name.parse().unwrap_or(if name.is_empty() { NONE } else { NOTES });
         MUTANT.store(now, Relaxed);
@@ -85,6 +83,7 @@ pub mod mutants {
             let file = std::fs::OpenOptions::new().create(true).append(true).open(name);
             let _ = file.and_then(|mut file| file.write_all(format!("{id}\\n").as_bytes()));
         }
+        now
     }
 }
 """
@@ -475,15 +474,16 @@ def main():
     ask.add_argument("--list", action="store_true", help="list them, and run none")
     asked = ask.parse_args()
     begun = time.monotonic()
-    explained = tomllib.loads((ROOT / "tests/mutants/explained.toml").read_text())["reason"]
+    listed = tomllib.loads((ROOT / "tests/mutants/explained.toml").read_text())
     name = lambda mutant: tuple(mutant[key] for key in ("file", "function", "code", "replacement"))
-    told = {(file, function, code, other) for reason in explained for file, known in reason.items()
-            if file != "why" and Path(file) in sources(asked.words) for function, code, *others in known for other in others}
+    told, left_open = ({(file, function, code, other) for reason in listed[kind] for file, known in reason.items()
+                        if file != "why" and Path(file) in sources(asked.words) for function, code, *others in known for other in others}
+                       for kind in ("reason", "open"))
 
     binary, mutants = built(asked.words)
-    gone = told - {name(mutant) for mutant in mutants}
+    gone = (told | left_open) - {name(mutant) for mutant in mutants}
     if gone:
-        sys.exit(f"explained, and there is no such mutant: {sorted(gone)}")
+        sys.exit(f"listed, and there is no such mutant: {sorted(gone)}")
     # A place notes the number of its first mutant.
     chosen = list(range(len(mutants)))
     stage = lambda id: Path(mutants[id]["file"]).parts[1].removesuffix(".rs")
@@ -507,7 +507,8 @@ def main():
     for id, mutant in enumerate(mutants):
         place[id] = id if id in places or id == 0 else place[id - 1] if same_place(mutants[id - 1], mutant) else id
 
-    began, tried, caught, endless, known, survivors = time.monotonic(), Counter(), Counter(), Counter(), Counter(), []
+    began, survivors = time.monotonic(), []
+    tried, caught, endless, known, still = Counter(), Counter(), Counter(), Counter(), Counter()
     kills = Counter()
     before = {}
     if asked.out and Path(asked.out).exists():
@@ -547,6 +548,8 @@ def main():
                 caught[stage(id)] += 1
             elif done == "too long":
                 endless[stage(id)] += 1
+            elif name(mutant) in left_open:
+                still[stage(id)] += 1
             else:
                 survivors.append(id)
                 print("survives:", f"{mutant['file']}:{mutant['line']}", mutant["function"], "|", mutant["code"], "|", mutant["replacement"],
@@ -558,7 +561,7 @@ def main():
         pool.map(ask_one, chosen, chunksize=1)
     for part in in_all:
         print(f"{part}: {in_all[part]} mutants, {tried[part]} tried, {caught[part]} fail a test, {endless[part]} take eight times as long, "
-              f"{known[part]} explained, {tried[part] - caught[part] - endless[part] - known[part]} survive")
+              f"{known[part]} explained, {still[part]} open, {tried[part] - caught[part] - endless[part] - known[part] - still[part]} survive")
     print(f"{sum(tried.values())} mutants in {time.monotonic() - began:.0f} s")
     sys.exit(bool(survivors))
 
