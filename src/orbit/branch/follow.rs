@@ -268,7 +268,7 @@ impl Walk<'_> {
             }
             let at = |point: &CurvePoint| self.stride.measure(&problem, cut, point);
             let (clear, reach) = match &first {
-                // There none is -1, so that it is told from one that is already as the halves come near to each other.
+                // No multiplier is -1 there: one that passes -1 shortly before is told as well.
                 Some(Located { cut: Cut::Halved, step, .. }) if cut == Cut::Flip => &part_way(0.95 * step)?,
                 _ => &clear,
             };
