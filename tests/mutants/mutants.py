@@ -340,7 +340,7 @@ def copied():
 
 def cargo(words):
     environment = os.environ | {"CARGO_TARGET_DIR": str(COPY / "target"), "CARGO_INCREMENTAL": "1", "RUSTFLAGS": os.environ.get("RUSTFLAGS", "")}
-    words = ["cargo", *words, "--release", "--locked", "--offline", "--message-format=json"]
+    words = ["cargo", *words, "--release", "--locked", "--message-format=json"]
     done = subprocess.run(words, cwd=COPY, env=environment, capture_output=True, text=True)
     return done, [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
 
@@ -350,10 +350,10 @@ def built(words):
     known = COPY / "unviable.json"
     copied()
     if not (COPY / "target" / "release").exists() and (ROOT / "target" / "release").exists():
-        # What the package needs is compiled already.
+        # What the package needs is compiled already. Not by links: cargo writes into what it has there.
         (COPY / "target" / "release").mkdir(parents=True)
         for part in ("deps", "build", ".fingerprint"):
-            subprocess.run(["cp", "-al", ROOT / "target" / "release" / part, COPY / "target" / "release" / part], check=True)
+            subprocess.run(["cp", "-a", ROOT / "target" / "release" / part, COPY / "target" / "release" / part], check=True)
     unviable = set(json.loads(known.read_text())) if known.exists() else set()
     while True:
         files, mutants = schemata(unviable, words)
