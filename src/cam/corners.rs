@@ -83,7 +83,7 @@ impl Cam {
                 let order = broken.map_or(*degree, |(_, order)| *order);
                 (jump(order) != 0.0).then_some(order)?
             }
-            Joint::Free => {
+            Joint::Free | Joint::Continued { .. } => {
                 let (minus_size, plus_size) = (sizes(before), sizes(next));
                 let size = |order: usize| minus_size[order].max(plus_size[order]);
                 let (minus_terms, plus_terms) = (before.law.terms(before.end), next.law.terms(next.start));
@@ -119,25 +119,29 @@ impl Cam {
             return None;
         }
         let remade = |segment: &Segment, start: f64, end: f64| Segment::new(start, end, segment.law.clone(), 1);
+        let up_to = match (side, after) {
+            (Side::Minus, _) => corner.angle + reach,
+            (Side::Plus, 0) => TAU - reach,
+            (Side::Plus, _) => corner.angle - reach,
+        };
         match (side, after) {
             (Side::Minus, 0) => {
                 let law = segments[before].law.turned(-TAU);
-                segments[after] = remade(&segments[after], reach, segments[after].end);
-                segments.insert(0, Segment::new(0.0, reach, law, 1));
+                segments[after] = remade(&segments[after], up_to, segments[after].end);
+                segments.insert(0, Segment::new(0.0, up_to, law, 1));
             }
             (Side::Plus, 0) => {
                 let law = segments[after].law.turned(TAU);
-                segments[before] = remade(&segments[before], segments[before].start, TAU - reach);
-                segments.push(Segment::new(TAU - reach, TAU, law, 1));
+                segments[before] = remade(&segments[before], segments[before].start, up_to);
+                segments.push(Segment::new(up_to, TAU, law, 1));
             }
-            (side, _) => {
-                let meeting = if side == Side::Minus { corner.angle + reach } else { corner.angle - reach };
-                segments[before] = remade(&segments[before], segments[before].start, meeting);
-                segments[after] = remade(&segments[after], meeting, segments[after].end);
+            _ => {
+                segments[before] = remade(&segments[before], segments[before].start, up_to);
+                segments[after] = remade(&segments[after], up_to, segments[after].end);
             }
         }
         let reaches = |segment: &Segment| segment.law.third_bound(segment.start, segment.end).is_finite();
-        segments.iter().all(reaches).then(|| Self::from_segments(segments))
+        segments.iter().all(reaches).then(|| Self::joined(segments, Joint::Continued { up_to }))
     }
 }
 

@@ -92,6 +92,8 @@ enum Joint {
     Free,
     /// Pieces of a spline: derivatives below `degree` agree by construction, but for those of `breaks`, by angle, rad, and order.
     Spline { degree: usize, breaks: std::sync::Arc<[(f64, usize)]> },
+    /// The same of a cam on which a law goes on past its corner up to this angle, rad, where the next one has another lift.
+    Continued { up_to: f64 },
 }
 
 /// An angle, rad, in `[0, 2 pi)`.
@@ -131,10 +133,6 @@ impl Cam {
     }
 
     /// From segments that cover `[0, 2 pi]`.
-    fn from_segments(segments: Vec<Segment>) -> Self {
-        Self::joined(segments, Joint::Free)
-    }
-
     fn joined(segments: Vec<Segment>, joint: Joint) -> Self {
         let mut cam = Self { segments: std::sync::Arc::new(segments), joint, corners: std::sync::Arc::default() };
         // Searches ask for them at each guess, and those of a table are many.
@@ -145,6 +143,11 @@ impl Cam {
     /// Whether a corner is where two pieces of a spline meet, no more: a knot, and nothing of the cam that was measured.
     pub fn is_knot(&self, corner: &Corner) -> bool {
         matches!(self.joint, Joint::Spline { degree, .. } if corner.jump_order >= degree)
+    }
+
+    /// Whether a segment begins where a continued law ends: however near the two lifts are there, they are two.
+    pub(crate) fn ends_a_continued_law(&self, segment: &Segment) -> bool {
+        matches!(self.joint, Joint::Continued { up_to } if up_to == segment.start)
     }
 
     fn joint(&self) -> &Joint {

@@ -309,12 +309,14 @@ impl Cycle {
     }
 }
 
-/// The size of the cam's lift, m: what lengths of an orbit are measured by.
+/// The size of the cam's lift, m: what lengths of an orbit are measured by. Of a cam that does not move, how far it is from 0.
 pub fn lift_size(machine: &Machine) -> f64 {
     let segments = machine.cam().segments();
     let low = segments.iter().fold(f64::INFINITY, |low, segment| low.min(segment.bounds.lift[0]));
     let span = machine.cam().top() - low;
-    if span > 0.0 { span } else { machine.cam().top().abs().max(f64::MIN_POSITIVE) }
+    let lift = machine.cam().top().abs();
+    // The ends of each range have room for rounding.
+    if span > 4.0 * tolerance::RANGE_ROUNDING.value * lift { span } else { lift.max(f64::MIN_POSITIVE) }
 }
 
 /// The machine's own speed, rpm: what it would turn at if the cam moved with the follower's own acceleration. `None` where there is

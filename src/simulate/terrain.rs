@@ -41,7 +41,10 @@ impl Terrain {
         let size = segments.iter().flat_map(|segment| segment.bounds.lift).map(f64::abs).fold(0.0, f64::max);
         let steepest = segments.iter().flat_map(|segment| segment.bounds.slope).map(f64::abs).fold(0.0, f64::max);
         let closed = tolerance::CAM_CLOSURE.value * size;
-        let entries: Vec<Entry> = before.zip(segments).map(|(before, after)| entry(before, after, closed)).collect();
+        let entries: Vec<Entry> = before
+            .zip(segments)
+            .map(|(before, after)| entry(before, after, if cam.ends_a_continued_law(after) { 0.0 } else { closed }))
+            .collect();
         let kicks = entries.iter().any(|entry| entry.slope_jump > 0.0 || entry.lift_step > 0.0);
         let curvatures = segments.iter().map(|segment| segment.bounds.curvature[1]);
         let largest_curvature = if kicks { f64::INFINITY } else { curvatures.fold(f64::NEG_INFINITY, f64::max) };

@@ -550,4 +550,8 @@ fn a_range_of_speeds_is_chosen_by_the_machine() {
     assert_eq!(range(damped, cam), [to_two(0.5 * own, f64::floor), to_two(2.0 * own, f64::ceil)]);
     let nothing = "damping = 0.0\nstiffness = 0.0\ngravity = 0.0\nrest_position = 0.0";
     assert_eq!(range(nothing, cam), [50.0, 200.0]);
+    // A cam that does not move has no height, by rounding neither: its own distance from 0 is taken for it.
+    let own = rpm(400.0 + (400.0 * 0.05 - 9.81) / 0.1);
+    let still = "offset = 0.1\namplitudes = [0.0]\nphases_deg = [0.0]";
+    assert_eq!(range(pressed, still), [to_two(0.5 * own, f64::floor), to_two(2.0 * own, f64::ceil)]);
 }

@@ -1,5 +1,6 @@
 //! Are the corner maps of any orbit, by any number of the model, those that simulations show?
 
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::OnceLock;
 
@@ -11,8 +12,10 @@ use corner_impact::corner::map::Uncertainty;
 use corner_impact::corner::one_sided::{OneSidedMap, SampleError};
 use corner_impact::corner::varied::{NoChange, Varied};
 use corner_impact::corner::{CornerImpact, CornerMap, Route, finite_difference, least_squares, range, variational};
+use corner_impact::flight::State;
 use corner_impact::model::{Model, Study};
 use corner_impact::progress::Unwatched;
+use corner_impact::simulate::{Event, Goal, Machine};
 use nalgebra::{DMatrix, Matrix2, Vector2, Vector3};
 
 /// A model, its cam, and its corner impact next to a speed.
@@ -247,6 +250,43 @@ fn what_cannot_be_varied_is_refused() {
     assert!(variational::route_by(&model, &cam, &at, &Varied::Number("follower.damping".into())).is_ok());
 }
 
+/// The law that goes on past a corner ends 0.17 deg from it, where the next one is 5.6e-11 m away: less than what counts as one lift where a
+/// cam's numbers were typed, and no less a step.
+#[test]
+fn a_flight_past_the_end_of_a_continued_law_comes_down_where_the_cam_is() {
+    let Case { model, cam, at } = case(read("laws/program.toml"), 1928.338528659, 2);
+    let machine = Machine::new(cam.clone(), &model.follower, at.angular_velocity());
+    let continued = cam.continued(&at.corner, Side::Plus, 0.003).unwrap();
+    let lifts = [&cam, &continued].map(|cam| cam.segments()[cam.segment_at(at.corner.angle - 0.0031)].law.clone());
+    assert_eq!(lifts[0], lifts[1], "the law before it is cut there");
+    let continued = Machine::new(continued, &model.follower, at.angular_velocity());
+    let before = (0..at.cycle.impacts.len()).find(|impact| {
+        let turn = at.cycle.turn(*impact);
+        let angle = at.cycle.impacts[*impact].cam_angle;
+        angle < at.corner.angle && (at.corner.angle + 1e-3..at.corner.angle + 0.01).contains(&(angle + turn))
+    });
+    let before = before.unwrap();
+    let (leaving, time) = at.cycle.flight(&machine, before);
+    let start = machine.flight().fly(leaving, 0.5 * time).1;
+    let section = at.cycle.impacts[before].cam_angle + 0.5 * at.cycle.turn(before);
+    let impact = |machine: &Machine, by: f64| {
+        let mut motion = machine.start(section, State { position: start.position + by, ..start }).unwrap();
+        let mut first = None;
+        let on = Goal { revolution: 0, cam_angle: section + at.cycle.turn(before) };
+        let _ = machine.advance(&mut motion, on, &mut |event: &Event| {
+            first = Some(*event);
+            ControlFlow::Break(())
+        });
+        first.unwrap()
+    };
+    for by in [-1e-6, 0.0, 1e-6] {
+        let [found, expected] = [&continued, &machine].map(|machine| impact(machine, by));
+        approx::assert_relative_eq!(found.cam_angle, expected.cam_angle, epsilon = 1e-14);
+        approx::assert_relative_eq!(found.position, expected.position, epsilon = 1e-16);
+        approx::assert_relative_eq!(found.velocity_after, expected.velocity_after, epsilon = 1e-12);
+    }
+}
+
 /// Up to twelve impacts, the last ones of which chatter or nearly graze: each amplifies the rounding of those before.
 #[test]
 #[ignore = "slow"]
@@ -270,7 +310,7 @@ fn differences_know_their_errors_where_impacts_amplify_rounding() {
                 let off = entries(found.a - exact.a, found.b - exact.b);
                 let mut pairs = off.iter().zip(entries(error.a, error.b));
                 let rpm = at.speed_rpm();
-                assert!(pairs.all(|(off, said)| off.abs() <= 4.0 * said), "{name} {rpm}: {off:?} {error:?}");
+                assert!(pairs.all(|(off, said)| off.abs() <= said), "{name} {rpm}: {off:?} {error:?}");
                 let promise = (error.a.norm() / exact.a.norm()).max(error.b.norm() / exact.b.norm());
                 assert!(promise > 0.0 && promise < 2e-6, "{name} {rpm}: {promise:e}");
                 amplified = amplified.max(promise);
