@@ -23,6 +23,8 @@ pub(super) struct Table<'a> {
     pub(super) text: &'a str,
     /// Whether rows are told by their lines in the text, and not by their numbers.
     pub(super) has_lines: bool,
+    /// Whether complaints name angles in radians, as the table does; rows have them in degrees.
+    pub(super) in_radians: bool,
 }
 
 /// What parts the columns.

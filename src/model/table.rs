@@ -166,7 +166,7 @@ pub(super) fn read(fields: &mut Fields) -> Result<TableProfile, ModelError> {
         }
         let has_lines = pairs.iter().all(|(_, line)| line.is_some());
         let text = fields.source().to_owned();
-        let table = Table { file: fields.file().into(), text: &text, has_lines };
+        let table = Table { file: fields.file().into(), text: &text, has_lines, in_radians: false };
         let row = |(index, ([angle_deg, lift], line)): (usize, Pair)| {
             let line = line.unwrap_or(index + 1);
             if angle_deg.is_finite() && lift.is_finite() {
@@ -185,7 +185,8 @@ pub(super) fn read(fields: &mut Fields) -> Result<TableProfile, ModelError> {
     let text = file::text_of_any_age(&path)
         .map_err(|error| fields.reject("cam.file", format!("cannot be read at {shown}: {error}")))?;
     // Spreadsheets begin UTF-8 with a mark.
-    let table = Table { file: shown, text: text.strip_prefix('\u{feff}').unwrap_or(&text), has_lines: true };
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+    let table = Table { file: shown, text, has_lines: true, in_radians: false };
     let (rows, layout) = table.rows()?;
     table.profile(fields, (Some(file), spline), rows, Some(layout))
 }
@@ -306,7 +307,7 @@ fn grid(numbers: &[Row]) -> Option<f64> {
 impl Table<'_> {
     /// The profile of rows, each of which may stand alone, and of the fields beside them.
     fn profile(
-        &self,
+        mut self,
         fields: &mut Fields,
         (file, spline): (Option<String>, Kind),
         mut rows: Vec<Row>,
@@ -330,7 +331,8 @@ impl Table<'_> {
                 row.angle_deg = row.angle_deg.to_degrees();
             }
         }
-        let repeats_first = self.turned(&mut rows, angle == 0)?;
+        self.in_radians = angle == 1;
+        let repeats_first = self.turned(&mut rows)?;
         let fewest = if spline == Kind::Smoothing { FEWEST_SMOOTHED } else { FEWEST_ROWS };
         if rows.len() < fewest {
             let words = format!("{} different angles; {fewest} to {MOST_ROWS} are needed", rows.len());
@@ -355,7 +357,7 @@ impl Table<'_> {
     }
 
     /// Puts the rows of one turn, from whatever angle on, in order from 0 to below 360; whether a last one repeated the first.
-    fn turned(&self, rows: &mut Vec<Row>, are_degrees: bool) -> Result<bool, ModelError> {
+    fn turned(&self, rows: &mut Vec<Row>) -> Result<bool, ModelError> {
         /// How far back angles go where they begin a new turn, degrees.
         const BACK: f64 = 180.0;
         let mut turns = 0.0;
@@ -375,9 +377,9 @@ impl Table<'_> {
             self.in_order([(&before, before_written), (&row, written)], begins_turn)?;
             before_written = written;
             if row.angle_deg - first > 360.0 + slack {
-                let [from, to] = [first - turns, first + 360.0 - turns];
+                let [from, to] = [first - turns, first + 360.0 - turns].map(|angle| self.shown(angle));
                 let words = format!("must be within a turn of the first row, from {from} to {to}");
-                return Err(self.reject(row.line, "angle_deg", &written.to_string(), words));
+                return Err(self.reject_angle(row.line, written, words));
             }
         }
         let last = rows.last().copied().filter(|last| last.angle_deg - first >= 360.0 - slack);
@@ -394,13 +396,24 @@ impl Table<'_> {
             self.in_order([before, row], false)
         })?;
         if rows.len() >= FEWEST_ROWS {
-            self.even(rows, are_degrees)?;
+            self.even(rows)?;
         }
         Ok(last.is_some())
     }
 
     fn place(&self, row: &Row) -> String {
         format!("{} {}", if self.has_lines { "line" } else { "row" }, row.line)
+    }
+
+    /// An angle, degrees, in the unit that the table has: to the digits that are left once it has been there and back.
+    fn shown(&self, angle_deg: f64) -> f64 {
+        let shown = if self.in_radians { format!("{:.14e}", angle_deg.to_radians()).parse().ok() } else { None };
+        shown.unwrap_or(angle_deg)
+    }
+
+    fn reject_angle(&self, line: usize, angle_deg: f64, words: String) -> ModelError {
+        let field = if self.in_radians { "angle_rad" } else { "angle_deg" };
+        self.reject(line, field, &self.shown(angle_deg).to_string(), words)
     }
 
     /// Refuses a row that is not above the one before it, each with its angle as it is written, degrees.
@@ -413,8 +426,8 @@ impl Table<'_> {
         let repeats = row.angle_deg >= before.angle_deg;
         let what = if repeats { "repeats the angle of the row before" } else { "angles must rise" };
         let of_turn = if begins_turn { " less a turn" } else { "" };
-        let words = format!("{what}: must be above {above}{of_turn}, {}", self.place(before));
-        Err(self.reject(row.line, "angle_deg", &written.to_string(), words))
+        let words = format!("{what}: must be above {}{of_turn}, {}", self.shown(above), self.place(before));
+        Err(self.reject_angle(row.line, written, words))
     }
 
     /// A last row a turn after the first says the same.
@@ -424,7 +437,7 @@ impl Table<'_> {
             let words = format!(
                 "must be {}, the lift at {} on {}: a turn later it is the same again",
                 first.lift,
-                first.angle_deg,
+                self.shown(first.angle_deg),
                 self.place(first)
             );
             return Err(self.reject(last.line, "lift", &last.lift.to_string(), words));
@@ -433,7 +446,7 @@ impl Table<'_> {
     }
 
     /// Refuses a gap where rows are missing.
-    fn even(&self, rows: &[Row], are_degrees: bool) -> Result<(), ModelError> {
+    fn even(&self, rows: &[Row]) -> Result<(), ModelError> {
         /// A gap that no table has, however few its rows are.
         const HALF: f64 = 180.0;
         /// From how much of a turn without a row on the rows are those of another part of it.
@@ -451,24 +464,26 @@ impl Table<'_> {
         let Some(index) = gaps.iter().position(|gap| *gap > widest || *gap > half) else {
             return Ok(());
         };
-        let covered = 360.0 - gaps[index];
+        // The difference of two angles does not have as many digits as they.
+        let covered = ((360.0 - gaps[index]) * 1e9).round() / 1e9;
         let words = if gaps[index] > PART {
             format!(
                 "no row from {} to {}: the rows cover {covered} degrees, and a whole turn is needed, also of a cam that is its own \
                  mirror image",
-                rows[index].angle_deg,
-                next(index)
+                self.shown(rows[index].angle_deg),
+                self.shown(next(index))
             )
         } else {
             format!(
-                "no row from {} to {}: rows are missing; a gap may be at most {widest}, {} times the median one",
-                rows[index].angle_deg,
-                next(index),
+                "no row from {} to {}: rows are missing; a gap may be at most {}, {} times the median one",
+                self.shown(rows[index].angle_deg),
+                self.shown(next(index)),
+                self.shown(widest),
                 1.0 / tolerance::TABLE_GAP.value
             )
         };
-        let is_radians = are_degrees && covered <= std::f64::consts::TAU;
+        let is_radians = !self.in_radians && covered <= std::f64::consts::TAU;
         let meant = is_radians.then(|| "did you mean angle_unit = \"rad\" in [cam]?".to_owned());
-        Err(self.reject(rows[index].line, "angle_deg", &rows[index].angle_deg.to_string(), words).meaning(meant))
+        Err(self.reject_angle(rows[index].line, rows[index].angle_deg, words).meaning(meant))
     }
 }

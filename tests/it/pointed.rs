@@ -99,6 +99,13 @@ fn broken_tables_and_toml_are_shown() {
         assert!(message.starts_with(says), "{message}");
         assert_eq!(underlined(&message), (value.into(), row.into()), "{message}");
     }
+    // In radians they are told as they are written, and not as the degrees that they are turned into.
+    let text = "angle_rad,lift\n0,0.4\n0.7,0.42\n0.3,0.5\n3,0.5\n";
+    std::fs::write(folder().join("radians.csv"), text).unwrap();
+    let message = complaint("table.toml", &model.replace("broken.csv", "radians.csv"));
+    let says = "error: radians.csv:4: angle_rad = 0.3: angles must rise: must be above 0.7, line 3";
+    assert!(message.starts_with(says), "{message}");
+    assert_eq!(underlined(&message), ("0.3".into(), "0.3,0.5".into()), "{message}");
 }
 
 #[test]
