@@ -20,6 +20,14 @@ impl Polynomial {
         Self { start, coefficients: coefficients[..kept].into() }
     }
 
+    /// The same with these numbers added to `a_0`, `a_1` and `a_2`.
+    pub(super) fn plus(&self, low: [f64; 3]) -> Self {
+        let mut coefficients = self.coefficients.to_vec();
+        coefficients.resize(coefficients.len().max(low.len()), 0.0);
+        coefficients.iter_mut().zip(low).for_each(|(a, more)| *a += more);
+        Self { coefficients: coefficients.into(), ..*self }
+    }
+
     pub(super) fn turned(&self, turn: f64) -> Self {
         Self { start: self.start + turn, coefficients: self.coefficients.clone() }
     }

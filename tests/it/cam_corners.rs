@@ -252,3 +252,73 @@ fn the_page_fits_and_counts_what_it_does_not_list() {
             .contains("  245.000000      2     0.116722004           0.058    -0.015278875    -0.015278875\n")
     );
 }
+
+/// Numbers typed to ten digits leave steps of the tenth where polynomials meet: in the lift and, but where the velocity jumps, in the slope.
+/// They are taken out, and the cam is nowhere further from what is typed than all of them together.
+#[test]
+fn polynomials_that_were_typed_meet_to_the_last_digit() {
+    // Two parabolas that meet with one slope at 90 and 270 degrees; and three, of which two meet with one.
+    let smooth: [(f64, Vec<f64>); 2] =
+        [(90.0, vec![0.1, 0.0628318531, -0.02]), (270.0, vec![0.1, -0.0628318531, 0.02])];
+    let sharp: [(f64, Vec<f64>); 3] = [
+        (0.0, vec![0.1, 0.05, -0.0159154943]),
+        (180.0, vec![0.1, 0.02, -0.005]),
+        (300.0, vec![0.1199554478, -0.000943951, -0.0172957795]),
+    ];
+    for (segments, orders) in [(&smooth[..], vec![2, 2]), (&sharp[..], vec![1, 1, 2])] {
+        let written = segments.iter().map(|(start, coefficients)| {
+            format!("[[cam.segment]]\nstart_deg = {start:?}\ncoefficients = {coefficients:?}\n")
+        });
+        let cam = cam_of(&format!("law = \"polynomial\"\n{}", written.collect::<String>()));
+        let corners: Vec<usize> = cam.corners().iter().map(|corner| corner.jump_order).collect();
+        assert_eq!(corners, orders, "{:?}", cam.corners());
+        let is_sharp = |angle: f64| cam.corners().iter().any(|corner| corner.angle == angle && corner.jump_order == 1);
+        let mut steps: f64 = 0.0;
+        for (index, (start, coefficients)) in segments.iter().enumerate() {
+            let typed = |u: f64| coefficients.iter().rev().fold(0.0, |sum, a| sum * u + a);
+            let (next, turn) = segments.get(index + 1).map_or((&segments[0], 360.0), |next| (next, 0.0));
+            let span = (next.0 + turn - start).to_radians();
+            steps += (next.1[0] - typed(span)).abs();
+            let slope = coefficients[1] + 2.0 * coefficients[2] * span;
+            if !is_sharp(next.0.to_radians()) {
+                steps += (next.1[1] - slope).abs() * TAU;
+            }
+        }
+        assert!((1e-12..1e-8).contains(&steps), "nothing is typed off: {steps:e}");
+        for segment in cam.segments() {
+            for part in [0.0, 0.3, 0.7, 1.0] {
+                let angle = segment.start + part * (segment.end - segment.start);
+                let degrees = angle.to_degrees();
+                let (start, coefficients) = segments
+                    .iter()
+                    .rev()
+                    .find(|(start, _)| *start <= segment.start.to_degrees() + 1e-9)
+                    .unwrap_or(&segments[segments.len() - 1]);
+                let u = (degrees - start).rem_euclid(360.0).to_radians();
+                let u = if part == 1.0 && u < 1e-9 { TAU } else { u };
+                let typed = coefficients.iter().rev().fold(0.0, |sum, a| sum * u + a);
+                assert_abs_diff_eq!(segment.law.lift(angle).value, typed, epsilon = steps);
+            }
+        }
+        for after in 0..cam.segments().len() {
+            let (before, next) = (&cam.segments()[cam.before(after)], &cam.segments()[after]);
+            let (minus, plus) = (before.law.lift(before.end), next.law.lift(next.start));
+            assert_abs_diff_eq!(minus.value, plus.value, epsilon = 1e-16);
+            if !is_sharp(next.start) {
+                assert_abs_diff_eq!(minus.slope, plus.slope, epsilon = 1e-16);
+            }
+        }
+    }
+}
+
+/// What is typed to all digits of a double stays as it is, to the last bit.
+#[test]
+fn polynomials_that_meet_are_left_as_they_are() {
+    let cam = law_cam("polynomial.toml");
+    let model = common::read(Path::new(&law_file("polynomial.toml")));
+    let typed: Vec<f64> = ["cam.segment[0].coefficients[1]", "cam.segment[1].coefficients[1]"]
+        .map(|name| model.numbers().find(|(known, _)| *known == name).unwrap().1)
+        .into();
+    let slopes: Vec<f64> = cam.segments()[1..].iter().map(|segment| segment.law.lift(segment.start).slope).collect();
+    assert_eq!(slopes, typed);
+}

@@ -430,3 +430,21 @@ fn orbits_are_searched_for_at_the_speeds_of_a_whole_cell_and_its_margins() {
     assert!(searched.speeds.iter().zip(&expected).all(|(one, two)| (one / two - 1.0).abs() < 1e-12), "{searched:?}");
     assert!((1..=searched.speeds.len()).contains(&searched.branches) && searched.failed.is_none(), "{searched:?}");
 }
+
+/// A cam whose numbers were typed to ten digits is one cam on either side of a joint: the routes agree as on that of all digits, and find
+/// as much.
+#[test]
+fn numbers_typed_to_ten_digits_change_no_agreement() {
+    let text = std::fs::read_to_string(law("polynomial")).unwrap();
+    let typed = text.replace("0.06283185307179587", "0.0628318531");
+    assert_ne!(text, typed);
+    let [exact, typed] = [text, typed].map(|text| {
+        let found = surveyed(&Model::parse("polynomial.toml", &text).unwrap(), 390.0, 450.0, 1).found;
+        assert!(found.len() >= 4 && found.iter().all(|it| it.agrees), "{found:?}");
+        found
+    });
+    assert_eq!(typed.len(), exact.len());
+    for (one, other) in typed.iter().zip(&exact) {
+        assert!((one.at.speed_rpm() - other.at.speed_rpm()).abs() < 1e-5, "{one:?} {other:?}");
+    }
+}
