@@ -59,7 +59,7 @@ fn side_map(map: &OneSidedMap<'_>) -> Result<SideFit, SampleError> {
     let points = design_points();
     let monomials = monomials();
     let mut failure = None;
-    let mut wider: Option<SideMap> = None;
+    let mut wider: Option<(SideMap, [f64; 3])> = None;
     let mut best: Option<(f64, SideFit)> = None;
     for halving in 0..=WIDTHS {
         let width = scales / f64::from(1_u32 << halving);
@@ -90,22 +90,25 @@ fn side_map(map: &OneSidedMap<'_>) -> Result<SideFit, SampleError> {
             b: Vector2::from_fn(|row, _| entry(of, row, 2)),
         };
         let (value, standard_error) = (side(&fit.coefficients), side(&fit.standard_errors));
-        if let Some(wider) = wider {
+        let gap = |of: &Mat<f64>| [0, 1, 2].map(|direction| entry(of, 2, direction));
+        let border = gap(&fit.coefficients);
+        if let Some((wider, wider_border)) = wider {
             // The bias falls with the fourth power of the width, so this fit keeps a fifteenth of what halving changed.
             let bias = |wide: f64, here: f64| (wide - here).abs() / 15.0;
             let systematic_error = SideMap { a: wider.a.zip_map(&value.a, bias), b: wider.b.zip_map(&value.b, bias) };
             let size = in_scales(&standard_error, &scales) + in_scales(&systematic_error, &scales);
             if best.as_ref().is_none_or(|(least, _)| size < *least) {
-                let gap = |of: &Mat<f64>| [0, 1, 2].map(|direction| entry(of, 2, direction));
-                let (gap, error) = (gap(&fit.coefficients), gap(&fit.standard_errors));
-                let border = (RowVector2::new(gap[0], gap[1]), gap[2]);
-                let own =
-                    Own { border_error: Some(3.0 * error.into_iter().fold(0.0, f64::max)), ..Own::border(border) };
+                let standard = gap(&fit.standard_errors);
+                let error = (0..3)
+                    .map(|entry| 3.0 * standard[entry] + bias(wider_border[entry], border[entry]))
+                    .fold(0.0, f64::max);
+                let border = (RowVector2::new(border[0], border[1]), border[2]);
+                let own = Own { border_error: Some(error), ..Own::border(border) };
                 let condition_number = solver.condition_number;
                 best = Some((size, SideFit { value, standard_error, systematic_error, own, condition_number }));
             }
         }
-        wider = Some(value);
+        wider = Some((value, border));
     }
     let singular = SampleError::Singular { what: "coefficients of the fit" };
     best.map(|(_, fit)| fit).ok_or(failure.unwrap_or(singular))
