@@ -250,16 +250,18 @@ fn what_cannot_be_varied_is_refused() {
     assert!(variational::route_by(&model, &cam, &at, &Varied::Number("follower.damping".into())).is_ok());
 }
 
-/// Of 23 impacts in two revolutions, where curvature puts more into the border that a fit finds than three standard errors.
+/// Here curvature that the monomials leave out puts more into the border than three standard errors.
 #[test]
 #[ignore = "slow"]
 fn a_fit_knows_how_far_its_border_is_off() {
-    let Case { model, cam, at } = case(read("laws/polynomial.toml"), 416.049694645, 2);
-    let [exact, fit] = [variational::route(&model, &cam, &at), least_squares::route(&model, &cam, &at).unwrap()];
-    let ((e, f), (fitted_e, fitted_f)) = (exact.own.border.unwrap(), fit.own.border.unwrap());
-    let off = (e - fitted_e).abs().max().max((f - fitted_f).abs());
-    let said = fit.own.border_error.unwrap();
-    assert!(off <= said && said < 1e-4 * e.norm(), "{off:e} {said:e}");
+    for rpm in [383.525266432, 404.766076211] {
+        let Case { model, cam, at } = case(read("laws/polynomial.toml"), rpm, 1);
+        let [exact, fit] = [variational::route(&model, &cam, &at), least_squares::route(&model, &cam, &at).unwrap()];
+        let ((e, f), (fitted_e, fitted_f)) = (exact.own.border.unwrap(), fit.own.border.unwrap());
+        let off = (e - fitted_e).abs().max().max((f - fitted_f).abs());
+        let said = fit.own.border_error.unwrap();
+        assert!(off <= said && said < 1e-4 * e.norm(), "{rpm}: {off:e} {said:e}");
+    }
 }
 
 /// The law that goes on past a corner ends 0.17 deg from it, where the next one is 5.6e-11 m away: less than what counts as one lift where a
