@@ -92,8 +92,10 @@ pub(super) fn classified(map: &CornerMap, border: Line, sticking: Option<Side>) 
 /// The estimate of the side that the impact is on, in the place of both.
 fn one_side(model: &Model, cam: &Cam, at: &CornerImpact) -> Result<Route, SampleError> {
     let found = finite_difference::side_map(model, cam, at, at.side, &Varied::Period)?;
-    let (side, own) = (found.0.map, finite_difference::own(&found));
-    Ok(Route { name: RouteName::FiniteDifference, map: CornerMap { minus: side, plus: side }, own, uncertainty: None })
+    let both = |side| CornerMap { minus: side, plus: side };
+    let uncertainty = Some(Uncertainty::Extrapolation(both(found.1.map)));
+    let (map, own) = (both(found.0.map), finite_difference::own(&found));
+    Ok(Route { name: RouteName::FiniteDifference, map, own, uncertainty })
 }
 
 /// Every pair of routes in every quantity that both know; where the velocity jumps, of the side alone that the impact is on.

@@ -10,6 +10,7 @@ mod bad_commands;
 mod bad_input;
 mod border_collision;
 mod border_conditions;
+mod bouncing;
 mod branches;
 mod cam_corners;
 mod cam_laws;
