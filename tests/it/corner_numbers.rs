@@ -3,6 +3,7 @@
 
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write;
+use std::ops::ControlFlow;
 
 use approx::assert_relative_eq;
 use corner_impact::cam::{Cam, Side};
@@ -16,9 +17,11 @@ use corner_impact::corner::range::{RangeError, find_corner_impacts};
 use corner_impact::corner::varied::Varied;
 use corner_impact::corner::{CornerImpact, Way, finite_difference, least_squares, second_order, variational};
 use corner_impact::estimate::Estimate;
+use corner_impact::flight::State;
 use corner_impact::model::{CamProfile, Model, Study};
 use corner_impact::paper::jump_order::EXAMPLES;
 use corner_impact::progress::Unwatched;
+use corner_impact::simulate::{Event, EventKind, Goal, Machine};
 use corner_impact::tolerance;
 use nalgebra::{Matrix2, Vector2, Vector3};
 
@@ -161,7 +164,9 @@ fn estimates_over_several_impacts_know_their_errors() {
 fn differences_by_a_number_are_those_of_the_product() {
     let model = common::osorio();
     let (cam, all) = found(&model, [673.0, 673.5], 1);
-    for name in ["follower.gravity", "follower.mass", "follower.restitution", "cam.nose_radius"] {
+    for name in
+        ["follower.gravity", "follower.mass", "follower.rest_position", "follower.restitution", "cam.nose_radius"]
+    {
         let by = Varied::Number(name.into());
         let exact = variational::route_by(&model, &cam, &all[0], &by).unwrap().map;
         let found = finite_difference::route_by(&model, &cam, &all[0], &by).unwrap().map;
@@ -412,8 +417,8 @@ fn a_sample_that_sticks_is_refused_as_such() {
     assert!(OneSidedMap::new(&model, &cam, &all[0], Side::Plus).is_ok());
 }
 
-/// Where the corner comes last of six impacts, and where it comes first of two in two revolutions: map and border are off by no more than ten
-/// times what is said, which is little.
+/// Where the corner comes last of six impacts, and where it comes first of two in two revolutions: map and border are off by no more than is
+/// said, which is little.
 #[test]
 fn differences_know_their_errors_wherever_the_corner_comes() {
     for (model, speeds, revolutions) in
@@ -426,11 +431,11 @@ fn differences_know_their_errors_wherever_the_corner_comes() {
         for side in [Side::Minus, Side::Plus] {
             let of = if side == Side::Minus { exact.map.minus } else { exact.map.plus };
             let (value, error) = finite_difference::side_map(&model, &cam, at, side, &Varied::Period).unwrap();
-            assert!((value.map.a - of.a).abs() <= error.map.a * 10.0, "{side:?} {} {}", value.map.a, error.map.a);
-            assert!((value.map.b - of.b).abs() <= error.map.b * 10.0, "{side:?} {} {}", value.map.b, error.map.b);
+            assert!((value.map.a - of.a).abs() <= error.map.a, "{side:?} {} {}", value.map.a, error.map.a);
+            assert!((value.map.b - of.b).abs() <= error.map.b, "{side:?} {} {}", value.map.b, error.map.b);
             assert!(error.map.a.norm() < 1e-6 * of.a.norm() && error.map.b.norm() < 1e-6 * of.b.norm(), "{side:?}");
             let gap = Vector3::new(e[0], e[1], f).transpose();
-            assert!((value.gap - gap).abs() <= error.gap * 10.0, "{side:?} {} {gap} {}", value.gap, error.gap);
+            assert!((value.gap - gap).abs() <= error.gap, "{side:?} {} {gap} {}", value.gap, error.gap);
             assert!(error.gap.min() > 0.0 && error.gap.norm() < 1e-6 * gap.norm(), "{side:?} {}", error.gap);
         }
     }
@@ -442,16 +447,17 @@ fn differences_know_their_errors_wherever_the_corner_comes() {
 fn b_by_the_base_of_a_cam_does_not_hang_on_where_it_is() {
     let model = read("laws/program");
     let CamProfile::Program(_) = &model.cam else { panic!("{:?}", model.cam) };
-    let lower = model.changed(&[("cam.base".into(), 0.0), ("rest_position".into(), -0.02)]).unwrap();
-    let found = [&model, &lower].map(|model| {
+    let [lower, higher] = [0.0, 10.0]
+        .map(|base| model.changed(&[("cam.base".into(), base), ("rest_position".into(), base - 0.02)]).unwrap());
+    let found = [&model, &lower, &higher].map(|model| {
         let (cam, all) = found(model, [2257.0, 2258.0], 1);
         let route = variational::route_by(model, &cam, &all[0], &Varied::Number("cam.base".into())).unwrap();
         let Some(Uncertainty::Extrapolation(off)) = route.uncertainty else { panic!("{route:?}") };
         (route.map.minus.b, off.minus.b, cam.top())
     });
-    let [(here, ..), (there, ..)] = found;
-    assert!((here - there).norm() < 1e-9 * here.norm(), "{here} {there}");
-    for ((b, error, top), step) in found.into_iter().zip([0.04 / 64.0, 1.0 / 64.0]) {
+    let [(here, ..), (there, ..), (above, ..)] = found;
+    assert!((here - there).norm() < 1e-9 * here.norm() && (here - above).norm() < 1e-9 * here.norm(), "{found:?}");
+    for ((b, error, top), step) in found.into_iter().zip([0.04, 1.0, 10.0].map(|number| number / 64.0)) {
         let least = b.abs() * (tolerance::ULP.value * top / step);
         assert!(least <= error && error.norm() < 1e-9 * b.norm(), "{least} {error} {b}");
     }
@@ -518,6 +524,94 @@ fn flights_that_stick_are_none() {
     let approach = Approach::new(corner, 1.3, 1.3 * corner.minus.slope - 6.0).unwrap();
     match gap(&model, &cam, &approach) {
         Err(JumpOrderError::NotFree { least, .. }) => assert_relative_eq!(least, PI / 2048.0, max_relative = 1e-12),
+        other => panic!("{other:?}"),
+    }
+}
+
+/// Wider and wider deviations, each run once more over the continued law: a sample that is taken has all other impacts on their own segments,
+/// of which the last is 0.03 rad from its end, and there are such that have one after it with the corner's impact still in reach.
+#[test]
+fn a_sample_has_every_impact_on_its_own_segment() {
+    let (model, mut off) = (read("laws/polynomial"), 0);
+    let (cam, all) = found(&model, [419.8, 419.9], 1);
+    let at = &all[0];
+    let (flights, _) = at.course();
+    let reach = 0.05;
+    for side in [Side::Minus, Side::Plus] {
+        let map = OneSidedMap::new(&model, &cam, at, side).unwrap();
+        let continued = cam.continued(&at.corner, side, reach).unwrap();
+        for (direction, times) in (0..3).flat_map(|direction| (-15..=15).map(move |times| (direction, times))) {
+            let mut z = Vector3::zeros();
+            z[direction] = f64::from(times) * map.scales()[direction];
+            let machine = Machine::new(continued.clone(), &model.follower, TAU / (at.period + z[2]));
+            let start = State { position: at.state.position + z[0], velocity: at.state.velocity + z[1] };
+            let (mut motion, mut events) = (machine.start(at.section_angle(), start).unwrap(), Vec::new());
+            let goal = Goal { revolution: 1, cam_angle: at.section_angle() };
+            let _ = machine.advance(&mut motion, goal, &mut |event: &Event| {
+                events.push(*event);
+                ControlFlow::Continue(())
+            });
+            if events.len() != flights.len() || events.iter().any(|event| event.kind != EventKind::Impact) {
+                continue;
+            }
+            let (mut turned, mut is_close, mut is_off) = (0.0, false, false);
+            for (event, (turn, index)) in events.iter().zip(&flights) {
+                turned += turn;
+                let (later, impact) = (event.turned_since(at.section_angle()) - turned, &at.cycle.impacts[*index]);
+                let segment = &cam.segments()[impact.segment];
+                if *index == at.impact {
+                    is_close = later.abs() < reach;
+                } else {
+                    is_off |= !(segment.start..=segment.end).contains(&(impact.cam_angle + later));
+                }
+            }
+            assert!(!is_off || map.sample(z).is_err(), "{side:?} {direction} {times}");
+            off += usize::from(is_close && is_off);
+        }
+    }
+    assert!(off > 0);
+}
+
+/// On a slope of 1/2 up or down under a gravity of 10 m/s^2 a follower that closes at u comes back after `2 r u/g`, here 12.6 ms at 6 m/s: in half
+/// a turn over 2^8, 9.4 ms from the corner, it does not. Under the other law it closes at 7.3 or 4.7 m/s, and comes back after 15.3 or 9.9 ms. A
+/// flight that is 4 ms or 1 ms early comes back in time under one of the laws, and is no flight of both.
+#[test]
+fn a_flight_that_comes_back_under_one_law_is_none() {
+    let half = |start: u32, first: f64, slope: f64| {
+        format!("[[cam.segment]]\nstart_deg = {start}\ncoefficients = [{first:?}, {slope:?}]\n")
+    };
+    let follower =
+        "[follower]\nmass = 1\ndamping = 0\nstiffness = 0\ngravity = 10\nrest_position = 0\nrestitution = 0.0105\n";
+    for (slope, early) in [(-0.5, 4e-3), (0.5, 1e-3)] {
+        let cam = format!("{}{}", half(0, 3.0, slope), half(180, 3.0 + slope * PI, -slope));
+        let model = Model::parse("slopes.toml", &format!("{follower}[cam]\nlaw = \"polynomial\"\n{cam}")).unwrap();
+        let cam = common::cam(&model);
+        let (corner, omega) = (cam.corners()[1], 1.3);
+        let approach = Approach::new(corner, omega, omega * slope - 6.0).unwrap();
+        let sides = Sides::new(&model, &cam, &approach).unwrap();
+        assert_relative_eq!(sides.span(), PI / 256.0, max_relative = 1e-14);
+        let flight = |early: f64| sides.pair(Vector3::new(-6.0 * early, 0.0, 0.0));
+        assert!(flight(early).is_none() && flight(-early).is_some(), "{slope}: {:?}", flight(early));
+    }
+}
+
+/// Two laws whose curvatures differ by 1e-7 m move flights that are 0.1 rad from the corner by 1e-9 m and less, and rounding moves them by 1e-14 m:
+/// the exponent would have fewer digits than are promised.
+#[test]
+fn a_jump_that_rounding_hides_has_no_exponent() {
+    // 1 + a x^2 (pi - x)^2, whose curvature is 2 a pi^2 where it meets the dwell.
+    let a = 1e-7 / (2.0 * PI * PI);
+    let follower =
+        "[follower]\nmass = 1\ndamping = 0\nstiffness = 0\ngravity = 0\nrest_position = 0\nrestitution = 0.8\n";
+    let hump = format!("start_deg = 0\ncoefficients = [1.0, 0.0, {:e}, {:e}, {a:e}]", a * PI * PI, -2.0 * PI * a);
+    let cam = format!("[[cam.segment]]\n{hump}\n[[cam.segment]]\nstart_deg = 180\ncoefficients = [1.0]\n");
+    let model = Model::parse("hump.toml", &format!("{follower}[cam]\nlaw = \"polynomial\"\n{cam}")).unwrap();
+    let cam = common::cam(&model);
+    let corner = cam.corners()[1];
+    assert_relative_eq!(corner.jump, -1e-7, max_relative = 1e-6);
+    let approach = Approach::new(corner, 1.3, -6.0).unwrap();
+    match Sides::new(&model, &cam, &approach).unwrap().at_corner() {
+        Err(JumpOrderError::Unresolved { resolved, tried, needed }) => assert!(resolved < needed && needed < tried),
         other => panic!("{other:?}"),
     }
 }
