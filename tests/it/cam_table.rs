@@ -202,7 +202,7 @@ fn units_are_named_by_a_word_or_a_sign() {
         ("name-of-a-unit", "angle,M (mm)", &degrees),
     ] {
         let text = format!("{header}\n{rows}");
-        let unit = if rows == &radians { "rad" } else { "deg" };
+        let unit = if *rows == radians { "rad" } else { "deg" };
         let cam = cam_with(name, &text, "cubic", &format!("angle_unit = \"{unit}\"\n")).unwrap();
         for (angle, lift) in [(0.0, 1.25), (120.0, 2.5), (240.0, 1.75)] {
             assert_relative_eq!(cam.lift(f64::to_radians(angle)).value, 1e-3 * lift, max_relative = 1e-12);
