@@ -13,10 +13,11 @@ use corner_impact::border_collision::long_run::{End, Escape};
 use corner_impact::border_collision::word::Word;
 use corner_impact::border_collision::{LocalMap, passage};
 use corner_impact::cam::Side;
+use corner_impact::corner::SideMap;
 use corner_impact::estimate::Estimate;
 use corner_impact::interval::Interval;
 use corner_impact::known::Known;
-use nalgebra::Vector2;
+use nalgebra::{Matrix2, Vector2};
 
 /// What a motion from 0 does, in a word.
 fn kind(end: &End) -> String {
@@ -500,5 +501,131 @@ fn passages_agree_within_a_hundredth() {
         (Some(5), None, false),
     ] {
         assert_eq!(passage::agree(linear, simulated), agree, "{linear:?} {simulated:?}");
+    }
+}
+
+/// A complex pair turns a deviation and carries it off along no direction, however large its real part is: 1.5 of the left side. The right
+/// side's pair is 2 and 1/2.
+#[test]
+fn a_complex_pair_has_no_rate_at_which_it_is_left() {
+    assert_eq!(passage::revolutions_per_decade(&common::normal_form([3.0, 0.4], [4.0, 0.2])), None);
+    let beside = passage::revolutions_per_decade(&common::normal_form([3.0, 2.5], [4.0, 1.0])).unwrap();
+    assert_relative_eq!(beside, std::f64::consts::LN_10 / std::f64::consts::LN_2, max_relative = 1e-14);
+}
+
+/// By hand, of l = 2: each over `|tau| + |delta| + 1`, and phi = 2 (2 - 1) + 1 (-4.4 - 0.6) over 2 + 5.
+#[test]
+fn how_far_a_hypothesis_is_from_failing_is_told_over_its_terms() {
+    let theorem = common::normal_form([2.5, -2.2], [1.0, 0.6]).robust_chaos(1.0).unwrap();
+    let expected = [1.0, 1.0, 0.5 / 4.5, 0.6 / 3.8, -3.0 / 7.0];
+    for (hypothesis, distance) in theorem.hypotheses.iter().zip(expected) {
+        assert_relative_eq!(hypothesis.distance, distance, max_relative = 1e-13);
+    }
+}
+
+/// Traces 1.7 and -1.5 with determinants 0.3 and 0.2, for which the theorem holds, in coordinates in which both entries of a trace count.
+#[test]
+fn robust_chaos_is_proved_in_any_coordinates() {
+    let side = |half: f64, product: f64| [[half, 1.0], [-product, half]].map(|row| row.map(Interval::from));
+    let map = common::normal_form([1.7, -1.5], [0.3, 0.2]);
+    let mut theorem = map.robust_chaos(1.0).unwrap();
+    // 0.85^2 + c = 0.3 and 0.75^2 + c = 0.2
+    theorem.prove([side(0.85, 0.3 - 0.7225), side(-0.75, 0.2 - 0.5625)]);
+    assert_eq!(theorem.known, Known::Proved);
+    // At the other sign of mu the saddles are not there.
+    assert_eq!(map.robust_chaos(-1.0), None);
+}
+
+/// What shrinks is never away, however slowly it shrinks; what grows by less than is told from 1 is not said to.
+#[test]
+fn what_does_not_grow_follows_no_word_for_ever() {
+    for (growth, follows) in [(1.0 - 5e-10, false), (1.0 + 5e-10, false), (1.0 + 2e-9, true)] {
+        let mut map = common::of_the_line([growth, 0.5]);
+        map.minus.b = Vector2::zeros();
+        let found = map.follows_for_ever(&word("L"), Vector2::new(-9.0, 0.0), 1.0);
+        assert_eq!(found.is_some(), follows, "{growth:e} {found:?}");
+    }
+}
+
+/// x' = mu - 2 x leaves its fixed point mu/3, twofold and on either side of it by turns: below 0 and mu from the first, it goes on for ever.
+#[test]
+fn a_motion_that_alternates_is_followed_from_side_to_side() {
+    let map = common::of_the_line([-2.0; 2]);
+    for (start, mu) in [(-0.5, 1.0), (-1.0, -0.25), (-8.0, 4.0)] {
+        assert_eq!(map.follows_for_ever(&word("LR"), Vector2::new(start, 0.0), mu), Some(4.0), "{start} {mu}");
+    }
+}
+
+/// Slopes 2 and 1/2 at the corner impact itself: what is on the left grows, what is on the right shrinks. Half of all directions point to
+/// either side.
+#[test]
+fn starts_lie_all_around_the_corner() {
+    let outcome = common::of_the_line([2.0, 0.5]).outcome(0.0);
+    let mut fates: Vec<_> = outcome.fates.iter().map(|fate| (fate.end.name(), fate.starts)).collect();
+    fates.sort_unstable();
+    assert_eq!(fates, [("corner", 12), ("escapes", 12)]);
+}
+
+/// `(x, y) -> (y, g(x))` is g of x and of y by turns. Of an orbit of three of g, a pair of its points that are i and j steps on goes to one of
+/// j and i + 1: j - i becomes 1 - (j - i), so that 0 and 1 are one orbit, of six, and 2 is another, of three.
+#[test]
+fn two_orbits_at_once_are_told_apart() {
+    // g is x/2 + 1 to the left of 0 and 1 - 7x/2 to the right, and its orbit of three is stable: 7/2 over 4 is below 1.
+    let map = two_maps_of_the_line([0.5, -3.5], 0.0);
+    let outcome = map.outcome(1.0);
+    let mut words: Vec<_> = outcome.fates.iter().map(|fate| kind(&fate.end)).collect();
+    words.sort_unstable();
+    assert_eq!(words, ["LLLLRR", "LLR"]);
+}
+
+/// The maps of x and of y by turns, with `more` of y in the next.
+fn two_maps_of_the_line(slopes: [f64; 2], more: f64) -> LocalMap {
+    let [minus, plus] =
+        slopes.map(|slope| SideMap { a: Matrix2::new(0.0, 1.0, slope, more), b: Vector2::new(0.0, 1.0) });
+    LocalMap { minus, plus, ..common::of_the_line(slopes) }
+}
+
+/// Where that orbit is unstable by little, 1.025 a round, there is chaos in three pieces around it, and of pairs of pieces there are the same two
+/// kinds: what joins x and y a little parts neighbours in one more than in the other.
+#[test]
+fn two_kinds_of_chaos_at_once_are_told_apart() {
+    let outcome = two_maps_of_the_line([0.5, -4.1], 0.02).outcome(1.0);
+    let exponents: Vec<_> = outcome.fates.iter().map(|fate| exponent(&fate.end)).collect();
+    let [one, other] = exponents.as_slice() else { panic!("{exponents:?}") };
+    assert!((one.value - other.value).abs() > 5.0 * one.error.hypot(other.error), "{exponents:?}");
+}
+
+/// Two motions that begin close to each other are as close after forty thousand steps, within a factor of a thousand: if there is an exponent
+/// it is below ln 1000 over 40,000, which a mean over parts of a thousand does not tell from 0.
+#[test]
+fn a_motion_whose_neighbours_stay_is_not_called_chaotic() {
+    for (traces, determinants) in
+        [([-1.5, -1.3], [0.0, 1.3]), ([-1.5, -1.3], [-0.2, 1.3]), ([0.9, 0.7], [0.3, 1.1]), ([-0.3, -0.7], [0.7, 1.2])]
+    {
+        let map = common::normal_form(traces, determinants);
+        let (mut x, mut beside) = (Vector2::zeros(), Vector2::new(1e-10, 0.0));
+        for _ in 0..40_000 {
+            (x, beside) = (map.apply(x, 1.0), map.apply(beside, 1.0));
+        }
+        assert!((x - beside).norm() < 1e-7 && x.norm() < 100.0, "{traces:?} {determinants:?}: {x} {beside}");
+        let end = map.end(Vector2::zeros(), 1.0);
+        assert!(matches!(end, End::Undecided(_)), "{traces:?} {determinants:?}: {end:?}");
+    }
+}
+
+/// Both saddles grow by a millionth a step: for thousands of steps a motion stays next to one and then the other, so that its parts tell hardly
+/// anything of its exponent. By the theorem no exponent is below ln l, and what is sent into itself is chaotic.
+#[test]
+fn chaos_by_the_theorem_needs_no_measured_exponent() {
+    let (determinant, trace) = (0.3, 1.3 + 1.5e-6);
+    let map = common::normal_form([trace, -trace], [determinant; 2]);
+    assert!(map.robust_chaos(1.0).unwrap().holds());
+    let l: f64 = 0.5 * (trace + (trace * trace - 4.0 * determinant).sqrt());
+    match map.end(Vector2::zeros(), 1.0) {
+        End::Chaotic(chaos) => {
+            assert!(chaos.exponent.error > 0.2 * chaos.exponent.value, "{chaos:?}");
+            assert_relative_eq!(chaos.least_exponent.unwrap(), l.ln(), max_relative = 1e-9);
+        }
+        end => panic!("{end:?}"),
     }
 }

@@ -215,3 +215,13 @@ fn numbers_that_are_none_end_without_a_panic() {
     assert!(!matches!(map.outcome(-1.0).fates[0].end, End::Chaotic(..)));
     assert!(conditions(&map).iter().any(|condition| !condition.holds()));
 }
+
+/// `det(I - A)` is 0 to rounding over its terms, `1 + |tr A| + |det A|`, and not as a number: with traces and determinants of 1e8 it has to be
+/// above 0.02, with those of 1 above 3e-10.
+#[test]
+fn an_orbit_is_none_where_rounding_decides_where_it_is() {
+    for (determinant, off, is_there) in [(1e8, 1e-3, false), (1e8, 1.0, true), (0.5, 1e-11, false), (0.5, 1e-8, true)] {
+        let map = common::normal_form([1.0 + determinant - off, 0.4], [determinant, 0.2]);
+        assert_eq!(map.orbit(&Word::read("L").unwrap(), 1.0).is_some(), is_there, "{determinant} {off}");
+    }
+}

@@ -6,7 +6,9 @@ use std::path::PathBuf;
 use crate::common;
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use corner_impact::cam::Cam;
+use corner_impact::measured::{Likely, Openness};
 use corner_impact::model::Model;
+use serde_json::json;
 
 fn folder() -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("cam_table");
@@ -28,9 +30,14 @@ fn csv(rows: &[(f64, f64)]) -> String {
 
 /// Writes model and table beside each other and reads the model; `name` keeps tests apart.
 fn cam_of(name: &str, text: &str, spline: &str) -> Result<Cam, String> {
+    cam_with(name, text, spline, "")
+}
+
+/// The same with `more` fields of the cam.
+fn cam_with(name: &str, text: &str, spline: &str, more: &str) -> Result<Cam, String> {
     std::fs::write(folder().join(format!("{name}.csv")), text).unwrap();
     let file = folder().join(format!("{name}.toml"));
-    std::fs::write(&file, model_text(&format!("{name}.csv"), spline)).unwrap();
+    std::fs::write(&file, model_text(&format!("{name}.csv"), spline) + more).unwrap();
     let model = Model::read(&file).map_err(|error| error.to_string())?;
     Cam::new(&model).map_err(|error| error.to_string())
 }
@@ -162,6 +169,105 @@ fn rows_that_say_the_same_otherwise() {
     // Equal lifts are a round cam without a corner.
     let flat = cam_of("flat", &csv(&[(0.0, 0.1), (100.0, 0.1), (220.0, 0.1)]), "quintic").unwrap();
     assert!(flat.corners().is_empty() && flat.lift(1.0).value == 0.1);
+}
+
+/// The first row has decimals behind a comma in both columns, or a blank before the comma that parts them, or other signs than its header.
+#[test]
+fn a_row_of_numbers_says_what_parts_the_columns() {
+    let cam = cam_of("parted", "0.5,1.25\n120.5,2.5\n240.5,1.75\n", "cubic").unwrap();
+    for (name, text) in [
+        ("decimal-commas", "0,5 1,25\n120,5 2,5\n240,5 1,75\n"),
+        ("blank-before", "0.5 ,1.25\n120.5 ,2.5\n240.5 ,1.75\n"),
+        ("commas-in-header", "angle [deg], lift [m]\n0.5 1.25\n120.5 2.5\n240.5 1.75\n"),
+        ("semicolon-in-header", "angle deg; from the nose, lift m\n0.5,1.25\n120.5,2.5\n240.5,1.75\n"),
+    ] {
+        assert_eq!(cam_of(name, text, "cubic").unwrap(), cam, "{name}");
+    }
+}
+
+/// A unit alone names its column, and so does a sign; of several words the first is a name, be it that of a unit. What a header says is not
+/// said otherwise beside it.
+#[test]
+fn units_are_named_by_a_word_or_a_sign() {
+    let rows = |per_degree: f64| -> String {
+        [(0.0, 1.25), (120.0, 2.5), (240.0, 1.75)]
+            .map(|(angle, lift)| format!("{},{lift}\n", angle * per_degree))
+            .concat()
+    };
+    let (degrees, radians) = (rows(1.0), rows(1.0_f64.to_radians()));
+    for (name, header, rows) in [
+        ("deg-alone", "deg,mm", &degrees),
+        ("sign-alone", "°,mm", &degrees),
+        ("rad-alone", "rad,mm", &radians),
+        ("name-of-a-unit", "angle,M (mm)", &degrees),
+    ] {
+        let text = format!("{header}\n{rows}");
+        let unit = if *rows == radians { "rad" } else { "deg" };
+        let cam = cam_with(name, &text, "cubic", &format!("angle_unit = \"{unit}\"\n")).unwrap();
+        for (angle, lift) in [(0.0, 1.25), (120.0, 2.5), (240.0, 1.75)] {
+            assert_relative_eq!(cam.lift(f64::to_radians(angle)).value, 1e-3 * lift, max_relative = 1e-12);
+        }
+        if header.starts_with("angle") {
+            continue;
+        }
+        let other = if unit == "rad" { "deg" } else { "rad" };
+        let refused = cam_with(name, &text, "cubic", &format!("angle_unit = \"{other}\"\n")).unwrap_err();
+        assert!(refused.contains(&format!("is not what the header of the table says: {unit}")), "{name}: {refused}");
+    }
+}
+
+/// The same again is the same to ten digits: 1e-10 of the largest lift at 0.1 m, and of 1,000 m.
+#[test]
+fn a_turn_later_the_lift_is_the_same_to_as_many_digits() {
+    for (name, lift, off, closes) in [
+        ("closed-small", 0.1, 5e-11, true),
+        ("open-small", 0.1, 1e-9, false),
+        ("closed-large", 1e3, 5e-7, true),
+        ("open-large", 1e3, 1e-5, false),
+    ] {
+        let rows = [(0.0, lift), (120.0, 0.9 * lift), (240.0, 0.8 * lift), (360.0, lift + off)];
+        let cam = cam_of(name, &csv(&rows), "cubic");
+        assert_eq!(cam.is_ok(), closes, "{name}: {cam:?}");
+        assert!(cam.is_ok() || cam.unwrap_err().contains("a turn later it is the same again"), "{name}");
+    }
+}
+
+/// Half a turn to a hundredth of the mean gap: of three rows 180 less 1.2 degrees.
+#[test]
+fn half_a_turn_without_a_row_is_half_a_turn_to_its_digits() {
+    let with = |last: f64| cam_of("half", &csv(&[(0.0, 1.0), (90.0, 2.0), (last, 1.0)]), "cubic");
+    assert!(with(181.3).is_ok());
+    let refused = with(181.0).unwrap_err();
+    assert!(refused.contains("no row from 181 to 360: the rows cover 181 degrees"), "{refused}");
+}
+
+/// Twelve rows are enough for what is measured to be told from the motion, and eleven are not.
+#[test]
+fn twelve_rows_may_be_smoothed() {
+    for (count, are_enough) in [(11, false), (12, true)] {
+        let model = even(count, |angle| (1e4 * (1.0 - angle.cos())).round() / 1e4);
+        assert_eq!(Likely::of(&model).unwrap().is_some(), are_enough, "{count}");
+    }
+}
+
+/// A model with a cubic spline through rows that are evenly spaced.
+fn even(count: u32, lift: impl Fn(f64) -> f64) -> Model {
+    let rows: Vec<[f64; 2]> = (0..count)
+        .map(|row| 360.0 * f64::from(row) / f64::from(count))
+        .map(|angle| [angle, lift(angle.to_radians())])
+        .collect();
+    let follower =
+        json!({ "mass": 1, "damping": 0, "stiffness": 1, "gravity": 0, "rest_position": 0, "restitution": 1 });
+    let cam = json!({ "law": "table", "spline": "cubic", "rows": rows });
+    Model::of_document("even", &json!({ "follower": follower, "cam": cam })).unwrap()
+}
+
+/// Noise is seen from a billionth of the lift's rise on, here 2 cm on a base of 10 m: 2e-10 m is, and 1e-12 m is not.
+#[test]
+fn noise_is_seen_over_the_rise_of_the_lift() {
+    let table = |noise: f64| even(4001, |angle| 10.0 + 0.01 * angle.cos() + noise * (1e9 * (angle + 1.0).sin()).sin());
+    assert!(matches!(Openness::of(&table(2e-10)).unwrap(), Some(Openness::Noise(_))));
+    assert!(Openness::of(&table(1e-12)).unwrap().is_none());
 }
 
 /// Text that is no table, each with what the message must say; the model's own name where its field is at fault.

@@ -230,3 +230,32 @@ fn what_is_said_of_models_is_what_it_was() {
     }
     is_as_it_was("told-of-models", &text);
 }
+
+/// Numbers that are changed after others take their place, and leave the others; a name tells each once.
+#[test]
+fn a_number_that_is_changed_twice_has_its_last_value() {
+    let set = |name: &str, value: f64| vec![(name.to_owned(), value)];
+    let once = common::osorio().changed(&set("damping", 0.5)).unwrap().changed(&set("mass", 2.0)).unwrap();
+    let twice = once.changed(&set("follower.mass", 3.0)).unwrap();
+    assert_eq!(twice.changes(), [("follower.damping".to_owned(), 0.5), ("follower.mass".to_owned(), 3.0)]);
+    assert_eq!((twice.follower.mass, twice.follower.damping), (3.0, 0.5));
+}
+
+/// A speed is no number of the follower or the cam.
+#[test]
+fn a_number_of_another_table_has_no_path() {
+    let model = common::osorio();
+    assert_eq!(model.path_of("mass", &[]).unwrap(), "follower.mass");
+    for name in ["rpm_min", "study.rpm_min"] {
+        let refused = model.path_of(name, &[]).unwrap_err().to_string();
+        assert!(refused.contains("is not a number of this model"), "{refused}");
+    }
+    assert!(model.numbers().all(|(path, _)| path.starts_with("follower.") || path.starts_with("cam.")));
+}
+
+/// `foll.er` is two letters from `follower`, but a field, and not a table with a slip in its name.
+#[test]
+fn a_field_is_not_taken_for_a_table_that_is_missing() {
+    let said = told("[foll]\ner = 1\n", "");
+    assert!(said.contains("follower.mass is missing") && !said.contains("did you mean"), "{said}");
+}

@@ -83,6 +83,16 @@ fn a_segment_is_a_region_where_both_of_its_ends_hold() {
     }
 }
 
+/// Where one slope is 1 an end of the segment is sent onto itself, and so is any other that it is moved out to: none is sent inside.
+#[test]
+fn what_is_sent_onto_the_edge_is_not_inside() {
+    let points = [Vector2::new(-1.0, 0.0), Vector2::new(1.0, 0.0)];
+    for slopes in [[0.5, 1.0], [1.0, 0.5]] {
+        assert_eq!(common::of_the_line(slopes).region(&points, 0.0), None, "{slopes:?}");
+    }
+    assert!(common::of_the_line([0.5; 2]).region(&points, 0.0).is_some());
+}
+
 /// A quarter of a turn takes a segment out of its own line, however near to its middle.
 #[test]
 fn what_is_beside_a_segment_is_not_in_it() {
