@@ -75,7 +75,10 @@ impl Separator {
     /// Of a line of two numbers.
     fn of(line: &str) -> Self {
         let numbers: Vec<&str> = line.split_whitespace().collect();
-        let is_number = |text: &&str| text.replacen(',', ".", 1).parse::<f64>().is_ok() && !text.ends_with(',');
+        // A decimal comma stands between two digits: of `0 ,15` it parts the columns.
+        let is_number = |text: &&str| {
+            text.replacen(',', ".", 1).parse::<f64>().is_ok() && !text.starts_with(',') && !text.ends_with(',')
+        };
         if line.contains(';') {
             Self::Semicolon
         } else if line.contains('\t') {

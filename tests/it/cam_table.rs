@@ -183,6 +183,15 @@ fn a_row_of_numbers_says_what_parts_the_columns() {
     ] {
         assert_eq!(cam_of(name, text, "cubic").unwrap(), cam, "{name}");
     }
+    // A comma between two digits alone is a decimal one.
+    let whole = cam_of("whole", "0,15\n120,25\n240,17\n", "cubic").unwrap();
+    for (name, text) in [
+        ("whole-after-blanks", "0 ,15\n120 ,25\n240 ,17\n"),
+        ("whole-before-blanks", "0, 15\n120, 25\n240, 17\n"),
+        ("named-after-blanks", "angle ,lift\n0 ,15\n120 ,25\n240 ,17\n"),
+    ] {
+        assert_eq!(cam_of(name, text, "cubic").unwrap(), whole, "{name}");
+    }
 }
 
 /// A unit alone names its column, and so does a sign; of several words the first is a name, be it that of a unit. What a header says is not
