@@ -7,7 +7,10 @@ use corner_impact::cam::Side;
 use corner_impact::corner::range::find_corner_impacts;
 use corner_impact::known::Known;
 use corner_impact::model::{Model, Study};
+use corner_impact::orbit::search::{Searched, search_all};
+use corner_impact::orbit::{PeriodicOrbit, Search};
 use corner_impact::progress::Unwatched;
+use corner_impact::simulate::{Machine, angular_velocity};
 use corner_impact::study::locate::{Located, locate};
 
 use crate::common;
@@ -16,12 +19,16 @@ const GRAVITY: f64 = 9.81;
 const RESTITUTION: f64 = 0.5;
 const AMPLITUDE: f64 = 0.01;
 
+fn follower() -> String {
+    format!(
+        "[follower]\nmass = 1.0\ndamping = 0.0\nstiffness = 0.0\ngravity = {GRAVITY}\nrest_position = 0.0\n\
+         restitution = {RESTITUTION}\n"
+    )
+}
+
 /// A table that goes up and down as `a |sin theta|`: at 0 and 180 degrees its velocity jumps from `-w a` to `w a`.
 fn ball() -> Model {
-    let text = format!(
-        "[follower]\nmass = 1.0\ndamping = 0.0\nstiffness = 0.0\ngravity = {GRAVITY}\nrest_position = 0.0\n\
-         restitution = {RESTITUTION}\n[cam]\nlaw = \"rectified-sine\"\noffset = 0.1\namplitude = {AMPLITUDE}\n"
-    );
+    let text = follower() + &format!("[cam]\nlaw = \"rectified-sine\"\noffset = 0.1\namplitude = {AMPLITUDE}\n");
     Model::parse("ball.toml", &text).unwrap()
 }
 
@@ -101,4 +108,40 @@ fn differences_on_the_side_of_a_velocity_jump_are_left_out_where_they_know_too_l
     }
     let left_out = |why: &str| why.contains("by its own errors");
     assert!(found.iter().any(|it| it.skipped.iter().any(|skipped| left_out(&skipped.why))), "{found:?}");
+}
+
+/// A flight over a ridge between two hollows is an orbit as long as it is clear of the ridge's edge, `z = g t (T - t)/2` above where it began.
+/// The cam curves away from the flight on either side of the edge, so that nothing but the edge is near.
+#[test]
+fn a_flight_is_an_orbit_where_it_is_clear_of_an_edge() {
+    let (rpm, hump, base) = (300.0, 0.012, 0.1);
+    let period = 60.0 / rpm;
+    // c = base + 4 a u (pi - u)/pi^2, and c' = (1 - r) g T^2/(4 pi (1 + r)) at the impact.
+    let slope = (1.0 - RESTITUTION) * GRAVITY * period * period / (4.0 * PI * (1.0 + RESTITUTION));
+    let impact = 0.5 * PI * (1.0 - slope * PI / (4.0 * hump));
+    let above = 4.0 * hump * impact * (PI - impact) / (PI * PI);
+    let time = (1.5 * PI - impact) / TAU * period;
+    let edge = above + 0.5 * GRAVITY * time * (period - time);
+    for (part, is_orbit) in
+        [(0.5, true), (0.99, true), (1.0 - 1e-9, true), (1.0 + 1e-6, false), (1.01, false), (1.2, false)]
+    {
+        let height = edge * part;
+        let segments = [
+            (0.0, [base, 4.0 * hump / PI, -4.0 * hump / (PI * PI)]),
+            (180.0, [base, 0.0, height * 4.0 / (PI * PI)]),
+            (270.0, [base + height, -height * 4.0 / PI, height * 4.0 / (PI * PI)]),
+        ];
+        let segments = segments.map(|(start, coefficients)| {
+            format!("[[cam.segment]]\nstart_deg = {start:?}\ncoefficients = {coefficients:?}\n")
+        });
+        let text = follower() + "[cam]\nlaw = \"polynomial\"\n" + &segments.concat();
+        let model = Model::parse("ridge.toml", &text).unwrap();
+        let machine = Machine::new(common::cam(&model), &model.follower, angular_velocity(rpm));
+        let wanted = Search { revolutions: 1, impacts: Some(1) };
+        let Searched { orbits: found, undecided, .. } = search_all(&machine, &wanted, &Unwatched).unwrap();
+        assert_eq!(undecided, [], "{part}");
+        let is_it =
+            |orbit: &&PeriodicOrbit| orbit.events.len() == 1 && (orbit.events[0].cam_angle - impact).abs() < 1e-9;
+        assert_eq!(found.iter().filter(is_it).count(), usize::from(is_orbit), "{part}: {found:?}");
+    }
 }
