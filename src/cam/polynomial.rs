@@ -20,12 +20,20 @@ impl Polynomial {
         Self { start, coefficients: coefficients[..kept].into() }
     }
 
-    /// The same with these numbers added to `a_0`, `a_1` and `a_2`.
-    pub(super) fn plus(&self, low: [f64; 3]) -> Self {
+    /// The same with this value and these derivatives added where `u` is 0.
+    pub(super) fn plus(&self, derivatives: &[f64]) -> Self {
         let mut coefficients = self.coefficients.to_vec();
-        coefficients.resize(coefficients.len().max(low.len()), 0.0);
-        coefficients.iter_mut().zip(low).for_each(|(a, more)| *a += more);
-        Self { coefficients: coefficients.into(), ..*self }
+        let mut factorial = 1.0;
+        for (n, derivative) in derivatives.iter().enumerate() {
+            factorial *= n.max(1) as f64;
+            if n < coefficients.len() {
+                coefficients[n] += derivative / factorial;
+            } else {
+                coefficients.push(derivative / factorial);
+            }
+        }
+        let kept = coefficients.iter().rposition(|a| *a != 0.0).map_or(0, |last| last + 1);
+        Self::new(self.start, &coefficients[..kept])
     }
 
     pub(super) fn turned(&self, turn: f64) -> Self {

@@ -69,56 +69,57 @@ fn polynomial(model: &Model, segments: &[PolynomialSegment]) -> Result<Cam, Mode
         })
     };
     let as_typed = cam(&typed)?;
-    match joined(&as_typed, &typed) {
-        Some(joined) => cam(&joined),
-        None => Ok(as_typed),
-    }
+    joined(&typed).map_or(Ok(as_typed), |joined| cam(&joined))
 }
 
-/// Polynomials of numbers that were typed to ten digits miss each other by the tenth where they meet, in the lift and, where the velocity
-/// does not jump, in the slope: two cams to whoever asks on either side, on which no two routes to a map agree. So what they miss is taken
-/// out, and spread over the turn. `None` where it is rounding.
+/// Derivatives that polynomials are joined in, from the lift on.
+const JOINED: usize = 4;
+
+/// Polynomials of numbers that were typed to ten digits miss each other by the tenth where they meet: two cams to whoever asks on either
+/// side, on which no two routes to a map agree, with corners that nobody meant. What they miss in the lift or a derivative, up to
+/// [`tolerance::CAM_CLOSURE`] of the terms, is taken out, and spread over the turn. `None` where it is rounding.
 ///
 /// ```text
-/// c_i + a_i + (t_i + t) u + q u^2          t_{i+1} = t_i + 2 q h_i - (c'_{i+1}(0) - c'_i(h_i))
-///                                          a_{i+1} = a_i + (t_i + t) h_i + q h_i^2 - (c_{i+1}(0) - c_i(h_i))
+/// c_i(u) + sum_n e_{n,i} u^n/n!,    e_{n,i+1} = sum_{k >= n} e_{k,i} h_i^{k-n}/(k-n)! - (c_{i+1}^(n)(0) - c_i^(n)(h_i))
 /// ```
 ///
-/// with the spans `h_i`, and q and t as the turn closes.
-fn joined(cam: &Cam, typed: &[(f64, Polynomial)]) -> Option<Vec<(f64, Polynomial)>> {
+/// over spans `h_i`, from the highest n down; the turn closes in the n-th derivative by as much more of the next one everywhere.
+fn joined(typed: &[(f64, Polynomial)]) -> Option<Vec<(f64, Polynomial)>> {
     let next = |index: usize| (index + 1) % typed.len();
-    let spans: Vec<f64> = (0..typed.len())
-        .map(|index| typed[next(index)].0 - typed[index].0 + if next(index) == 0 { TAU } else { 0.0 })
-        .collect();
+    let span = |index: usize| typed[next(index)].0 - typed[index].0 + if next(index) == 0 { TAU } else { 0.0 };
     let mut is_rounding = true;
     let mut missed = |index: usize| {
-        let ((start, law), (end, after)) = (&typed[index], &typed[next(index)]);
-        let (minus, plus) = (law.jet(start + spans[index]), after.jet(*end));
-        let (minus_terms, plus_terms) = (law.terms(start + spans[index]), after.terms(*end));
-        let jumps = cam.corners().iter().any(|corner| corner.angle == *end && corner.jump_order == 1);
-        [0, 1].map(|order| {
-            let terms = minus_terms.0[order].max(plus_terms.0[order]) + minus_terms.0[order + 1];
-            let missed = if order == 1 && jumps { 0.0 } else { plus.0[order] - minus.0[order] };
-            is_rounding &= missed.abs() <= tolerance::JET_ROUNDING.value * terms;
+        let ((start, law), (after_start, after)) = (&typed[index], &typed[next(index)]);
+        let end = start + span(index);
+        let (minus, plus) = (law.jet(end), after.jet(*after_start));
+        let terms: [f64; JOINED + 1] = std::array::from_fn(|n| law.terms(end).0[n].max(after.terms(*after_start).0[n]));
+        std::array::from_fn(|n| {
+            let missed = plus.0[n] - minus.0[n];
+            // More is a corner.
+            let missed = if missed.abs() <= tolerance::CAM_CLOSURE.value * terms[n] { missed } else { 0.0 };
+            is_rounding &= missed.abs() <= tolerance::JET_ROUNDING.value * (terms[n] + terms[n + 1]);
             missed
         })
     };
-    let missed: Vec<[f64; 2]> = (0..typed.len()).map(&mut missed).collect();
+    let missed: Vec<[f64; JOINED]> = (0..typed.len()).map(&mut missed).collect();
     if is_rounding {
         return None;
     }
-    let q = missed.iter().map(|[_, slope]| slope).sum::<f64>() / (2.0 * TAU);
-    let (mut tilts, mut own) = (Vec::new(), 0.0);
-    for ([_, slope], span) in missed.iter().zip(&spans) {
-        tilts.push(own);
-        own += 2.0 * q * span - slope;
+    let mut added = vec![[0.0; JOINED + 1]; typed.len()];
+    for n in (0..JOINED).rev() {
+        let rise = |index: usize, added: &[f64; JOINED + 1]| {
+            let (mut power, mut sum) = (1.0, 0.0);
+            for k in n + 1..=JOINED {
+                power *= span(index) / (k - n) as f64;
+                sum += added[k] * power;
+            }
+            sum
+        };
+        let open: f64 = (0..typed.len()).map(|index| missed[index][n] - rise(index, &added[index])).sum();
+        added.iter_mut().for_each(|added| added[n + 1] += open / TAU);
+        for index in 0..typed.len() - 1 {
+            added[index + 1][n] = added[index][n] + rise(index, &added[index]) - missed[index][n];
+        }
     }
-    let rise = |index: usize| spans[index] * (tilts[index] + q * spans[index]);
-    let tilt = (0..typed.len()).map(|index| missed[index][0] - rise(index)).sum::<f64>() / TAU;
-    let (mut joined, mut lift) = (Vec::new(), 0.0);
-    for (index, (start, law)) in typed.iter().enumerate() {
-        joined.push((*start, law.plus([lift, tilts[index] + tilt, q])));
-        lift += rise(index) + tilt * spans[index] - missed[index][0];
-    }
-    Some(joined)
+    Some(typed.iter().zip(&added).map(|((start, law), added)| (*start, law.plus(added))).collect())
 }

@@ -260,12 +260,15 @@ fn polynomials_that_were_typed_meet_to_the_last_digit() {
     // Two parabolas that meet with one slope at 90 and 270 degrees; and three, of which two meet with one.
     let smooth: [(f64, Vec<f64>); 2] =
         [(90.0, vec![0.1, 0.0628318531, -0.02]), (270.0, vec![0.1, -0.0628318531, 0.02])];
+    // The slopes gain something on the way round, which all of it has to take.
+    let bent: [(f64, Vec<f64>); 2] =
+        [(90.0, vec![0.1, 0.0628318531, -0.019999999995]), (270.0, vec![0.1, -0.0628318531, 0.02])];
     let sharp: [(f64, Vec<f64>); 3] = [
         (0.0, vec![0.1, 0.05, -0.0159154943]),
         (180.0, vec![0.1, 0.02, -0.005]),
         (300.0, vec![0.1199554478, -0.000943951, -0.0172957795]),
     ];
-    for (segments, orders) in [(&smooth[..], vec![2, 2]), (&sharp[..], vec![1, 1, 2])] {
+    for (segments, orders) in [(&smooth[..], vec![2, 2]), (&bent[..], vec![2, 2]), (&sharp[..], vec![1, 1, 2])] {
         let written = segments.iter().map(|(start, coefficients)| {
             format!("[[cam.segment]]\nstart_deg = {start:?}\ncoefficients = {coefficients:?}\n")
         });
@@ -308,6 +311,43 @@ fn polynomials_that_were_typed_meet_to_the_last_digit() {
                 assert_abs_diff_eq!(minus.slope, plus.slope, epsilon = 1e-16);
             }
         }
+    }
+}
+
+/// The terms of a 3-4-5 motion cancel where it ends, from 6 to 0 in its acceleration: what ten digits leave there is no corner.
+#[test]
+fn a_motion_that_was_typed_has_the_corners_of_the_motion() {
+    let (rise, span) = (0.01, 0.5 * std::f64::consts::PI);
+    let typed = |sign: f64| {
+        let coefficient = |a: f64, power: i32| format!("{:.9e}", sign * a * rise / span.powi(power));
+        [(10.0, 3), (-15.0, 4), (6.0, 5)].map(|(a, power)| coefficient(a, power)).join(", ")
+    };
+    let (up, down) = (typed(1.0), typed(-1.0));
+    let segments = [
+        (0, "0.1".to_owned()),
+        (90, format!("0.1, 0, 0, {up}")),
+        (180, "0.11".into()),
+        (270, format!("0.11, 0, 0, {down}")),
+    ];
+    let segments = segments.map(|(start, coefficients)| {
+        format!("[[cam.segment]]\nstart_deg = {start}\ncoefficients = [{coefficients}]\n")
+    });
+    let polynomial = cam_of(&format!("law = \"polynomial\"\n{}", segments.concat()));
+    let motions = [("dwell", 0.0), ("poly345", 0.01), ("dwell", 0.0), ("poly345", -0.01)];
+    let motions = motions
+        .map(|(motion, rise)| format!("[[cam.segment]]\nmotion = \"{motion}\"\nspan_deg = 90.0\nrise = {rise:?}\n"));
+    let program = cam_of(&format!("law = \"program\"\nbase = 0.1\n{}", motions.concat()));
+    let [found, expected] = [&polynomial, &program].map(|cam| {
+        let corners = cam.corners().iter();
+        corners.map(|corner| (corner.angle.to_degrees().round(), corner.jump_order)).collect::<Vec<_>>()
+    });
+    assert_eq!(found, expected);
+    for part in 0..720 {
+        let angle = f64::from(part).to_radians() / 2.0;
+        let [one, other] = [&polynomial, &program].map(|cam| cam.lift(angle));
+        // Ten digits of the lift.
+        assert_abs_diff_eq!(one.value, other.value, epsilon = 1e-10);
+        assert_abs_diff_eq!(one.curvature, other.curvature, epsilon = 1e-9);
     }
 }
 
