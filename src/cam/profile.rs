@@ -109,9 +109,9 @@ fn joined(typed: &[(f64, Polynomial)]) -> Option<Vec<(f64, Polynomial)>> {
     for n in (0..JOINED).rev() {
         let rise = |index: usize, added: &[f64; JOINED + 1]| {
             let (mut power, mut sum) = (1.0, 0.0);
-            for k in n + 1..=JOINED {
-                power *= span(index) / (k - n) as f64;
-                sum += added[k] * power;
+            for (order, derivative) in added[n + 1..].iter().enumerate() {
+                power *= span(index) / (order + 1) as f64;
+                sum += derivative * power;
             }
             sum
         };
