@@ -1,11 +1,11 @@
 //! Is every jump of the lift's derivatives found, at its order, and can a law be continued past it anywhere?
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
 use crate::common::{self, corner_impact};
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use corner_impact::cam::{Cam, Corner, Side};
+use corner_impact::cam::{Cam, Corner, Law, Polynomial, Side};
 use corner_impact::model::Model;
 use serde_json::Value;
 
@@ -317,7 +317,7 @@ fn polynomials_that_were_typed_meet_to_the_last_digit() {
 /// The terms of a 3-4-5 motion cancel where it ends, from 6 to 0 in its acceleration: what ten digits leave there is no corner.
 #[test]
 fn a_motion_that_was_typed_has_the_corners_of_the_motion() {
-    let (rise, span) = (0.01, 0.5 * std::f64::consts::PI);
+    let (rise, span) = (0.01, 0.5 * PI);
     let typed = |sign: f64| {
         let coefficient = |a: f64, power: i32| format!("{:.9e}", sign * a * rise / span.powi(power));
         [(10.0, 3), (-15.0, 4), (6.0, 5)].map(|(a, power)| coefficient(a, power)).join(", ")
@@ -351,14 +351,41 @@ fn a_motion_that_was_typed_has_the_corners_of_the_motion() {
     }
 }
 
+/// A hump and a hollow, each a parabola over half a turn, with these slopes where they begin.
+fn halves(first_deg: f64, slopes: [f64; 2]) -> (Vec<Law>, Cam) {
+    let halves = [first_deg, first_deg + 180.0]
+        .into_iter()
+        .zip(slopes)
+        .map(|(start_deg, slope)| (start_deg, [0.1, slope, -slope / PI]));
+    let written = |(start_deg, coefficients): (f64, [f64; 3])| {
+        format!("[[cam.segment]]\nstart_deg = {start_deg:?}\ncoefficients = {coefficients:?}\n")
+    };
+    let law = |(start_deg, coefficients): (f64, [f64; 3])| {
+        Law::Polynomial(Polynomial::new(start_deg.to_radians(), &coefficients))
+    };
+    let text = halves.clone().map(written).collect::<String>();
+    (halves.map(law).collect(), cam_of(&format!("law = \"polynomial\"\n{text}")))
+}
+
 /// What is typed to all digits of a double stays as it is, to the last bit.
 #[test]
 fn polynomials_that_meet_are_left_as_they_are() {
-    let cam = law_cam("polynomial.toml");
-    let model = common::read(Path::new(&law_file("polynomial.toml")));
-    let typed: Vec<f64> = ["cam.segment[0].coefficients[1]", "cam.segment[1].coefficients[1]"]
-        .map(|name| model.numbers().find(|(known, _)| *known == name).unwrap().1)
-        .into();
-    let slopes: Vec<f64> = cam.segments()[1..].iter().map(|segment| segment.law.lift(segment.start).slope).collect();
-    assert_eq!(slopes, typed);
+    // At 100 degrees half a turn has another last digit than at 0, which moves lift and slope at its end by theirs.
+    for (first_deg, cut) in [(0.0, 0), (100.0, 1)] {
+        for slope in [0.06, 0.0123, 0.001] {
+            let (typed, cam) = halves(first_deg, [slope, -slope]);
+            let laws: Vec<Law> = cam.segments()[cut..].iter().map(|segment| segment.law.clone()).collect();
+            assert_eq!(laws, typed);
+        }
+    }
+}
+
+/// Slopes that part by five parts in 1e9, which is more than ten digits leave of three times a slope.
+#[test]
+fn slopes_that_were_meant_to_part_make_a_corner() {
+    for (parts_by, order) in [(5e-9, 1), (2e-9, 2)] {
+        let (_, cam) = halves(0.0, [0.06, -0.06 * (1.0 + parts_by)]);
+        let orders: Vec<usize> = cam.corners().iter().map(|corner| corner.jump_order).collect();
+        assert_eq!(orders, [order; 2], "{parts_by:e}: {:?}", cam.corners());
+    }
 }
