@@ -493,17 +493,25 @@ fn errors_of_jumps_are_in_the_units_of_their_coefficients() {
     }
 }
 
+/// A cam of two slopes, from `first` to half a turn on and back, under a gravity, m/s^2, and with a restitution.
+fn roof([gravity, restitution]: [f64; 2], first: f64, slope: f64) -> Model {
+    let half = |start: u32, first: f64, slope: f64| {
+        format!("[[cam.segment]]\nstart_deg = {start}\ncoefficients = [{first:?}, {slope:?}]\n")
+    };
+    let text = format!(
+        "[follower]\nmass = 1\ndamping = 0\nstiffness = 0\ngravity = {gravity:?}\nrest_position = 0\n\
+         restitution = {restitution:?}\n[cam]\nlaw = \"polynomial\"\n{}{}",
+        half(0, first, slope),
+        half(180, first + slope * PI, -slope)
+    );
+    Model::parse("roof.toml", &text).unwrap()
+}
+
 /// Two slopes of 1/2 that meet at a top, and no force. The follower comes down to the rise in `t = span (v/omega - s)/(v - s omega')`, at which
 /// the corner has passed for `t - span/omega'`.
 #[test]
 fn a_flight_without_force_meets_a_slope_when_it_must() {
-    let half = |start: u32, first: f64, slope: f64| {
-        format!("[[cam.segment]]\nstart_deg = {start}\ncoefficients = [{first:?}, {slope:?}]\n")
-    };
-    let follower =
-        "[follower]\nmass = 1\ndamping = 0\nstiffness = 0\ngravity = 0\nrest_position = 0\nrestitution = 0.8\n";
-    let cam = format!("[cam]\nlaw = \"polynomial\"\n{}{}", half(0, 1.0, 0.5), half(180, 1.0 + 0.5 * PI, -0.5));
-    let model = Model::parse("roof.toml", &format!("{follower}{cam}")).unwrap();
+    let model = roof([0.0, 0.8], 1.0, 0.5);
     let cam = common::cam(&model);
     let (corner, omega, slope) = (cam.corners()[1], 2.0, 0.5);
     let velocity = omega * slope - 6.0;
@@ -593,14 +601,8 @@ fn a_sample_has_every_impact_on_its_own_segment() {
 /// flight that is 3 ms or 1 ms early comes back in time under one of the laws, 8.4 or 8.1 ms from the corner, and is no flight of both.
 #[test]
 fn a_flight_that_comes_back_under_one_law_is_none() {
-    let half = |start: u32, first: f64, slope: f64| {
-        format!("[[cam.segment]]\nstart_deg = {start}\ncoefficients = [{first:?}, {slope:?}]\n")
-    };
-    let follower =
-        "[follower]\nmass = 1\ndamping = 0\nstiffness = 0\ngravity = 190\nrest_position = 0\nrestitution = 0.2\n";
     for (slope, early) in [(-0.5, 3e-3), (0.5, 1e-3)] {
-        let cam = format!("{}{}", half(0, 3.0, slope), half(180, 3.0 + slope * PI, -slope));
-        let model = Model::parse("slopes.toml", &format!("{follower}[cam]\nlaw = \"polynomial\"\n{cam}")).unwrap();
+        let model = roof([190.0, 0.2], 3.0, slope);
         let cam = common::cam(&model);
         let (corner, omega) = (cam.corners()[1], 1.3);
         let approach = Approach::new(corner, omega, omega * slope - 6.0).unwrap();
