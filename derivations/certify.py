@@ -21,6 +21,7 @@ from balls.motion import Machine
 from balls.nearby import followed
 from balls.numbers import Refused, ball, decimal, hull
 from balls.orbits import Orbits
+from balls.profiles import missed_by
 from balls.resting import MOST_IMPACTS, Resting
 from balls.verdict import SIDES, Verdict
 
@@ -32,8 +33,8 @@ MOST_RESTING_BITS = 4096
 LAW_OF = {"minus": "before", "plus": "after"}
 
 
-def certificate(machine, candidate):
-    """Everything that is proved of one candidate; Refused says what is not."""
+def certificate(machine, candidate, apart):
+    """Everything that is proved of one candidate, of a cam that was so far apart; Refused says what is not."""
     orbit = CornerImpact(machine, candidate)
     maps, borders = {}, {}
     for side in SIDES:
@@ -64,7 +65,7 @@ def certificate(machine, candidate):
         "border": [ball(x) for x in found.border],
         "conditions": [{"name": one.name, "value": ball(one.value), "sign": one.sign} for one in found.conditions],
         "verdict": found.scenario,
-        "assumed": assumed(machine.cam),
+        "assumed": apart,
         "proved": True,
     }
 
@@ -85,11 +86,10 @@ def side_document(found, side, beside):
     }
 
 
-def assumed(cam):
-    """By how much the pieces of a cam of decimals miss each other where they are taken to meet: lift, slope; none where they meet."""
-    if not any(corner.assumed for corner in cam.corners):
-        return None
-    return {"lift_m": float(cam.slack[0].abs_upper()), "slope_m_rad": float(cam.slack[1].abs_upper())}
+def assumed(table):
+    """By how much the pieces of a cam miss each other as they are typed, which is taken out: lift, slope; none where they meet."""
+    lift, slope = missed_by(table)
+    return {"lift_m": float(lift), "slope_m_rad": float(slope)} if lift > 0 or slope > 0 else None
 
 
 def answer(document, candidates):
@@ -99,9 +99,10 @@ def answer(document, candidates):
         raise Refused(f"bits: {FEWEST_BITS} to {MOST_BITS}, not {bits}")
     ctx.prec = bits
     machine, results = Machine(document), []
+    apart = assumed(document["cam"])
     for candidate in candidates:
         try:
-            results.append({"certificate": certificate(machine, candidate)})
+            results.append({"certificate": certificate(machine, candidate, apart)})
         except (Refused, ZeroDivisionError) as error:
             results.append({"refused": str(error)})
     return {"results": results, **orbits(machine, document), **counts(machine, document), **resting(document)}

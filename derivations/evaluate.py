@@ -133,7 +133,7 @@ def polynomial(cam):
     """Polynomials: [(angle where each starts, law)]."""
     each = [(number(part, "cam.segment", "start_deg") * mp.pi / 180, [exact(power) for power in part["coefficients"]])
             for part in cam.get("segment", [])]
-    return motions.polynomials(each)
+    return motions.polynomials(motions.joined(each))
 
 
 def harmonic(cam):

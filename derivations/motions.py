@@ -4,6 +4,8 @@ What a motion is called after is the shape of its acceleration over a unit of ti
 whatever makes the rise 1. So nothing but the shapes is written down here.
 """
 
+from itertools import zip_longest
+
 from mpmath import mp, mpf
 
 
@@ -113,6 +115,43 @@ def polynomials(segments):
         start, last = laws[-1]
         laws.insert(0, (mpf(0), Piece(start - 2 * mp.pi, last.powers)))
     return laws
+
+
+# Up to which part of its terms what two polynomials miss each other by is what typing leaves (docs/model-file.md).
+TYPED = mpf(10) ** -9
+
+
+def joined(segments):
+    """Polynomials, (start, powers) each, without what typing their numbers left between them, in the lift and three derivatives.
+
+    The periodic Bernoulli function B_{n+1}((angle - joint)/turn) turn^n/(n+1)! jumps in its n-th derivative alone, at the joint
+    alone, by -1; its next derivative is 1/turn all round. So the sum of these, each times the jump that is to go, is what is added;
+    and as much to all of it as leaves the first lift where it is.
+    """
+    turn = 2 * mp.pi
+
+    def derivatives(powers, x):
+        """From the lift to the fourth, each with the sum of its terms' sizes."""
+        for n in range(5):
+            terms = [mp.ff(k, n) * power * x ** (k - n) for k, power in enumerate(powers) if k >= n]
+            yield mp.fsum(terms), mp.fsum(terms, absolute=True)
+
+    joints = []
+    for (start, powers), (after, others) in zip(segments, segments[1:] + [(segments[0][0] + turn, segments[0][1])]):
+        sides = zip(derivatives(powers, after - start), derivatives(others, mpf(0)))
+        jumps = [(right - left, max(size, other)) for (left, size), (right, other) in sides][:4]
+        joints.append((after, [jump if abs(jump) <= TYPED * size else mpf(0) for jump, size in jumps]))
+    first = segments[0][0]
+    added = [mp.fsum(jump * turn ** (n - k) / mp.factorial(n + 1 - k) * mp.bernpoly(n + 1 - k, (first - joint) / turn % 1)
+                     for joint, jumps in [(first, joints[-1][1]), *joints[:-1]] for n, jump in enumerate(jumps) if n + 1 >= k)
+             for k in range(5)]
+    added[0] = mpf(0)
+    found = []
+    for (start, powers), (after, jumps) in zip(segments, joints):
+        taylor = [derivative / mp.factorial(k) for k, derivative in enumerate(added)]
+        found.append((start, [mp.fsum(both) for both in zip_longest(powers, taylor, fillvalue=mpf(0))]))
+        added = [value - jump for (value, _), jump in zip(derivatives(taylor, after - start), [*jumps, mpf(0)])]
+    return found
 
 
 class Sum:

@@ -22,7 +22,6 @@ from dataclasses import dataclass
 
 from flint import arb, ctx
 
-from .cam import Slackened
 from .duals import Dual, lift, response
 from .motion import Flight, Start
 from .numbers import Excluded, Refused, Undecided, between, hull, overlap, within
@@ -129,7 +128,7 @@ class Branches:
         ends = [End(corner.angle, "corner-impact" if corner.bends() else None) for corner in jumps]
         ends.append(End(ends[0].angle + self.turn, ends[0].event))
         for low, high, law in zip(ends, ends[1:], cam.laws):
-            yield low, high, Slackened(law, cam.slack)
+            yield low, high, law
 
     def _arcs(self, low, high, law):
         """The arcs of a section, cut where W is 0."""

@@ -9,8 +9,6 @@ from flint import arb
 from .numbers import Refused, Undecided, between, hull, overlap
 from .profiles import pieces_of
 
-# Pieces of decimals whose lifts or slopes differ by no more than this part of their size are meant to meet.
-NEARLY = 1e-9
 # Starts of pieces are looked up in doubles: what lies nearer than this to a start is compared in balls.
 NEAR = 1e-9
 
@@ -19,15 +17,13 @@ NEAR = 1e-9
 class Corner:
     """Where one piece ends and another begins.
 
-    `smooth` counts the derivatives, the lift being the first, that agree: because of how the law is made, or, where `assumed`,
-    because the decimals of the pieces nearly do.
+    `smooth` counts the derivatives, the lift being the first, that agree because of how the law is made.
     """
 
     angle: arb
     before: object
     after: object
     smooth: int
-    assumed: bool
 
     def sides(self):
         """(c, c', c'') of the law before and of the law after."""
@@ -38,44 +34,26 @@ class Corner:
         return tuple(after - before for before, after in zip(*self.sides()))
 
     def bends(self):
-        """Whether c'' is proved to jump, and by more than the decimals of the pieces are off."""
-        size = sum(abs(side[2]) for side in self.sides())
-        return bool(abs(self.jumps()[2]) > (NEARLY * size if self.assumed else 0))
+        """Whether c'' is proved to jump."""
+        return bool(abs(self.jumps()[2]) > 0)
 
 
 class Cam:
-    """The [cam] table, 2 pi periodic; angles may be any number, of as many revolutions as it takes.
-
-    Where pieces of decimals meet nearly, what is proved is of any cam that goes over from one to the other there, within
-    `slack` of the pieces: (of the lift, of the slope), 0 for a cam whose pieces meet.
-    """
+    """The [cam] table, 2 pi periodic; angles may be any number, of as many revolutions as it takes."""
 
     def __init__(self, table):
         self.turn = 2 * arb.pi()
-        self.starts, self.laws, smooth = zip(*pieces_of(table))
-        self.rounded = [float(start) for start in self.starts]
-        self.slack = arb(0), arb(0)
-        corners = (self._corner(index, agree) for index, agree in enumerate(smooth) if agree is not None)
-        self.corners = [self._joined(corner) if corner.smooth == 0 else corner for corner in corners]
         # For every piece, how many derivatives agree where it begins.
-        agree = iter(corner.smooth for corner in self.corners)
-        self.smooth = [None if count is None else next(agree) for count in smooth]
+        self.starts, self.laws, self.smooth = zip(*pieces_of(table))
+        self.rounded = [float(start) for start in self.starts]
+        self.corners = [self._corner(index, agree) for index, agree in enumerate(self.smooth) if agree is not None]
 
     def _corner(self, index, smooth):
         # The law of the last piece goes on to a revolution on, where the first one's corner is.
         before = Turned(self.laws[-1], -self.turn) if index == 0 else self.laws[index - 1]
-        return Corner(self.starts[index], before, self.laws[index], smooth, smooth == 0)
-
-    def _joined(self, corner):
-        """A corner of decimals, with what it is taken to be; its rounding counts as slack."""
-        before, after = corner.sides()
-        jumps = [abs(jump) for jump in corner.jumps()]
-        small = [bool(jumps[order] < NEARLY * (abs(before[order]) + abs(after[order]) + abs(before[0]))) for order in (0, 1)]
-        if not small[0]:
-            raise Refused(f"cam: the lift jumps at {corner.angle.str(8)} rad")
-        within = [arb(0, jump.upper()) if meant else arb(0) for jump, meant in zip(jumps, small)]
-        self.slack = tuple(old.union(new) for old, new in zip(self.slack, within))
-        return Corner(corner.angle, corner.before, corner.after, 1 + small[1], True)
+        if smooth == 0:
+            raise Refused(f"cam: the lift jumps at {self.starts[index].str(8)} rad")
+        return Corner(self.starts[index], before, self.laws[index], smooth)
 
     def _piece(self, index):
         """Start, end and law of piece `index`, counted on through the revolutions, and the angle of its revolution."""
@@ -123,8 +101,7 @@ class Cam:
         continuous over it for certain, so that Taylor's formula holds with the hull of c''."""
         parts, smooth = self.parts(angle)
         each = [law.derivatives(part) for law, part in parts]
-        lift, slope, curvature, third = each[0] if len(each) == 1 else tuple(hull(order) for order in zip(*each))
-        return (lift + self.slack[0], slope + self.slack[1], curvature, third), smooth
+        return each[0] if len(each) == 1 else tuple(hull(order) for order in zip(*each)), smooth
 
     def derivatives(self, angle):
         """(c, c', c'', c''') over the ball."""
@@ -157,16 +134,3 @@ class Turned:
     def derivatives(self, angle):
         """(c, c', c'', c''') over the ball."""
         return self.law.derivatives(angle - self.shift)
-
-
-@dataclass(frozen=True)
-class Slackened:
-    """A law with what the pieces of a cam of decimals are off by."""
-
-    law: object
-    slack: tuple
-
-    def derivatives(self, angle):
-        """(c, c', c'', c''') over the ball."""
-        lift, slope, curvature, third = self.law.derivatives(angle)
-        return lift + self.slack[0], slope + self.slack[1], curvature, third

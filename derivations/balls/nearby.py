@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 from flint import arb, arb_mat
 
-from .cam import Slackened
 from .duals import Dual, lift, response
 from .krawczyk import inverse
 from .motion import Flight, Start
@@ -46,10 +45,7 @@ def followed(orbit, side):
 
 def _within(orbit, side, reach):
     machine, count = orbit.machine, 2 * len(orbit.impacts)
-    law = getattr(orbit.corner, side)
-    # Where decimals meet nearly the law before the corner is taken up by a line, so that it meets the one after it.
-    first = Slackened(law, machine.cam.slack) if orbit.corner.assumed and side == "before" else law
-    laws = [first] + [impact.law for impact in orbit.impacts[1:]]
+    laws = [getattr(orbit.corner, side)] + [impact.law for impact in orbit.impacts[1:]]
     # w in the order of the equations of the corner impact: T and v, then angle and velocity of each other impact.
     at = [orbit.period, orbit.impacts[0].velocity] + [x for impact in orbit.impacts[1:] for x in (impact.angle, impact.velocity)]
     angles = orbit.corner.angle + arb(0, reach)
@@ -105,7 +101,7 @@ def _prove_flights(orbit, laws, angle, w):
 
 
 def _piece(law):
-    """The law of a piece of the cam, whatever revolution it is turned to or line it is taken up by."""
+    """The law of a piece of the cam, whatever revolution it is turned to."""
     while hasattr(law, "law"):
         law = law.law
     return law

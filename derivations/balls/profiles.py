@@ -1,13 +1,13 @@
 """The [cam] table of a model as pieces: [(angle where it starts, law, how many derivatives agree there)].
 
 The decimals of the table are exact. The lift counts as a derivative, so that 2 says that lift and slope agree; it is said only
-of what follows from how the law is made. 0: the decimals of two pieces meet nearly at most. None: nothing meets there.
+of what follows from how the law is made. None: nothing meets there.
 """
 
-from flint import arb, arb_mat, fmpq
+from flint import arb, arb_mat, arb_poly, fmpq
 
 from .laws import Circle, Waves
-from .numbers import Refused, decimal
+from .numbers import Refused, Undecided, decimal
 
 # Larger systems than a measured cam has; their solution in balls takes minutes.
 MOST_ROWS = 1000
@@ -74,15 +74,64 @@ def rectified_sine(table):
     return [(start, Waves(start, [offset], hump), 1) for start in (arb(0), arb.pi())]
 
 
+# Up to which part of its terms what two polynomials miss each other by is what typing leaves, and in how many derivatives that goes.
+TYPED, JOINED = fmpq(1, 10**9), 4
+
+
 def polynomial(table):
-    """c = sum a_k (theta - start)^k: what agrees where two of them meet is for their decimals to tell."""
-    pieces = []
-    for segment in table.get("segment", ()):
-        start = _radians(_number(segment, "start_deg", "cam.segment"))
-        pieces.append((start, Waves(start, [decimal(a) for a in segment.get("coefficients", ())]), 0))
-    if not pieces:
+    """c = sum a_k (theta - start)^k, with what typing left between two of them taken out: they agree up to a corner."""
+    starts, laws, spans, missed, smooth = _typed(table)
+
+    def along(first):
+        """What is added to each piece, from what is added to the first one, and at last to that one a revolution on."""
+        yield first
+        for span, jumps in zip(spans, missed):
+            first = first(arb_poly([span, 1])) - jumps
+            yield first
+
+    # What is added to the first piece leaves its lift, and is of degree 4: each power adds to those below it a revolution on,
+    # where no term below the fourth may differ.
+    *_, open_by = along(arb_poly([]))
+    rises = [arb_poly([2 * arb.pi(), 1]) ** k for k in range(1, JOINED + 1)]
+    powers = arb_mat([[rise[n] if n < k else 0 for k, rise in enumerate(rises, 1)] for n in range(JOINED)])
+    first = powers.solve(arb_mat([[-open_by[n]] for n in range(JOINED)]))
+    joined = [law + added for law, added in zip(laws, along(arb_poly([0, *first.entries()])))]
+    # Whether c'' jumps is for its balls to tell, as of a motion.
+    agree = [min(count, 2) for count in (smooth[-1], *smooth[:-1])]
+    return [(start, Waves(start, law.coeffs()), count) for start, law, count in zip(starts, joined, agree)]
+
+
+def missed_by(table):
+    """By how much pieces of a cam, as they are typed, miss each other at most where they meet, lift and slope; none but polynomials."""
+    if table.get("law") != "polynomial":
+        return arb(0), arb(0)
+    *_, missed, _ = _typed(table)
+    return tuple(max((abs(jumps[n]).upper() for jumps in missed), key=float) for n in (0, 1))
+
+
+def _typed(table):
+    """Of the polynomials as they are typed: starts, laws, spans, and what each misses the next one by, as `_missed` has it."""
+    starts = [_radians(_number(segment, "start_deg", "cam.segment")) for segment in table.get("segment", ())]
+    laws = [arb_poly([decimal(a) for a in segment.get("coefficients", ())]) for segment in table.get("segment", ())]
+    if not laws:
         raise Refused("no cam.segment")
-    return pieces
+    spans = [end - start for start, end in zip(starts, starts[1:] + [starts[0] + 2 * arb.pi()])]
+    met = (_missed(law, span, after) for law, span, after in zip(laws, spans, laws[1:] + laws[:1]))
+    return starts, laws, spans, *zip(*met)
+
+
+def _missed(law, span, after):
+    """What a law misses the next one by that is to be taken out, about where that starts, and how many derivatives then agree there."""
+    before, sizes = (of(arb_poly([span, 1])) for of in (law, arb_poly([abs(a) for a in law])))
+    jumps, smooth = [], JOINED
+    for n in range(JOINED):
+        jump, size = after[n] - before[n], sizes[n].max(abs(after[n]))
+        is_corner = abs(jump) > TYPED * size
+        if not is_corner and not abs(jump) <= TYPED * size:
+            raise Undecided("whether two polynomials of the cam meet is not decided")
+        jumps.append(arb(0) if is_corner else jump)
+        smooth = min(smooth, n) if is_corner else smooth
+    return arb_poly(jumps), smooth
 
 
 def spline(table):

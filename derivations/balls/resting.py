@@ -60,8 +60,6 @@ class Resting:
     def __init__(self, machine, speed):
         self.machine, self.speed, self.turn = machine, speed, machine.cam.turn
         cam = machine.cam
-        if any(corner.assumed for corner in cam.corners):
-            raise Refused("the pieces of the cam meet only nearly")
         if any(corner.smooth < 2 for corner in cam.corners):
             raise Refused("the velocity of the cam jumps")
         if not machine.follower.restitution < 1:

@@ -262,9 +262,8 @@ fn hypotheses(of: &Certificate) -> String {
             .to_owned();
     if let Some(assumed) = of.assumed {
         sentence += &format!(
-            " The pieces of the cam miss each other by up to {} m and {} m/rad where they meet: the theorem is about a cam that goes \
-             over from one to the other there, and whose lift and slope at the corner are those of the piece after it; how far fixed \
-             points are followed, about one that is the piece before the corner taken up by a line, so that the two meet.",
+            " The pieces of the cam miss each other by up to {} m and {} m/rad where they meet, as they are typed: the theorem is \
+             about the cam that is left when that is taken out.",
             Digits::Size.text(assumed.lift_m),
             Digits::Size.text(assumed.slope_m_rad),
         );
