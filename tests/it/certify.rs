@@ -322,7 +322,7 @@ fn a_root_off_the_piece_that_its_equations_are_of_is_refused() {
 
 #[test]
 #[ignore = "slow"]
-fn a_cam_whose_decimals_meet_nearly_is_certified_with_that_hypothesis() {
+fn a_cam_that_is_typed_is_certified_as_it_is_joined_and_says_so() {
     let found = certified(&["models/laws/polynomial.toml", "--rpm", "443:444"]);
     let assumed = &found["corner_impacts"][0]["assumed"];
     let off = |name: &str| assumed[name].as_f64().unwrap();

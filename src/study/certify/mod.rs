@@ -172,7 +172,7 @@ pub struct ProvedCondition {
     pub sign: i8,
 }
 
-/// By how much at most pieces of a cam of decimals miss each other where they are taken to meet.
+/// By how much at most polynomials of a cam miss each other where they meet, as they are typed; it is taken out.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 #[expect(missing_docs, reason = "the names say what each is")]
 pub struct Assumed {
