@@ -77,6 +77,33 @@ fn an_orbit_on_both_corners_is_refused_with_the_reason() {
     assert!(all.rejected.iter().all(|it| (it.speed_rpm / rpm - 1.0).abs() < 1e-12), "{:?}", all.rejected);
 }
 
+/// Where a cam begins to rise, and where it has come down, it is level and stands still. A ball that loses nothing comes back there after any
+/// time, and what no force acts on stays: neither fixes a speed, in one turn or in two.
+#[test]
+fn where_the_cam_is_level_nothing_fixes_a_speed() {
+    let cam = "[cam]\nlaw = \"program\"\nbase = 0.1\n\
+               [[cam.segment]]\nmotion = \"dwell\"\nspan_deg = 120\n\
+               [[cam.segment]]\nmotion = \"parabolic\"\nspan_deg = 120\nrise = 0.01\n\
+               [[cam.segment]]\nmotion = \"parabolic\"\nspan_deg = 120\nrise = -0.01\n";
+    let bouncing = follower().replace("restitution = 0.5", "restitution = 1.0");
+    let floating = follower()
+        .replace("gravity = 9.81", "gravity = 0.0")
+        .replace("stiffness = 0.0", "stiffness = 1000.0")
+        .replace("rest_position = 0.0", "rest_position = 0.1");
+    for (follower, why) in [(bouncing, "flights of every period start and end there"), (floating, "a graze, v = c'")] {
+        let model = Model::parse("level.toml", &(follower + cam)).unwrap();
+        for turns in 1..=2 {
+            let range = Study { rpm_min: 5000.0, rpm_max: 5001.0 };
+            let all = find_corner_impacts(&model, &common::cam(&model), range, turns, &Unwatched).unwrap();
+            for angle in [0.0, 120.0] {
+                let told = all.rejected.iter().filter(|it| it.cam_angle.to_degrees().round() == angle);
+                let told: Vec<_> = told.map(|it| (it.speed_rpm, it.why.as_str())).collect();
+                assert!(told.iter().any(|(rpm, told)| (rpm - 5000.0).abs() < 1e-9 && told.contains(why)), "{told:?}");
+            }
+        }
+    }
+}
+
 /// Half a turn later the table is what it was: a corner impact of two impacts is at both corners, by the same ways of looking.
 #[test]
 fn both_corners_have_the_same_corner_impacts() {

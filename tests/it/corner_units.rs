@@ -125,6 +125,40 @@ fn the_map_at_a_smoother_corner_is_the_same_in_any_unit_of_length() {
     are_the_same("laws/program", [2257.0, 2258.0], 1, LENGTH);
 }
 
+/// The equation of one impact is searched whatever the speeds are. One that loses nothing has a root in the middle of the follower's own
+/// period, where no velocity brings it back in that time.
+#[test]
+fn one_impact_is_found_and_a_resonance_is_told_in_any_units() {
+    for [length, time] in [[0, 0], [LENGTH, TIME], [-LENGTH, -TIME]] {
+        let model = in_units("laws/polynomial", [length, 0, time]);
+        let rpm = |of: f64| of * 2.0_f64.powi(-time);
+        let all = found(&model, [rpm(620.9), rpm(621.0)], 1);
+        let [at] = all.as_slice() else { panic!("{time}: {all:?}") };
+        assert!((at.speed_rpm() / rpm(620.938131) - 1.0).abs() < 1e-8 && at.is_simple(), "{time}: {at:?}");
+
+        let lossless = model.with_number("follower.restitution", 1.0).unwrap();
+        let range = Study { rpm_min: rpm(603.0), rpm_max: rpm(605.0) };
+        let all = find_corner_impacts(&lossless, &common::cam(&lossless), range, 1, &Unwatched).unwrap();
+        let resonance = rpm(60.0 * 1000.0_f64.sqrt() / std::f64::consts::PI);
+        let told = |angle: f64| {
+            all.rejected.iter().any(|it| {
+                let is_there =
+                    it.cam_angle.to_degrees().round() == angle && (it.speed_rpm / resonance - 1.0).abs() < 1e-9;
+                is_there && it.why.contains("in resonance")
+            })
+        };
+        assert!(told(90.0) && told(270.0), "{time}: {:?}", all.rejected);
+    }
+}
+
+/// Of one impact in two revolutions nothing is the paper's.
+#[test]
+fn only_one_impact_in_one_revolution_is_simple() {
+    let all = found(&in_units("laws/polynomial", [0; 3]), [1224.8, 1225.0], 2);
+    let one: Vec<_> = all.iter().filter(|at| at.cycle.impacts.len() == 1).collect();
+    assert!(!one.is_empty() && one.iter().all(|at| !at.is_simple()), "{all:?}");
+}
+
 /// What is measured at a corner by flights alone: exponents, and coefficients with their errors.
 #[test]
 fn laws_at_a_corner_are_the_same_in_any_units() {
