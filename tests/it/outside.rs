@@ -96,16 +96,16 @@ fn measured(more: &Value) -> Model {
     Model::of_document("measured", &json!({ "follower": paper.follower, "cam": cam, "study": study })).unwrap()
 }
 
-/// Two parabolas whose slopes were typed to ten digits, of which the second pair gains something on the way round.
+/// Two parabolas whose slopes were typed to ten digits, and two more, whose slopes gain something on the way round besides.
 fn typed() -> [Model; 2] {
-    let sharp = std::fs::read_to_string(Path::new(common::ROOT).join("models/laws/polynomial.toml")).unwrap();
-    let typed = sharp.replace("0.06283185307179587", "0.0628318531") + "\n[study]\nrpm_min = 250\nrpm_max = 1500\n";
+    let whole = std::fs::read_to_string(Path::new(common::ROOT).join("models/laws/polynomial.toml")).unwrap();
+    let typed = whole.replace("0.06283185307179587", "0.0628318531") + "\n[study]\nrpm_min = 250\nrpm_max = 1500\n";
     let bent = typed.replacen("-0.02]", "-0.019999999995]", 1);
     assert!(bent != typed);
     [typed, bent].map(|text| Model::parse("typed.toml", &text).unwrap())
 }
 
-/// A cam of motions, one of which jumps, two of polynomials, one as typed, and a measured one, of which no ball knows the spline.
+/// A cam of motions, one of which jumps, three of polynomials, two of them typed, and a measured one, of which no ball knows the spline.
 #[test]
 #[ignore = "slow"]
 fn every_route_runs_on_every_cam_with_corners() {
