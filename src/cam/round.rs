@@ -19,8 +19,8 @@ impl Cam {
         }
         let turns = (angles.low() / TAU).floor();
         let mut before = Interval::TURN * turns;
-        // The turn's own rounding may put the least angle at the end of the turn before.
-        if (angles - before).low() < 0.0 {
+        // The turn's own rounding may put the least angle at the end of the turn before, and where one begins the other ends.
+        if (angles - before).low() <= 0.0 {
             before = Interval::TURN * (turns - 1.0);
         }
         let mut segment = self.segment_at((angles - before).low());

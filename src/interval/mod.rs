@@ -1,8 +1,8 @@
 //! Intervals of doubles that certainly hold what a formula gives for every number of the intervals it is fed with.
 //!
-//! Each operation is rounded to nearest and its ends moved outwards by one ulp, which is more than rounding took. Sine and cosine
-//! are alternating series, summed in doubles and widened by what rounding and the terms left out can make of them. What has no
-//! bound, or is no number, is everything: no comparison then holds, so nothing is concluded from it.
+//! Each operation is rounded to nearest and its ends, but for an exact 0, moved outwards by one ulp, which is more than rounding took.
+//! Sine and cosine are alternating series, summed in doubles and widened by what rounding and the terms left out can make of them.
+//! What has no bound, or is no number, is everything: no comparison then holds, so nothing is concluded from it.
 
 pub mod centred;
 pub mod roots;
@@ -92,10 +92,28 @@ impl Interval {
         if low <= high { Self { low, high } } else { Self::EVERYTHING }
     }
 
-    /// The ends moved out by an ulp each.
+    /// The ends moved out by an ulp each, but those that are 0: a sum or a root is 0 only where it is so exactly. What is an ulp from 0 no
+    /// processor multiplies at full speed.
+    ///
+    /// `x + u (1 + 2 u) |x|`, u half an ulp of 1, is rounded to the next double after x (Rump, Zimmermann, Boldo, Melquiond 2009), but
+    /// where x is so small that its ulp has no half.
     #[inline]
     fn rounded(low: f64, high: f64) -> Self {
-        Self::new(low.next_down(), high.next_up())
+        const OUT: f64 = 0.5 * tolerance::ULP.value * (1.0 + tolerance::ULP.value);
+        const SMALL: f64 = f64::MIN_POSITIVE / (tolerance::ULP.value * tolerance::ULP.value);
+        let is_large = |x: f64| x == 0.0 || x.abs() > SMALL;
+        if is_large(low) && is_large(high) {
+            Self::new(low - OUT * low.abs(), high + OUT * high.abs())
+        } else {
+            Self::new(low.next_down(), high.next_up())
+        }
+    }
+
+    /// A product or a quotient with an end that is 0: of what is not 0, but too small for a double, it goes past it.
+    #[inline]
+    fn unless_lost(self, is_lost: impl FnOnce() -> bool) -> Self {
+        let at_zero = self.low == 0.0 || self.high == 0.0;
+        if at_zero && is_lost() { self.hull(Self::left_out(0.0_f64.next_up())) } else { self }
     }
 
     /// The lower end.
@@ -183,9 +201,8 @@ impl Interval {
     /// Each number times itself.
     #[inline]
     pub fn squared(self) -> Self {
-        let (one, two) = (self.low * self.low, self.high * self.high);
-        let low = if self.holds_zero() { 0.0 } else { one.min(two).next_down() };
-        Self::new(low, one.max(two).next_up())
+        let product = self * self;
+        Self { low: product.low.max(0.0), ..product }
     }
 
     /// Sine and cosine of one double.
@@ -306,11 +323,17 @@ impl Mul for Interval {
     fn mul(self, other: Self) -> Self {
         let products = [self.low * other.low, self.low * other.high, self.high * other.low, self.high * other.high];
         // 0 times infinity is no number, and would be lost among the others.
-        if products.iter().any(|product| product.is_nan()) {
+        let [a, b, c, d] = products;
+        if (a + b + (c + d)).is_nan() {
             return Self::EVERYTHING;
         }
-        let [a, b, c, d] = products;
-        Self::rounded(a.min(b).min(c.min(d)), a.max(b).max(c.max(d)))
+        let min = |x: f64, y: f64| if x < y { x } else { y };
+        let max = |x: f64, y: f64| if x > y { x } else { y };
+        let product = Self::rounded(min(min(a, b), min(c, d)), max(max(a, b), max(c, d)));
+        product.unless_lost(|| {
+            let is_lost = |x: f64, y: f64| x * y == 0.0 && x != 0.0 && y != 0.0;
+            [self.low, self.high].iter().any(|x| is_lost(*x, other.low) || is_lost(*x, other.high))
+        })
     }
 }
 
@@ -352,7 +375,8 @@ impl Mul<f64> for Interval {
     #[inline]
     fn mul(self, number: f64) -> Self {
         let (one, two) = (self.low * number, self.high * number);
-        if number < 0.0 { Self::rounded(two, one) } else { Self::rounded(one, two) }
+        let product = if number < 0.0 { Self::rounded(two, one) } else { Self::rounded(one, two) };
+        product.unless_lost(|| number != 0.0 && (one == 0.0 && self.low != 0.0 || two == 0.0 && self.high != 0.0))
     }
 }
 
@@ -362,10 +386,11 @@ impl Div<f64> for Interval {
     /// Everything where the divisor is 0.
     #[inline]
     fn div(self, number: f64) -> Self {
-        match (self.low / number, self.high / number) {
-            _ if number == 0.0 => Self::EVERYTHING,
-            (one, two) if number < 0.0 => Self::rounded(two, one),
-            (one, two) => Self::rounded(one, two),
+        if number == 0.0 {
+            return Self::EVERYTHING;
         }
+        let (one, two) = (self.low / number, self.high / number);
+        let quotient = if number < 0.0 { Self::rounded(two, one) } else { Self::rounded(one, two) };
+        quotient.unless_lost(|| one == 0.0 && self.low != 0.0 || two == 0.0 && self.high != 0.0)
     }
 }

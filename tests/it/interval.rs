@@ -207,6 +207,28 @@ fn what_is_no_number_says_nothing() {
     assert!(!all.is_positive() && !all.is_negative() && all.holds_zero());
 }
 
+/// What is exactly 0 stays so: next to it there are only numbers that cost a processor a hundred times as much. What is too small for a
+/// double is not 0.
+#[test]
+fn zero_is_kept_where_it_is_exact() {
+    let [zero, one, tiny] = [0.0, 1.0, 1e-200].map(Interval::from);
+    for exact in [zero * one, one * zero, zero / one, one - one, zero + zero, zero.sqrt(), zero.squared(), zero * tiny]
+    {
+        assert_eq!(exact, zero);
+    }
+    for lost in [tiny * tiny, tiny * -tiny, -tiny * tiny, tiny * Interval::new(-1e-200, 0.0), tiny.squared()] {
+        assert!(lost != zero && lost.holds_zero() && lost.width() < 1e-300, "{lost:?}");
+    }
+    assert!((tiny * Interval::new(0.0, 1.0)).high() > 1e-200);
+    // Where an ulp has no half, it is moved by whole ones.
+    let least = Interval::from(f64::MIN_POSITIVE);
+    for small in
+        [least + least, least * Interval::from(0.7), least - Interval::from(3e-308), (-least) * Interval::from(0.7)]
+    {
+        assert!(small.low() < small.middle() && small.middle() < small.high(), "{small:?}");
+    }
+}
+
 /// What a formula leaves out counts in intervals, and not in doubles.
 #[test]
 fn what_is_left_out_is_on_both_sides() {
