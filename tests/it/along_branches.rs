@@ -9,6 +9,7 @@ use corner_impact::progress::Unwatched;
 use corner_impact::simulate::angular_velocity;
 use corner_impact::study::continuation::branches;
 
+use crate::bounds::ball;
 use crate::orbit_numbers::{model, orbits};
 
 fn following(model: &Model, parameter: &str, range: [f64; 2], longest_step: f64) -> Following {
@@ -401,4 +402,101 @@ fn a_branch_ends_where_a_segment_of_the_cam_would_have_no_width() {
         }
         assert!(seen > 0, "{highest}");
     }
+}
+
+/// The branches, over these speeds, of the orbits of two revolutions of a ball on a table that goes up and down as a cosine.
+fn of_a_ball(rpm: f64, speeds: [f64; 2], impacts: usize, longest_step: f64, most_points: usize) -> Vec<Branch> {
+    let model = ball(0.8, 0.0);
+    let number = Following { most_points, ..following(&model, "rpm", speeds, longest_step) };
+    let orbits = orbits(&model, rpm, 2).into_iter().filter(|orbit| orbit.impacts().count() == impacts);
+    orbits.map(|orbit| Branch::through(&model, rpm, &orbit, &number).unwrap()).collect()
+}
+
+/// Up in one step over touches of two flights, of which the one that is later in the motion is the sooner along the branch.
+#[test]
+fn of_two_touches_in_a_step_none_is_passed() {
+    let grazes = |longest_step: f64| {
+        let found = of_a_ball(300.0, [180.0, 480.0], 3, longest_step, 200);
+        let is_graze = |point: &&BranchPoint| point.special.is_some_and(|special| special.kind.name() == "graze");
+        let all = found.iter().map(|branch| branch.points.iter().filter(is_graze).map(|point| point.value).collect());
+        all.collect::<Vec<Vec<f64>>>()
+    };
+    for longest_step in [0.01, 0.02, 0.05, 0.1] {
+        let found = grazes(longest_step);
+        assert!(found.len() == 2, "{longest_step} {found:?}");
+        for mut grazes in found {
+            grazes.retain(|rpm| *rpm > 425.0);
+            grazes.sort_by(f64::total_cmp);
+            let told = grazes.len() == 2
+                && grazes.iter().zip([433.681_602_544, 470.189_697_368]).all(|(one, other)| (one - other).abs() < 1e-8);
+            assert!(told, "{longest_step} {grazes:?}");
+        }
+    }
+}
+
+/// From its flip up, over a touch of one flight that is 2 rpm before that of another, and back to a fold with a flip beside it.
+#[test]
+fn a_branch_passes_the_same_points_however_long_its_steps_are() {
+    let at = |longest_step: f64| {
+        let found = of_a_ball(300.0, [180.0, 480.0], 4, longest_step, 200);
+        let [branch] = &found[..] else { panic!("{longest_step} {}", found.len()) };
+        let specials = branch.points.iter().filter_map(|point| Some((point.special?.kind.name(), point.value)));
+        let (names, values): (Vec<_>, Vec<_>) = specials.take(5).unzip();
+        assert_eq!((&branch.ends[0], &names[..]), (&End::Shorter, &["flip", "flip", "graze", "fold", "flip"][..]));
+        values
+    };
+    let finest = at(0.02);
+    for longest_step in [0.05, 0.1, 0.3] {
+        let values = at(longest_step);
+        assert!(values.iter().zip(&finest).all(|(one, other)| (one - other).abs() < 1e-7), "{values:?} {finest:?}");
+    }
+}
+
+/// A follower is said to chatter from two dozen impacts a revolution on, of as many revolutions as there are.
+#[test]
+fn an_orbit_of_two_revolutions_has_room_for_the_impacts_of_both() {
+    let found = of_a_ball(400.0, [240.0, 640.0], 20, 0.02, 150);
+    let most = |branch: &Branch| branch.points.iter().map(|point| point.orbit.impacts().count()).max();
+    assert!(found.iter().any(|branch| most(branch) > Some(26)), "{:?}", found.iter().map(most).collect::<Vec<_>>());
+    assert!(found.iter().all(|branch| !branch.ends.contains(&End::Chatter)));
+}
+
+/// A cam that does not move carries its follower all the way round, and lets go of it all at once where it is weightless.
+#[test]
+fn a_cam_that_does_not_move_lets_go_all_at_once() {
+    let model = ball(0.5, 0.0).with_number("cam.amplitudes[0]", 0.0).unwrap();
+    let orbits = orbits(&model, 300.0, 1);
+    let rests = orbits.iter().find(|orbit| matches!(orbit.course, Course::Sticking(_))).unwrap();
+    let branch = Branch::through(&model, 300.0, rests, &following(&model, "gravity", [-3.0, 20.0], 0.05)).unwrap();
+    let (first, special) = (&branch.points[0], branch.points[0].special.unwrap());
+    assert_eq!((&branch.ends, special.kind), (&[End::Chatter, End::Range], Kind::Chatter));
+    assert!(first.value.abs() < 1e-12 && special.bracket[0] <= 0.0 && 0.0 <= special.bracket[1], "{special:?}");
+    assert_eq!(special.residual, std::f64::consts::TAU);
+}
+
+/// The first is a fiftieth of the longest, and each is half as long again as the one before: the tenth after it is the longest.
+#[test]
+fn steps_along_a_branch_grow_to_the_longest() {
+    let model = ball(0.5, 0.0);
+    let mut seen = 0;
+    for longest_step in [0.05, 0.2] {
+        for orbit in orbits(&model, 420.0, 1).iter().filter(|orbit| orbit.impacts().count() == 1) {
+            let number = following(&model, "rpm", [300.0, 700.0], longest_step);
+            let branch = Branch::through(&model, 420.0, orbit, &number).unwrap();
+            let from = branch.points.iter().position(|point| point.value == 420.0).unwrap();
+            let ordinary = branch.points[from..].iter().take_while(|point| point.special.is_none());
+            let places = ordinary.map(|point| (point.value / 400.0, point.orbit.impacts().next().unwrap().cam_angle));
+            let places: Vec<_> = places.collect();
+            let steps: Vec<f64> =
+                places.windows(2).map(|two| (two[1].0 - two[0].0).hypot(two[1].1 - two[0].1)).collect();
+            let growth: Vec<f64> = steps.windows(2).map(|two| two[1] / two[0]).take(10).collect();
+            if let [growing @ .., last] = &growth[..]
+                && growth.len() == 10
+            {
+                assert!(growing.iter().all(|growth| *growth > 1.49) && *last > 1.29, "{longest_step} {growth:?}");
+                seen += 1;
+            }
+        }
+    }
+    assert_eq!(seen, 3);
 }

@@ -4,9 +4,11 @@ use std::f64::consts::TAU;
 
 use corner_impact::cam::apart;
 use corner_impact::model::Model;
-use corner_impact::orbit::Parameter;
-use corner_impact::orbit::branch::{Branch, BranchPoint, End, Following, Kind};
+use corner_impact::orbit::branch::{Bifurcation, Branch, BranchPoint, End, Following, Kind};
+use corner_impact::orbit::{Parameter, Search};
+use corner_impact::progress::Unwatched;
 use corner_impact::simulate::EventKind;
+use corner_impact::study::curve::curves;
 
 use crate::orbit_numbers::{model, orbits};
 use crate::random::{cases_of_every_law, drawn};
@@ -58,12 +60,18 @@ fn an_impact_on_a_corner_that_moves_goes_with_it() {
 /// A curve that has one point, beyond which the touch is none, has not come back to it.
 #[test]
 fn a_curve_of_one_point_is_not_closed() {
-    let (model, speeds) = (model("laws/harmonic"), [420.0, 600.0]);
-    let number = following(&model, "restitution", [0.45, 0.9], 0.05);
-    let grazes = points(&model, 500.0, 2, speeds, "graze");
-    let curves: Vec<Branch> = grazes.iter().map(|graze| curve(&model, graze, speeds, &number)).collect();
+    let case = drawn(cases_of_every_law(), 28).pop().unwrap();
+    let (model, speeds) = (&case.model, [0.8 * case.rpm, 1.25 * case.rpm]);
+    let own = model.follower.restitution;
+    let number = following(model, "restitution", [0.7 * own, (1.3 * own).min(0.99)], 0.05);
+    let grazes = points(model, case.rpm, 2, speeds, "graze");
+    let curves: Vec<Branch> = grazes.iter().map(|graze| curve(model, graze, speeds, &number)).collect();
     let short: Vec<&Branch> = curves.iter().filter(|curve| curve.points.len() == 1).collect();
-    assert!(!short.is_empty() && short.iter().all(|curve| curve.ends == [End::Graze, End::Graze]), "{short:?}");
+    let ends: Vec<_> = short.iter().map(|curve| &curve.ends).collect();
+    assert!(
+        ends.contains(&&[End::Graze, End::Graze]) && !ends.iter().any(|ends| ends.contains(&End::Closed)),
+        "{ends:?}"
+    );
 }
 
 /// Of places that are alike but for rounding none comes before the other, whatever rounding is in the model's units.
@@ -147,4 +155,22 @@ fn a_curve_of_touches_ends_where_no_other_impact_is_left() {
     let grazes = points(&case.model, case.rpm, 2, speeds, "graze");
     let ends: Vec<_> = grazes.iter().flat_map(|graze| curve(&case.model, graze, speeds, &number).ends).collect();
     assert!(ends.contains(&End::Graze), "{ends:?}");
+}
+
+/// Many branches pass one event, of which a curve that goes no further has one point.
+#[test]
+fn an_event_that_many_branches_pass_is_one() {
+    for (revolutions, speeds, time) in [(2, [505.0, 525.0], 0), (2, [500.0, 530.0], -30)] {
+        let model = in_units("laws/harmonic", [0, 0, time]);
+        let number = Following { most_points: 0, ..following(&model, "restitution", [0.45, 0.9], 0.05) };
+        let speeds = speeds.map(|rpm: f64| rpm * 2.0_f64.powi(-time));
+        let wanted = Search { revolutions, impacts: None };
+        let found = curves(&model, speeds, &wanted, &Bifurcation::ALL, &number, &Unwatched).unwrap().curves;
+        let events: Vec<_> = found.iter().map(|curve| (curve.kind.name(), curve.points[0].rpm)).collect();
+        assert!(found.iter().all(|curve| curve.points.len() == 1) && !events.is_empty(), "{events:?}");
+        for (index, (name, rpm)) in events.iter().enumerate() {
+            let again = events[..index].iter().any(|(other, at)| other == name && (at / rpm - 1.0).abs() < 1e-6);
+            assert!(!again, "{name} {events:?}");
+        }
+    }
 }

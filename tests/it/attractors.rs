@@ -554,4 +554,7 @@ fn a_range_of_speeds_is_chosen_by_the_machine() {
     let own = rpm(400.0 + (400.0 * 0.05 - 9.81) / 0.1);
     let still = "offset = 0.1\namplitudes = [0.0]\nphases_deg = [0.0]";
     assert_eq!(range(pressed, still), [to_two(0.5 * own, f64::floor), to_two(2.0 * own, f64::ceil)]);
+    // No more than of one without a force is known of a machine whose own speed is beyond all numbers.
+    let beyond = "damping = 0.0\nstiffness = 1e70\ngravity = 0.0\nrest_position = 10.0";
+    assert_eq!(range(beyond, &still.replace("0.1", "1e-250")), [50.0, 200.0]);
 }

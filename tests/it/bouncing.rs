@@ -5,9 +5,11 @@ use std::f64::consts::{PI, TAU};
 use approx::assert_relative_eq;
 use corner_impact::cam::Side;
 use corner_impact::corner::range::find_corner_impacts;
+use corner_impact::flight::State;
 use corner_impact::known::Known;
 use corner_impact::model::{Model, Study};
 use corner_impact::orbit::search::{Searched, search_all};
+use corner_impact::orbit::settle::near;
 use corner_impact::orbit::{PeriodicOrbit, Search};
 use corner_impact::progress::Unwatched;
 use corner_impact::simulate::{Machine, angular_velocity};
@@ -166,5 +168,44 @@ fn a_flight_is_an_orbit_where_it_is_clear_of_an_edge() {
         let is_it =
             |orbit: &&PeriodicOrbit| orbit.events.len() == 1 && (orbit.events[0].cam_angle - impact).abs() < 1e-9;
         assert_eq!(found.iter().filter(is_it).count(), usize::from(is_orbit), "{part}: {found:?}");
+    }
+}
+
+/// Where one law ends and the same begins nothing happens: an orbit that lands behind such a seam is found from flights that land before it.
+#[test]
+fn an_orbit_beside_a_seam_that_is_no_corner_is_found_from_either_side() {
+    let (rpm, hump, base) = (300.0, 0.012, 0.1);
+    let (period, omega) = (60.0 / rpm, angular_velocity(rpm));
+    // c = base + 4 a u (pi - u)/pi^2, and c' = (1 - r) g T^2/(4 pi (1 + r)) at the impact.
+    let slope = (1.0 - RESTITUTION) * GRAVITY * period * period / (4.0 * PI * (1.0 + RESTITUTION));
+    let impact = 0.5 * PI * (1.0 - slope * PI / (4.0 * hump));
+    let [lift, rate, bend] = [4.0 * hump / (PI * PI), 4.0 * hump / PI, -4.0 * hump / (PI * PI)];
+    let at = |angle: f64| base + lift * angle * (PI - angle);
+    for off in [-1e-3, 1e-3] {
+        let seam = impact + off;
+        let segments = [
+            (0.0, [base, rate, bend]),
+            (seam.to_degrees(), [at(seam), rate + 2.0 * bend * seam, bend]),
+            (180.0, [base, -rate, -bend]),
+        ];
+        let segments = segments.map(|(start, coefficients)| {
+            format!("[[cam.segment]]\nstart_deg = {start:?}\ncoefficients = {coefficients:?}\n")
+        });
+        let text = follower() + "[cam]\nlaw = \"polynomial\"\n" + &segments.concat();
+        let model = Model::parse("seam.toml", &text).unwrap();
+        let cam = common::cam(&model);
+        assert_eq!(cam.corners().iter().map(|corner| corner.angle).collect::<Vec<_>>(), [0.0, PI]);
+        let machine = Machine::new(cam, &model.follower, omega);
+        for landing in [impact - 5e-3, impact + 5e-3] {
+            // The parabola that comes back in one turn, half a turn on.
+            let (leaving, time) = (0.5 * GRAVITY * period, PI / omega);
+            let position = at(landing) + leaving * time - 0.5 * GRAVITY * time * time;
+            let state = State { position, velocity: leaving - GRAVITY * time };
+            let orbit = near(&machine, landing + PI, state, 1).unwrap();
+            let orbit = orbit.unwrap_or_else(|| panic!("none from {landing} beside {seam}"));
+            let [event] = orbit.events[..] else { panic!("{orbit:?}") };
+            assert!((event.cam_angle - impact).abs() < 1e-10, "{event:?}");
+            assert_eq!(event.segment, usize::from(off < 0.0), "{event:?}");
+        }
     }
 }

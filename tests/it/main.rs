@@ -11,6 +11,7 @@ mod bad_input;
 mod border_collision;
 mod border_conditions;
 mod bouncing;
+mod bounds;
 mod branches;
 mod cam_corners;
 mod cam_laws;

@@ -28,6 +28,10 @@ pub fn crossing(family: &Family, following: &Following, branches: &[Branch]) -> 
         let [before, point] = pair else { return None };
         let (Kind::Branching, Course::Impacts(cycle)) = (point.special?.kind, &point.orbit.course) else { return None };
         let Course::Impacts(last) = &before.orbit.course else { return None };
+        // What changes between the two, a touch or a half of the period, leaves no direction to come from.
+        if last.impacts.len() != cycle.impacts.len() {
+            return None;
+        }
         let (machine, _) = family.machine(&[before.value]).ok()?;
         let start = |problem: &Problem<'_>, at: &DVector<f64>| {
             across(problem, at, &(at - problem.unknowns(last, &machine, &[before.value])))

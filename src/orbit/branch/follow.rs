@@ -116,7 +116,10 @@ impl Walk<'_> {
                     if let NoPoint::Outside(why) = &error
                         && let Some((last, end)) = self.at_bound(why)
                     {
-                        self.points.push(last);
+                        // A branch may begin there.
+                        if last.value != self.stride.value(&self.stride.from.unknowns) {
+                            self.points.push(last);
+                        }
                         return Ok((self.points, end));
                     }
                     self.stride.step *= 0.5;
@@ -245,18 +248,21 @@ impl Walk<'_> {
             Some(Located { step, .. }) => part_way(step * (1.0 - 1e-3))?,
             None => (next.clone(), self.stride.step),
         };
-        let (cycle, at, _) = problem.unpack(&clear.0.unknowns)?;
-        match self.stride.departure(&cycle, &at) {
-            Ok(None) => {}
-            Ok(Some(Departure::Earlier { impact, turned, .. })) => {
-                let touch = Exit::Touch { impact, turned };
-                let located = self.stride.locate(&problem, Cut::Exit(touch), clear.1)?;
-                clear = (located.point.clone(), located.step);
-                first = Some(located);
+        // Of two flights that touch, the simulator tells the one that does so first in time: the other may do so sooner along the step.
+        for _ in 0..=self.stride.pattern.impacts.len() {
+            let (cycle, at, _) = problem.unpack(&clear.0.unknowns)?;
+            match self.stride.departure(&cycle, &at) {
+                Ok(None) => break,
+                Ok(Some(Departure::Earlier { impact, turned, .. })) => {
+                    let touch = Exit::Touch { impact, turned };
+                    let located = self.stride.locate(&problem, Cut::Exit(touch), clear.1)?;
+                    clear = part_way(located.step * (1.0 - 1e-3))?;
+                    first = Some(located);
+                }
+                // So near to a cut that the simulator sees it already, or nothing that a shorter step would not show better.
+                Ok(Some(_)) if first.is_some() => break,
+                Ok(Some(_)) | Err(_) => return Err(NoPoint::NotClosed),
             }
-            // So near to a cut that the simulator sees it already, or nothing that a shorter step would not show better.
-            Ok(Some(_)) if first.is_some() => {}
-            Ok(Some(_)) | Err(_) => return Err(NoPoint::NotClosed),
         }
         let end_point = first.as_ref().map_or(next, |located| located.point.clone());
         let mut points = Vec::new();
