@@ -60,7 +60,8 @@ enum Regime {
         /// w, 1/s.
         omega: f64,
     },
-    /// Roots `-slow` and `-fast`, with `0 <= slow <= fast` and `slow fast = w0^2`; stiffness 0 has `slow = 0`.
+    /// Roots `-slow` and `-fast`, with `slow <= fast` and `slow fast = w0^2`: not below 0, but where the damping drives, as it does in a run
+    /// backwards. Stiffness 0 has the one nearer to 0 at 0.
     Monotone {
         /// 1/s.
         slow: f64,
@@ -79,8 +80,9 @@ impl Flight {
             let omega = omega_squared.sqrt();
             if zeta == 0.0 { Regime::Undamped { omega } } else { Regime::Underdamped { omega } }
         } else {
-            let fast = zeta + (-omega_squared).sqrt();
-            Regime::Monotone { slow: if fast > 0.0 { omega0_squared / fast } else { 0.0 }, fast }
+            let far = zeta + (-omega_squared).sqrt().copysign(zeta);
+            let near = if far == 0.0 { 0.0 } else { omega0_squared / far };
+            Regime::Monotone { slow: near.min(far), fast: near.max(far) }
         };
         Self { zeta, omega0_squared, rest_position: follower.rest_position, gravity: follower.gravity, regime }
     }
@@ -213,7 +215,7 @@ impl Flight {
     pub fn fall_to(&self, level: f64, start: State) -> Option<(f64, State)> {
         let omega = match self.regime {
             Regime::Undamped { omega } => omega,
-            Regime::Monotone { fast: 0.0, .. } if self.gravity > 0.0 => {
+            Regime::Monotone { slow: 0.0, fast: 0.0 } if self.gravity > 0.0 => {
                 return self.fall_freely(level, start);
             }
             _ => return self.fall_by_search(level, start),

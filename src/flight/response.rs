@@ -28,7 +28,7 @@ impl Flight {
                 Response { step, impulse, impulse_rate: cos }
             }
             // Neither spring nor damper.
-            Regime::Monotone { fast: 0.0, .. } => Response { step: 0.5 * t * t, impulse: t, impulse_rate: 1.0 },
+            Regime::Monotone { slow: 0.0, fast: 0.0 } => Response { step: 0.5 * t * t, impulse: t, impulse_rate: 1.0 },
             _ => self.damped_response(t),
         }
     }

@@ -11,6 +11,7 @@ use nalgebra::{Matrix2, Vector2};
 
 use crate::flight::State;
 use crate::model::Follower;
+use crate::orbit::cycle::lift_size;
 use crate::orbit::{Cycle, eigenvalues};
 use crate::section::StroboscopicMap;
 use crate::simulate::{EventKind, Machine};
@@ -68,11 +69,11 @@ impl Reversed {
     pub fn new(follower: &Follower, map: &StroboscopicMap) -> Option<Self> {
         /// Angles at which the lift is held against its mirror image.
         const LOOKED_AT: u32 = 720;
-        let cam = map.machine.cam();
+        let (cam, size) = (map.machine.cam(), lift_size(&map.machine));
         let mirrored = |index: u32| {
             let angle = TAU * f64::from(index) / f64::from(LOOKED_AT);
             let (here, there) = (cam.lift(angle), cam.lift((TAU - angle) % TAU));
-            (here.value - there.value).abs() <= tolerance::CAM_CLOSURE.value * (here.value.abs() + there.value.abs())
+            (here.value - there.value).abs() <= tolerance::CAM_CLOSURE.value * size
         };
         if !(follower.restitution > 0.0 && (1..LOOKED_AT).all(mirrored)) {
             return None;
@@ -85,8 +86,8 @@ impl Reversed {
         Some(Self { map: map.clone(), backwards: StroboscopicMap { machine, cam_angle } })
     }
 
-    /// The state one revolution before `state`; `None` where none leads there, or one that sticks on the way: whatever the
-    /// run backwards finds is run forwards and held against `state`.
+    /// The state one revolution before `state`; `None` where none leads there, or one that begins or ceases to stick on the way:
+    /// whatever the run backwards finds is run forwards and held against `state`.
     pub fn apply(&self, state: State) -> Option<State> {
         let turned = |state: State| State { velocity: -state.velocity, ..state };
         let back = self.backwards.apply(turned(state)).ok()?;
