@@ -143,9 +143,14 @@ pub fn find_corner_impacts(
     Ok(all)
 }
 
-/// Corners at which impacts are looked for: all but the knots of a smoothing spline, which are no part of what was measured.
+/// Corners at which impacts are looked for: all, but of a smoothing spline no knots, which are no part of what was measured, and no ends of
+/// dwells that were found in the rows, which are put somewhat inside of where the cam leaves them.
 fn worth_looking_at(model: &Model, cam: &Cam) -> Vec<Corner> {
-    cam.corners().iter().filter(|corner| !(model.is_smoothed() && cam.is_knot(corner))).copied().collect()
+    let smoothing = model.table().and_then(|table| table.spline.smoothing());
+    let is_laid = |corner: &Corner| {
+        smoothing.is_some_and(|own| cam.is_knot(corner) || (own.dwells_deg.is_none() && corner.jump_order > 2))
+    };
+    cam.corners().iter().filter(|corner| !is_laid(corner)).copied().collect()
 }
 
 /// What the roots of the equation for one impact are at each corner, each with its period, s; and where there may be others.
@@ -238,7 +243,7 @@ impl FoundCornerImpacts {
                 continue;
             }
             match self.found.iter_mut().find(|known| is_same(known, &candidate)) {
-                Some(known) if known.ways.contains(&way) || known.cycle.impacts.len() == 1 => {}
+                Some(known) if known.ways.contains(&way) => {}
                 Some(known) => known.ways.push(way),
                 None => {
                     let orbit = self.orbit(&corner, rpm, verdict(candidate, model, cam));
@@ -265,7 +270,7 @@ impl FoundCornerImpacts {
 /// Whether a candidate is a corner impact that is known, found by another way or on another branch.
 fn is_same(known: &CornerImpact, at: &Candidate) -> bool {
     known.corner.segment == at.corner.segment
-        && (known.corner.jump_order > 1 || known.side == at.side)
+        && known.side == at.side
         && is_same_speed(known.speed_rpm(), 60.0 / at.period)
         && known.cycle.is_same(&at.cycle)
 }

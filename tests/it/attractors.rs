@@ -558,3 +558,43 @@ fn a_range_of_speeds_is_chosen_by_the_machine() {
     let beyond = "damping = 0.0\nstiffness = 1e70\ngravity = 0.0\nrest_position = 10.0";
     assert_eq!(range(beyond, &still.replace("0.1", "1e-250")), [50.0, 200.0]);
 }
+
+/// What twenty-four starts, and rest on the cam, come to at a speed.
+fn from_starts(model: &Model, rpm: f64) -> Here {
+    Here::new(&machine(model, rpm), rpm, 24).unwrap()
+}
+
+/// In a hundred thousand revolutions runs bounced on for long before they came to rest: a start that was not seen to rest was only not waited for.
+#[test]
+fn chaos_that_is_seen_to_rest_is_no_other_motion_than_what_rests() {
+    for rpm in [655.0, 665.2, 680.5] {
+        let here = from_starts(&common::osorio(), rpm);
+        assert!(here.wandering.rested > 0 && here.wandering.revolutions >= 100_000, "{rpm}: {:?}", here.wandering);
+        let wild: Vec<&Ending> =
+            here.parts.iter().map(|part| &part.ending).filter(|it| it.period().is_none()).collect();
+        assert!(matches!(wild[..], [it] if it.is_long()), "{rpm}: {wild:?}");
+    }
+}
+
+/// The growth of deviations is averaged over the runs that wander: one of two is too short to tell that by itself.
+#[test]
+fn runs_that_wander_are_told_together() {
+    let here = from_starts(&ball().with_number("follower.restitution", 0.5).unwrap(), 2155.0);
+    let kinds: Vec<Kind> = here.parts.iter().map(|part| part.ending.kind()).collect();
+    assert_eq!(kinds, [Kind::Resting, Kind::Chaotic], "{here:?}");
+    assert_eq!(here.parts[1].starts.len(), 2);
+}
+
+/// Whatever rests goes on as the cam lets go of it. Where all that is repeats, each run that wandered until it rested has left what it was on.
+#[test]
+fn what_wanders_and_rests_where_all_repeats_has_left() {
+    for rpm in [304.8, 308.2, 333.7] {
+        let here = from_starts(&common::osorio(), rpm);
+        assert!(here.parts.iter().all(|part| part.ending.period().is_some()), "{rpm}: {:?}", here.parts);
+        assert!(
+            here.wandering.rested > 0 && here.wandering.left == here.wandering.rested,
+            "{rpm}: {:?}",
+            here.wandering
+        );
+    }
+}

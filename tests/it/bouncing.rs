@@ -4,7 +4,8 @@ use std::f64::consts::{PI, TAU};
 
 use approx::assert_relative_eq;
 use corner_impact::cam::Side;
-use corner_impact::corner::range::find_corner_impacts;
+use corner_impact::corner::range::{FoundCornerImpacts, find_corner_impacts};
+use corner_impact::corner::{CornerImpact, Way};
 use corner_impact::flight::State;
 use corner_impact::known::Known;
 use corner_impact::model::{Model, Study};
@@ -208,4 +209,174 @@ fn an_orbit_beside_a_seam_that_is_no_corner_is_found_from_either_side() {
             assert_eq!(event.segment, usize::from(off < 0.0), "{event:?}");
         }
     }
+}
+
+/// A table that rises from a kink at an angle with one slope and comes back to it with another, m/rad, in two halves.
+fn kinked(degrees: f64, slopes: [f64; 2]) -> Model {
+    kinked_in(&[0.0, PI], degrees, slopes)
+}
+
+/// The same in pieces that begin so far behind the kink, rad.
+fn kinked_in(pieces: &[f64], degrees: f64, [plus, minus]: [f64; 2]) -> Model {
+    // c = b + plus u + q u^2 + p u^3 is the same after a turn, and has the slope `minus` there.
+    let (square, cubic) = (-(2.0 * plus + minus) / TAU, (plus + minus) / (TAU * TAU));
+    let from = |u: f64| {
+        [
+            0.1 + u * (plus + u * (square + u * cubic)),
+            plus + u * (2.0 * square + 3.0 * u * cubic),
+            square + 3.0 * u * cubic,
+            cubic,
+        ]
+    };
+    let piece = |u: &f64| {
+        let start = degrees + u.to_degrees();
+        format!("[[cam.segment]]\nstart_deg = {start:?}\ncoefficients = {:?}\n", from(*u))
+    };
+    let pieces: String = pieces.iter().map(piece).collect();
+    Model::parse("kinked.toml", &(follower() + "[cam]\nlaw = \"polynomial\"\n" + &pieces)).unwrap()
+}
+
+/// What is found at the kink between two speeds.
+fn at_kink(model: &Model, [rpm_min, rpm_max]: [f64; 2], turns: u64) -> FoundCornerImpacts {
+    find_corner_impacts(model, &common::cam(model), Study { rpm_min, rpm_max }, turns, &Unwatched).unwrap()
+}
+
+/// A flight of a turn has the velocity `g T/2` at both ends, `(1 + r)/(1 - r) = 3` times that of the side of the kink that is hit. The other side
+/// must not be faster than the follower after the impact, nor slower than it before.
+#[test]
+fn an_impact_on_one_side_of_a_kink_needs_room_on_the_other() {
+    for ([plus, minus], slope, side, why) in [
+        ([0.04, 0.01], 0.04, Side::Plus, None),
+        ([0.01, 0.04], 0.04, Side::Minus, None),
+        ([0.01, 0.025], 0.01, Side::Plus, None),
+        ([0.04, 0.01], 0.01, Side::Minus, Some("the cam's other side hits the follower again at once")),
+        ([0.01, -0.04], 0.01, Side::Plus, Some("the flight would come to the corner out of the cam's other side")),
+    ] {
+        let rpm = 60.0 / (2.0 * (1.0 + RESTITUTION) * TAU * slope / ((1.0 - RESTITUTION) * GRAVITY)).sqrt();
+        let all = at_kink(&kinked(0.0, [plus, minus]), [rpm - 0.01, rpm + 0.01], 1);
+        let found = all.found.iter().filter(|at| at.side == side && (at.speed_rpm() / rpm - 1.0).abs() < 1e-12);
+        assert_eq!(found.count(), usize::from(why.is_none()), "{plus} {minus}: {all:?}");
+        let told: Vec<&str> = all.rejected.iter().map(|it| it.why.as_str()).collect();
+        assert_eq!(told, why.into_iter().collect::<Vec<_>>());
+    }
+}
+
+/// Where angles are counted from is nothing to the follower: at 0, where a revolution ends and another begins, a kink has the corner impacts that it
+/// has at 90 degrees, on the same sides, by branches and by shots; and none the less where the cam has no other segment than that from there to there.
+#[test]
+fn a_kink_at_angle_0_has_the_corner_impacts_of_any_other() {
+    for (range, turns) in [([175.1, 175.2], 1), ([277.2, 277.4], 2), ([236.7, 236.8], 2)] {
+        let told = |pieces: &[f64], degrees: f64| {
+            let all = at_kink(&kinked_in(pieces, degrees, [0.01, 0.04]), range, turns);
+            assert!(all.found.iter().all(|at| at.ways == [Way::Branch, Way::Shot]), "{degrees}: {:?}", all.found);
+            let of = |at: &CornerImpact| (at.side, at.cycle.impacts.len());
+            (all.found.iter().map(of).collect::<Vec<_>>(), all.found.iter().map(|at| at.period).collect::<Vec<_>>())
+        };
+        let there = told(&[0.0, PI], 90.0);
+        for here in [told(&[0.0, PI], 0.0), told(&[0.0], 0.0)] {
+            assert!(!here.0.is_empty() && here.0 == there.0, "{here:?} {there:?}");
+            here.1.iter().zip(&there.1).for_each(|(one, other)| assert_relative_eq!(one, other, max_relative = 1e-9));
+        }
+    }
+}
+
+/// Two parabolas, one up and one down, wherever the first begins: on the way to where two branches cross an impact more may have been touched.
+#[test]
+fn a_crossing_behind_a_touch_is_looked_at() {
+    let (height, rpm) = (0.02, 247.6136);
+    let (slope, bend) = (4.0 * height / PI, 4.0 * height / (PI * PI));
+    for degrees in [0.0, 90.0] {
+        let segments = [(degrees, 1.0), (degrees + 180.0, -1.0)].map(|(start, sign): (f64, f64)| {
+            let coefficients = [0.1, sign * slope, -sign * bend];
+            format!("[[cam.segment]]\nstart_deg = {start:?}\ncoefficients = {coefficients:?}\n")
+        });
+        let text = follower() + "[cam]\nlaw = \"polynomial\"\n" + &segments.concat();
+        let model = Model::parse("parabolas.toml", &text).unwrap();
+        let all = at_kink(&model, [rpm - 1e-3, rpm + 1e-3], 2);
+        assert!(all.found.iter().all(|at| (at.speed_rpm() - rpm).abs() < 2e-3), "{:?}", all.found);
+    }
+}
+
+/// On branches and by shots: ways that know nothing of each other lead to the same orbits, of two impacts in two turns and of more than in one turn
+/// would be chattering.
+#[test]
+fn branches_and_shots_lead_to_the_same_corner_impacts() {
+    let model = kinked(0.0, [0.04, 0.01]);
+    for (range, impacts) in [([242.2, 242.3], 2), ([198.25, 198.26], 9)] {
+        let all = at_kink(&model, range, 2);
+        let [at] = &all.found[..] else { panic!("{:?}", all.found) };
+        assert_eq!((at.cycle.impacts.len(), &at.ways[..]), (impacts, &[Way::Branch, Way::Shot][..]));
+    }
+}
+
+/// Each speed at which the equations hold and the cam has no such orbit is told once.
+#[test]
+fn what_is_refused_at_one_corner_is_told_at_each_speed() {
+    let all = at_kink(&kinked(0.0, [0.01, 0.04]), [183.0, 190.0], 1);
+    let speeds: Vec<f64> = all.rejected.iter().map(|it| it.speed_rpm).collect();
+    assert!(speeds.len() > 3 && speeds.windows(2).all(|pair| pair[1] > pair[0] * (1.0 + 1e-9)), "{speeds:?}");
+    assert!(all.rejected.iter().all(|it| it.why == "the flight would come to the corner out of the cam's other side"));
+}
+
+/// A ball that loses all leaves a corner with the cam's velocity, `g T/2` for a flight of a turn. Where the cam is bent upwards there it does not
+/// let go of the ball, which is carried on to where it is bent down.
+#[test]
+fn a_ball_that_the_cam_carries_on_is_told_to_stick() {
+    let text = |before: f64, after: f64| {
+        // Two parabolas up to 180 degrees, which meet at 90, and a cubic down.
+        let (first, half) = (0.25 * before * PI * PI, PI * before);
+        let (top, slope) = (first + 0.5 * PI * half + 0.25 * after * PI * PI, half + PI * after);
+        let (square, cubic) = (-(3.0 * top / PI + 2.0 * slope) / PI, (2.0 * top / PI + slope) / (PI * PI));
+        let segment =
+            |start: f64, of: [f64; 4]| format!("[[cam.segment]]\nstart_deg = {start:?}\ncoefficients = {of:?}\n");
+        follower().replace("restitution = 0.5", "restitution = 0.0")
+            + "[cam]\nlaw = \"polynomial\"\n"
+            + &segment(0.0, [0.1, 0.0, before, 0.0])
+            + &segment(90.0, [0.1 + first, half, after, 0.0])
+            + &segment(180.0, [0.1 + top, slope, square, cubic])
+    };
+    let slope = PI * 0.004;
+    let rpm = (PI * GRAVITY / slope).sqrt() * 60.0 / TAU;
+    let model = Model::parse("carried.toml", &text(0.004, 0.0005)).unwrap();
+    let all = at_kink(&model, [rpm - 0.01, rpm + 0.01], 1);
+    let told = all.rejected.iter().find(|it| (it.cam_angle - 0.5 * PI).abs() < 1e-12).unwrap();
+    assert!((told.speed_rpm / rpm - 1.0).abs() < 1e-12, "{told:?}");
+    assert_eq!(told.why, "the follower sticks to the cam up to or from 180.0000 deg");
+}
+
+/// Polynomials that go through the rows of a table are the cam: where they meet is looked at. Of one near the rows it is not.
+#[test]
+fn rows_are_corners_of_a_spline_through_them_and_not_of_one_near_them() {
+    let lift = |angle: f64| (1e4 * (0.02 + 0.01 * (angle.to_radians()).cos())).round() / 1e4;
+    for (spline, looked_at) in [("cubic", true), ("smoothing", false)] {
+        let rows: Vec<String> =
+            (0..16).map(|row| 22.5 * f64::from(row)).map(|it| format!("[{it:?}, {:?}]", lift(it))).collect();
+        let text =
+            follower() + &format!("[cam]\nlaw = \"table\"\nspline = \"{spline}\"\nrows = [{}]\n", rows.join(", "));
+        let model = Model::parse("rows.toml", &text).unwrap();
+        let cam = common::cam(&model);
+        let all = at_kink(&model, [100.0, 100.01], 1);
+        assert!(cam.corners().len() >= 8, "{:?}", cam.corners());
+        assert_eq!(all.corners.len() + all.left_out, cam.corners().len());
+        assert_eq!((all.left_out == 0, all.corners.is_empty()), (looked_at, !looked_at));
+    }
+}
+
+/// Over a table that rises from a kink to an edge half a turn later the flight `3 s u (1 - u/(2 pi))` of a turn meets `s u + q u^2` before it is
+/// over the edge, where that is too high. That is told with the place.
+#[test]
+fn a_flight_into_an_edge_is_refused_with_the_place() {
+    let (slope, height) = (0.01, 0.06);
+    let square = (height / PI - slope) / PI;
+    let half = |start: f64, of: [f64; 3]| format!("[[cam.segment]]\nstart_deg = {start:?}\ncoefficients = {of:?}\n");
+    let text = follower()
+        + "[cam]\nlaw = \"polynomial\"\n"
+        + &half(0.0, [0.1, slope, square])
+        + &half(180.0, [0.1 + height, -(slope + 2.0 * PI * square), square]);
+    let rpm = 60.0 / (2.0 * (1.0 + RESTITUTION) * TAU * slope / ((1.0 - RESTITUTION) * GRAVITY)).sqrt();
+    let all = at_kink(&Model::parse("edge.toml", &text).unwrap(), [rpm - 0.01, rpm + 0.01], 1);
+    let meets = 2.0 / (3.0 / TAU + square / slope);
+    let told: Vec<_> = all.rejected.iter().map(|it| (it.cam_angle, it.why.as_str())).collect();
+    let why = format!("the flight meets the cam elsewhere, at {:.4} deg", meets.to_degrees());
+    assert_eq!((told, all.found.len()), (vec![(0.0, why.as_str())], 0));
 }

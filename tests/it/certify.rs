@@ -1,12 +1,15 @@
 //! Is a certificate what it says: right in every digit, narrow, and refused where there is nothing to certify?
 
+use std::f64::consts::{PI, TAU};
 use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
 use crate::common::{self, corner_impact, text};
-use corner_impact::model::Model;
-use corner_impact::study::certify::{Certificate, ProvedResting};
+use corner_impact::corner::range::find_corner_impacts;
+use corner_impact::model::{Model, Study};
+use corner_impact::progress::Unwatched;
+use corner_impact::study::certify::{BITS, Certificate, ProvedResting, certify};
 use serde_json::{Value, json};
 
 /// The paper's corner impact, as doubles have it.
@@ -439,4 +442,31 @@ fn motions_that_rest_all_repeat_where_each_release_has_a_next() {
         let proved: ProvedResting = serde_json::from_value(document).unwrap();
         assert_eq!(proved.all_repeat(), all);
     }
+}
+
+/// A proof is of an acceleration that jumps. What is refused at a kink of a cam that has such a corner elsewhere is not asked for.
+#[test]
+fn what_is_refused_where_the_velocity_jumps_is_not_asked_for() {
+    // From a kink up with a slope of 0.01, over 180 degrees with the same slope on both sides, and down to the kink with -0.04.
+    let (slope, square, end) = (0.01, -0.001, -0.04);
+    let (top, over) = (slope * PI + square * PI * PI, slope + 2.0 * square * PI);
+    let second = -3.0 * top / (PI * PI) - (2.0 * over + end) / PI;
+    let third = (end - over - 2.0 * second * PI) / (3.0 * PI * PI);
+    let document = json!({
+        "follower": { "mass": 1, "damping": 0, "stiffness": 0, "gravity": 9.81, "rest_position": 0, "restitution": 0.5 },
+        "cam": { "law": "polynomial", "segment": [
+            { "start_deg": 0.0, "coefficients": [0.1, slope, square, 0.0] },
+            { "start_deg": 180.0, "coefficients": [0.1 + top, over, second, third] },
+        ] },
+    });
+    let model = Model::of_document("kink", &document).unwrap();
+    let orders: Vec<usize> = common::cam(&model).corners().iter().map(|corner| corner.jump_order).collect();
+    assert_eq!(orders, [1, 2]);
+    // 3 c' = g T/2
+    let rpm = 60.0 / (6.0 * TAU * slope / 9.81_f64).sqrt();
+    let range = Study { rpm_min: rpm - 0.01, rpm_max: rpm + 0.01 };
+    assert_eq!(find_corner_impacts(&model, &common::cam(&model), range, 1, &Unwatched).unwrap().rejected.len(), 1);
+    let found = certify(&model, range, 1, BITS, &Unwatched).unwrap();
+    assert!(found.corner_impacts.is_empty() && found.agrees());
+    assert_eq!(found.refused, []);
 }

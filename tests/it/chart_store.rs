@@ -249,3 +249,34 @@ fn what_repeats_after_several_revolutions_is_told_for_one() {
         found.growth
     );
 }
+
+/// A store is described twice, whole and array by array, with the unit of the one axis that has one.
+#[test]
+fn a_store_is_described_alike_as_a_whole_and_by_its_arrays() {
+    let paper = common::osorio();
+    let (folder, chart) = (tempfile::TempDir::new().unwrap(), chart(&paper, 8));
+    Store::open(folder.path(), &chart, [2, 3]).unwrap().fill(Shard::ALL, Some(1), &Unwatched).unwrap();
+    let read = |path: &str| -> Value {
+        serde_json::from_slice(&std::fs::read(folder.path().join(path).join("zarr.json")).unwrap()).unwrap()
+    };
+    let whole = read("");
+    let arrays = whole["consolidated_metadata"]["metadata"].as_object().unwrap();
+    assert_eq!(arrays.len(), VARIABLES.len() + 2);
+    for (name, described) in arrays {
+        assert_eq!(read(name), *described, "{name}");
+    }
+    let units = [&chart.x, &chart.y].map(|axis| arrays[axis.parameter.name()]["attributes"].clone());
+    assert_eq!(units, [json!({ "units": "rpm" }), json!({})]);
+}
+
+/// Threads that share processors wait for each other: no more seconds of processors are told than there are processors.
+#[test]
+#[cfg(target_os = "linux")]
+fn seconds_of_threads_are_those_of_processors() {
+    let paper = common::osorio();
+    let axes = [axis(&paper, "rpm", 600.0, 700.0, 10), axis(&paper, "restitution", 0.1, 0.7, 64)];
+    let chart = Chart::new(&paper, None, axes, START, Lengths { transient: 50, record: 50 }).unwrap();
+    let processors = std::thread::available_parallelism().unwrap().get();
+    let [processor, clock] = chart.run(Some(8 * processors), &Unwatched).unwrap().times;
+    assert!(processor > 0.0 && processor < 1.2 * processors as f64 * clock, "{processor} {clock}");
+}

@@ -10,7 +10,7 @@ use crate::common;
 use corner_impact::agreement::Quantity;
 use corner_impact::model::Model;
 use corner_impact::progress::Unwatched;
-use corner_impact::study::compare::{Comparison, compare};
+use corner_impact::study::compare::{Comparison, NoVerdict, compare};
 use corner_impact::study::verify::{External, verify};
 
 const PAPER: &str = "models/osorio-2008.toml";
@@ -313,4 +313,17 @@ fn what_one_model_has_alone_comes_last() {
         (found.verdict.a.agrees, found.verdict.b.agrees) = (a, b);
         assert_eq!((found.agrees(), found.verdict_changed()), (a && b, a != b));
     }
+}
+
+/// A range that cannot be looked through is another reason than that none is given.
+#[test]
+fn a_range_that_is_too_wide_is_told_as_that() {
+    let too_wide = common::osorio_with(&[("rpm_min", "0.001")]);
+    let text = common::osorio_text(&[]);
+    let none = Model::parse("none.toml", text.split("[study]").next().unwrap()).unwrap();
+    let found = compare(&too_wide, &none, External::LeftOut, &Unwatched).unwrap();
+    assert!(
+        matches!(&found.verdict.a.found, Err(NoVerdict::NotThere(why)) if why.to_string().contains("spans too much"))
+    );
+    assert_eq!(found.verdict.b.found, Err(NoVerdict::NotLookedFor));
 }

@@ -156,3 +156,37 @@ fn a_force_that_is_too_much_is_passed_where_its_closed_form_is() {
     assert_relative_eq!(passes(&own.model(false, false), most, [0.95, 0.99], 2).unwrap(), 0.95, max_relative = 1e-12);
     assert_eq!(passes(&own.model(false, false), most, [0.7, 0.89], 3), None);
 }
+
+/// Where a limit is first passed, rpm, of so many speeds of a ball with a restitution on a table of a millimetre.
+fn passed(restitution: f64, limit: (Load, f64), range: [f64; 2], speeds: u32) -> Option<f64> {
+    let ball = crate::attractors::ball().with_number("follower.restitution", restitution).unwrap();
+    let asked = Asked { rpm: Some(range), speeds, limits: vec![limit], ..Asked::default() };
+    design(&ball, &asked, &Unwatched).unwrap().limits[0].speed_rpm
+}
+
+/// A ball that loses little bounces on below the speed at which it leaves the table, if something has begun that. What is not disturbed stays on
+/// the table up to there, `a w^2 = g`, and no limit of an impact is passed below.
+#[test]
+fn a_limit_of_impacts_is_passed_where_the_follower_leaves() {
+    let leaves = (GRAVITY / 0.001).sqrt() * 60.0 / TAU;
+    let below = crate::attractors::ball().with_number("follower.restitution", 0.95).unwrap();
+    assert!(Loads::at(&below, &machine(&below, 0.99 * leaves)).unwrap().impact_speed > 0.3);
+    let found = passed(0.95, (Load::ImpactSpeed, 0.1), [900.0, 960.0], 2).unwrap();
+    assert!(found >= leaves && found < 1.003 * leaves, "{found} {leaves}");
+}
+
+/// `m (g + a w^2)` is the force on a ball that is on the table all round. Beyond, it is not on it where that would be: one that loses little is
+/// nowhere on it, and one that loses all comes down for a part of the revolution that the speed decides.
+#[test]
+fn a_limit_of_the_force_is_passed_only_where_the_follower_is_on_the_cam() {
+    let round = |rpm: f64| GRAVITY + 0.001 * (rpm * TAU / 60.0).powi(2);
+    assert!(round(1200.0) > 20.0);
+    assert_eq!(passed(0.95, (Load::Force, 20.0), [1200.0, 1500.0], 4), None);
+    let force = |rpm: f64| {
+        let ball = crate::attractors::ball().with_number("follower.restitution", 0.0).unwrap();
+        Loads::at(&ball, &machine(&ball, rpm)).unwrap().force
+    };
+    let found = passed(0.0, (Load::Force, 20.0), [1850.0, 1950.0], 2).unwrap();
+    assert!(round(1850.0) > 20.0 && force(1850.0) == 0.0);
+    assert!(force(found) > 20.0 && force(found * 0.998) < 20.0, "{found}");
+}

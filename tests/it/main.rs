@@ -15,6 +15,7 @@ mod bounds;
 mod branches;
 mod cam_corners;
 mod cam_laws;
+mod cam_sheet;
 mod cam_table;
 mod canonical;
 mod certify;

@@ -1,6 +1,6 @@
 //! Is a measured cam smoothed as it should be, are its corners and dwells found, and does what is told of it hold of the true cam?
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use approx::assert_abs_diff_eq;
 use corner_impact::cam::{Cam, Corner, Law, Segment, Side};
@@ -22,6 +22,7 @@ use serde_json::{Value, json};
 
 use crate::design_numbers::{OWN, asked, rpm};
 use crate::snapshots;
+use crate::study_numbers::resolution;
 
 const SPLINES: &str = include_str!("../../golden/derived/smoothing_spline.json");
 
@@ -1006,4 +1007,114 @@ fn corner_impacts_of_a_measured_cam_are_known_as_well_as_they_were() {
         }
     }
     snapshots::settings().bind(|| insta::assert_snapshot!("measured-events", known));
+}
+
+/// The paper's cam as a table of micrometres, its angles counted from one, in degrees, and its dwells where they are drawn.
+fn counted_from(zero: f64) -> Model {
+    let dwells = [[160.0, 200.0], [270.0, 450.0]].map(|dwell| {
+        let start = (dwell[0] - zero).rem_euclid(360.0);
+        [start, start + dwell[1] - dwell[0]]
+    });
+    the_papers_cam(zero, &json!({ "dwells_deg": dwells }))
+}
+
+fn the_papers_cam(zero: f64, more: &Value) -> Model {
+    let paper = crate::common::osorio();
+    let cam = crate::common::cam(&paper);
+    let lift = |k: u32| (cam.lift(f64::from(k).to_radians()).value * 1e6).round() * 1e-6;
+    let mut rows: Vec<(f64, f64)> = (0..360).map(|k| ((f64::from(k) - zero).rem_euclid(360.0), lift(k))).collect();
+    rows.sort_by(|one, two| one.0.total_cmp(&two.0));
+    let follower = serde_json::to_value(paper.follower).unwrap();
+    Model::of_document("the paper's cam", &json!({ "follower": follower, "cam": smoothing(&rows, more) })).unwrap()
+}
+
+/// Where angles are counted from is all one, also where a table as likely has the corner, or the other impact, on the other side of angle 0.
+#[test]
+fn a_corner_impact_beside_angle_0_is_known_as_well_as_any() {
+    let found = |zero: f64| {
+        let located = locate(&counted_from(zero), Study { rpm_min: 735.5, rpm_max: 736.5 }, 1, &Unwatched).unwrap();
+        let [found] = &located.found[..] else { panic!("{zero} {:?}", located.found) };
+        let angles: Vec<f64> = found.at.cycle.impacts.iter().map(|impact| impact.cam_angle.to_degrees()).collect();
+        (found.at.speed_rpm(), found.speed_error.unwrap(), angles)
+    };
+    let (speed, error, angles) = found(0.0);
+    assert!((speed - 736.110_8).abs() <= error && error < 0.5, "{speed} {error}");
+    let [corner, other] = angles[..] else { panic!("{angles:?}") };
+    for zero in [corner + 1e-5, other] {
+        let (there, known, _) = found(zero);
+        assert!((there / speed - 1.0).abs() < 1e-9, "{there} {speed}");
+        assert!((known / error - 1.0).abs() < 0.3, "{known} {error}");
+    }
+}
+
+/// The end of a dwell that is found in the rows is put inside of where the cam leaves it: what is met there is no corner of the cam.
+#[test]
+fn where_a_dwell_is_found_to_end_is_no_corner() {
+    let range = Study { rpm_min: 735.5, rpm_max: 737.0 };
+    let count = |model: &Model| locate(model, range, 1, &Unwatched).unwrap().found.len();
+    assert_eq!([counted_from(0.0), the_papers_cam(0.0, &json!({}))].each_ref().map(count), [1, 0]);
+}
+
+/// The flip of the paper's machine.
+#[test]
+fn a_flip_of_a_measured_cam_is_known_to_within_what_is_said() {
+    let resolution = Resolution { step: Step::at_most(0.05), starts: 2, two_impacts: false };
+    let survey = speeds(&the_papers_cam(0.0, &json!({})), [739.2, 739.36], resolution, &Unwatched).unwrap();
+    let ends: Vec<&Change> = survey.attractors.iter().flat_map(|one| one.birth.iter().chain(&one.death)).collect();
+    let flip = ends.iter().find(|end| end.cause.name() == "flip").unwrap();
+    let error = flip.error.unwrap();
+    assert!((flip.rpm - 739.319_780).abs() <= error && error < 1.0, "{} ± {error}", flip.rpm);
+}
+
+/// A ball on a table `a cos(theta + 2.5 deg)` of a millimetre, measured in rows of 5 degrees to its hundred thousandths.
+fn ball_on_rows() -> Model {
+    let lift = |row: u32| (1e8 * 0.001 * (5.0 * f64::from(row) + 2.5).to_radians().cos()).round() / 1e8;
+    let rows: Vec<(f64, f64)> = (0..72).map(|row| (5.0 * f64::from(row), lift(row))).collect();
+    let follower =
+        json!({ "mass": 1, "damping": 0, "stiffness": 0, "gravity": 9.81, "rest_position": 0, "restitution": 0.8 });
+    Model::of_document("ball", &json!({ "follower": follower, "cam": smoothing(&rows, &json!({})) })).unwrap()
+}
+
+/// `m (g - a w^2)` presses least on the ball, where the table is highest: within what the rows leave open, which is not nothing.
+#[test]
+fn the_force_on_a_measured_cam_is_as_far_off_as_is_said() {
+    let asked = Asked { rpm: Some([600.0, 800.0]), speeds: 3, ..Asked::default() };
+    for at in design(&ball_on_rows(), &asked, &Unwatched).unwrap().forces {
+        let (omega, error) = (at.rpm * TAU / 60.0, at.error.unwrap());
+        let off = (at.least.value - (9.81 - 0.001 * omega * omega)).abs();
+        assert!(off <= error && error < 5e-3, "{off} {at:?}");
+    }
+}
+
+/// The motion of one impact begins in a fold at `a w^2 (1 + r) = pi g (1 - r)`: within what the rows leave open.
+#[test]
+fn a_fold_on_a_measured_cam_is_as_far_off_as_is_said() {
+    let fold = (PI * 9.81 * 0.2 / 1.8 / 0.001).sqrt() * 60.0 / TAU;
+    let found = speeds(&ball_on_rows(), [555.0, 560.0], resolution(5.0, 2), &Unwatched).unwrap();
+    let birth = found.attractors.iter().find(|it| it.impacts == Some(1)).unwrap().birth.as_ref().unwrap();
+    let error = birth.error.unwrap();
+    assert_eq!(birth.cause, Cause::Fold);
+    assert!((birth.rpm - fold).abs() <= error && error < 0.05, "{} {error}", birth.rpm);
+}
+
+/// The paper's cam in rows of two degrees to a thousandth of a millimetre, its corners as they are drawn: cams that are as likely have its corner
+/// impact, too, and the true one is no farther off than they are.
+#[test]
+fn a_corner_impact_of_a_measured_cam_is_as_far_off_as_is_said() {
+    let paper = crate::common::osorio();
+    let (cam, follower) = (crate::common::cam(&paper), paper.follower);
+    let lift = |degrees: f64| (cam.lift(degrees.to_radians()).value * 1e6).round() / 1e6;
+    let rows: Vec<(f64, f64)> = (0..180).map(|row| 2.0 * f64::from(row)).map(|angle| (angle, lift(angle))).collect();
+    let corners: Vec<f64> = cam.corners().iter().map(|corner| corner.angle.to_degrees()).collect();
+    let document = json!({
+        "follower": { "mass": follower.mass, "damping": follower.damping, "stiffness": follower.stiffness,
+            "gravity": follower.gravity, "rest_position": follower.rest_position, "restitution": follower.restitution },
+        "cam": smoothing(&rows, &json!({ "corners_deg": corners })),
+        "study": { "rpm_min": 600.0, "rpm_max": 760.0 },
+    });
+    let found = verify(&Model::of_document("paper", &document).unwrap(), External::LeftOut).unwrap();
+    let open = found.measured.unwrap();
+    let (error, _) = open.error.unwrap();
+    assert!((found.at.speed_rpm() - 673.234445).abs() <= error && error < 0.5, "{} {error}", found.at.speed_rpm());
+    assert!(open.verdicts.iter().map(|told| told.cams).sum::<usize>() > 10, "{:?}", open.verdicts);
 }

@@ -5,10 +5,10 @@ use corner_impact::flight::State;
 use corner_impact::model::Model;
 use corner_impact::orbit::{Course, Search, search};
 use corner_impact::section::StroboscopicMap;
-use corner_impact::simulate::angular_velocity;
+use corner_impact::simulate::{EventKind, angular_velocity};
 use corner_impact::study::StudyError;
 use corner_impact::study::attractors::Patience;
-use corner_impact::study::basins::boundary::border;
+use corner_impact::study::basins::boundary::{approach, border};
 use corner_impact::study::basins::{Curve, Extent, Grid, Reversed, Saddle, Section};
 use serde_json::{Value, json};
 
@@ -380,4 +380,118 @@ fn a_run_backwards_is_as_exact_as_its_motion_is_large() {
         assert_abs_diff_eq!(found.position, 0.0, epsilon = 1e-12 * size);
         assert_relative_eq!(found.velocity, before.velocity, max_relative = 1e-12);
     }
+}
+
+/// How far two states are from each other, m: velocities count over omega.
+fn apart(one: State, two: State, omega: f64) -> f64 {
+    (one.position - two.position).hypot((one.velocity - two.velocity) / omega)
+}
+
+/// A ball on a table has a saddle between the fold and the flip of its orbit. What parts the basins is followed in steps of a thousandth of the
+/// picture's height, and twice that height away from the saddle, wherever the picture is.
+#[test]
+fn curves_are_as_fine_and_as_long_as_the_picture_is_high() {
+    let ball = lifted_ball();
+    let section = Section::new(&ball, 700.0, 1.0).unwrap();
+    let omega = section.map.machine.angular_velocity();
+    let saddle = saddle(&section.map).state;
+    let height = 0.001;
+    let positions = [saddle.position - 0.5 * height, saddle.position + 0.5 * height];
+    let grid = Grid { positions, ..section.grid([1, 1], None, None).unwrap() };
+    let basins = grid.basins(&section.map.machine, Patience::default(), Some(1)).unwrap();
+    let found = section.border(&basins);
+    assert_eq!(found.curves.len(), 2);
+    let all = found.curves.iter().flat_map(Curve::points);
+    let farthest = all.map(|it| apart(it, saddle, omega)).fold(0.0, f64::max);
+    let steps = found.curves.iter().flat_map(|it| &it.pieces).flat_map(|piece| piece.windows(2));
+    let longest = steps.map(|pair| apart(pair[0], pair[1], omega)).fold(0.0, f64::max);
+    assert!(longest <= 1e-3 * height && longest > 0.5e-3 * height, "{longest}");
+    assert!(farthest <= 2.0 * height && farthest > 1.9 * height, "{farthest}");
+}
+
+/// Where the follower is damped, a run backwards gains what the run forwards lost; and whatever is said to have been a revolution before leads
+/// here in flights and impacts, wherever on a section it is looked for.
+#[test]
+fn what_was_a_revolution_before_leads_here() {
+    let text = "[follower]\nmass = 1.0\ndamping = 2.0\nstiffness = 100.0\ngravity = 9.81\nrest_position = 0.0\nrestitution = 0.8\n\
+                [cam]\nlaw = \"polynomial\"\n\
+                [[cam.segment]]\nstart_deg = 0.0\ncoefficients = [0.01, 0.0, 0.001]\n\
+                [[cam.segment]]\nstart_deg = 180.0\ncoefficients = [0.019869604401089358, -0.006283185307179586, 0.001]\n";
+    let model = Model::parse("damped.toml", text).unwrap();
+    for (rpm, angle) in [(300.0, 0.0), (300.0, 2.0), (500.0, 1.0)] {
+        let map = map(&model, rpm, angle);
+        let reversed = Reversed::new(&model.follower, &map).unwrap();
+        let omega = map.machine.angular_velocity();
+        let cam = map.machine.cam().lift(angle);
+        let (mut told, mut none) = (0, 0);
+        for index in 0..2000 {
+            let [row, column] = [f64::from(index / 40), f64::from(index % 40)];
+            let state =
+                State { position: cam.value + 2e-4 * row, velocity: omega * (cam.slope + 5e-4 * (column - 19.5)) };
+            let Some(before) = reversed.apply(state) else {
+                none += 1;
+                continue;
+            };
+            told += 1;
+            let again = map.apply(before).unwrap();
+            assert!(again.events.iter().all(|event| event.kind == EventKind::Impact), "{state:?}");
+            assert!(
+                apart(again.state, state, omega) < 1e-9 * (before.position.abs() + (before.velocity / omega).abs()),
+                "{state:?} {again:?}"
+            );
+        }
+        assert!(told > 1800 && none > 10, "{told} {none}");
+    }
+}
+
+/// However strongly it is damped, with a spring or without one; and of a cam whose lift is 0 on the way, which is its own mirror image, too.
+#[test]
+fn a_run_backwards_undoes_one_forwards_whatever_damps_it() {
+    for (damping, stiffness) in [(0.0, 0.0), (0.1, 0.0), (2.0, 100.0), (20.0, 100.0), (21.0, 100.0)] {
+        let text = format!(
+            "[follower]\nmass = 1.0\ndamping = {damping:?}\nstiffness = {stiffness:?}\ngravity = 9.81\nrest_position = 0.0\n\
+             restitution = 0.8\n[cam]\nlaw = \"harmonic\"\noffset = 0.0\namplitudes = [0.001]\nphases_deg = [0.0]\n"
+        );
+        let model = Model::parse("ball.toml", &text).unwrap();
+        let map = map(&model, 700.0, 0.0);
+        let reversed = Reversed::new(&model.follower, &map).unwrap();
+        let cam = map.machine.cam().lift(0.0);
+        let states = (0..400).map(|index| {
+            let [row, column] = [f64::from(index / 20), f64::from(index % 20)];
+            State { position: cam.value + 1e-4 * row, velocity: 0.01 * (column - 9.5) }
+        });
+        let undone = states.filter_map(|state| map.apply(state).ok().map(|image| (state, image.state)));
+        let undone = undone.filter(|(state, image)| {
+            let omega = map.machine.angular_velocity();
+            reversed.apply(*image).is_some_and(|before| apart(before, *state, omega) < 1e-7)
+        });
+        let count = undone.count();
+        assert!(count > 200, "{damping} {stiffness}: {count}");
+    }
+}
+
+/// What comes nearest to the stable manifold is on the unstable one, and where it has just come as far away as asked for: both are straight there.
+#[test]
+fn what_comes_nearest_is_on_the_unstable_manifold() {
+    let (ball, away) = (lifted_ball(), 1e-5);
+    let extent = Extent { stretches: 20, first: 1e-9, finest: 1e-5, farthest: 4e-3 };
+    for angle in [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0] {
+        let map = map(&ball, 700.0, angle);
+        let (saddle, omega) = (saddle(&map), map.machine.angular_velocity());
+        let reversed = Reversed::new(&ball.follower, &map).unwrap();
+        for sign in [1.0, -1.0] {
+            let stable = Curve::stable(&reversed, &saddle, sign, &extent);
+            let unstable = Curve::unstable(&map, &saddle, sign, &extent);
+            let found = approach(&map, &saddle, sign, &stable, away, [20, 3]).unwrap();
+            assert_relative_eq!(found.distance, stable.distance(found.nearest), max_relative = 1e-9);
+            assert!(unstable.distance(found.nearest) < 1e-9, "{angle}: {found:?}");
+            let from_saddle = apart(found.nearest, saddle.state, omega);
+            assert!((away..=saddle.unstable.0.powi(2) * away).contains(&from_saddle), "{angle}: {found:?}");
+        }
+    }
+}
+
+/// A ball on a table that is above where lifts are 0.
+fn lifted_ball() -> Model {
+    ball().with_number("cam.offset", 0.01).unwrap()
 }

@@ -5,12 +5,13 @@ use corner_impact::estimate::{ErrorIs, Estimate};
 use corner_impact::model::Model;
 use corner_impact::orbit::ending::{Ending, Kind, Resting};
 use corner_impact::progress::Unwatched;
-use corner_impact::study::attractors::{Attractors, AttractorsError, Wandering, attractors};
+use corner_impact::study::attractors::rows::rows;
+use corner_impact::study::attractors::{Attractors, AttractorsError, Cause, Change, Here, Wandering, attractors};
 use corner_impact::study::speeds::{At, Attractor, Speeds, speeds};
 
 use crate::attractors::ball;
 use crate::common;
-use crate::orbit_numbers::model;
+use crate::orbit_numbers::{machine, model};
 use crate::study_numbers::resolution;
 
 fn attractor(at: Vec<At>) -> Attractor {
@@ -148,4 +149,71 @@ fn two_orbits_of_one_kind_are_not_mixed_up() {
         first.push(row.at.values().filter(|part| **part == 0).count());
     }
     assert!(first.len() == 2 && first.iter().all(|count| *count > 0), "{first:?}");
+}
+
+/// The motions over a grid of a few speeds, rpm, from two starts each: turns and impacts, lowest and highest speed, and why they begin and end.
+type Motions = Vec<(Option<(u64, u64)>, [f64; 2], [Option<Cause>; 2])>;
+
+/// Those of a ball on a table in another unit of time, in which all speeds are `2^power` times as high; as if no run had come to an orbit at the
+/// speed of an index.
+fn motions(grid: &[f64], power: i32, unseen: Option<usize>) -> Motions {
+    let (ball, scale) = (ball(), 2.0_f64.powi(power));
+    let ball = ball.with_number("follower.gravity", ball.follower.gravity * scale * scale).unwrap();
+    let machine = machine(&ball, grid[0] * scale);
+    let mut grid: Vec<_> = grid.iter().map(|rpm| Ok(Here::new(&machine, *rpm * scale, 2).unwrap())).collect();
+    if let Some(Ok(here)) = unseen.and_then(|index| grid.get_mut(index)) {
+        here.parts.retain(|part| !matches!(part.ending, Ending::Orbit(_)));
+    }
+    let rows = rows(&ball, &machine, &mut grid);
+    let cause = |end: &Option<Change>| end.as_ref().map(|end| end.cause);
+    rows.iter().map(|row| (row.period(), row.rpm.map(|rpm| rpm / scale), row.ends.each_ref().map(cause))).collect()
+}
+
+/// The motion of one impact begins and ends where the textbook has it, and where one ends in a flip that of twice as many begins, however far
+/// apart the speeds are that are looked at.
+#[test]
+fn flips_of_a_ball_follow_one_another_from_speeds_that_are_far_apart() {
+    for last in [1000.0, 80_000.0] {
+        let found = motions(&[900.0, last], 0, None);
+        let of = |impacts: u64| found.iter().find(|(period, ..)| *period == Some((impacts, impacts))).unwrap();
+        let one = of(1);
+        assert_relative_eq!(one.1[0], 558.804_078_677, max_relative = 1e-11);
+        assert_relative_eq!(one.1[1], 978.740_280_410, max_relative = 1e-11);
+        assert_eq!(one.2, [Some(Cause::Fold), Some(Cause::Flip)]);
+        for (first, then) in [1, 2, 4].map(|impacts| (of(impacts), of(2 * impacts))) {
+            assert_eq!((first.2[1], then.2), (Some(Cause::Flip), [Some(Cause::Flip); 2]), "{last}: {then:?}");
+            assert_relative_eq!(first.1[1], then.1[0], max_relative = 1e-12);
+        }
+    }
+}
+
+/// In a unit of time that is a power of two all of it is the same to the last bit.
+#[test]
+fn motions_of_a_ball_are_the_same_in_any_unit_of_time() {
+    let found = motions(&[900.0, 1000.0], 0, None);
+    assert!(found.len() > 10 && motions(&[900.0, 1000.0], 20, None) == found, "{found:?}");
+}
+
+/// An orbit that no run comes to at one speed of three is the same orbit on either side of it.
+#[test]
+fn an_orbit_that_runs_miss_at_one_speed_is_one() {
+    for power in [0, 20, -20] {
+        let found = motions(&[700.0, 800.0, 900.0], power, Some(1));
+        assert_eq!(found.iter().filter(|(period, ..)| *period == Some((1, 1))).count(), 1, "{power}: {found:?}");
+    }
+}
+
+/// A ball that loses all is thrown once a revolution, comes down and rests: an impact a revolution for as many as a picture has room for. One that
+/// bounces before it rests has more than there is room for.
+#[test]
+fn a_picture_has_as_many_impacts_as_there_are_or_as_there_is_room_for() {
+    for (restitution, rpm, shown) in [(0.0, 1300.0, 120), (0.3, 1100.0, 600)] {
+        let ball = ball().with_number("follower.restitution", restitution).unwrap();
+        let found = speeds(&ball, [rpm, rpm + 1.0], resolution(1.0, 2), &Unwatched).unwrap();
+        let [one] = &found.attractors[..] else { panic!("{found:?}") };
+        for at in &one.at {
+            let impacts = at.ending.period().unwrap().1;
+            assert_eq!((at.impact_angles.len(), (120 * impacts).min(600)), (shown, shown as u64), "{at:?}");
+        }
+    }
 }
