@@ -7,7 +7,7 @@ that fails. A first run of each test notes what it reaches.
 
     python tests/mutants/mutants.py                   every mutant of every stage: some hours
     python tests/mutants/mutants.py simulate/again    those in files whose path has these words
-    python tests/mutants/mutants.py --sample 100 --seed 7      so many, drawn by the seed; or --seconds 60, as many as fit
+    python tests/mutants/mutants.py --parts 100 --seed 7       one part of a hundred, drawn by the seed; or --seconds 60, as many as fit
     python tests/mutants/mutants.py --out tried.jsonl          in several sittings: the next goes on where one was broken off
 
 What survives and is not in explained.toml, with a reason or as open, is listed, and the exit code is 1.
@@ -96,8 +96,8 @@ def flat(text):
 class Schema:
     """A file with all its mutants in it."""
 
-    def __init__(self, path, parser, unviable, mutants):
-        self.path, self.unviable, self.mutants = path, unviable, mutants
+    def __init__(self, path, parser, viable, mutants):
+        self.path, self.viable, self.mutants = path, viable, mutants
         self.source = (ROOT / path).read_bytes()
         # In what is written: from where to where a mutant stands, to tell which of them the compiler complains about.
         self.places = []
@@ -122,7 +122,7 @@ class Schema:
             key = json.dumps(mutant)
             self.repeated[key] += 1
             mutant |= {"line": node.start_point[0] + 1, "key": f"{key}#{self.repeated[key]}"}
-            if mutant["key"] not in self.unviable:
+            if self.viable(mutant["key"]):
                 ids.append((len(self.mutants), replacement))
                 self.mutants.append(mutant)
         return ids
@@ -309,10 +309,14 @@ def sources(words):
                 yield path.relative_to(ROOT)
 
 
-def schemata(unviable, words):
+def schemata(viable, words):
     parser = tree_sitter.Parser(tree_sitter.Language(tree_sitter_rust.language()))
     mutants = []
-    return [Schema(path, parser, unviable, mutants) for path in sources(words)], mutants
+    return [Schema(path, parser, viable, mutants) for path in sources(words)], mutants
+
+
+def number(text):
+    return int.from_bytes(hashlib.sha256(text.encode()).digest())
 
 
 def changed(path, text):
@@ -333,8 +337,6 @@ def copied():
         (COPY / ".venv").symlink_to(ROOT / ".venv")
     # A mutant may be unreachable, unused or absurd: no lint.
     manifest = re.sub(r"(\[workspace\.lints\.\w+\]\n)(.+\n)*", r"\1", (ROOT / "Cargo.toml").read_text())
-    # Unoptimised, simulations are slow; more than a little optimised, the compiler is.
-    manifest = manifest.replace("opt-level = 2                   # 3", "opt-level = 1                   # 3")
     changed(COPY / "Cargo.toml", manifest)
 
 
@@ -345,8 +347,8 @@ def cargo(words):
     return done, [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
 
 
-def built(words):
-    """The binary with the tests of all mutants that compile of these files, and the mutants."""
+def built(words, drawn):
+    """The binary with the tests of all drawn mutants that compile of these files, and the mutants."""
     known = COPY / "unviable.json"
     copied()
     if not (COPY / "target" / "release").exists() and (ROOT / "target" / "release").exists():
@@ -356,7 +358,7 @@ def built(words):
             subprocess.run(["cp", "-a", ROOT / "target" / "release" / part, COPY / "target" / "release" / part], check=True)
     unviable = set(json.loads(known.read_text())) if known.exists() else set()
     while True:
-        files, mutants = schemata(unviable, words)
+        files, mutants = schemata(lambda key: key not in unviable and drawn(key), words)
         for file in files:
             changed(COPY / file.path, file.text)
         library = (ROOT / "src" / "lib.rs").read_text() + SWITCH.replace("COUNT", str(len(mutants)))
@@ -463,8 +465,8 @@ def reached(binary, longest, words, jobs):
 def main():
     ask = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     ask.add_argument("words", nargs="*", help="parts of the paths of the files to look at")
-    ask.add_argument("--sample", type=int, help="so many mutants of each stage")
-    ask.add_argument("--seed", default="", help="what draws them")
+    ask.add_argument("--parts", type=int, default=1, help="one part of so many, the same mutants each time that it is drawn")
+    ask.add_argument("--seed", default="", help="what draws the part, and the order")
     ask.add_argument("--seconds", type=float, default=float("inf"), help="begin no mutant after so long")
     ask.add_argument("--longest", type=float, default=10.0, help="no test that takes longer, s")
     ask.add_argument("--tests", nargs="*", default=[], help="parts of the names of the tests to ask, instead of all")
@@ -480,18 +482,15 @@ def main():
                         if file != "why" and Path(file) in sources(asked.words) for function, code, *others in known for other in others}
                        for kind in ("reason", "open"))
 
-    binary, mutants = built(asked.words)
-    gone = (told | left_open) - {name(mutant) for mutant in mutants}
+    gone = (told | left_open) - {name(mutant) for mutant in schemata(lambda key: True, asked.words)[1]}
     if gone:
         sys.exit(f"listed, and there is no such mutant: {sorted(gone)}")
+    binary, mutants = built(asked.words, lambda key: (number(key) - number(asked.seed)) % asked.parts == 0)
     # A place notes the number of its first mutant.
     chosen = list(range(len(mutants)))
     stage = lambda id: Path(mutants[id]["file"]).parts[1].removesuffix(".rs")
     in_all = Counter(map(stage, chosen))
     random.Random(asked.seed).shuffle(chosen)
-    if asked.sample:
-        drawn = Counter()
-        chosen = [id for id in chosen if drawn.update([stage(id)]) or drawn[stage(id)] <= asked.sample]
     if asked.list:
         for id in sorted(chosen):
             print(*name(mutants[id]), sep=" | ")
