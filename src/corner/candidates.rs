@@ -65,9 +65,9 @@ fn candidate(cam: &Cam, point: &BranchPoint) -> Option<Candidate> {
         return None;
     }
     let corner = *cam.corners().iter().find(|corner| corner.segment == segment)?;
-    // Where the velocity jumps, both sides have an orbit on the corner, at speeds of their own.
     let old = &cycle.impacts[impact];
-    // A cam of one segment ends where it begins.
+    // Where the velocity jumps, both sides have an orbit on the corner, at speeds of their own. A cam of one segment has both sides in it:
+    // it ends where it begins.
     let is_before = old.segment != segment || cam.segments().len() == 1 && old.cam_angle > PI;
     let side = if jump_order == 1 && is_before { Side::Minus } else { Side::Plus };
     let on_corner = at_corner(cam, &corner, side, 0, old.velocity_before);

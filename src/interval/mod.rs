@@ -322,7 +322,7 @@ impl Mul for Interval {
     #[inline]
     fn mul(self, other: Self) -> Self {
         let products = [self.low * other.low, self.low * other.high, self.high * other.low, self.high * other.high];
-        // 0 times infinity is no number, and would be lost among the others.
+        // 0 times infinity is no number, and would be lost among the others; what is infinite both ways is everything, too.
         let [a, b, c, d] = products;
         if (a + b + (c + d)).is_nan() {
             return Self::EVERYTHING;
