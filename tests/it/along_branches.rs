@@ -1,6 +1,8 @@
 //! Does a branch keep what it promises of its points: which orbits are on it, what is told of where something changes, and how many points
 //! there are?
 
+use std::f64::consts::{PI, TAU};
+
 use corner_impact::cam::Cam;
 use corner_impact::model::Model;
 use corner_impact::orbit::branch::{Bifurcation, Branch, BranchPoint, End, Following, Kind};
@@ -8,6 +10,7 @@ use corner_impact::orbit::{Course, Parameter, PeriodicOrbit, Search};
 use corner_impact::progress::Unwatched;
 use corner_impact::simulate::angular_velocity;
 use corner_impact::study::continuation::branches;
+use serde_json::json;
 
 use crate::bounds::ball;
 use crate::orbit_numbers::{model, orbits};
@@ -449,6 +452,27 @@ fn a_branch_passes_the_same_points_however_long_its_steps_are() {
     for longest_step in [0.05, 0.1, 0.3] {
         let values = at(longest_step);
         assert!(values.iter().zip(&finest).all(|(one, other)| (one - other).abs() < 1e-7), "{values:?} {finest:?}");
+    }
+}
+
+/// `a omega^2 (1 + r) = pi g (1 - r)`, with the impact a quarter of a turn from the top: in rows of five degrees on a row, or a little before or
+/// behind it.
+#[test]
+fn a_fold_is_told_wherever_a_row_of_the_cam_is() {
+    let fold = (PI * 9.81 * 0.2 / 1.8 / 0.001).sqrt() * 60.0 / TAU;
+    for turned in [0.0, 1e-12, -1e-12, 1e-6, -1e-6, 1e-3, -1e-3, 0.03, -0.03, 1.0] {
+        let lift = |row: u32| 0.001 * (5.0 * f64::from(row) + turned).to_radians().cos();
+        let rows: Vec<(f64, f64)> = (0..72).map(|row| (5.0 * f64::from(row), lift(row))).collect();
+        let cam = json!({ "law": "table", "spline": "quintic", "rows": rows });
+        let follower =
+            json!({ "mass": 1, "damping": 0, "stiffness": 0, "gravity": 9.81, "rest_position": 0, "restitution": 0.8 });
+        let model = Model::of_document("ball", &json!({ "follower": follower, "cam": cam })).unwrap();
+        let found = orbits(&model, 700.0, 1);
+        let orbit = found.iter().find(|orbit| orbit.impacts().count() == 1).unwrap();
+        let branch = Branch::through(&model, 700.0, orbit, &following(&model, "rpm", [540.0, 720.0], 0.05)).unwrap();
+        let folds = branch.points.iter().filter(|point| is_special(point, |kind| kind == Kind::Fold));
+        let told: Vec<f64> = folds.map(|point| point.rpm).collect();
+        assert!(matches!(told[..], [rpm] if (rpm - fold).abs() < 1e-9 * fold), "{turned} {told:?}");
     }
 }
 

@@ -48,7 +48,7 @@ impl<'a> Stride<'a> {
         };
         let ahead = tangent[tangent.len() - 1] * direction >= 0.0;
         self.from.tangent = if ahead { tangent } else { -tangent };
-        Walk { stride: self, fresh: None, points: Vec::new() }.run()
+        Walk { stride: self, fresh: None, signs: Vec::new(), points: Vec::new() }.run()
     }
 
     /// Why there is no way from the start: the model may allow a step to neither side, for two reasons.
@@ -98,6 +98,8 @@ struct Walk<'a> {
     stride: Stride<'a>,
     /// What the cycle was changed for, until a step has been made with the new one.
     fresh: Option<Exit>,
+    /// Of what may be passed, the signs on the side that a smooth corner was come to from.
+    signs: Vec<bool>,
     points: Vec<BranchPoint>,
 }
 
@@ -265,39 +267,53 @@ impl Walk<'_> {
             }
         }
         let end_point = first.as_ref().map_or(next, |located| located.point.clone());
-        let mut points = Vec::new();
-        let mut folds = false;
-        for cut in self.stride.passed() {
-            // At a fold a multiplier is 1 as well.
-            if cut == Cut::Branching && folds {
-                continue;
-            }
-            let at = |point: &CurvePoint| self.stride.measure(&problem, cut, point);
-            let (clear, reach) = match &first {
-                // No multiplier is -1 there: one that passes -1 shortly before is told as well.
-                Some(Located { cut: Cut::Halved, step, .. }) if cut == Cut::Flip => &part_way(0.95 * step)?,
-                _ => &clear,
-            };
-            // Just short of a graze, where the matrix has a pole.
-            if (at(&self.stride.from)? < 0.0) != (at(clear)? < 0.0) && self.fresh.is_none() {
-                let located = self.stride.locate(&problem, cut, *reach)?;
-                folds |= cut == Cut::Fold;
-                // A sign that changes through infinity is no root.
-                let small = if cut == Cut::Branching { tolerance::BRANCHING } else { tolerance::SAME_ORBIT };
-                if located.residual > small.value {
-                    continue;
-                }
-                points.push((
-                    located.step,
-                    self.stride.branch_point(&problem, &located.point, self.stride.special(&problem, &located)?)?,
-                ));
-            }
-        }
-        points.sort_by(|one, two| one.0.total_cmp(&two.0));
         let special = match &first {
             Some(located) => self.stride.special(&problem, located)?,
             None => None,
         };
+        let smooth = match &first {
+            Some(Located { cut: Cut::Exit(Exit::Corner { .. }), .. }) => {
+                special.is_none_or(|special| special.kind.is_smooth_corner())
+            }
+            _ => false,
+        };
+        let mut points = Vec::new();
+        let mut folds = false;
+        let mut signs = Vec::new();
+        for (index, cut) in self.stride.passed().into_iter().enumerate() {
+            let at = |point: &CurvePoint| self.stride.measure(&problem, cut, point);
+            let (end, reach) = match &first {
+                // No multiplier is -1 there: one that passes -1 shortly before is told as well.
+                Some(Located { cut: Cut::Halved, step, .. }) if cut == Cut::Flip => &part_way(0.95 * step)?,
+                Some(Located { step, point, .. }) if smooth => &(point.clone(), *step),
+                // Just short of a graze, where the matrix has a pole.
+                _ => &clear,
+            };
+            let [from, to] = [at(&self.stride.from)?, at(end)?];
+            signs.push(to < 0.0);
+            let before = self.signs.get(index).copied().unwrap_or(from < 0.0);
+            let pole = matches!(self.fresh, Some(Exit::Touch { .. } | Exit::Tangent { .. }));
+            // At a fold a multiplier is 1 as well.
+            if before == (to < 0.0) || pole || cut == Cut::Branching && folds {
+                continue;
+            }
+            folds |= cut == Cut::Fold;
+            let located = if (from < 0.0) != (to < 0.0) {
+                self.stride.locate(&problem, cut, *reach)?
+            } else {
+                // At the corner that the step begins at.
+                let (point, value) = (self.stride.from.clone(), self.stride.value(&self.stride.from.unknowns));
+                Located { step: 0.0, cut, point, bracket: [value; 2], residual: from.abs() }
+            };
+            // A sign that changes through infinity is no root.
+            let small = if cut == Cut::Branching { tolerance::BRANCHING } else { tolerance::SAME_ORBIT };
+            if located.residual > small.value {
+                continue;
+            }
+            let special = self.stride.special(&problem, &located)?;
+            points.push((located.step, self.stride.branch_point(&problem, &located.point, special)?));
+        }
+        points.sort_by(|one, two| one.0.total_cmp(&two.0));
         let mut last = self.stride.branch_point(&problem, &end_point, special)?;
         if let Some(Located { cut: Cut::Exit(exit @ Exit::Tangent { .. }), .. }) = first {
             // The impact that is none has no saltation matrix; the orbit without it has one.
@@ -322,6 +338,7 @@ impl Walk<'_> {
             self.points.push(last);
         }
         self.stride.from = end_point;
+        self.signs = if smooth && self.stride.held.is_none() { signs } else { Vec::new() };
         match first {
             Some(Located { cut: Cut::Range(_), .. }) => Ok(Some(End::Range)),
             Some(Located { cut: Cut::Halved, .. }) => Ok(Some(End::Shorter)),

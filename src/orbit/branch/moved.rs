@@ -50,8 +50,10 @@ impl<'a> Event<'a> {
             let (found, speed) = solved(&family, &cycle, held, rpm)?;
             let (named, _) = renamed(&found, held, &there, &there)?;
             let is_there = named.impacts.iter().zip(&cycle.impacts).all(|(one, two)| one.segment == two.segment);
+            // Where segments meet, each may say that it is on the other.
+            let is_between = (speed - rpm).abs() <= tolerance::CYCLE_CLOSED.value * rpm;
             (cycle, rpm) = (named, speed);
-            if is_there {
+            if is_there || is_between {
                 return Some((cycle, rpm));
             }
         }

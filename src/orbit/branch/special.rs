@@ -81,6 +81,11 @@ impl Bifurcation {
 }
 
 impl Kind {
+    /// Whether the matrix of the orbit is one on both sides of a corner, since what jumps there is beyond the acceleration.
+    pub(crate) fn is_smooth_corner(&self) -> bool {
+        matches!(self, Self::Corner { jump_order: 3.., .. })
+    }
+
     /// What its curve is one of, if it has one.
     pub fn bifurcation(&self) -> Option<Bifurcation> {
         match self {

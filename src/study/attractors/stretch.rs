@@ -162,7 +162,9 @@ fn walk<'a>(
     let kind = middle.first().map(|point| numbers(&point.orbit))?;
     let mut last = middle.first()?.rpm;
     let mut pending: Option<&BranchPoint> = None;
-    for point in points {
+    // A smooth corner changes nothing that a stable orbit depends on.
+    let passed = |point: &&BranchPoint| point.special.is_some_and(|special| special.kind.is_smooth_corner());
+    for point in points.filter(|point| !passed(point)) {
         if point.special.is_some() {
             let is_corner = matches!(point.special, Some(special) if matches!(special.kind, Kind::Corner { .. }));
             // Two special points in a row, or one that ends the motion whatever is beyond.
