@@ -394,7 +394,9 @@ def built(words, drawn):
 
 def limited(seconds):
     resource.setrlimit(resource.RLIMIT_AS, (6 << 30, 6 << 30))
-    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 1))
+    # Of a process to the millisecond; what it starts is limited in whole seconds.
+    signal.setitimer(signal.ITIMER_PROF, seconds)
+    resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(seconds), math.ceil(seconds) + 1))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     os.setpgid(0, 0)
 
@@ -406,7 +408,7 @@ def became(binary, tests, seconds, mutant):
     # Into a file, which is read once the test has ended: what it has started may still hold a pipe.
     with tempfile.TemporaryFile() as said:
         run = subprocess.Popen(words, cwd=COPY, env=os.environ | {"MUTANT": mutant} | ENVIRONMENT,
-                               stdout=said, stderr=subprocess.DEVNULL, preexec_fn=lambda: limited(math.ceil(seconds)))
+                               stdout=said, stderr=subprocess.DEVNULL, preexec_fn=lambda: limited(seconds))
         waited = threading.Timer(10 * seconds, lambda: ended(run.pid))
         waited.start()
         try:
@@ -417,7 +419,7 @@ def became(binary, tests, seconds, mutant):
             ended(run.pid)
         said.seek(0)
         failed = re.findall(r"^test (\S+) \.\.\. FAILED$", said.read().decode(errors="replace"), re.MULTILINE)
-    done = "pass" if run.returncode == 0 else "too long" if run.returncode in (-signal.SIGXCPU, -signal.SIGKILL) else "fail"
+    done = "pass" if run.returncode == 0 else "too long" if run.returncode in (-signal.SIGPROF, -signal.SIGXCPU, -signal.SIGKILL) else "fail"
     return done, failed, used.ru_utime + used.ru_stime
 
 
@@ -449,9 +451,10 @@ def reached(binary, longest, words, jobs):
         notes = COPY / "notes" / name.replace("::", ".")
         notes.unlink(missing_ok=True)
         done, _, took = became(binary, [name], longest, str(notes))
-        if done == "too long":
+        # What it starts counts as well.
+        if done == "too long" or took > longest:
             slow[name] = longest
-        if done == "pass":
+        elif done == "pass":
             tests[name] = [took, sorted({int(line) for line in notes.read_text().split()}) if notes.exists() else []]
 
     (COPY / "notes").mkdir(exist_ok=True)
@@ -530,7 +533,7 @@ def main():
                 return
             # What has caught others of this file, then what is quick.
             reach = sorted(places[place[id]], key=lambda test: tests[test][0] / (1 + kills[mutant["file"], test]))
-        done, most, passed = "pass", 0.5, 0.0
+        done, failed, most, passed = "pass", [], 0.5, 0.0
         while reach and done == "pass" and passed < asked.enough:
             batch = [reach.pop(0)]
             total = tests[batch[0]][0]
@@ -539,7 +542,7 @@ def main():
                 total += tests[batch[-1]][0]
             most *= 2
             passed += total
-            done, failed, _ = became(binary, batch, 5 + 8 * total, str(id))
+            done, failed, _ = became(binary, batch, 2 + 8 * total, str(id))
             with turn:
                 kills.update((mutant["file"], test) for test in failed)
         with turn:
@@ -554,7 +557,7 @@ def main():
                 print("survives:", f"{mutant['file']}:{mutant['line']}", mutant["function"], "|", mutant["code"], "|", mutant["replacement"],
                       "(reached by no test)" if not places[place[id]] else f"(of {len(reach)} tests not asked)" if reach else "", flush=True)
             if out:
-                print(json.dumps(mutant | {"tests": done}), file=out, flush=True)
+                print(json.dumps(mutant | {"tests": done, "failed": failed}), file=out, flush=True)
 
     with ThreadPool(asked.jobs) as pool:
         pool.map(ask_one, chosen, chunksize=1)
