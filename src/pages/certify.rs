@@ -5,8 +5,8 @@ use crate::show::block::{Block, Column, Mark, Span, Table, Words, words};
 use crate::show::digits::Digits;
 use crate::show::{Paged, words};
 use crate::study::certify::{
-    Certificate, Certified, OrbitKind, ProvedCounts, ProvedEigenvalue, ProvedOrbits, ProvedRelease, ProvedResting,
-    ProvedSide, ProvedStart, Round, Unproved,
+    Assumed, Certificate, Certified, OrbitKind, ProvedCounts, ProvedEigenvalue, ProvedOrbits, ProvedRelease,
+    ProvedResting, ProvedSide, ProvedStart, Round, Unproved,
 };
 
 impl Paged for Certified {
@@ -63,6 +63,7 @@ impl Paged for ProvedOrbits {
                 words!["not decided about impacts at ", Words::joined(angles, " and ")]
             }));
         }
+        page.push(hypotheses(self.assumed, ""));
         page
     }
 }
@@ -103,6 +104,7 @@ impl Paged for ProvedCounts {
             [] => "There are no others at any speed of the range, which is proved. Each digit of an event is, but for one unit of the last.".into(),
             _ => words!["The number is not decided from ", Words::joined(undecided, ", from "), "."],
         }));
+        page.push(hypotheses(self.assumed, ""));
         page
     }
 }
@@ -117,6 +119,7 @@ impl Paged for ProvedResting {
                 true => "The cam presses against the follower nowhere: no motion rests on it.",
                 false => "The cam presses against the follower everywhere: one that rests on it stays on it.",
             }));
+            page.push(hypotheses(self.assumed, ""));
             return page;
         }
         let pressed = self.pressed_rad.iter().map(|[low, high]| words![degrees(*low), " to ", degrees(*high)]);
@@ -162,10 +165,7 @@ impl Paged for ProvedResting {
                 "."
             ],
         }));
-        page.push(Block::paragraph(
-            "Hypotheses: the machine's numbers are the decimals of its model file; impacts are instantaneous, by Newton's law, and those that \
-             follow each other without end put the follower to rest.",
-        ));
+        page.push(hypotheses(self.assumed, ", and those that follow each other without end put the follower to rest"));
         page
     }
 }
@@ -250,25 +250,25 @@ fn certificate(of: &Certificate) -> Vec<Block> {
                 ),
             ],
         ),
-        Block::paragraph(hypotheses(of)),
+        hypotheses(of.assumed, ""),
     ]
 }
 
-/// What the theorem is about.
-fn hypotheses(of: &Certificate) -> String {
-    let mut sentence =
-        "Hypotheses: the machine's numbers are the decimals of its model file; free flight follows the equation of \
-                        motion, and impacts are instantaneous, by Newton's law."
-            .to_owned();
-    if let Some(assumed) = of.assumed {
+/// What the proofs are about, with what is said of impacts besides.
+fn hypotheses(assumed: Option<Assumed>, besides: &str) -> Block {
+    let mut sentence = format!(
+        "Hypotheses: the machine's numbers are the decimals of its model file; free flight follows the equation of motion, and impacts are \
+         instantaneous, by Newton's law{besides}."
+    );
+    if let Some(assumed) = assumed {
         sentence += &format!(
-            " The pieces of the cam miss each other by up to {} m and {} m/rad where they meet, as they are typed: the theorem is \
+            " The pieces of the cam miss each other by up to {} m and {} m/rad where they meet, as they are typed: what is proved is \
              about the cam that is left when that is taken out.",
             Digits::Size.text(assumed.lift_m),
             Digits::Size.text(assumed.slope_m_rad),
         );
     }
-    sentence
+    Block::paragraph(sentence)
 }
 
 fn side_entries(mark: &str, side: &ProvedSide) -> Vec<(Words, Words)> {

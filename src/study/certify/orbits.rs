@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
-use super::{CertifyError, ask};
+use super::{Assumed, CertifyError, ask};
 use crate::ball::Ball;
 use crate::known::Known;
 use crate::model::Model;
@@ -23,6 +23,8 @@ pub struct ProvedOrbits {
     pub complete: Vec<usize>,
     /// Where there may be others.
     pub undecided: Vec<UndecidedOrbit>,
+    /// What is taken out of the cam.
+    pub assumed: Option<Assumed>,
 }
 
 document!(ProvedOrbits as it {
@@ -33,6 +35,7 @@ document!(ProvedOrbits as it {
     orbits: it.orbits,
     complete: it.complete,
     undecided: it.undecided,
+    assumed: it.assumed,
 });
 
 /// Where it is not decided whether there is an orbit, or whether it is one of the machine.
@@ -98,6 +101,8 @@ pub struct ProvedCounts {
     pub undecided: Vec<[f64; 2]>,
     /// By rising speed.
     pub events: Vec<ProvedEvent>,
+    /// What is taken out of the cam.
+    pub assumed: Option<Assumed>,
 }
 
 document!(ProvedCounts as it {
@@ -108,6 +113,7 @@ document!(ProvedCounts as it {
     counts: it.counts,
     undecided: it.undecided,
     events: it.events,
+    assumed: it.assumed,
 });
 
 /// The number of orbits at every speed between two; at an event, whose ball says where it is, the nearest doubles.

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
-use super::{CertifyError, ask};
+use super::{Assumed, CertifyError, ask};
 use crate::ball::Ball;
 use crate::known::Known;
 use crate::model::Model;
@@ -24,6 +24,8 @@ pub struct ProvedResting {
     pub looked_at: u64,
     /// The motions that repeat.
     pub periodic: Vec<Round>,
+    /// What is taken out of the cam.
+    pub assumed: Option<Assumed>,
 }
 
 document!(ProvedResting as it {
@@ -35,6 +37,7 @@ document!(ProvedResting as it {
     releases: it.releases,
     looked_at: it.looked_at,
     periodic: it.periodic,
+    assumed: it.assumed,
 });
 
 /// A place where the cam lets go of the follower.
