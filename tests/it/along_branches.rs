@@ -524,3 +524,43 @@ fn steps_along_a_branch_grow_to_the_longest() {
     }
     assert_eq!(seen, 3);
 }
+
+/// A narrow bump on the table, which a ball that is thrown higher touches just before it comes down behind it: the parabola from the
+/// impact is tangent to the bump there, 2 degrees before it ends.
+#[test]
+fn a_graze_just_before_an_impact_is_where_the_parabola_touches() {
+    const BUMP: f64 = 206.0;
+    let coarse = (0..72).map(|part| 5.0 * f64::from(part)).filter(|angle| (angle - BUMP).abs() > 5.0);
+    let mut angles: Vec<f64> = coarse.chain((-7..=7).map(|part| BUMP + 0.4 * f64::from(part))).collect();
+    angles.sort_by(f64::total_cmp);
+    let lift = |degrees: f64| {
+        let beside = (degrees - BUMP) / 0.7;
+        0.1 + 0.01 * degrees.to_radians().cos() + 9e-4 * (-0.5 * beside * beside).exp()
+    };
+    let rows: Vec<[f64; 2]> = angles.iter().map(|angle| [*angle, lift(*angle)]).collect();
+    let cam = serde_json::json!({ "law": "table", "spline": "cubic", "rows": rows });
+    let follower = serde_json::to_value(&ball(0.55, 0.0).follower).unwrap();
+    let model = Model::of_document("bump", &serde_json::json!({ "follower": follower, "cam": cam })).unwrap();
+    let number = following(&model, "restitution", [0.549, 0.63], 0.05);
+    let behind = orbits(&model, 400.0, 1).into_iter().find(|orbit| {
+        let [impact] = &orbit.events[..] else { return false };
+        (210.0..212.0).contains(&impact.cam_angle.to_degrees())
+    });
+    let branch = Branch::through(&model, 400.0, &behind.unwrap(), &number).unwrap();
+    assert_eq!(branch.ends, [End::Range, End::Range]);
+    let grazes = branch.points.iter().filter_map(|point| match point.special?.kind {
+        Kind::Graze { before: 1, after: 2, turned } => Some((point, turned)),
+        _ => None,
+    });
+    let [(graze, turned)] = grazes.collect::<Vec<_>>()[..] else { panic!("{:?}", branch.points) };
+    let (cam, omega, impact) = (Cam::new(&model).unwrap(), angular_velocity(400.0), &graze.orbit.events[0]);
+    let (from, place) = (impact.turned_since(0.0), turned % std::f64::consts::TAU);
+    let left = (from + std::f64::consts::TAU - turned).to_degrees();
+    assert!((2.0..2.5).contains(&left), "{left}");
+    let (time, touched) = ((turned - from) / omega, cam.lift(place));
+    let gap =
+        cam.lift(impact.cam_angle).value + impact.velocity_after * time - 0.5 * 9.81 * time * time - touched.value;
+    let relative = (impact.velocity_after - 9.81 * time) / omega - touched.slope;
+    assert!(gap.abs() < 1e-12 && relative.abs() < 1e-7, "{gap} {relative}");
+    assert!(branch.points.last().unwrap().orbit.impacts().count() == 2);
+}

@@ -174,3 +174,106 @@ fn an_event_that_many_branches_pass_is_one() {
         }
     }
 }
+
+/// With the phase of the second harmonic a touch comes back to where it was. On the way another flight begins to hit the cam and ceases
+/// to, before the touch in the motion: the touch stays the same one, of a flight that goes on.
+#[test]
+fn a_touch_stays_itself_while_another_impact_comes_and_goes() {
+    let (model, speeds) = (model("laws/harmonic"), [420.0, 640.0]);
+    let grazes = points(&model, 500.0, 2, speeds, "graze");
+    let graze = grazes.iter().find(|graze| (graze.rpm - 475.144).abs() < 1e-3).unwrap();
+    let curve = curve(&model, graze, speeds, &following(&model, "phases_deg[1]", [-180.0, 180.0], 0.05));
+    assert_eq!(curve.ends, [End::Closed, End::Closed]);
+    let impacts = |point: &BranchPoint| point.orbit.impacts().count();
+    let all: Vec<usize> = curve.points.iter().filter(|point| point.special.is_none()).map(impacts).collect();
+    assert_eq!(all.chunk_by(|one, two| one == two).map(|alike| alike[0]).collect::<Vec<_>>(), [3, 4, 3], "{all:?}");
+    // The other impact comes and goes at a touch of its own.
+    let others: Vec<f64> =
+        curve.points.iter().filter(|point| point.special.is_some()).map(|point| point.value).collect();
+    assert!(others.len() == 3 && others.contains(&0.0), "{others:?}");
+    let places: Vec<f64> = curve.points.iter().map(|point| point.held.as_ref().unwrap().cam_angle).collect();
+    assert!(places.windows(2).all(|pair| apart(pair[0], pair[1]) < 0.1), "{places:?}");
+}
+
+/// At half the speed a cam of two like lobes is the same machine, with two impacts in a revolution for one.
+#[test]
+fn a_cusp_is_where_it_is_with_two_lobes_for_one() {
+    let cusps = |amplitudes: &str, phases: &str, lobes: usize, name: &str| {
+        let text = format!(
+            "[follower]\nmass = 1.0\ndamping = 0.0\nstiffness = 400.0\ngravity = 9.81\nrest_position = 0.08\n\
+             restitution = 0.6\n[cam]\nlaw = \"harmonic\"\noffset = 0.1\namplitudes = [{amplitudes}]\nphases_deg = [{phases}]\n"
+        );
+        let model = Model::parse("lobes.toml", &text).unwrap();
+        let [low, rpm, high] = [480.0, 500.0, 510.0].map(|rpm| rpm / lobes as f64);
+        let folds = points(&model, rpm, 1, [low, high], "fold");
+        let like = folds.iter().filter(|fold| fold.orbit.impacts().count() == lobes);
+        let fold = like.max_by(|one, two| one.rpm.total_cmp(&two.rpm)).unwrap();
+        let number = Following { most_points: 20, ..following(&model, name, [-52.0, -40.0], 0.3) };
+        let curve = curve(&model, fold, [low, high], &number);
+        let is_cusp = |point: &&BranchPoint| point.special.is_some_and(|special| special.kind == Kind::Cusp);
+        let cusps = curve.points.iter().filter(is_cusp).map(|cusp| [cusp.value, cusp.rpm * lobes as f64]);
+        let mut cusps: Vec<[f64; 2]> = cusps.collect();
+        cusps.sort_by(|one, two| one[0].total_cmp(&two[0]));
+        cusps
+    };
+    let one = cusps("0.02, 0.004", "180.0, -50.0", 1, "phases_deg[1]");
+    let two = cusps("0.0, 0.02, 0.0, 0.004", "0.0, 180.0, 0.0, -50.0", 2, "phases_deg[3]");
+    assert!(one.len() == 1 && two.len() == 1, "{one:?} {two:?}");
+    for (one, two) in one.iter().zip(&two) {
+        assert!((one[0] - two[0]).abs() < 1e-6 && (one[1] / two[1] - 1.0).abs() < 1e-9, "{one:?} {two:?}");
+    }
+}
+
+/// Of two lobes the lower is the less curved and the less pressed: with the stiffness that changes which throws off first, both at speeds
+/// that rise, `w^2 = (k (c - rest)/m + g)/(-c'')` at their tops. So it is from either side.
+#[test]
+fn which_of_two_lobes_throws_off_first_is_told_at_the_lesser_speed() {
+    let [small, large] = [0.004, 0.01];
+    let name = "follower.stiffness";
+    let like = model("laws/harmonic").with_number("cam.amplitudes[0]", small).unwrap();
+    let like = like.with_number("cam.amplitudes[1]", large).unwrap().with_number("follower.restitution", 0.2).unwrap();
+    // Turned by 50 degrees.
+    let like = like.with_number("cam.phases_deg[0]", 130.0).unwrap().with_number("cam.phases_deg[1]", 260.0).unwrap();
+    let follower = &like.follower;
+    let speeds = |stiffness: f64| {
+        [-1.0, 1.0].map(|sign| {
+            let pressed = 0.1 + large + sign * small - follower.rest_position;
+            let force = stiffness * pressed / follower.mass + follower.gravity;
+            (force / (4.0 * large + sign * small)).sqrt() * 60.0 / TAU
+        })
+    };
+    for own in [700.0, 1100.0] {
+        let model = like.with_number(name, own).unwrap();
+        let [one, two] = speeds(own);
+        let rpm = one.min(two);
+        let range = [0.9 * rpm, 1.1 * rpm];
+        let leaves = points(&model, 0.95 * rpm, 1, range, "detachment");
+        let curve = curve(&model, &leaves[0], range, &following(&model, "stiffness", [600.0, 1500.0], 0.05));
+        assert_eq!(
+            (&curve.ends, &changes(&curve, "detachment")[..]),
+            (&[End::Range, End::Range], &["place"][..]),
+            "{own}"
+        );
+        for point in &curve.points {
+            let [one, two] = speeds(point.value);
+            assert!((point.rpm / one.min(two) - 1.0).abs() < 1e-9, "{one} {two} {point:?}");
+        }
+    }
+}
+
+/// Behind the touch in the motion an impact ceases to be one: the touch stays where it was, and the curve goes on with an impact less.
+#[test]
+fn a_touch_stays_itself_where_a_later_impact_is_none() {
+    let (model, speeds) = (model("osorio-2008"), [550.0, 580.0]);
+    let grazes = points(&model, 560.0, 2, speeds, "graze");
+    let graze = grazes.iter().find(|graze| (graze.rpm - 574.0752).abs() < 1e-3).unwrap();
+    let number = Following { most_points: 60, ..following(&model, "flank_start_deg", [89.0, 120.0], 0.05) };
+    let curve = curve(&model, graze, [480.0, 580.0], &number);
+    let impacts: Vec<usize> = curve.points.iter().map(|point| point.orbit.impacts().count()).collect();
+    let counts: Vec<usize> = impacts.chunk_by(|one, two| one == two).map(|alike| alike[0]).collect();
+    let less = changes(&curve, "corner");
+    assert!(counts == [4, 3] && less == ["graze", "graze"], "{counts:?} {less:?} {:?}", curve.ends);
+    let places: Vec<f64> = curve.points.iter().map(|point| point.held.as_ref().unwrap().cam_angle).collect();
+    assert!(places.windows(2).all(|pair| apart(pair[0], pair[1]) < 0.02), "{places:?}");
+    assert!(impacts.iter().filter(|count| **count == 3).count() > 10, "{impacts:?}");
+}

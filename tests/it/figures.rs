@@ -102,6 +102,22 @@ fn the_figures_are_in_the_papers_order() {
     assert_eq!(found, wanted);
 }
 
+/// Orbits are looked for at speeds a fiftieth apart: one of these, 695.6 rpm, is shown, and the orbits that are found there, a stable one
+/// and an unstable one, go on to both ends of what is shown.
+#[test]
+fn branches_are_drawn_from_end_to_end_of_speeds_that_hold_one_search() {
+    let mut subject = paper();
+    let range = [690.0, 701.0];
+    subject.shown.fast.as_mut().unwrap().range = range;
+    subject.fast_effort = Effort { speeds: 2, transient: 1, record: 1 };
+    let figure = drawn(&subject, "fast-impacts");
+    for label in ["stable", "unstable"] {
+        let speeds: Vec<f64> = series(&figure, 0, label).iter().map(|[rpm, _]| *rpm).collect();
+        let ends = [speeds.iter().copied().fold(f64::INFINITY, f64::min), speeds.iter().copied().fold(0.0, f64::max)];
+        assert_eq!(ends, range, "{label}");
+    }
+}
+
 #[test]
 #[ignore = "slow"]
 fn the_papers_model_has_every_figure() {
