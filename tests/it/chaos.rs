@@ -401,3 +401,28 @@ fn a_region_about_a_stable_orbit_is_small() {
     assert!(region.cells < 100 && region.velocities_m_s[1] < 80.0, "{region:?}");
     assert!(region.places.iter().all(|[[low, high], _]| 154.0 < *low && *high < 157.0), "{:?}", region.places);
 }
+
+/// Of a follower that is pressed on the cam for good the h-sets that are kept for the paper's do not hold, though it goes by the same
+/// name: where they begin is looked at like any other speed, and what is left open is the range, in pieces.
+#[test]
+fn h_sets_of_another_machine_of_the_name_are_passed_over() {
+    let model = common::osorio().with_number("follower.rest_position", -50.0).unwrap();
+    let [low, high] = [640.5, 640.535];
+    let found = common::ends(move || chaos(&model, [low, high], false, &Unwatched).unwrap()).unwrap();
+    assert!(found.theorems.is_empty(), "{:?}", found.theorems);
+    let ends: Vec<f64> = found.open.iter().flat_map(|open| open.rpm).collect();
+    assert_eq!((ends[0], ends[ends.len() - 1]), (low, high));
+    assert!(ends.chunks(2).all(|piece| piece[0] < piece[1]), "{ends:?}");
+    assert!(ends[1..ends.len() - 1].chunks(2).all(|pair| pair[0] == pair[1]), "{ends:?}");
+}
+
+/// At 1200 rpm a follower that loses most at each impact comes from its corner impact to impacts far from it: a region is looked for about
+/// these alone, and told once.
+#[test]
+fn a_run_that_leaves_the_corner_impact_has_no_region_beside_it() {
+    let model =
+        Model::parse("soft.toml", &common::osorio_text(&[("restitution", "0.2"), ("rpm_max", "850.0")])).unwrap();
+    assert!(locate(&model, &common::cam(&model)).is_ok());
+    let found = chaos(&model, [1200.0; 2], true, &Unwatched).unwrap().trapping.unwrap();
+    assert_eq!((found.regions.len(), found.escapes.len()), (1, 0), "{found:?}");
+}

@@ -30,6 +30,7 @@ mod complaints;
 mod complete;
 mod corner_maps;
 mod corner_numbers;
+mod corner_orbits;
 mod corner_units;
 mod curves;
 mod cycles;

@@ -495,3 +495,56 @@ fn what_comes_nearest_is_on_the_unstable_manifold() {
 fn lifted_ball() -> Model {
     ball().with_number("cam.offset", 0.01).unwrap()
 }
+
+/// A curve is broken where it goes too far away. Between two points on either side of that it is halved sixteen times, so that the last
+/// point before it is nearer to the break than a stretch's 2^-16 of a sixteenth. The first stretch is carried by no map: with a multiplier
+/// of 2, it is at `first 2^s` after `s` of it.
+#[test]
+fn a_break_of_a_curve_is_found_by_sixteen_halvings() {
+    const POINTS: i32 = 16;
+    const HALVINGS: i32 = 16;
+    let map = map(&ball(), 700.0, 0.0);
+    let along = nalgebra::Vector2::new(1.0, 0.0);
+    let saddle = Saddle { state: State { position: 1.0, velocity: 0.0 }, stable: (0.5, along), unstable: (2.0, along) };
+    let (width, first, before) = (f64::from(POINTS).recip(), 1e-3, 5);
+    let shortest = width * 2.0_f64.powi(-HALVINGS);
+    // Right before the point after it all midpoints are on this side of the break, and right behind the point before it none is.
+    let places = [f64::from(before + 1) * width - shortest, f64::from(before) * width];
+    for (last, within, midpoints) in [(places[0], 0.9, HALVINGS), (places[1], 0.1, 0)] {
+        let farthest = first * (last + within * shortest).exp2();
+        // As far apart as any two of the points to begin with.
+        let extent = Extent { stretches: 1, first, finest: first, farthest };
+        let curve = Curve::unstable(&map, &saddle, 1.0, &extent);
+        let points: Vec<State> = curve.points().collect();
+        assert_eq!(points.len() as i32, 2 + before + midpoints, "{points:?}");
+        let reached = points.last().unwrap().position - saddle.state.position;
+        assert_abs_diff_eq!((reached / first).log2(), last, epsilon = 1e-11);
+    }
+}
+
+/// From the cam, which carries it and lets it go, a follower comes to a state that others come to as well, from wherever they begin to be
+/// carried: none of these is the one before, and what is told to be it was not carried.
+#[test]
+fn what_was_carried_by_the_cam_has_no_one_state_before() {
+    let ball = ball();
+    let (mut seen, mut none) = (0, 0);
+    for rpm in (960..1300).step_by(10) {
+        for angle in [2.6, 3.2, 3.8] {
+            let map = map(&ball, f64::from(rpm), angle);
+            let reversed = Reversed::new(&ball.follower, &map).unwrap();
+            let cam = map.machine.cam().lift(angle);
+            let carried = State { position: cam.value, velocity: map.machine.angular_velocity() * cam.slope };
+            let Ok(end) = map.apply(carried) else { continue };
+            if end.events.iter().any(|event| event.kind == EventKind::Release) {
+                seen += 1;
+                let Some(before) = reversed.apply(end.state) else {
+                    none += 1;
+                    continue;
+                };
+                let again = map.apply(before).unwrap();
+                assert!(again.events.iter().all(|event| event.kind == EventKind::Impact), "{rpm} {angle}: {again:?}");
+            }
+        }
+    }
+    assert!(seen > 10 && none > 5, "{seen} {none}");
+}

@@ -320,3 +320,28 @@ fn routes_that_fail_are_no_agreement() {
     assert!(it.skipped.iter().any(|skipped| skipped.failed) && it.comparisons.iter().all(|pair| pair.agrees), "{it:?}");
     assert!(!it.agrees && !all.agrees);
 }
+
+/// On a cam whose lift is five million times its rise from 0 doubles keep a digit or two fewer of the orbit than routes are asked for:
+/// nothing fails, and what differs by more than it may is no agreement.
+#[test]
+fn routes_that_differ_are_no_agreement() {
+    // A parabola that falls off after the corner at 90 degrees, and one that leads up to it again.
+    let (lift, slope, cap) = (2.0_f64.powi(22), 0.3, 0.6_f64);
+    let text = format!(
+        "[follower]\nmass = 1.0\ndamping = 0.0\nstiffness = 12.0\ngravity = 0.0\nrest_position = {:?}\nrestitution = 0.8\n\
+         [cam]\nlaw = \"polynomial\"\n\
+         [[cam.segment]]\nstart_deg = 90.0\ncoefficients = [{lift:?}, {slope:?}, {:?}]\n\
+         [[cam.segment]]\nstart_deg = {:?}\ncoefficients = [{lift:?}, {:?}, {:?}]\n\
+         [study]\nrpm_min = 66.0\nrpm_max = 68.0\n",
+        lift - 0.125,
+        -slope / cap,
+        90.0 + cap.to_degrees(),
+        -slope,
+        slope / (TAU - cap)
+    );
+    let found = verify(&Model::parse("far.toml", &text).unwrap(), External::LeftOut).unwrap();
+    assert!(!found.skipped.iter().any(|skipped| skipped.failed), "{:?}", found.skipped);
+    let apart: Vec<_> = found.comparisons.iter().filter(|pair| !pair.agrees).map(|pair| pair.quantity).collect();
+    assert!(apart.contains(&Quantity::Period) || apart.contains(&Quantity::State), "{apart:?}");
+    assert!(!found.agrees);
+}

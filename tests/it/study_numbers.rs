@@ -350,3 +350,12 @@ fn an_end_by_runs_moves_with_the_machine() {
     // Of another machine altogether it is nowhere near.
     assert_eq!(moved(&text(1200.0)), None);
 }
+
+/// What counts is how many speeds there are, and not how many times as fast the last is as the first.
+#[test]
+fn a_range_may_begin_at_next_to_nothing() {
+    let resolution = Resolution { step: Step::at_most(0.02), starts: 1, two_impacts: false };
+    let found = attractors(&ball(), [1e-5, 1.0], resolution, &Unwatched).unwrap();
+    let [row] = &found.rows[..] else { panic!("{:?}", found.rows) };
+    assert_eq!((row.rpm, row.ends.each_ref().map(Option::is_some)), ([1e-5, 1.0], [false, false]));
+}
