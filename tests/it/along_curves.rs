@@ -232,8 +232,6 @@ fn which_of_two_lobes_throws_off_first_is_told_at_the_lesser_speed() {
     let name = "follower.stiffness";
     let like = model("laws/harmonic").with_number("cam.amplitudes[0]", small).unwrap();
     let like = like.with_number("cam.amplitudes[1]", large).unwrap().with_number("follower.restitution", 0.2).unwrap();
-    // Turned by 50 degrees.
-    let like = like.with_number("cam.phases_deg[0]", 130.0).unwrap().with_number("cam.phases_deg[1]", 260.0).unwrap();
     let follower = &like.follower;
     let speeds = |stiffness: f64| {
         [-1.0, 1.0].map(|sign| {
@@ -242,8 +240,12 @@ fn which_of_two_lobes_throws_off_first_is_told_at_the_lesser_speed() {
             (force / (4.0 * large + sign * small)).sqrt() * 60.0 / TAU
         })
     };
-    for own in [700.0, 1100.0] {
-        let model = like.with_number(name, own).unwrap();
+    // As it is the one lobe is at angle 0.
+    for (own, turned) in [(700.0, 0.0), (1100.0, 0.0), (700.0, 50.0), (1100.0, 50.0)] {
+        let phases = [("cam.phases_deg[0]", 80.0 + turned), ("cam.phases_deg[1]", 160.0 + 2.0 * turned)];
+        let turned =
+            phases.iter().try_fold(like.clone(), |model, (name, phase)| model.with_number(name, *phase)).unwrap();
+        let model = turned.with_number(name, own).unwrap();
         let [one, two] = speeds(own);
         let rpm = one.min(two);
         let range = [0.9 * rpm, 1.1 * rpm];
@@ -276,4 +278,20 @@ fn a_touch_stays_itself_where_a_later_impact_is_none() {
     let places: Vec<f64> = curve.points.iter().map(|point| point.held.as_ref().unwrap().cam_angle).collect();
     assert!(places.windows(2).all(|pair| apart(pair[0], pair[1]) < 0.02), "{places:?}");
     assert!(impacts.iter().filter(|count| **count == 3).count() > 10, "{impacts:?}");
+}
+
+/// To turn an eccentric by a whole turn and more changes nothing but where angle 0 is.
+#[test]
+fn where_a_follower_leaves_an_eccentric_may_pass_angle_0() {
+    let model = model("laws/harmonic").with_number("cam.amplitudes[1]", 0.0).unwrap();
+    let speeds = [310.0, 420.0];
+    for name in ["detachment", "chatter"] {
+        let found = points(&model, 340.0, 1, speeds, name);
+        let turned = following(&model, "phases_deg[0]", [-90.0, 400.0], 0.05);
+        let curve = curve(&model, &found[0], speeds, &turned);
+        assert_eq!((&curve.ends, changes(&curve, name)), (&[End::Range, End::Range], Vec::new()), "{name}");
+        let off = |point: &BranchPoint| (point.rpm / found[0].rpm - 1.0).abs();
+        let most = curve.points.iter().map(off).fold(0.0, f64::max);
+        assert!(most < 1e-8 && curve.points.len() > 20, "{name} {most:e} {}", curve.points.len());
+    }
 }

@@ -192,6 +192,9 @@ fn a_row_of_numbers_says_what_parts_the_columns() {
     ] {
         assert_eq!(cam_of(name, text, "cubic").unwrap(), whole, "{name}");
     }
+    // What is no number beside a decimal comma has its columns parted by it.
+    let refused = cam_of("unit-in-row", "0,15 mm\n120,25 mm\n240,17 mm\n", "cubic").unwrap_err();
+    assert!(refused.contains("lift = 15 mm"), "{refused}");
 }
 
 /// A unit alone names its column, and so does a sign; of several words the first is a name, be it that of a unit. What a header says is not

@@ -229,6 +229,52 @@ fn zero_is_kept_where_it_is_exact() {
     }
 }
 
+/// An end that is 0 because a product is too small for a double is moved past it, to whichever side; of what is 0 exactly none is.
+#[test]
+fn an_end_is_past_0_where_a_product_is_lost_and_only_there() {
+    let [tiny, least] = [1e-200, 0.0_f64.next_up()];
+    let over = Interval::new;
+    for by in [over(tiny, tiny), over(tiny, 0.5)] {
+        assert!((over(-tiny, 1.0) * by).low() < 0.0 && (over(-1.0, tiny) * by).high() > 0.0, "{by:?}");
+    }
+    for (product, low, high) in [
+        (over(-tiny, 1.0) * tiny, -least, tiny.next_up()),
+        (over(-1.0, tiny) * tiny, (-tiny).next_down(), least),
+        (over(-tiny, 1.0) / 1e200, -least, 1e-200_f64.next_up()),
+    ] {
+        assert_eq!([product.low(), product.high()], [low, high]);
+    }
+    for (one, other) in [(over(0.0, 1.0), over(1.0, 2.0)), (over(0.0, 0.5), over(tiny, 1.0))] {
+        assert_eq!([(one * other).low(), (-one * other).high(), (one * other.low()).low()], [0.0; 3]);
+    }
+}
+
+/// Each end for itself: beside a large one a small one is moved as well.
+#[test]
+fn ends_are_moved_whatever_the_other_is() {
+    for small in [1e-310, f64::MIN_POSITIVE, 1e-300, 1.0, 3.0, 1e300] {
+        for (low, high) in [(-7.0, small), (-small, 7.0), (small.min(7.0), small.max(7.0))] {
+            let moved = Interval::new(low, high) + Interval::from(0.0);
+            assert_eq!([moved.low(), moved.high()], [low.next_down(), high.next_up()]);
+        }
+    }
+}
+
+/// What has no end on one side has a product with an end on the other, as long as nothing is 0 times infinity.
+#[test]
+fn products_of_half_lines_are_half_lines() {
+    let upward = |low: f64| Interval::new(low, f64::INFINITY);
+    for (product, low) in [
+        (upward(1.0) * upward(1.0), 1.0_f64.next_down()),
+        (Interval::new(1.0, 2.0) * upward(0.0), 0.0),
+        (upward(0.0) * Interval::new(1.0, 2.0), 0.0),
+        (upward(1.0) * Interval::new(2.0, 3.0), 2.0_f64.next_down()),
+        (Interval::new(2.0, 3.0) * upward(1.0), 2.0_f64.next_down()),
+    ] {
+        assert_eq!([product.low(), product.high()], [low, f64::INFINITY]);
+    }
+}
+
 /// What a formula leaves out counts in intervals, and not in doubles.
 #[test]
 fn what_is_left_out_is_on_both_sides() {

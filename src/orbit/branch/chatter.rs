@@ -1,7 +1,10 @@
 //! Branches of orbits that stick to the cam: there is one for each value of the parameter, found by one simulated period.
 
+use std::f64::consts::TAU;
+
 use super::{BranchPoint, End, Following, Kind, Special};
 use crate::orbit::{Family, OrbitError, PeriodicOrbit, curve, sticking};
+use crate::simulate::Machine;
 use crate::tolerance;
 
 /// The branch in one direction from `value`, of an orbit that sticks at an `anchor`, rad, and repeats after some
@@ -9,7 +12,7 @@ use crate::tolerance;
 pub(super) fn half(
     family: &Family,
     value: f64,
-    (mut anchor, revolutions): (f64, u64),
+    (anchor, revolutions): (f64, u64),
     following: &Following,
     direction: f64,
 ) -> Result<(Vec<BranchPoint>, End), OrbitError> {
@@ -23,12 +26,15 @@ pub(super) fn half(
     }
     let longest = following.longest_step * span;
     let closest = tolerance::SPECIAL_POINT.value * span;
-    let orbit_at = |value: f64, anchor: f64| -> Result<(Option<PeriodicOrbit>, f64), OrbitError> {
+    // One that never leaves the cam is anchored where the cam presses most, since what throws it off may begin anywhere else.
+    let orbit_at = |value: f64, anchor: Option<f64>| -> Result<(Option<PeriodicOrbit>, f64), OrbitError> {
         let (machine, rpm) = family.machine(&[value])?;
+        let anchor = anchor.unwrap_or_else(|| pressed_most(&machine));
         Ok((sticking::through(&machine, anchor, revolutions)?, rpm))
     };
     let (mut points, mut at, mut step) = (Vec::<BranchPoint>::new(), value, longest);
-    let mut leaves = orbit_at(value, anchor)?.0.is_some_and(|orbit| !orbit.events.is_empty());
+    let mut leaves = orbit_at(value, Some(anchor))?.0.is_some_and(|orbit| !orbit.events.is_empty());
+    let mut anchor = leaves.then_some(anchor);
     while at != edge {
         if points.len() >= following.most_points {
             return Ok((points, End::MostPoints));
@@ -45,7 +51,7 @@ pub(super) fn half(
             Some(orbit) => {
                 let detaches = leaves == orbit.events.is_empty();
                 leaves = !orbit.events.is_empty();
-                anchor = sticking::anchor(&orbit.events, revolutions).unwrap_or(anchor);
+                anchor = sticking::anchor(&orbit.events, revolutions).or(anchor.filter(|_| leaves));
                 let bracket = [at.min(next), at.max(next)];
                 let special =
                     detaches.then_some(Special { kind: Kind::Detachment, bracket, residual: bracket[1] - bracket[0] });
@@ -64,4 +70,12 @@ pub(super) fn half(
         }
     }
     Ok((points, end))
+}
+
+/// The cam angle at which the cam presses most against a follower that goes with it, rad, of so many.
+fn pressed_most(machine: &Machine) -> f64 {
+    const PLACES: u32 = 256;
+    let lifting = |angle: &f64| machine.lifting(&machine.cam().lift(*angle));
+    let angles = (0..PLACES).map(|place| TAU * f64::from(place) / f64::from(PLACES));
+    angles.min_by(|one, two| lifting(one).total_cmp(&lifting(two))).unwrap_or_default()
 }

@@ -23,7 +23,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::Kind;
 use crate::bracket::{Width, halve};
-use crate::cam::{Lift, apart};
+use crate::cam::{Lift, apart, within_a_turn};
 use crate::orbit::curve::Equations;
 use crate::orbit::cycle::lift_size;
 use crate::orbit::{Course, Family, FamilyError, PeriodicOrbit};
@@ -71,7 +71,7 @@ pub(super) struct Rest<'a> {
 fn greatest(machine: &Machine, is_wanted: impl Fn(Place) -> bool) -> Option<(f64, Place)> {
     /// Places of a segment between which there is one extreme at most, of designed cams.
     const SAMPLES: usize = 64;
-    let segments = machine.cam().segments();
+    let (cam, segments) = (machine.cam(), machine.cam().segments());
     let mut best: Option<(f64, Place)> = None;
     for (index, segment) in segments.iter().enumerate() {
         let at = |part: usize| segment.start + (segment.end - segment.start) * part as f64 / SAMPLES as f64;
@@ -82,11 +82,18 @@ fn greatest(machine: &Machine, is_wanted: impl Fn(Place) -> bool) -> Option<(f64
                 best = Some((lifting, place));
             }
         };
+        let rises = |angle: f64| machine.lifting_rate(&lift(angle)).0 > 0.0;
+        // Where it jumps either side may be the greatest; elsewhere segments meet in the middle of a rise or a fall, or at the top of one.
         let next = (index + 1) % segments.len();
-        keep(segment.start, Place { segment: index, cam_angle: segment.start, is_corner: true });
-        keep(segment.end, Place { segment: next, cam_angle: segments[next].start, is_corner: true });
+        let jumps = |start: usize| cam.corners().iter().any(|corner| corner.segment == start && corner.jump_order <= 2);
+        let rises_behind = machine.lifting_rate(&segments[next].law.lift(segments[next].start)).0 > 0.0;
+        if jumps(index) {
+            keep(segment.start, Place { segment: index, cam_angle: segment.start, is_corner: true });
+        }
+        if jumps(next) || rises(segment.end) && !rises_behind {
+            keep(segment.end, Place { segment: next, cam_angle: segments[next].start, is_corner: true });
+        }
         for part in 0..SAMPLES {
-            let rises = |angle: f64| machine.lifting_rate(&lift(angle)).0 > 0.0;
             if rises(at(part)) && !rises(at(part + 1)) {
                 let width = Width::Relative(tolerance::ROOT_WIDTH.value);
                 let Ok([cam_angle, _]) = halve([at(part), at(part + 1)], width, |x| Ok::<_, Infallible>(!rises(x)));
@@ -114,16 +121,33 @@ impl Place {
     pub(super) fn on(self, machine: &Machine) -> Option<(Self, Lift)> {
         /// Newton's method doubles the digits of a place that is known to a step along the curve.
         const STEPS: usize = 20;
-        let segment = &machine.cam().segments()[self.segment];
-        let mut cam_angle = if self.is_corner { segment.start } else { self.cam_angle };
-        for _ in 0..if self.is_corner { 0 } else { STEPS } {
-            let lift = segment.law.lift(cam_angle);
-            cam_angle -= machine.angular_velocity() * machine.lifting(&lift) / machine.lifting_rate(&lift).0;
+        /// Segments that it may go over to.
+        const SEGMENTS: usize = 3;
+        let cam = machine.cam();
+        if self.is_corner {
+            let cam_angle = cam.segments()[self.segment].start;
+            let lift = cam.segments()[self.segment].law.lift(cam_angle);
+            return (machine.lifting(&lift) > 0.0).then_some((Self { cam_angle, ..self }, lift));
         }
-        let lift = segment.law.lift(cam_angle);
-        let lets_go = if self.is_corner { machine.lifting(&lift) } else { machine.lifting_rate(&lift).0 } > 0.0;
-        let inside = (segment.start..=segment.end).contains(&cam_angle);
-        (lets_go && inside).then_some((Self { cam_angle, ..self }, lift))
+        let mut on = self;
+        for _ in 0..SEGMENTS {
+            let segment = &cam.segments()[on.segment];
+            let mut lift = segment.law.lift(on.cam_angle);
+            for _ in 0..STEPS {
+                on.cam_angle -= machine.angular_velocity() * machine.lifting(&lift) / machine.lifting_rate(&lift).0;
+                lift = segment.law.lift(on.cam_angle);
+            }
+            if !(machine.lifting_rate(&lift).0 > 0.0) {
+                return None;
+            }
+            if (segment.start..=segment.end).contains(&on.cam_angle) {
+                return Some((on, lift));
+            }
+            // It has gone over to another segment, or past angle 0.
+            on.cam_angle = within_a_turn(on.cam_angle);
+            on.segment = cam.segment_at(on.cam_angle);
+        }
+        None
     }
 
     /// By how far infinitely many impacts from `last` on, with so much `left` to here, rad, end beyond; `None` where they do not

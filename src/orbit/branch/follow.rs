@@ -128,8 +128,8 @@ impl Walk<'_> {
                     if self.stride.step < tolerance::SHORTEST_STEP.value * self.stride.following.longest_step {
                         let end = match (error, self.fresh) {
                             (NoPoint::Outside(why), _) => self.edge(&why),
-                            (_, Some(Exit::Touch { .. } | Exit::Tangent { .. })) => End::Graze,
                             _ if self.chatters() => End::Chatter,
+                            (_, Some(Exit::Touch { .. } | Exit::Tangent { .. })) => End::Graze,
                             _ if self.grazes() => End::Graze,
                             _ => End::Lost,
                         };
