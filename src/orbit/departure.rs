@@ -98,10 +98,15 @@ impl Cycle {
             machine.start(on_cam((from + since) % TAU), state)?
         } else {
             let relative = struck.leaving.velocity - machine.angular_velocity() * machine.cam().lift(from).slope;
-            if relative <= 0.0 {
+            if relative < 0.0 {
                 return Ok(None);
             }
-            machine.start_on_cam(from, relative)?
+            // Without a rebound it is on the cam, or flies off at once where the cam falls away.
+            let motion = machine.start_on_cam(from, relative)?;
+            if motion.contact {
+                return Ok(None);
+            }
+            motion
         };
         let begun = motion.cam_angle;
         let end = begun + turn - since + tolerance::SAME_ORBIT.value;

@@ -460,7 +460,7 @@ fn a_branch_passes_the_same_points_however_long_its_steps_are() {
 #[test]
 fn a_fold_is_told_wherever_a_row_of_the_cam_is() {
     let fold = (PI * 9.81 * 0.2 / 1.8 / 0.001).sqrt() * 60.0 / TAU;
-    for turned in [0.0, 1e-12, -1e-12, 1e-6, -1e-6, 1e-3, -1e-3, 0.03, -0.03, 1.0] {
+    for turned in [0.0, 1e-12, -1e-12, 1e-6, -1e-6, 1e-4, -1e-4, 3e-4, -3e-4, 1e-3, -1e-3, 0.03, -0.03, 1.0] {
         let lift = |row: u32| 0.001 * (5.0 * f64::from(row) + turned).to_radians().cos();
         let rows: Vec<(f64, f64)> = (0..72).map(|row| (5.0 * f64::from(row), lift(row))).collect();
         let cam = json!({ "law": "table", "spline": "quintic", "rows": rows });

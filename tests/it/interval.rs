@@ -245,7 +245,10 @@ fn an_end_is_past_0_where_a_product_is_lost_and_only_there() {
         assert_eq!([product.low(), product.high()], [low, high]);
     }
     for (one, other) in [(over(0.0, 1.0), over(1.0, 2.0)), (over(0.0, 0.5), over(tiny, 1.0))] {
-        assert_eq!([(one * other).low(), (-one * other).high(), (one * other.low()).low()], [0.0; 3]);
+        assert_eq!([(one * other).low(), (-one * other).high()], [0.0; 2]);
+        for by in [other.high(), 2.0] {
+            assert_eq!([(one * by).low(), (-one * by).high(), (one / by).low(), (-one / by).high()], [0.0; 4]);
+        }
     }
 }
 

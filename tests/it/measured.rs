@@ -1085,9 +1085,12 @@ fn a_flip_of_a_measured_cam_is_known_to_within_what_is_said() {
 fn ball_on_rows(turned_deg: f64) -> Model {
     let lift = |row: u32| (1e8 * 0.001 * (5.0 * f64::from(row) + turned_deg).to_radians().cos()).round() / 1e8;
     let rows: Vec<(f64, f64)> = (0..72).map(|row| (5.0 * f64::from(row), lift(row))).collect();
-    let follower =
-        json!({ "mass": 1, "damping": 0, "stiffness": 0, "gravity": 9.81, "rest_position": 0, "restitution": 0.8 });
-    Model::of_document("ball", &json!({ "follower": follower, "cam": smoothing(&rows, &json!({})) })).unwrap()
+    let cam = smoothing(&rows, &json!({}));
+    Model::of_document("ball", &json!({ "follower": follower_of_a_ball(), "cam": cam })).unwrap()
+}
+
+fn follower_of_a_ball() -> Value {
+    json!({ "mass": 1, "damping": 0, "stiffness": 0, "gravity": 9.81, "rest_position": 0, "restitution": 0.8 })
 }
 
 /// `m (g - a w^2)` presses least on the ball, where the table is highest: within what the rows leave open, which is not nothing.
@@ -1106,8 +1109,12 @@ fn the_force_on_a_measured_cam_is_as_far_off_as_is_said() {
 #[test]
 fn a_fold_on_a_measured_cam_is_as_far_off_as_is_said() {
     let fold = (PI * 9.81 * 0.2 / 1.8 / 0.001).sqrt() * 60.0 / TAU;
-    for turned_deg in [2.5, 0.0] {
-        let found = speeds(&ball_on_rows(turned_deg), [555.0, 560.0], resolution(5.0, 2), &Unwatched).unwrap();
+    let exact = |row: u32| 0.001 * (5.0 * f64::from(row)).to_radians().cos();
+    let rows: Vec<(f64, f64)> = (0..72).map(|row| (5.0 * f64::from(row), exact(row))).collect();
+    let through = json!({ "law": "table", "spline": "quintic", "rows": rows });
+    let through = Model::of_document("ball", &json!({ "follower": follower_of_a_ball(), "cam": through })).unwrap();
+    for model in [ball_on_rows(2.5), ball_on_rows(0.0), through] {
+        let found = speeds(&model, [555.0, 560.0], resolution(5.0, 2), &Unwatched).unwrap();
         let birth = found.attractors.iter().find(|it| it.impacts == Some(1)).unwrap().birth.as_ref().unwrap();
         let error = birth.error.unwrap();
         assert_eq!(birth.cause, Cause::Fold);
