@@ -3,14 +3,12 @@
 All changes are compiled at once, as mutant schemata (Untch, Offutt, Harrold 1993): where the source says `a + b`, a copy of it
 says "a + b, but a - b in mutant 17 and a * b in mutant 18", and an environment variable says which mutant a process is. One build
 then serves thousands of mutants, of which each takes as long as the tests that reach it, quickest first, up to the first
-that fails. A first run of each test notes what it reaches. That takes longest, where few mutants are asked: of each file failing.toml lists
-tests that have failed for its mutants, and --known asks only these.
+that fails. A first run of each test notes what it reaches.
 
     python tests/mutants/mutants.py                   every mutant of every stage: some hours
     python tests/mutants/mutants.py simulate/again    those in files whose path has these words
     python tests/mutants/mutants.py --parts 100 --seed 7       one part of a hundred, drawn by the seed; or --seconds 60, as many as fit
     python tests/mutants/mutants.py --out tried.jsonl          in several sittings: the next goes on where one was broken off
-    python tests/mutants/mutants.py --learn tried.jsonl        no mutant: lists what has failed there in failing.toml
 
 What survives and is not in explained.toml, with a reason or as open, is listed, and the exit code is 1.
 """
@@ -40,7 +38,6 @@ import tree_sitter_rust
 
 ROOT = Path(__file__).resolve().parents[2]
 COPY = ROOT / "target" / "mutants"
-FAILING = ROOT / "tests" / "mutants" / "failing.toml"
 STAGES = ["model", "cam", "flight", "impact", "simulate", "section", "orbit", "corner", "border_collision", "study", "interval"]
 
 ARITHMETIC = {"+": "-*", "-": "+/", "*": "+/", "/": "*%", "%": "/+"}
@@ -469,23 +466,6 @@ def reached(binary, longest, words, jobs):
     return tests
 
 
-def learn(tried, tests):
-    """Lists of each file that was tried which tests failed for its mutants, those first that fail for most in a second."""
-    known = tomllib.loads(FAILING.read_text()) if FAILING.exists() else {"seconds": {}, "of": {}}
-    last = {line["key"]: line for path in tried for line in map(json.loads, Path(path).read_text().splitlines())}
-    counts = defaultdict(Counter)
-    for mutant in last.values():
-        counts[mutant["file"]].update(mutant["failed"])
-    seconds = known["seconds"] | {test: round(took, 2) for test, (took, _) in tests.items()}
-    for file, count in counts.items():
-        known["of"][file] = sorted(count, key=lambda test: (-count[test] / (0.1 + seconds.get(test, 0.0)), test))
-    asked = sorted({test for tests in known["of"].values() for test in tests})
-    lines = ["# Of each file with formulas, tests that have failed for its mutants; and how long a test takes, s of a core. Written by mutants.py --learn.",
-             "[of]", *(f"{json.dumps(file)} = [\n" + "".join(f"    {json.dumps(test)},\n" for test in known["of"][file]) + "]" for file in sorted(known["of"])),
-             "", "[seconds]", *(f"{json.dumps(test)} = {seconds.get(test, 1.0)}" for test in asked), ""]
-    FAILING.write_text("\n".join(lines))
-
-
 def main():
     ask = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     ask.add_argument("words", nargs="*", help="parts of the paths of the files to look at")
@@ -497,15 +477,9 @@ def main():
     ask.add_argument("--enough", type=float, default=float("inf"), help="ask no further test of a mutant that has passed so many seconds of them")
     ask.add_argument("--jobs", type=int, default=1, help="so many mutants at a time")
     ask.add_argument("--out", help="write what became of each, as JSON lines; what has failed a test there already is not asked again")
-    ask.add_argument("--known", action="store_true", help="ask only the tests that failing.toml lists of a mutant's file")
-    ask.add_argument("--learn", nargs="*", metavar="TRIED", help="list in failing.toml which tests failed for what --out has written, and run none")
     ask.add_argument("--list", action="store_true", help="list them, and run none")
     asked = ask.parse_args()
-    if asked.learn:
-        kept = COPY / "reached.json"
-        return learn(asked.learn, json.loads(kept.read_text())["tests"] if kept.exists() else {})
     begun = time.monotonic()
-    failing = tomllib.loads(FAILING.read_text())
     listed = tomllib.loads((ROOT / "tests/mutants/explained.toml").read_text())
     name = lambda mutant: tuple(mutant[key] for key in ("file", "function", "code", "replacement"))
     told, left_open = ({(file, function, code, other) for reason in listed[kind] for file, known in reason.items()
@@ -525,10 +499,7 @@ def main():
         for id in sorted(chosen):
             print(*name(mutants[id]), sep=" | ")
         return
-    if asked.known:
-        tests = {test: [seconds, []] for test, seconds in failing["seconds"].items()}
-    else:
-        tests = reached(binary, asked.longest, asked.tests, asked.jobs)
+    tests = reached(binary, asked.longest, asked.tests, asked.jobs)
     print(f"ready after {time.monotonic() - begun:.0f} s", flush=True)
 
     places = defaultdict(list)
@@ -541,8 +512,7 @@ def main():
 
     began, survivors = time.monotonic(), []
     tried, caught, endless, known, still = Counter(), Counter(), Counter(), Counter(), Counter()
-    # Those at the head of a list, before any has failed here.
-    kills = Counter({(file, test): 1 / (1 + place) for file, known in failing["of"].items() for place, test in enumerate(known)})
+    kills = Counter()
     before = {}
     if asked.out and Path(asked.out).exists():
         lines = [json.loads(line) for line in Path(asked.out).read_text().splitlines()]
@@ -563,8 +533,7 @@ def main():
                 (caught if before[mutant["key"]] == "fail" else endless)[stage(id)] += 1
                 return
             # What has caught others of this file, then what is quick.
-            reach = failing["of"].get(mutant["file"], []) if asked.known else places[place[id]]
-            reach = sorted(reach, key=lambda test: tests[test][0] / (1 + kills[mutant["file"], test]))
+            reach = sorted(places[place[id]], key=lambda test: tests[test][0] / (1 + kills[mutant["file"], test]))
         done, failed, most, passed = "pass", [], 0.5, 0.0
         while reach and done == "pass" and passed < asked.enough:
             batch = [reach.pop(0)]
@@ -587,7 +556,7 @@ def main():
             else:
                 survivors.append(id)
                 print("survives:", f"{mutant['file']}:{mutant['line']}", mutant["function"], "|", mutant["code"], "|", mutant["replacement"],
-                      "(reached by no test)" if not asked.known and not places[place[id]] else f"(of {len(reach)} tests not asked)" if reach else "", flush=True)
+                      "(reached by no test)" if not places[place[id]] else f"(of {len(reach)} tests not asked)" if reach else "", flush=True)
             if out:
                 print(json.dumps(mutant | {"tests": done, "failed": failed}), file=out, flush=True)
 
