@@ -240,9 +240,10 @@ fn which_of_two_lobes_throws_off_first_is_told_at_the_lesser_speed() {
             (force / (4.0 * large + sign * small)).sqrt() * 60.0 / TAU
         })
     };
-    // As it is the one lobe is at angle 0.
-    for (own, turned) in [(700.0, 0.0), (1100.0, 0.0), (700.0, 50.0), (1100.0, 50.0)] {
-        let phases = [("cam.phases_deg[0]", 80.0 + turned), ("cam.phases_deg[1]", 160.0 + 2.0 * turned)];
+    // As it is a lobe is at angle 0.
+    let radian = 1.0_f64.to_degrees();
+    for (own, turned) in [(700.0, 0.0), (1100.0, 0.0), (1100.0, radian), (700.0, 50.0), (1100.0, 50.0)] {
+        let phases = [("cam.phases_deg[0]", 180.0 - turned), ("cam.phases_deg[1]", 360.0 - 2.0 * turned)];
         let turned =
             phases.iter().try_fold(like.clone(), |model, (name, phase)| model.with_number(name, *phase)).unwrap();
         let model = turned.with_number(name, own).unwrap();

@@ -237,6 +237,8 @@ fn an_end_is_past_0_where_a_product_is_lost_and_only_there() {
     for by in [over(tiny, tiny), over(tiny, 0.5)] {
         assert!((over(-tiny, 1.0) * by).low() < 0.0 && (over(-1.0, tiny) * by).high() > 0.0, "{by:?}");
     }
+    assert!((over(-tiny, 1.0) * over(0.0, tiny)).low() < 0.0);
+    assert_eq!(over(1.0, 2.0) * 0.0, over(0.0, 0.0));
     for (product, low, high) in [
         (over(-tiny, 1.0) * tiny, -least, tiny.next_up()),
         (over(-1.0, tiny) * tiny, (-tiny).next_down(), least),
