@@ -539,7 +539,7 @@ fn a_graze_just_before_an_impact_is_where_the_parabola_touches() {
     };
     let rows: Vec<[f64; 2]> = angles.iter().map(|angle| [*angle, lift(*angle)]).collect();
     let cam = serde_json::json!({ "law": "table", "spline": "cubic", "rows": rows });
-    let follower = serde_json::to_value(&ball(0.55, 0.0).follower).unwrap();
+    let follower = serde_json::to_value(ball(0.55, 0.0).follower).unwrap();
     let model = Model::of_document("bump", &serde_json::json!({ "follower": follower, "cam": cam })).unwrap();
     let number = following(&model, "restitution", [0.549, 0.63], 0.05);
     let behind = orbits(&model, 400.0, 1).into_iter().find(|orbit| {
