@@ -3,11 +3,14 @@
 use std::f64::consts::TAU;
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
+use corner_impact::cam::apart;
+use corner_impact::model::Follower;
 use corner_impact::orbit::{Course, PeriodicOrbit, Search, eigenvalues, search};
-use corner_impact::simulate::{Machine, angular_velocity};
+use corner_impact::simulate::{EventKind, Machine, angular_velocity};
 use nalgebra::Matrix2;
 
 use crate::common;
+use crate::random::{cases_of_every_law, drawn};
 
 fn machine(rpm: f64) -> Machine {
     let paper = common::osorio();
@@ -236,4 +239,33 @@ fn the_flight_after_a_touch_that_comes_down_later_is_none_of_the_cycle() {
     cycle.impacts[1].cam_angle -= 5e-4;
     let departure = format!("{:?}", cycle.departure_but_for(&machine, Some(0)).unwrap());
     assert_eq!(departure, "Some(Elsewhere { impact: 0 })");
+}
+
+/// A run from the state at angle 0 has the orbit's impacts and comes back, but for rounding as often as deviations grow: also where nothing is
+/// left of an impact, and the cam falls away at once.
+#[test]
+fn an_orbit_without_a_rebound_is_a_motion() {
+    let mut flown = 0;
+    for case in drawn(cases_of_every_law(), 60) {
+        let follower = Follower { restitution: 0.0, ..case.model.follower };
+        let machine = Machine::new(case.machine.cam().clone(), &follower, angular_velocity(case.rpm));
+        for orbit in search(&machine, &Search { revolutions: 1, impacts: None }).unwrap() {
+            if !matches!(orbit.course, Course::Impacts(_)) {
+                continue;
+            }
+            let mut motion = machine.start(0.0, orbit.state).unwrap();
+            let mut met = Vec::new();
+            machine.watch(&mut motion, 1, |event| met.push((event.kind, event.cam_angle))).unwrap();
+            let grown = 1e-9 * (1.0 + orbit.matrix.norm());
+            let same = met.len() == orbit.events.len()
+                && met
+                    .iter()
+                    .zip(&orbit.events)
+                    .all(|((kind, angle), event)| *kind == EventKind::Impact && apart(*angle, event.cam_angle) < grown);
+            let off = (motion.state.position - orbit.state.position).abs() / case.stroke;
+            assert!(same && off < grown, "{}: {off:e} {met:?} {orbit:?}", case.text);
+            flown += 1;
+        }
+    }
+    assert!(flown > 5, "{flown}");
 }
