@@ -2,8 +2,9 @@
 
 One JSON document on stdin: the model's "follower" and "cam", "bits", and "candidates", places in doubles where corner impacts
 are thought to be. One on stdout: "results", for each candidate in turn a "certificate", with a ball for every number, or "refused"
-with why; and "assumed", what the pieces of the cam miss each other by, which is taken out. Everything said in a certificate is proved, for the machine whose constants are the decimals of the model; the
-candidates are only where corner impacts are looked for. With "orbits_at_rpm" there are "orbits" and "complete" besides, with
+with why; and "assumed", what the pieces of the cam miss each other by, which is taken out. Everything said in a certificate is
+proved, for the machine whose constants are the decimals of the model; the candidates are only where corner impacts are looked for.
+With "orbits_at_rpm" there are "orbits" and "complete" besides, with
 "orbits_over_rpm", [low, high], "counts", "undecided" and "events", with "resting_at_rpm" "releases", "periodic" and "pressed_rad".
 """
 

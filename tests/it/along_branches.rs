@@ -464,9 +464,7 @@ fn a_fold_is_told_wherever_a_row_of_the_cam_is() {
         let lift = |row: u32| 0.001 * (5.0 * f64::from(row) + turned).to_radians().cos();
         let rows: Vec<(f64, f64)> = (0..72).map(|row| (5.0 * f64::from(row), lift(row))).collect();
         let cam = json!({ "law": "table", "spline": "quintic", "rows": rows });
-        let follower =
-            json!({ "mass": 1, "damping": 0, "stiffness": 0, "gravity": 9.81, "rest_position": 0, "restitution": 0.8 });
-        let model = Model::of_document("ball", &json!({ "follower": follower, "cam": cam })).unwrap();
+        let model = Model::of_document("ball", &json!({ "follower": ball(0.8, 0.0).follower, "cam": cam })).unwrap();
         let found = orbits(&model, 700.0, 1);
         let orbit = found.iter().find(|orbit| orbit.impacts().count() == 1).unwrap();
         let branch = Branch::through(&model, 700.0, orbit, &following(&model, "rpm", [540.0, 720.0], 0.05)).unwrap();
@@ -563,4 +561,15 @@ fn a_graze_just_before_an_impact_is_where_the_parabola_touches() {
     let relative = (impact.velocity_after - 9.81 * time) / omega - touched.slope;
     assert!(gap.abs() < 1e-12 && relative.abs() < 1e-7, "{gap} {relative}");
     assert!(branch.points.last().unwrap().orbit.impacts().count() == 2);
+}
+
+/// Less and less elastic, one touch follows another within less than a thousandth of a radian: what ends there is no one of them.
+#[test]
+fn a_cascade_of_touches_is_chatter() {
+    let model = model("laws/harmonic");
+    let found = orbits(&model, 500.0, 1).into_iter().filter(|orbit| orbit.impacts().count() > 1);
+    let through = |orbit| Branch::through(&model, 500.0, &orbit, &following(&model, "restitution", [0.0, 1.0], 0.05));
+    let ends: Vec<(End, f64)> =
+        found.map(|orbit| through(orbit).unwrap()).map(|it| (it.ends[0].clone(), it.points[0].value)).collect();
+    assert!(ends.iter().any(|(end, value)| *end == End::Chatter && (value - 0.19057).abs() < 1e-3), "{ends:?}");
 }

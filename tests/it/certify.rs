@@ -335,6 +335,16 @@ fn a_cam_that_is_typed_is_certified_as_it_is_joined_and_says_so() {
         assert!(followed["period_within_s"].as_f64() > Some(1e-7), "{side}: {followed}");
     }
     assert!(certified(&["models/osorio-2008.toml"])["corner_impacts"][0]["assumed"].is_null());
+    // Whatever else is proved is about the same cam.
+    let others =
+        [vec!["--orbits", "--rpm", "670"], vec!["--orbits", "--rpm", "669:670"], vec!["--resting", "--rpm", "100"]];
+    for arguments in others {
+        let of = |model: &'static str| [vec![model], arguments.clone()].concat();
+        assert_eq!(&certified(&of("models/laws/polynomial.toml"))["assumed"], assumed, "{arguments:?}");
+        let page = text(corner_impact([vec!["certify"], of("models/laws/polynomial.toml")].concat()).stdout);
+        assert!(page.contains("as they are typed"), "{page}");
+        assert!(certified(&of("models/osorio-2008.toml"))["assumed"].is_null(), "{arguments:?}");
+    }
     let page = corner_impact(["certify", "models/laws/polynomial.toml", "--rpm", "443:444"]);
     assert!(text(page.stdout).contains("The pieces of the cam miss"));
 }

@@ -72,6 +72,8 @@ fn greatest(machine: &Machine, is_wanted: impl Fn(Place) -> bool) -> Option<(f64
     /// Places of a segment between which there is one extreme at most, of designed cams.
     const SAMPLES: usize = 64;
     let (cam, segments) = (machine.cam(), machine.cam().segments());
+    let mut jumps = vec![false; segments.len()];
+    cam.corners().iter().filter(|corner| corner.jump_order <= 2).for_each(|corner| jumps[corner.segment] = true);
     let mut best: Option<(f64, Place)> = None;
     for (index, segment) in segments.iter().enumerate() {
         let at = |part: usize| segment.start + (segment.end - segment.start) * part as f64 / SAMPLES as f64;
@@ -85,12 +87,11 @@ fn greatest(machine: &Machine, is_wanted: impl Fn(Place) -> bool) -> Option<(f64
         let rises = |angle: f64| machine.lifting_rate(&lift(angle)).0 > 0.0;
         // Where it jumps either side may be the greatest; elsewhere segments meet in the middle of a rise or a fall, or at the top of one.
         let next = (index + 1) % segments.len();
-        let jumps = |start: usize| cam.corners().iter().any(|corner| corner.segment == start && corner.jump_order <= 2);
         let rises_behind = machine.lifting_rate(&segments[next].law.lift(segments[next].start)).0 > 0.0;
-        if jumps(index) {
+        if jumps[index] {
             keep(segment.start, Place { segment: index, cam_angle: segment.start, is_corner: true });
         }
-        if jumps(next) || rises(segment.end) && !rises_behind {
+        if jumps[next] || rises(segment.end) && !rises_behind {
             keep(segment.end, Place { segment: next, cam_angle: segments[next].start, is_corner: true });
         }
         for part in 0..SAMPLES {
