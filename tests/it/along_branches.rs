@@ -164,7 +164,7 @@ fn an_onset_of_resting_ends_where_impacts_are_without_number() {
     let curve = curve(&model, &chatter, speeds, &following(&model, "restitution", [0.599, 1.2], 0.1));
     assert_eq!(curve.ends, [End::Range, End::Endless]);
     let last = curve.points.last().unwrap().value;
-    assert!((0.999..0.9999).contains(&last), "{last}");
+    assert!((0.998..0.9999).contains(&last), "{last}");
 }
 
 /// However long a step is: of the impacts before a smooth release a late one tells where they end, and small differences move it far.
@@ -232,7 +232,7 @@ fn an_onset_of_resting_may_be_of_two_revolutions() {
     assert_eq!(branch.ends, [End::Chatter, End::Chatter]);
     let number = following(&model, "restitution", [0.795, 0.805], 0.2);
     let [down, up] = [&branch.points[0], branch.points.last().unwrap()].map(|at| curve(&model, at, speeds, &number));
-    assert_eq!((&down.ends, &up.ends), (&[End::OtherWay, End::Range], &[End::Range, End::Range]));
+    assert_eq!((&down.ends, &up.ends), (&[End::Lost, End::Range], &[End::Range, End::Range]));
     assert!(up.points.len() > 5 && up.points.windows(2).all(|pair| pair[0].rpm > pair[1].rpm), "{:?}", up.points.len());
 }
 
@@ -572,4 +572,77 @@ fn a_cascade_of_touches_is_chatter() {
     let ends: Vec<(End, f64)> =
         found.map(|orbit| through(orbit).unwrap()).map(|it| (it.ends[0].clone(), it.points[0].value)).collect();
     assert!(ends.iter().any(|(end, value)| *end == End::Chatter && (value - 0.19057).abs() < 1e-3), "{ends:?}");
+}
+
+/// On a slow cam only the lift tells where the follower is pressed least: on the lower of two dwells, all along it, where the spring and
+/// the gravity that is followed cancel, `g = -k c/m`. It stays on the higher one and comes back to it.
+#[test]
+fn a_dwell_lets_go_all_along_itself_and_the_rest_goes_on() {
+    let segments = [("dwell", 90.0, 0.0), ("cycloidal", 60.0, 0.01), ("dwell", 120.0, 0.0), ("cycloidal", 90.0, -0.01)]
+        .map(|(motion, span, rise)| json!({ "motion": motion, "span_deg": span, "rise": rise }));
+    let follower = json!({
+        "mass": 1.0, "damping": 0.0, "stiffness": 400.0, "gravity": 9.81, "rest_position": 0.0, "restitution": 0.5
+    });
+    let cam = json!({ "law": "program", "base": 0.04, "segment": segments });
+    let model = Model::of_document("dwells", &json!({ "follower": follower, "cam": cam })).unwrap();
+    let found = orbits(&model, 10.0, 1);
+    let rests = found.iter().find(|orbit| matches!(orbit.course, Course::Sticking(_))).unwrap();
+    let branch = Branch::through(&model, 10.0, rests, &following(&model, "gravity", [-17.0, 10.0], 0.1)).unwrap();
+    assert_eq!(branch.ends, [End::Range, End::Range]);
+    let specials = branch.points.iter().filter_map(|point| Some((point.special?.kind, point.value)));
+    let [(Kind::Detachment, gravity)] = specials.collect::<Vec<_>>()[..] else { panic!("{:?}", branch.points) };
+    assert!((gravity + 400.0 * 0.04).abs() < 1e-9, "{gravity}");
+}
+
+/// Within a few thousandths of its fold the two sides of a branch are less than a long step apart: back at the speed that it began at, it
+/// is at another orbit, with its impact as far from the fold on the other side.
+#[test]
+fn a_branch_that_comes_back_beside_its_start_is_not_closed() {
+    let model = ball(0.8, 0.0);
+    let fold = (PI * 9.81 * 0.2 / 1.8 / 0.01).sqrt() * 60.0 / TAU;
+    let range = [0.9999, 1.004].map(|part| part * fold);
+    let found = orbits(&model, range[1], 1);
+    for longest_step in [0.1, 0.3, 0.5] {
+        for orbit in found.iter().filter(|orbit| orbit.impacts().count() == 1) {
+            let number = following(&model, "rpm", range, longest_step);
+            let branch = Branch::through(&model, range[1], orbit, &number).unwrap();
+            assert_eq!(branch.ends, [End::Range, End::Range], "{longest_step}");
+            let [first, last] = [&branch.points[0], branch.points.last().unwrap()];
+            assert_eq!([first.rpm, last.rpm], [range[1]; 2]);
+            let [one, two] = [first, last].map(|point| point.orbit.events[0].cam_angle);
+            assert!((one + two - 3.0 * PI).abs() < 1e-6 && (one - two).abs() > 0.1, "{one} {two}");
+        }
+    }
+}
+
+/// It turns round at two corner impacts and two touches. From a start right beside one of these it comes back through it: each is told,
+/// however long the steps are.
+#[test]
+fn a_closed_branch_has_all_its_points_wherever_it_begins() {
+    let model = model("persistence");
+    let (own, found) = (model.follower.stiffness, orbits(&model, 237.0, 1));
+    for longest_step in [0.05, 0.1, 0.3] {
+        let number = following(&model, "stiffness", [0.6 * own, 1.2 * own], longest_step);
+        let through = |orbit| Branch::through(&model, 237.0, orbit, &number).unwrap();
+        let all: Vec<Branch> = found.iter().map(through).filter(|branch| branch.ends.contains(&End::Closed)).collect();
+        let [branch] = &all[..] else { panic!("{longest_step} {}", all.len()) };
+        assert_eq!(branch.ends, [End::Closed, End::Closed], "{longest_step}");
+        let mut names: Vec<&str> = branch.points.iter().filter_map(|point| Some(point.special?.kind.name())).collect();
+        names.sort_unstable();
+        assert_eq!(names, ["corner", "corner", "graze", "graze"], "{longest_step}");
+    }
+}
+
+/// Each touch of the cascade adds an impact, and behind it the branch turns round, until there are two dozen: from then on it is chatter.
+#[test]
+#[ignore = "slow"]
+fn a_cascade_of_touches_is_followed_to_two_dozen_impacts() {
+    let model = model("laws/program");
+    let found = orbits(&model, 1000.0, 1).into_iter().filter(|orbit| orbit.impacts().count() == 7);
+    let through = |orbit| Branch::through(&model, 1000.0, &orbit, &following(&model, "rpm", [600.0, 1600.0], 0.3));
+    let mut branches = found.map(|orbit| through(orbit).unwrap());
+    let branch = branches.find(|branch| branch.ends == [End::Chatter, End::Chatter]).unwrap();
+    let folds = branch.points.iter().filter(|point| is_special(point, |kind| kind == Kind::Fold));
+    let counts: Vec<usize> = folds.map(|fold| fold.orbit.impacts().count()).take_while(|count| *count > 7).collect();
+    assert_eq!(counts, (8..=24).rev().collect::<Vec<_>>());
 }

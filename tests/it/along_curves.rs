@@ -1,16 +1,19 @@
 //! Does a curve in two numbers keep what its event promises: where it is on the cam, in whatever unit, and however the cam is turned?
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
+use std::ops::ControlFlow;
 
 use corner_impact::cam::apart;
 use corner_impact::model::Model;
 use corner_impact::orbit::branch::{Bifurcation, Branch, BranchPoint, End, Following, Kind};
 use corner_impact::orbit::{Parameter, Search};
 use corner_impact::progress::Unwatched;
-use corner_impact::simulate::EventKind;
+use corner_impact::simulate::{Event, EventKind, Goal, angular_velocity};
 use corner_impact::study::curve::curves;
+use serde_json::{Value, json};
 
-use crate::orbit_numbers::{model, orbits};
+use crate::bounds::ball;
+use crate::orbit_numbers::{machine, model, orbits};
 use crate::random::{cases_of_every_law, drawn};
 use crate::scales::in_units;
 
@@ -295,4 +298,273 @@ fn where_a_follower_leaves_an_eccentric_may_pass_angle_0() {
         let most = curve.points.iter().map(off).fold(0.0, f64::max);
         assert!(most < 1e-8 && curve.points.len() > 20, "{name} {most:e} {}", curve.points.len());
     }
+}
+
+/// Between rows of a cubic table the acceleration of the cam is a straight line, so that it throws off most at a row: an eccentric at its
+/// top, where of rows that are `h` apart it is `-6 (1 - cos h)/(h^2 (2 + cos h))` of the amplitude.
+#[test]
+fn a_table_lets_go_at_a_row_where_its_acceleration_has_a_kink() {
+    let like = model("laws/harmonic");
+    let (follower, amplitude) = (&like.follower, 0.02);
+    let lift = |degrees: f64| 0.1 + amplitude * (degrees - 200.0).to_radians().cos();
+    let rows: Vec<[f64; 2]> = (0..36).map(|row| 10.0 * f64::from(row)).map(|angle| [angle, lift(angle)]).collect();
+    let cam = json!({ "law": "table", "spline": "cubic", "rows": rows });
+    let model = Model::of_document("rows", &json!({ "follower": follower, "cam": cam })).unwrap();
+    let apart = 10.0_f64.to_radians();
+    let curvature = amplitude * 6.0 * (1.0 - apart.cos()) / (apart * apart * (2.0 + apart.cos()));
+    let speed = |stiffness: f64| {
+        let pressed = 0.1 + amplitude - follower.rest_position;
+        ((stiffness * pressed / follower.mass + follower.gravity) / curvature).sqrt() * 60.0 / TAU
+    };
+    let own = speed(follower.stiffness);
+    let speeds = [0.95 * own, 1.05 * own];
+    let leaves = points(&model, 0.97 * own, 1, speeds, "detachment");
+    let curve = curve(&model, &leaves[0], speeds, &following(&model, "stiffness", [100.0, 900.0], 0.1));
+    assert_eq!((&curve.ends, changes(&curve, "detachment")), (&[End::Range, End::Range], Vec::new()));
+    for point in &curve.points {
+        let place = point.held.as_ref().unwrap().cam_angle.to_degrees();
+        assert!((place - 200.0).abs() < 1e-9, "{place}");
+        assert!((point.rpm / speed(point.value) - 1.0).abs() < 1e-9, "{point:?}");
+    }
+    assert!(curve.points.len() > 5);
+}
+
+/// The events of some kinds at some speeds, of orbits of one impact.
+fn events(follower: &Value, cam: &Value, wanted: &[Bifurcation], speeds: [f64; 2]) -> Vec<(Kind, f64)> {
+    let model = Model::of_document("events", &json!({ "follower": follower, "cam": cam })).unwrap();
+    let number = Following { most_points: 0, ..following(&model, "restitution", [0.05, 0.9], 0.05) };
+    let search = Search { revolutions: 1, impacts: Some(1) };
+    let found = curves(&model, speeds, &search, wanted, &number, &Unwatched).unwrap().curves;
+    found.iter().map(|curve| (curve.kind, curve.points[0].rpm)).collect()
+}
+
+/// A ball's orbits of one impact turn round where the table's velocity is greatest, which is on a row: the impact is on a corner there,
+/// too, and each of the two events has its curve.
+#[test]
+fn two_events_of_one_orbit_are_two() {
+    let fold = (PI * 9.81 * 0.2 / 1.8 / 0.001).sqrt() * 60.0 / TAU;
+    let lift = |degrees: f64| 0.001 * degrees.to_radians().cos();
+    let rows: Vec<[f64; 2]> = (0..24).map(|row| 15.0 * f64::from(row)).map(|angle| [angle, lift(angle)]).collect();
+    let follower = serde_json::to_value(ball(0.8, 0.0).follower).unwrap();
+    let cam = json!({ "law": "table", "spline": "quintic", "rows": rows });
+    let found = events(&follower, &cam, &Bifurcation::ALL, [0.999 * fold, 1.001 * fold]);
+    let [(Kind::Corner { segment: 18, .. }, corner), (Kind::Fold, there)] = found[..] else { panic!("{found:?}") };
+    assert!((corner / there - 1.0).abs() < 1e-9 && (there / fold - 1.0).abs() < 1e-3, "{found:?} {fold}");
+}
+
+/// A follower that hovers above the cam is hit in the middle of a short rise, where the acceleration jumps, and swings six times, or
+/// seven, until it is hit there again: the orbit is at one place of the cam at two speeds. With the frequency w of the spring, and x the
+/// lift below where it is at rest, the phase says `pi w/omega = pi n - atan(c' (1 + r)/(1 - r) omega/w/x)`.
+#[test]
+fn an_impact_on_one_corner_at_two_speeds_is_two_events() {
+    let [restitution, rise, span_deg, base, rest] = [0.1, 0.01, 25.0_f64, 0.1, 0.111];
+    let frequency = 7.718 * 302.0 * TAU / 60.0;
+    let segment =
+        [("dwell", 100.0, 0.0), ("parabolic", span_deg, rise), ("parabolic", span_deg, -rise), ("dwell", 210.0, 0.0)]
+            .map(|(motion, span, rise)| json!({ "motion": motion, "span_deg": span, "rise": rise }));
+    let follower = json!({
+        "mass": 1.0, "damping": 0.0, "stiffness": frequency * frequency, "gravity": 0.0, "rest_position": rest,
+        "restitution": restitution
+    });
+    let cam = json!({ "law": "program", "base": base, "segment": segment });
+    let found = events(&follower, &cam, &[Bifurcation::Corner], [300.0, 351.0]);
+    assert!(found.len() == 2 && found[0].0 == found[1].0, "{found:?}");
+    let slope = 2.0 * rise / span_deg.to_radians() * (1.0 + restitution) / (1.0 - restitution);
+    for ((_, rpm), swings) in found.iter().zip([8.0, 7.0]) {
+        let ratio = frequency / angular_velocity(*rpm);
+        let phase = PI * swings - (slope / ratio / (rest - base - 0.5 * rise)).atan();
+        assert!((PI * ratio - phase).abs() < 1e-9, "{rpm} {}", ratio - phase / PI);
+    }
+}
+
+/// The curve of the onset of resting from one value of a number to another, past a kink: it comes to the speed at which branches of the
+/// machine with that value have the event.
+fn past_a_kink(name: &str, number: &str, rpm: f64, [from, to]: [f64; 2]) {
+    let [(own, onset), (_, there)] = [from, to].map(|value| {
+        let model = model(name).with_number(number, value).unwrap();
+        let onset = points(&model, 0.99 * rpm, 1, [0.99 * rpm, 1.02 * rpm], "chatter").pop().unwrap();
+        (model, onset)
+    });
+    let number = following(&own, number, [from.min(to), from.max(to)], 0.5);
+    let curve = curve(&own, &onset, [0.9 * rpm, 1.1 * rpm], &number);
+    assert_eq!((&curve.ends, &changes(&curve, "chatter")[..]), (&[End::Range, End::Range], &["corner"][..]));
+    let ends = [&curve.points[0], curve.points.last().unwrap()].map(|point| point.rpm);
+    let off = ends.map(|end| (end / there.rpm - 1.0).abs());
+    assert!(off[0].min(off[1]) < 1e-9, "{ends:?} {}", there.rpm);
+}
+
+/// An impact on the way to the rest is at a corner, beyond which the curve goes on in hardly another direction.
+#[test]
+fn an_onset_of_resting_goes_on_where_it_turns_a_little() {
+    past_a_kink("preloaded", "cam.flank_radius", 392.0, [0.5560, 0.553]);
+}
+
+/// The same where it goes almost back to where it came from, which it did along a bend.
+#[test]
+#[ignore = "slow"]
+fn an_onset_of_resting_goes_on_where_it_turns_back() {
+    past_a_kink("osorio-2008", "cam.flank_start_deg", 200.2, [49.0, 45.0]);
+}
+
+/// A follower that hovers above the cam swings to its lowest place between two impacts on the middle of a rise. The more an impact gives
+/// back, the lower that is, `x - h/2` below it where the flight touches the dwell, and the curve of the corner impact goes on beyond with
+/// another impact there.
+#[test]
+fn a_corner_impact_stays_itself_where_the_flight_from_it_touches() {
+    let [rise, span_deg, base, rest] = [0.01, 100.0_f64, 0.1, 0.111];
+    let frequency = 100.0;
+    let segment =
+        [("dwell", 60.0, 0.0), ("parabolic", span_deg, rise), ("parabolic", span_deg, -rise), ("dwell", 100.0, 0.0)]
+            .map(|(motion, span, rise)| json!({ "motion": motion, "span_deg": span, "rise": rise }));
+    let follower = json!({
+        "mass": 1.0, "damping": 0.0, "stiffness": frequency * frequency, "gravity": 0.0, "rest_position": rest,
+        "restitution": 0.1
+    });
+    let cam = json!({ "law": "program", "base": base, "segment": segment });
+    let model = Model::of_document("hovers", &json!({ "follower": follower, "cam": cam })).unwrap();
+    let corners = points(&model, 560.0, 1, [555.0, 565.0], "corner");
+    let curve = curve(&model, &corners[0], [500.0, 650.0], &following(&model, "restitution", [0.1, 0.4], 0.1));
+    let touches = curve.points.iter().filter_map(|point| match point.special?.kind {
+        Kind::Graze { before: 1, after: 2, .. } => Some(point),
+        _ => None,
+    });
+    let [touch] = touches.collect::<Vec<_>>()[..] else { panic!("{:?}", curve.points) };
+    let slope = 2.0 * rise / span_deg.to_radians() * (1.0 + touch.value) / (1.0 - touch.value);
+    let (speed, below) = (slope * angular_velocity(touch.rpm) / frequency, rest - base - 0.5 * rise);
+    assert!((speed.hypot(below) - (rest - base)).abs() < 1e-12, "{touch:?}");
+    let corner = (60.0 + 0.5 * span_deg).to_radians();
+    assert_eq!(curve.ends, [End::Range, End::Range]);
+    let beyond: Vec<&BranchPoint> = curve.points.iter().skip_while(|point| *point != touch).skip(1).collect();
+    assert!(beyond.len() > 5 && beyond.iter().all(|point| point.orbit.impacts().count() == 2), "{}", beyond.len());
+    let places = curve.points.iter().map(|point| point.held.as_ref().unwrap().cam_angle);
+    assert!(places.into_iter().all(|place| (place - corner).abs() < 1e-9));
+}
+
+/// On the curve of a corner impact a multiplier of the map behind the corner passes -1. A little to one side of that it is beyond -1 at the
+/// corner and farther beyond from there on, and before the corner none is: whichever way through the corner, no flip is told.
+#[test]
+fn no_flip_is_told_at_a_corner_that_a_multiplier_only_jumps_at() {
+    let (model, name) = (model("osorio-2008"), "follower.restitution");
+    let corner = points(&model, 700.0, 1, [660.0, 710.0], "corner").swap_remove(0);
+    let of_corner = curve(&model, &corner, [300.0, 1200.0], &following(&model, name, [0.3, 0.85], 0.1));
+    let is_flip = |kind| matches!(kind, Kind::Type { after_corner: Some(true), multiplier: -1.0 });
+    let flip = of_corner.points.iter().find(|point| point.special.is_some_and(|special| is_flip(special.kind)));
+    let (restitution, rpm) = flip.map(|flip| (flip.value, flip.rpm)).unwrap();
+    let beside = model.with_number(name, restitution - 1e-8).unwrap();
+    let of_one = orbits(&beside, 1.001 * rpm, 1).into_iter().filter(|orbit| orbit.impacts().count() == 1);
+    let number = following(&beside, "rpm", [0.99 * rpm, 1.01 * rpm], 0.1);
+    let branches: Vec<Branch> =
+        of_one.map(|orbit| Branch::through(&beside, 1.001 * rpm, &orbit, &number).unwrap()).collect();
+    assert_eq!(branches.len(), 2);
+    for branch in branches {
+        // The signs of 1 + trace + determinant, which is 0 at a flip.
+        let ordinary = branch.points.iter().filter(|point| point.special.is_none()).map(|point| &point.orbit.matrix);
+        let signs: Vec<bool> = ordinary.map(|matrix| 1.0 + matrix.trace() + matrix.determinant() < 0.0).collect();
+        assert_eq!(signs.chunk_by(|one, two| one == two).count(), 2, "{signs:?}");
+        assert_eq!(changes(&branch, "corner"), Vec::<&str>::new());
+    }
+}
+
+/// The orbits of a ball turn round where the table is fastest upwards, at `a omega^2 (1 + r) = pi g (1 - r)`: with less and less gravity
+/// that comes to a standstill. Whichever of the last steps fails, where it is for the speed this is what the end says.
+#[test]
+fn a_curve_that_comes_to_a_standstill_says_so() {
+    let model = ball(0.8, 0.0);
+    let fold = points(&model, 200.0, 1, [170.0, 210.0], "fold").swap_remove(0);
+    let mut told = 0;
+    for longest_step in [0.03, 0.05, 0.2, 0.5, 1.0] {
+        let curve = curve(&model, &fold, [100.0, 300.0], &following(&model, "gravity", [-10.0, 10.0], longest_step));
+        assert_eq!(curve.ends[1], End::Range);
+        for point in &curve.points {
+            let least = (PI * point.value * 0.2 / 1.8 / 0.01).sqrt() * 60.0 / TAU;
+            assert!((point.rpm - least).abs() < 1e-6 * (1.0 + least), "{} {least}", point.rpm);
+        }
+        assert!(curve.points[0].rpm < 1e-3, "{longest_step} {}", curve.points[0].rpm);
+        told += usize::from(matches!(&curve.ends[0], End::Edge { why, .. } if why.contains("speed")));
+    }
+    assert!(told > 0);
+}
+
+/// Of two lobes the second is hit on a corner, less and less as the spring lets the follower go higher: where it is touched alone there is
+/// no impact on the corner left, and the curve ends there.
+#[test]
+fn a_curve_of_corner_impacts_ends_where_the_impact_on_the_corner_is_a_touch() {
+    let parts = [("parabolic", 50.0, 0.0046), ("parabolic", 50.0, -0.0046), ("dwell", 30.0, 0.0)];
+    let others = [("parabolic", 100.0, 0.0113), ("parabolic", 100.0, -0.0113), ("dwell", 30.0, 0.0)];
+    let all = parts.into_iter().chain(others);
+    let segment: Vec<Value> =
+        all.map(|(motion, span, rise)| json!({ "motion": motion, "span_deg": span, "rise": rise })).collect();
+    let follower = json!({
+        "mass": 1.0, "damping": 0.6, "stiffness": 1300.0, "gravity": 9.81, "rest_position": 0.09, "restitution": 0.88
+    });
+    let cam = json!({ "law": "program", "base": 0.1, "segment": segment });
+    let model = Model::of_document("two-lobes", &json!({ "follower": follower, "cam": cam })).unwrap();
+    let speeds = [390.0, 480.0];
+    let found = orbits(&model, 400.0, 1).into_iter().filter(|orbit| orbit.impacts().count() == 2);
+    let through = |orbit| Branch::through(&model, 400.0, &orbit, &following(&model, "rpm", speeds, 0.2)).unwrap();
+    let all = found.map(through).flat_map(|branch| branch.points);
+    let on_it = |kind| matches!(kind, Kind::Corner { impact: 1, segment: 9, .. });
+    let corner = all.into_iter().find(|point| point.special.is_some_and(|special| on_it(special.kind))).unwrap();
+    let curve = curve(&model, &corner, [200.0, 800.0], &following(&model, "rest_position", [0.09, 0.13], 0.2));
+    assert_eq!(curve.ends, [End::Range, End::Graze]);
+    let last = curve.points.last().unwrap();
+    assert!(matches!(last.special.unwrap().kind, Kind::Graze { before: 2, after: 1, .. }), "{last:?}");
+    let [one, two] = &last.orbit.events[..] else { panic!("{last:?}") };
+    let [one_speed, two_speed] = [one, two].map(|event| event.cam_velocity - event.velocity_before);
+    assert!((two.cam_angle - 330.0_f64.to_radians()).abs() < 1e-9, "{two:?}");
+    assert!(one_speed > 0.1 && two_speed.abs() < 1e-9, "{one_speed} {two_speed}");
+}
+
+/// Whether a follower that leaves the cam behind `place`, rad, at rest on it, rests again before it has turned to there.
+fn rests(model: &Model, rpm: f64, place: f64) -> bool {
+    /// A way on the cam before the place, rad.
+    const BEFORE: f64 = 0.01;
+    let machine = machine(model, rpm);
+    let start = place - BEFORE;
+    let mut motion = machine.start_on_cam(start, 0.0).unwrap();
+    let mut rested = false;
+    let goal = Goal { revolution: 1, cam_angle: place };
+    let advanced = machine.advance(&mut motion, goal, &mut |event: &Event| {
+        rested = event.kind == EventKind::Stick && event.turned_since(start) > BEFORE;
+        if rested { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    assert!(rested || advanced.is_ok(), "{rpm} {advanced:?}");
+    rested
+}
+
+/// All along its curve a follower that is a little slower rests before the cam lets go of it again, and one that is a little faster does
+/// not: where the cam lets go smoothly, between the rows of a table, which the place passes on the way, and at a corner.
+#[test]
+fn at_the_onset_of_resting_slower_followers_rest_and_faster_ones_do_not() {
+    let harmonic = model("laws/harmonic");
+    let table = |spline: &str| {
+        let lift = |row: u32| harmonic_lift(f64::from(row) * 5.0);
+        let rows: Vec<[f64; 2]> = (0..72).map(|row| [f64::from(row) * 5.0, lift(row)]).collect();
+        let cam = json!({ "law": "table", "spline": spline, "rows": rows });
+        Model::of_document("rows", &json!({ "follower": &harmonic.follower, "cam": cam })).unwrap()
+    };
+    let at_corner = model("nonsmooth-flip");
+    let hardly_thrown = at_corner.with_number("follower.restitution", 0.02).unwrap();
+    for (model, rpm, speeds, range) in [
+        (&harmonic, 380.0, [300.0, 500.0], [0.3, 0.9]),
+        (&table("cubic"), 380.0, [300.0, 500.0], [0.3, 0.9]),
+        (&table("quintic"), 380.0, [300.0, 500.0], [0.3, 0.9]),
+        (&at_corner, 400.0, [150.0, 1200.0], [0.3, 0.51]),
+        (&hardly_thrown, 900.0, [850.0, 1000.0], [0.02, 0.1]),
+    ] {
+        let onset = points(model, rpm, 1, speeds, "chatter").swap_remove(0);
+        let curve = curve(model, &onset, speeds, &following(model, "restitution", range, 0.1));
+        assert_eq!(curve.ends, [End::Range, End::Range], "{:?}", curve.points.len());
+        for point in &curve.points {
+            let there = model.with_number("follower.restitution", point.value).unwrap();
+            let place = point.held.as_ref().unwrap().cam_angle;
+            let beside = [1.0 - 1e-7, 1.0 + 1e-7].map(|part| rests(&there, part * point.rpm, place));
+            assert_eq!(beside, [true, false], "{} rpm, restitution {}", point.rpm, point.value);
+        }
+    }
+}
+
+/// The lift of the eccentric in models/laws, m.
+fn harmonic_lift(degrees: f64) -> f64 {
+    0.1 - 0.02 * degrees.to_radians().cos() + 0.001 * (2.0 * degrees).to_radians().cos()
 }

@@ -598,3 +598,31 @@ fn what_wanders_and_rests_where_all_repeats_has_left() {
         );
     }
 }
+
+/// A run that wandered for long has come to an orbit in the end. Whatever goes on as it did is on its way there, whether it has rested or
+/// not; what rests and repeats soon is a motion of its own, that a follower at rest on the table goes on with as well.
+#[test]
+fn what_is_left_in_the_end_is_left_from_its_rests_and_what_repeats_is_not() {
+    for (restitution, rpm, rests) in [(0.65, 1051.3, 1), (0.7, 1256.5, 0)] {
+        let model = ball().with_number("follower.restitution", restitution).unwrap();
+        let here = from_starts(&model, rpm);
+        assert!(here.wandering.left > 0, "{rpm}: {:?}", here.wandering);
+        assert!(here.parts.iter().all(|part| part.ending.period().is_some()), "{rpm}: {:?}", here.parts);
+        let resting = here.parts.iter().filter(|part| part.ending.kind() == Kind::Resting);
+        assert_eq!(resting.count(), rests, "{rpm}: {:?}", here.parts);
+    }
+}
+
+/// A ball that bounces little has motions of two and of three impacts a revolution over a few revolutions a minute, far between the
+/// speeds of the grid: runs come to them right below the lower end of one that goes on from there.
+#[test]
+#[ignore = "slow"]
+fn orbits_below_the_end_of_another_are_found() {
+    let model = ball().with_number("follower.restitution", 0.1).unwrap();
+    let found = found(&model, [1498.0, 1520.0], 200.0, 1);
+    for (numbers, rpm) in [((1, 2), [1503.7839, 1514.5427]), ((1, 3), [1498.7194, 1500.5706])] {
+        let one = periodic(&found, numbers).unwrap_or_else(|| panic!("no {numbers:?}: {found:?}"));
+        assert_abs_diff_eq!(one.rpm[0], rpm[0], epsilon = 1e-3);
+        assert_abs_diff_eq!(one.rpm[1], rpm[1], epsilon = 1e-3);
+    }
+}

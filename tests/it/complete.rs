@@ -174,6 +174,23 @@ fn sampled(machine: &Machine) -> Vec<f64> {
     angles
 }
 
+/// Without damping the long one of two flights may be half a swing about the equilibrium, which comes back to the cam however it leaves,
+/// as long as the two contacts are as far above the equilibrium as below. The equations say no more of it then; that the impacts do not
+/// throw the follower as fast as the flights ask for does.
+#[test]
+fn a_flight_of_half_a_swing_between_impacts_that_do_not_throw_so_is_refused() {
+    for (ratio, phase) in [(1.3, 30.0), (1.2, 135.0), (1.05, 120.0)] {
+        let text = format!(
+            "[follower]\nmass = 1.0\ndamping = 0.0\nstiffness = 100.0\ngravity = 0.0\nrest_position = 0.1\nrestitution = 0.3\n\
+             [cam]\nlaw = \"harmonic\"\noffset = 0.1\namplitudes = [0.02, 0.01]\nphases_deg = [180.0, {phase}]\n"
+        );
+        // The cam turns by more than half a turn in half a swing, and by less than a whole one.
+        let model = Model::parse("half-a-swing.toml", &text).unwrap();
+        let searched = all(&machine(&model, 10.0 * ratio * 60.0 / TAU), 2);
+        assert!(is_complete(&searched) && searched.orbits.len() == 1, "{ratio} {phase}: {searched:?}");
+    }
+}
+
 /// An orbit that anything else finds is one of those that are said to be all, or where it is said that one may be missing.
 fn is_told(searched: &Searched, angles: &[f64]) -> bool {
     let impacts = |orbit: &PeriodicOrbit| orbit.impacts().map(|event| event.cam_angle).collect::<Vec<_>>();

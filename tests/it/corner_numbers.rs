@@ -334,6 +334,15 @@ fn the_course_of_an_orbit_comes_round() {
     }
 }
 
+/// Its two terms cancel, and what rounding leaves of them is told over the sum of their sizes.
+#[test]
+fn what_is_left_of_the_equation_for_the_period_is_a_rounding_of_its_terms() {
+    let (_, all) = found(&common::osorio(), [673.2, 673.3], 1);
+    let at = &all[0];
+    assert_eq!(at.ways, [Way::Equation]);
+    assert!((0.0..1e-14).contains(&at.residual), "{:e}", at.residual);
+}
+
 /// No branch comes to it: its period is known to where Newton's method closed.
 #[test]
 fn a_corner_impact_that_shots_alone_find_has_its_period_in_a_bracket() {

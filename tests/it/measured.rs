@@ -1122,6 +1122,21 @@ fn a_fold_on_a_measured_cam_is_as_far_off_as_is_said() {
     }
 }
 
+/// A ball that does not bounce is thrown once a revolution from where `a w^2 cos = g` on the way up, and rests until then, up to where it
+/// is back there just as it is thrown again: `a w^2 = g (1 + pi^2)^(1/2)`. Runs tell that end, and how far the rows leave it open.
+#[test]
+fn an_end_by_runs_on_a_measured_cam_is_as_far_off_as_is_said() {
+    let end = (9.81 * PI.hypot(1.0) / 0.001).sqrt() * 60.0 / TAU;
+    for turned_deg in [0.0, 2.5] {
+        let plastic = ball_on_rows(turned_deg).with_number("follower.restitution", 0.0).unwrap();
+        let found = speeds(&plastic, [1600.0, 1800.0], resolution(100.0, 1), &Unwatched).unwrap();
+        let death = found.attractors[0].death.as_ref().unwrap();
+        let error = death.error.unwrap();
+        assert_eq!(death.cause, Cause::Runs);
+        assert!((death.rpm - end).abs() <= error && error < 2.0, "{} {error}", death.rpm);
+    }
+}
+
 /// The paper's cam in rows of two degrees to a thousandth of a millimetre, its corners as they are drawn: cams that are as likely have its corner
 /// impact, too, and the true one is no farther off than they are.
 #[test]

@@ -6,9 +6,10 @@
 use std::f64::consts::TAU;
 
 use corner_impact::cam::Cam;
+use corner_impact::flight::State;
 use corner_impact::model::Model;
 use corner_impact::orbit::branch::{Branch, BranchPoint, End, Following, Kind};
-use corner_impact::orbit::{Eigenvalue, Parameter, PeriodicOrbit, Search, search};
+use corner_impact::orbit::{Eigenvalue, Parameter, PeriodicOrbit, Search, search, settle};
 use corner_impact::simulate::{Machine, angular_velocity};
 use serde_json::Value;
 
@@ -187,5 +188,36 @@ fn the_balls_branch_has_its_fold_and_its_flip() {
         for branch in branches(&model, rpm, &case, "restitution", [0.9 * fold, 0.5 + 0.5 * given]) {
             the_one(&branch, |kind| *kind == Kind::Fold, fold);
         }
+    }
+}
+
+/// On a table of 65 alike waves a revolution the ball hits every 17th, each time as high up on it, and is back on the first one after 17
+/// revolutions: an orbit of 65 impacts, of which none follows the one before soon.
+#[test]
+fn an_orbit_of_many_revolutions_may_have_as_many_impacts() {
+    let (waves, every, gravity, restitution, omega) = (65.0_f64, 17.0_f64, 9.81_f64, 0.5_f64, TAU);
+    // v+ = g t/2 = -v-, so that (1 - r) g t/2 = (1 + r) c'; stable right behind the fold, where c' is the largest that there is.
+    let time = every / waves * TAU / omega;
+    let (after, sine) = (0.5 * gravity * time, -0.9995_f64);
+    let cosine = (1.0 - sine * sine).sqrt();
+    let amplitude = (1.0 - restitution) / (1.0 + restitution) * after / (waves * omega * -sine);
+    let mut amplitudes = [0.0; 65];
+    amplitudes[64] = amplitude;
+    let cam =
+        format!("[cam]\nlaw = \"harmonic\"\noffset = 0.0\namplitudes = {amplitudes:?}\nphases_deg = {:?}\n", [0.0; 65]);
+    let model = Model::parse("waves.toml", &(follower(0.0, gravity, restitution) + &cam)).unwrap();
+    let machine = Machine::new(Cam::new(&model).unwrap(), &model.follower, omega);
+    // The impact on the first wave, and how long before angle 0 the one before it is.
+    let first = sine.atan2(cosine).rem_euclid(TAU) / waves;
+    let since = time - first / omega;
+    let position = amplitude * cosine + after * since - 0.5 * gravity * since * since;
+    let state = State { position, velocity: after - gravity * since };
+    let orbit = settle::near(&machine, 0.0, state, every as u64).unwrap().expect("an orbit");
+    assert_eq!((orbit.revolutions, orbit.impacts().count()), (17, 65));
+    assert!(orbit.is_stable() && orbit.events.len() == 65, "{orbit:?}");
+    for (index, impact) in orbit.impacts().enumerate() {
+        let turned = first + index as f64 * every / waves * TAU;
+        near(impact.turned_since(0.0), turned, 1.0, "cam angle");
+        near(impact.velocity_after, after, after, "velocity after");
     }
 }

@@ -278,3 +278,18 @@ fn a_follower_floats_once_it_is_above_the_top_for_good() {
         assert!(before < 0.12 && 0.12 < now, "{rpm} rpm: {before} {now}");
     }
 }
+
+/// Right behind a flip the two halves of eight revolutions are alike, so that the run is back near where it was after four: who looks for
+/// seven at most is not told of the eight.
+#[test]
+fn a_run_comes_to_no_orbit_that_is_longer_than_what_is_looked_for() {
+    let machine = machine(&crate::orbit_numbers::model("nonsmooth-flip"), 881.773);
+    let mut settled = machine.start_on_cam(1.0, 0.1).unwrap();
+    machine.revolve(&mut settled, 20_000).unwrap();
+    let run = |longest: u64| Settling::unaided(&machine, longest, 1000).run(&mut settled.clone(), 400).unwrap();
+    let Run::Arrives(orbit) = run(8) else { panic!("{:?}", run(8)) };
+    assert_eq!(orbit.revolutions, 8);
+    for longest in [5, 6, 7] {
+        assert_eq!(run(longest), Run::Wanders, "{longest}");
+    }
+}

@@ -5,15 +5,15 @@
 //! held until another is first.
 //!
 //! Onset of resting: the infinitely many impacts after a release end just where the cam lets go. Where it lets go at a corner,
-//! this is where their sum ends (`accumulation`), by the law before the corner. Where it lets go smoothly, the gap's
+//! the law before it is continued, and they end on that. Where it lets go smoothly, the gap's
 //! acceleration is -J tau at a time tau before, and impacts shrink towards it alike: from tau to (1 - d) tau each, at
 //!
 //! ```text
 //! u = rho J tau^2,   rho = d/2 - d^2/6 = r (d/2 - d^2/3)/(1 - d)^2
 //! ```
 //!
-//! A faster follower passes, a slower one rests. What that leaves out of an impact is of the size tau^2, and the earlier ones
-//! know it better by as much as deviations from rho have grown since.
+//! A faster follower passes, a slower one rests. What that leaves out of an impact is of the size tau^2, and deviations from rho grow
+//! from one impact to the next: the later the one that is asked, the better it tells, and the nearer it must be begun at.
 
 use std::convert::Infallible;
 use std::f64::consts::TAU;
@@ -23,11 +23,11 @@ use nalgebra::{DMatrix, DVector};
 
 use super::Kind;
 use crate::bracket::{Width, halve};
-use crate::cam::{Lift, apart, within_a_turn};
+use crate::cam::{Lift, Segment, Side, apart, within_a_turn};
 use crate::orbit::curve::Equations;
 use crate::orbit::cycle::lift_size;
 use crate::orbit::{Course, Family, FamilyError, PeriodicOrbit};
-use crate::simulate::{Event, EventKind, Goal, Machine, accumulation};
+use crate::simulate::{Event, EventKind, Goal, Machine};
 use crate::tolerance;
 
 /// Where the cam lets go.
@@ -105,6 +105,18 @@ fn greatest(machine: &Machine, is_wanted: impl Fn(Place) -> bool) -> Option<(f64
     best
 }
 
+/// Where the cam would let go by the law of a segment, rad, near `cam_angle`, and the lift there; `None` where it does not.
+fn lets_go(machine: &Machine, segment: &Segment, mut cam_angle: f64) -> Option<(f64, Lift)> {
+    /// Newton's method doubles the digits of a place that is known to a step along the curve.
+    const STEPS: usize = 20;
+    let mut lift = segment.law.lift(cam_angle);
+    for _ in 0..STEPS {
+        cam_angle -= machine.angular_velocity() * machine.lifting(&lift) / machine.lifting_rate(&lift).0;
+        lift = segment.law.lift(cam_angle);
+    }
+    (machine.lifting_rate(&lift).0 > 0.0).then_some((cam_angle, lift))
+}
+
 impl Place {
     /// Whether it is the same place of the cam as another, a step along the curve apart: a smooth one may run into a corner.
     fn is_near(self, other: Self) -> bool {
@@ -120,8 +132,6 @@ impl Place {
 
     /// Where it is on another machine, and the lift there; `None` where the cam does not let go near there.
     pub(super) fn on(self, machine: &Machine) -> Option<(Self, Lift)> {
-        /// Newton's method doubles the digits of a place that is known to a step along the curve.
-        const STEPS: usize = 20;
         /// Segments that it may go over to.
         const SEGMENTS: usize = 3;
         let cam = machine.cam();
@@ -133,14 +143,8 @@ impl Place {
         let mut on = self;
         for _ in 0..SEGMENTS {
             let segment = &cam.segments()[on.segment];
-            let mut lift = segment.law.lift(on.cam_angle);
-            for _ in 0..STEPS {
-                on.cam_angle -= machine.angular_velocity() * machine.lifting(&lift) / machine.lifting_rate(&lift).0;
-                lift = segment.law.lift(on.cam_angle);
-            }
-            if !(machine.lifting_rate(&lift).0 > 0.0) {
-                return None;
-            }
+            let lift;
+            (on.cam_angle, lift) = lets_go(machine, segment, on.cam_angle)?;
             if (segment.start..=segment.end).contains(&on.cam_angle) {
                 return Some((on, lift));
             }
@@ -153,17 +157,52 @@ impl Place {
 
     /// By how far infinitely many impacts from `last` on, with so much `left` to here, rad, end beyond; `None` where they do not
     /// come here by the law before.
-    pub(super) fn passed(self, machine: &Machine, lift: &Lift, last: &Event, left: f64) -> Option<f64> {
-        let (relative, before) = (last.velocity_after - last.cam_velocity, self.before(machine));
-        let time = if self.is_corner {
-            let at = machine.cam().segments()[before].law.lift(last.cam_angle);
-            let (pressing, rate) = (-machine.lifting(&at), machine.lifting_rate(&at).0);
-            accumulation(relative, machine.restitution(), pressing, rate, machine.flight().zeta()).0
-        } else {
-            (relative / (alike(machine.restitution()) * machine.lifting_rate(lift).0)).sqrt()
-        };
-        let off = machine.angular_velocity() * time - left;
-        (last.segment == before && time >= 0.0 && off.is_finite()).then_some(off)
+    fn passed(self, machine: &Machine, lift: &Lift, last: &Event, left: f64) -> Option<f64> {
+        let relative = last.velocity_after - last.cam_velocity;
+        if self.is_corner {
+            let is_before = last.segment == self.before(machine);
+            return is_before
+                .then(|| self.rest_beyond(machine, last, relative, left))
+                .flatten()
+                .map(|turn| turn - left);
+        }
+        let (further, lift) =
+            if last.segment == self.segment { (0.0, *lift) } else { self.by_law_before(machine, last.segment, left)? };
+        let time = (relative / (alike(machine.restitution()) * machine.lifting_rate(&lift).0)).sqrt();
+        let off = machine.angular_velocity() * time - (left + further);
+        off.is_finite().then_some(off)
+    }
+
+    /// How far from `last` on infinitely many impacts end by the law before the corner, which is continued past it, rad.
+    fn rest_beyond(self, machine: &Machine, last: &Event, relative_velocity: f64, left: f64) -> Option<f64> {
+        /// By how much the law is continued, rad, where the segment behind is as long.
+        const REACH: f64 = 0.05;
+        let (cam, behind) = (machine.cam(), &machine.cam().segments()[self.segment]);
+        let corner = cam.corners().iter().find(|corner| corner.segment == self.segment)?;
+        let reach = REACH.min(0.5 * (behind.end - behind.start));
+        let machine = machine.with_cam(cam.continued(corner, Side::Minus, reach)?);
+        let mut motion = machine.start_on_cam(last.cam_angle, relative_velocity).ok()?;
+        let end = last.cam_angle + left + reach;
+        let mut rest = None;
+        let _ = machine.advance(&mut motion, goal(end), &mut |event: &Event| {
+            rest = (event.kind == EventKind::Stick).then(|| event.turned_since(last.cam_angle));
+            if rest.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        rest
+    }
+
+    /// Right behind a smooth seam all impacts but the last follow the law of the segment before: how much further on the cam would let go
+    /// by that, rad, and the lift there. `None` of another segment, and where it is not little beside what an impact has `left`.
+    fn by_law_before(self, machine: &Machine, segment: usize, left: f64) -> Option<(f64, Lift)> {
+        const LITTLE: f64 = 0.1;
+        let cam = machine.cam();
+        let is_smooth = cam.corners().iter().all(|corner| corner.segment != self.segment || corner.jump_order > 2);
+        if cam.before(self.segment) != segment || !is_smooth {
+            return None;
+        }
+        let here = self.cam_angle + if segment > self.segment { TAU } else { 0.0 };
+        let (cam_angle, lift) = lets_go(machine, &cam.segments()[segment], here)?;
+        ((cam_angle - here).abs() < LITTLE * left).then_some((cam_angle - here, lift))
     }
 
     /// Index of the segment before the place, on which a follower rests.
@@ -213,41 +252,59 @@ impl Contact {
                 let turns = ((turned + from.cam_angle - to.cam_angle) / TAU).round();
                 let turned = turns * TAU + to.cam_angle - from.cam_angle;
                 let impacts = flown(machine, from.cam_angle, turned)?;
-                let last = impacts.get(impact.min(impacts.len().checked_sub(1)?))?;
-                let off = to.passed(machine, &lift, last, turned - last.turned_since(from.cam_angle))?;
+                let passed = |impact: usize| {
+                    let event: &Event = impacts.get(impact)?;
+                    to.passed(machine, &lift, event, turned - event.turned_since(from.cam_angle))
+                };
+                // Where it has gone over to a law before, as at a row of a table, the first after it that has not.
+                let known = impact.min(impacts.len().checked_sub(1)?);
+                let (impact, off) = (known..impacts.len()).find_map(|later| Some((later, passed(later)?)))?;
                 Some(Reached { off, contact: Self::Resting { from, to, turned, impact }, impacts })
             }
         }
     }
 
-    /// The same, told by the impact that tells it best: of those before a corner the one that has as much of the way left as
-    /// their sum needs to be exact, and before a smooth release that which is nearest to the others' ratio.
-    pub(super) fn told(self, machine: &Machine, reached: &Reached) -> Self {
-        let Self::Resting { from, to, turned, .. } = reached.contact else { return reached.contact };
-        let Some((_, lift)) = to.on(machine) else { return reached.contact };
-        let left = |event: &Event| turned - event.turned_since(from.cam_angle);
-        let mut enough =
-            reached.impacts.iter().enumerate().filter(|(_, event)| left(event) > tolerance::CHATTER_LEFT.value);
-        let off = |event: &Event| to.passed(machine, &lift, event, left(event)).map_or(f64::INFINITY, f64::abs);
-        let best = if to.is_corner {
-            enough.next_back().map(|(index, _)| index)
-        } else {
-            enough
-                .map(|(index, event)| (index, off(event)))
-                .min_by(|one, two| one.1.total_cmp(&two.1))
-                .map(|best| best.0)
-        };
-        Self::Resting { from, to, turned, impact: best.unwrap_or(0) }
+    /// Whether no later impact would tell it better.
+    pub(super) fn is_exact(self, reached: &Reached) -> bool {
+        let Self::Resting { from, to, turned, impact } = self else { return true };
+        let mut later = reached.impacts.iter().skip(impact).skip(1);
+        to.is_corner || !later.any(|event| turned - event.turned_since(from.cam_angle) > tolerance::CHATTER_LEFT.value)
     }
+
+    /// The same, told by the first impact of those that are next to their end, and by the last that is still on its way there. The
+    /// first stays what it is over long steps along the curve. The last knows better where they end: what the equation leaves out shrinks
+    /// from one to the next. Before a corner it leaves out nothing, and both are the first.
+    pub(super) fn told(self, machine: &Machine, reached: &Reached) -> [Self; 2] {
+        /// How near their end they are told nearly by what is known of it, rad.
+        const ALIKE: f64 = 0.05;
+        /// What an impact may be off by, of what is left to the place, for Newton's method to go on from there.
+        const FOLLOWED: f64 = 0.1;
+        let Self::Resting { from, to, turned, .. } = reached.contact else { return [reached.contact; 2] };
+        let Some((_, lift)) = to.on(machine) else { return [reached.contact; 2] };
+        let left = |event: &Event| turned - event.turned_since(from.cam_angle);
+        let is_on_its_way = |event: &Event| {
+            if to.is_corner {
+                return event.segment == to.before(machine);
+            }
+            let off = to.passed(machine, &lift, event, left(event));
+            left(event) > tolerance::CHATTER_LEFT.value && off.is_some_and(|off| off.abs() < FOLLOWED * left(event))
+        };
+        let last = reached.impacts.iter().rposition(is_on_its_way);
+        let first = reached.impacts.iter().position(|event| left(event) < ALIKE && is_on_its_way(event)).or(last);
+        let last = if to.is_corner { first } else { last };
+        [first, last].map(|impact| impact.map_or(reached.contact, |impact| Self::Resting { from, to, turned, impact }))
+    }
+}
+
+fn goal(turned: f64) -> Goal {
+    Goal { revolution: (turned / TAU) as u64, cam_angle: turned % TAU }
 }
 
 /// The impacts of a follower that the cam lets go of at `cam_angle`, for `turned`, rad, or until it rests.
 pub(super) fn flown(machine: &Machine, cam_angle: f64, turned: f64) -> Option<Vec<Event>> {
     let mut motion = machine.start_on_cam(cam_angle, 0.0).ok()?;
-    let end = cam_angle + turned;
-    let goal = Goal { revolution: (end / TAU) as u64, cam_angle: end % TAU };
     let mut impacts = Vec::new();
-    let _ = machine.advance(&mut motion, goal, &mut |event: &Event| match event.kind {
+    let _ = machine.advance(&mut motion, goal(cam_angle + turned), &mut |event: &Event| match event.kind {
         EventKind::Impact if impacts.len() == MANY_IMPACTS => ControlFlow::Break(()),
         EventKind::Impact => {
             impacts.push(*event);
@@ -285,7 +342,7 @@ impl Equations for Rest<'_> {
         const DIFFERENCE: f64 = 1e-7;
         /// Before a smooth release a late impact moves by hundreds of times as much, and by no more than it has left. At a corner the wider
         /// difference carries a curve on over the small kinks between impacts.
-        const SMALL: f64 = 1e-9;
+        const SMALL: f64 = 1e-11;
         let is_smooth = matches!(self.contact, Contact::Resting { to, .. } if !to.is_corner);
         let difference = if is_smooth { SMALL } else { DIFFERENCE };
         let off = self.reached(unknowns)?.off;
@@ -330,5 +387,6 @@ pub(super) fn contact(kind: Kind, orbit: &PeriodicOrbit, machine: &Machine) -> O
     let turned = if turned > 0.0 { turned } else { period };
     let [from, to] = [from, to].map(|event| Place::of(event, machine));
     let all = Contact::Resting { from, to, turned, impact: usize::MAX };
-    Some(all.told(machine, &all.reached(machine)?))
+    let [first, _] = all.told(machine, &all.reached(machine)?);
+    Some(first)
 }

@@ -147,7 +147,9 @@ impl Walk<'_> {
                     .all(|(one, other)| one.segment == other.segment);
             if alike && self.points.len() > 20 {
                 let away = &self.stride.from.unknowns - home;
-                if away.norm() < self.stride.step && away.dot(&begin.1.tangent) <= 0.0 {
+                // Behind a fold it may pass its start the other way, a step beside it.
+                let is_onward = self.stride.from.tangent.dot(&begin.1.tangent) > 0.0;
+                if is_onward && away.norm() < self.stride.step && away.dot(&begin.1.tangent) <= 0.0 {
                     return Ok((self.points, End::Closed));
                 }
             }

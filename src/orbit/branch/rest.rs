@@ -37,7 +37,7 @@ pub(super) fn curve(
     let unknowns = DVector::from_fn(2, |index, _| values[index] / spans[index]);
     let along = DVector::from_vec(vec![0.0, 1.0]);
     let rest = Rest { family, spans, contact };
-    let Ok(point) = curve::closed(&rest, &unknowns, &along, 0.0, unknowns.clone()) else { return Ok(None) };
+    let Ok(point) = rest.settled(&unknowns, &along) else { return Ok(None) };
     let walk = |direction: f64| {
         let rest = Rest { family, spans, contact };
         let mut from = point.clone();
@@ -46,7 +46,9 @@ pub(super) fn curve(
         let regions = rest.regions(&from.unknowns).unwrap_or_default();
         Walk { rest, following, revolutions: orbit.revolutions, from, regions, points: Vec::new() }.run()
     };
-    let Ok(middle) = rest.branch_point(&point, orbit.revolutions, Some(special)) else { return Ok(None) };
+    // Told better, it keeps its value.
+    let middle = CurvePoint { tangent: along, ..point.clone() };
+    let Ok(middle) = rest.branch_point(&middle, orbit.revolutions, Some(special)) else { return Ok(None) };
     Ok(Some((middle, [-1.0, 1.0].map(walk))))
 }
 
@@ -83,7 +85,7 @@ impl Walk<'_> {
                     }
                     // Not twice at one place.
                     if turned || !self.turn() {
-                        let end = self.stopped();
+                        let end = self.stopped(&error);
                         return (self.points, end);
                     }
                     (step, turned) = (AROUND * longest, true);
@@ -111,9 +113,11 @@ impl Walk<'_> {
         }
         if self.rest.contact.is_first(&machine) {
             self.regions = regions;
-            self.points.push(self.rest.branch_point(&next, self.revolutions, None)?);
-            self.rest.contact = self.rest.contact.told(&machine, &reached);
-            self.from = next;
+            let (unknowns, reached) = self.rest.refined(&next)?;
+            self.from = CurvePoint { unknowns, ..next };
+            self.points.push(self.rest.branch_point(&self.from, self.revolutions, None)?);
+            let (machine, _) = self.rest.machine(&self.from.unknowns)?;
+            [self.rest.contact, _] = reached.contact.told(&machine, &reached);
             return Ok(None);
         }
         // Two places at once: up to there, and on from there with the other.
@@ -214,23 +218,26 @@ impl Walk<'_> {
     }
 
     /// What the curve comes to where no step leads on.
-    fn stopped(&self) -> End {
+    fn stopped(&self, error: &NoPoint<Nowhere>) -> End {
         let reached = self.rest.reached(&self.from.unknowns);
         match () {
-            () if reached.is_ok_and(|reached| reached.impacts.len() > MANY_IMPACTS / 2) => End::Endless,
+            () if reached.is_ok_and(|reached| reached.impacts.len() > MANY_IMPACTS / 4) => End::Endless,
             () if self.at_corner().is_some() => End::Kink,
+            () if matches!((error, self.rest.contact), (NoPoint::NotClosed, Contact::Resting { .. })) => End::Lost,
             () => End::OtherWay,
         }
     }
 
     /// The point at a value of the second number.
     fn end_at(&mut self, bound: f64) -> Result<(), NoPoint<Nowhere>> {
-        let mut base = self.from.unknowns.clone();
-        base[1] = bound / self.rest.spans[1];
         let slope = self.from.tangent[0] / self.from.tangent[1];
-        let mut guess = base.clone();
-        guess[0] += slope * (base[1] - self.from.unknowns[1]);
-        let point = curve::closed(&self.rest, &base, &DVector::from_vec(vec![0.0, 1.0]), 0.0, guess)?;
+        let mut guess = self.from.unknowns.clone();
+        guess[1] = bound / self.rest.spans[1];
+        guess[0] += slope * (guess[1] - self.from.unknowns[1]);
+        let along = DVector::from_vec(vec![0.0, 1.0]);
+        let point = self.rest.settled(&guess, &along)?;
+        // Told better, it stays on the bound.
+        let point = CurvePoint { tangent: along, ..point };
         if !self.rest.contact.is_first(&self.rest.machine(&point.unknowns)?.0) {
             return Err(NoPoint::NotClosed);
         }
@@ -273,14 +280,45 @@ impl Rest<'_> {
         self.contact.reached(&machine).map(|reached| regions(&machine, &reached)).ok_or(Nowhere::OtherWay)
     }
 
+    /// The point of the curve across `along` from one near it.
+    fn settled(&self, near: &DVector<f64>, along: &DVector<f64>) -> Result<CurvePoint, NoPoint<Nowhere>> {
+        /// By how much impacts tell it differently, of the spans, at most.
+        const MOVED: f64 = 1e-4;
+        curve::closed(self, &(near - along * MOVED), along, MOVED, near.clone())
+    }
+
+    /// The point across its tangent where later and later impacts have the curve, until the last of them does or that moves it no more;
+    /// and what it comes to there. An error where the next impact has it elsewhere.
+    fn refined(&self, point: &CurvePoint) -> Result<(DVector<f64>, Reached), NoPoint<Nowhere>> {
+        /// From one impact to a later one, each time.
+        const STEPS: usize = 50;
+        let mut unknowns = point.unknowns.clone();
+        let mut reached = self.reached(&unknowns)?;
+        let mut moved = f64::INFINITY;
+        for _ in 0..STEPS {
+            if reached.contact.is_exact(&reached) || moved <= tolerance::CYCLE_CLOSED.value {
+                return Ok((unknowns, reached));
+            }
+            let [_, contact] = reached.contact.told(&self.machine(&unknowns)?.0, &reached);
+            let later = Rest { contact, ..*self };
+            let next = later.settled(&unknowns, &point.tangent);
+            let Some(next) = next.ok().filter(|_| contact != reached.contact) else { break };
+            moved = (&next.unknowns - &unknowns).norm();
+            reached = later.reached(&next.unknowns)?;
+            unknowns = next.unknowns;
+        }
+        // The roundings of a run grow from impact to impact as well, and what is left of them is no curve.
+        if moved <= tolerance::SAME_ORBIT.value { Ok((unknowns, reached)) } else { Err(NoPoint::NotClosed) }
+    }
+
     fn branch_point(
         &self,
         point: &CurvePoint,
         revolutions: u64,
         special: Option<Special>,
     ) -> Result<BranchPoint, NoPoint<Nowhere>> {
-        let (machine, rpm) = self.machine(&point.unknowns)?;
-        let Reached { off, contact, mut impacts } = self.reached(&point.unknowns)?;
+        let (unknowns, Reached { off, contact, mut impacts }) = self.refined(point)?;
+        let (machine, rpm) = self.machine(&unknowns)?;
         let cam_angle = match contact {
             Contact::Detachment(place) => place.cam_angle,
             Contact::Resting { to, impact, .. } => {
@@ -300,6 +338,6 @@ impl Rest<'_> {
             known: Known::Computed,
         };
         let held = Some(OnCurve { cam_angle, sides: vec![Matrix2::zeros()] });
-        Ok(BranchPoint { rpm, value: point.unknowns[1] * self.spans[1], orbit, held, special })
+        Ok(BranchPoint { rpm, value: unknowns[1] * self.spans[1], orbit, held, special })
     }
 }

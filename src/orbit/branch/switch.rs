@@ -69,8 +69,8 @@ pub(super) fn held(kind: Kind, cycle: &Cycle, machine: &Machine) -> Option<(Cycl
 /// What is held in the cycle beyond `exit`; `None` where it is of the impact that the exit takes away.
 pub(super) fn held_beyond(held: Held, exit: Exit) -> Option<Held> {
     let moved = |index: usize| match exit {
-        Exit::Tangent { impact } if impact == index => None,
         Exit::Tangent { impact } if impact < index => Some(index - 1),
+        Exit::Tangent { impact } if impact == index => None,
         Exit::Touch { impact, .. } if impact < index => Some(index + 1),
         _ => Some(index),
     };

@@ -135,7 +135,15 @@ impl Stretch {
     /// Whether two begin and end at the same speeds, with impacts at the same angles.
     pub fn is_same(&self, other: &Self) -> bool {
         let near = |one: f64, two: f64| (one - two).abs() <= tolerance::SAME_ORBIT.value * one.abs();
-        let ends = self.range().into_iter().zip(other.range()).all(|(one, two)| near(one, two));
+        let ([low, high], [other_low, other_high]) = (self.range(), other.range());
+        // Where runs tell an end, the branch ends at the last of its steps, which another's are not.
+        let by_runs = [0, 1].map(|side| {
+            [self, other].iter().all(|it| it.ends[side].as_ref().is_some_and(|change| !change.is_located()))
+        });
+        let ends = (by_runs[0] || near(low, other_low))
+            && (by_runs[1] || near(high, other_high))
+            && low <= other_high
+            && other_low <= high;
         let angles = |stretch: &Self| -> Vec<f64> {
             let first = stretch.points.first().iter().flat_map(|point| point.orbit.impacts()).collect::<Vec<_>>();
             first.iter().map(|impact| impact.cam_angle).collect()
