@@ -27,7 +27,7 @@ use crate::cam::{Lift, Segment, Side, apart, within_a_turn};
 use crate::orbit::curve::Equations;
 use crate::orbit::cycle::lift_size;
 use crate::orbit::{Course, Family, FamilyError, PeriodicOrbit};
-use crate::simulate::{Event, EventKind, Goal, Machine};
+use crate::simulate::{Event, EventKind, Goal, Machine, accumulation};
 use crate::tolerance;
 
 /// Where the cam lets go.
@@ -173,11 +173,21 @@ impl Place {
         off.is_finite().then_some(off)
     }
 
-    /// How far from `last` on infinitely many impacts end by the law before the corner, which is continued past it, rad.
+    /// How far from `last` on infinitely many impacts end by the law before the corner, which is continued past it where two terms of their
+    /// sum are not all of it, rad.
     fn rest_beyond(self, machine: &Machine, last: &Event, relative_velocity: f64, left: f64) -> Option<f64> {
         /// By how much the law is continued, rad, where the segment behind is as long.
         const REACH: f64 = 0.05;
-        let (cam, behind) = (machine.cam(), &machine.cam().segments()[self.segment]);
+        let cam = machine.cam();
+        let [before, behind] = [self.before(machine), self.segment].map(|segment| &cam.segments()[segment]);
+        let lift = before.law.lift(last.cam_angle);
+        let (pressing, rate) = (-machine.lifting(&lift), machine.lifting_rate(&lift).0);
+        let (time, left_out) =
+            accumulation(relative_velocity, machine.restitution(), pressing, rate, machine.flight().zeta());
+        let turn = machine.angular_velocity() * time;
+        if (0.0..=tolerance::CHATTER_LEFT.value).contains(&turn) && left_out <= tolerance::CHATTER_REMAINDER.value {
+            return Some(turn);
+        }
         let corner = cam.corners().iter().find(|corner| corner.segment == self.segment)?;
         let reach = REACH.min(0.5 * (behind.end - behind.start));
         let machine = machine.with_cam(cam.continued(corner, Side::Minus, reach)?);
@@ -256,9 +266,14 @@ impl Contact {
                     let event: &Event = impacts.get(impact)?;
                     to.passed(machine, &lift, event, turned - event.turned_since(from.cam_angle))
                 };
-                // Where it has gone over to a law before, as at a row of a table, the first after it that has not.
-                let known = impact.min(impacts.len().checked_sub(1)?);
-                let (impact, off) = (known..impacts.len()).find_map(|later| Some((later, passed(later)?)))?;
+                let last = impacts.len().checked_sub(1)?;
+                // Before a corner any tells the same, and the last the soonest. Where it has gone over to a law before, as at a row of a
+                // table, the first after it that has not.
+                let (impact, off) = if to.is_corner {
+                    (impact.min(last), (0..=last).rev().find_map(passed)?)
+                } else {
+                    (impact.min(last)..=last).find_map(|later| Some((later, passed(later)?)))?
+                };
                 Some(Reached { off, contact: Self::Resting { from, to, turned, impact }, impacts })
             }
         }

@@ -104,20 +104,18 @@ impl Walk<'_> {
             self.end_at(bound)?;
             return Ok(Some(End::Range));
         }
-        let (machine, _) = self.rest.machine(&next.unknowns)?;
-        let reached = self.rest.contact.reached(&machine).ok_or(Nowhere::OtherWay)?;
-        let regions = regions(&machine, &reached);
-        // Past a kink it may be on another part of the curve.
-        if regions.iter().zip(&self.regions).any(|(one, other)| one != other) {
-            return Err(NoPoint::NotClosed);
-        }
-        if self.rest.contact.is_first(&machine) {
-            self.regions = regions;
+        if self.rest.contact.is_first(&self.rest.machine(&next.unknowns)?.0) {
             let (unknowns, reached) = self.rest.refined(&next)?;
-            self.from = CurvePoint { unknowns, ..next };
-            self.points.push(self.rest.branch_point(&self.from, self.revolutions, None)?);
-            let (machine, _) = self.rest.machine(&self.from.unknowns)?;
-            [self.rest.contact, _] = reached.contact.told(&machine, &reached);
+            let (machine, _) = self.rest.machine(&unknowns)?;
+            let regions = regions(&machine, &reached);
+            // Past a kink it may be on another part of the curve.
+            if regions.iter().zip(&self.regions).any(|(one, other)| one != other) {
+                return Err(NoPoint::NotClosed);
+            }
+            let [contact, _] = reached.contact.told(&machine, &reached);
+            self.points.push(self.rest.reached_point(&unknowns, reached, self.revolutions, None)?);
+            (self.from, self.regions) = (CurvePoint { unknowns, ..next }, regions);
+            self.rest.contact = contact;
             return Ok(None);
         }
         // Two places at once: up to there, and on from there with the other.
@@ -317,8 +315,18 @@ impl Rest<'_> {
         revolutions: u64,
         special: Option<Special>,
     ) -> Result<BranchPoint, NoPoint<Nowhere>> {
-        let (unknowns, Reached { off, contact, mut impacts }) = self.refined(point)?;
-        let (machine, rpm) = self.machine(&unknowns)?;
+        let (unknowns, reached) = self.refined(point)?;
+        Ok(self.reached_point(&unknowns, reached, revolutions, special)?)
+    }
+
+    fn reached_point(
+        &self,
+        unknowns: &DVector<f64>,
+        Reached { off, contact, mut impacts }: Reached,
+        revolutions: u64,
+        special: Option<Special>,
+    ) -> Result<BranchPoint, Nowhere> {
+        let (machine, rpm) = self.machine(unknowns)?;
         let cam_angle = match contact {
             Contact::Detachment(place) => place.cam_angle,
             Contact::Resting { to, impact, .. } => {
