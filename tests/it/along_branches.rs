@@ -613,6 +613,14 @@ fn a_branch_that_comes_back_beside_its_start_is_not_closed() {
             assert!((one + two - 3.0 * PI).abs() < 1e-6 && (one - two).abs() > 0.1, "{one} {two}");
         }
     }
+    // From between it passes its start on the other side of the fold, less than a step away, and goes on.
+    let rpm = 1.0016 * fold;
+    for orbit in orbits(&model, rpm, 1).iter().filter(|orbit| orbit.impacts().count() == 1) {
+        for longest_step in [0.3, 0.5, 1.0] {
+            let branch = Branch::through(&model, rpm, orbit, &following(&model, "rpm", range, longest_step)).unwrap();
+            assert_eq!(branch.ends, [End::Range, End::Range], "{longest_step}");
+        }
+    }
 }
 
 /// It turns round at two corner impacts and two touches. From a start right beside one of these it comes back through it: each is told,

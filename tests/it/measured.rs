@@ -1137,6 +1137,26 @@ fn an_end_by_runs_on_a_measured_cam_is_as_far_off_as_is_said() {
     }
 }
 
+/// A branch ends at the last of its steps where runs tell its end, and from another start at another one: what it has of an orbit is one
+/// orbit nevertheless.
+#[test]
+#[ignore = "slow"]
+fn an_orbit_whose_end_runs_tell_is_listed_once() {
+    let model = ball_on_rows(0.0).with_number("follower.restitution", 0.1).unwrap();
+    let found = speeds(&model, [1480.0, 1520.0], resolution(20.0, 1), &Unwatched).unwrap();
+    let mut listed = Vec::new();
+    for row in &found.attractors {
+        let by_runs = [&row.birth, &row.death].map(|end| end.as_ref().is_some_and(|end| end.cause == Cause::Runs));
+        listed.push((row.revolutions, row.impacts, by_runs, row.rpm));
+    }
+    let alike = |one: &[f64; 2], two: &[f64; 2]| (one[0] - two[0]).abs() < 1e-6 * two[0] && one[1] > two[0];
+    for (index, one) in listed.iter().enumerate() {
+        let again = listed[..index].iter().find(|two| (one.0, one.1) == (two.0, two.1) && alike(&one.3, &two.3));
+        assert!(again.is_none(), "{listed:?}");
+    }
+    assert!(listed.iter().any(|row| row.2[1]), "{listed:?}");
+}
+
 /// The paper's cam in rows of two degrees to a thousandth of a millimetre, its corners as they are drawn: cams that are as likely have its corner
 /// impact, too, and the true one is no farther off than they are.
 #[test]
