@@ -94,9 +94,9 @@ table! {
     REPEATED_IMPACT = 0.05, "absolute, rad: only a first guess, worth taking where Newton's method converges at once";
     /// The angle that is left to infinitely many impacts when their sum is taken, rad.
     CHATTER_TURN = 1e-7, "absolute, rad: the third term of the sum is its cube, far below the rounding of an angle";
-    /// How much of the way to a smooth release an impact leaves that tells an onset of resting, rad.
-    CHATTER_LEFT = 1e-4, "absolute, rad: the velocity over the cam is of the size of its square, 1e-8 of the cam's own, and known to \
-        half of its digits; what the equation leaves out is of that size as well";
+    /// How much of the way to a release an impact leaves that tells an onset of resting, and the longest sum that is taken for one, rad.
+    CHATTER_LEFT = 1e-4, "absolute, rad: the cube of it, which a sum leaves out, is below a thousand roundings of an angle; before a \
+        smooth release the velocity over the cam is of the size of its square, and known to half of its digits";
     /// How much the second term of the sum of infinitely many impacts may differ from the first.
     CHATTER_REMAINDER = 1e-8, "squared, of the sum: of a turn of 1e-7 rad it leaves 1e-15, the rounding of an angle";
     /// When a number that must be changed, or a speed at which a limit is passed, is known well enough where runs tell.

@@ -110,7 +110,7 @@ impl Cycle {
         };
         let begun = motion.cam_angle;
         let end = begun + turn - since + tolerance::SAME_ORBIT.value;
-        let goal = Goal { revolution: (end / TAU) as u64, cam_angle: end % TAU };
+        let goal = Goal::turned(end);
         let mut met = None;
         let _ = machine.advance(&mut motion, goal, &mut |event: &Event| {
             met = Some((*event, since + event.turned_since(begun)));

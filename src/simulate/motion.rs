@@ -51,6 +51,13 @@ pub struct Goal {
     pub cam_angle: f64,
 }
 
+impl Goal {
+    /// Where the cam is when it has turned by so much from angle 0, rad, 0 or more.
+    pub(crate) fn turned(angle: f64) -> Self {
+        Self { revolution: (angle / TAU) as u64, cam_angle: angle % TAU }
+    }
+}
+
 impl Motion {
     /// The goal `revolutions` further on, at the angle where the cam is now.
     pub fn after(&self, revolutions: u64) -> Goal {

@@ -158,14 +158,10 @@ impl Place {
     /// By how far infinitely many impacts from `last` on, with so much `left` to here, rad, end beyond; `None` where they do not
     /// come here by the law before.
     fn passed(self, machine: &Machine, lift: &Lift, last: &Event, left: f64) -> Option<f64> {
-        let relative = last.velocity_after - last.cam_velocity;
         if self.is_corner {
-            let is_before = last.segment == self.before(machine);
-            return is_before
-                .then(|| self.rest_beyond(machine, last, relative, left))
-                .flatten()
-                .map(|turn| turn - left);
+            return self.rest_beyond(machine, last, left).map(|turn| turn - left);
         }
+        let relative = last.velocity_after - last.cam_velocity;
         let (further, lift) =
             if last.segment == self.segment { (0.0, *lift) } else { self.by_law_before(machine, last.segment, left)? };
         let time = (relative / (alike(machine.restitution()) * machine.lifting_rate(&lift).0)).sqrt();
@@ -175,13 +171,14 @@ impl Place {
 
     /// How far from `last` on infinitely many impacts end by the law before the corner, which is continued past it where two terms of their
     /// sum are not all of it, rad.
-    fn rest_beyond(self, machine: &Machine, last: &Event, relative_velocity: f64, left: f64) -> Option<f64> {
+    fn rest_beyond(self, machine: &Machine, last: &Event, left: f64) -> Option<f64> {
         /// By how much the law is continued, rad, where the segment behind is as long.
         const REACH: f64 = 0.05;
         let cam = machine.cam();
         let [before, behind] = [self.before(machine), self.segment].map(|segment| &cam.segments()[segment]);
         let lift = before.law.lift(last.cam_angle);
         let (pressing, rate) = (-machine.lifting(&lift), machine.lifting_rate(&lift).0);
+        let relative_velocity = last.velocity_after - last.cam_velocity;
         let (time, left_out) =
             accumulation(relative_velocity, machine.restitution(), pressing, rate, machine.flight().zeta());
         let turn = machine.angular_velocity() * time;
@@ -194,7 +191,7 @@ impl Place {
         let mut motion = machine.start_on_cam(last.cam_angle, relative_velocity).ok()?;
         let end = last.cam_angle + left + reach;
         let mut rest = None;
-        let _ = machine.advance(&mut motion, goal(end), &mut |event: &Event| {
+        let _ = machine.advance(&mut motion, Goal::turned(end), &mut |event: &Event| {
             rest = (event.kind == EventKind::Stick).then(|| event.turned_since(last.cam_angle));
             if rest.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
@@ -270,7 +267,8 @@ impl Contact {
                 // Before a corner any tells the same, and the last the soonest. Where it has gone over to a law before, as at a row of a
                 // table, the first after it that has not.
                 let (impact, off) = if to.is_corner {
-                    (impact.min(last), (0..=last).rev().find_map(passed)?)
+                    let before = impacts.iter().rposition(|event| event.segment == to.before(machine))?;
+                    (impact.min(last), passed(before)?)
                 } else {
                     (impact.min(last)..=last).find_map(|later| Some((later, passed(later)?)))?
                 };
@@ -311,15 +309,11 @@ impl Contact {
     }
 }
 
-fn goal(turned: f64) -> Goal {
-    Goal { revolution: (turned / TAU) as u64, cam_angle: turned % TAU }
-}
-
 /// The impacts of a follower that the cam lets go of at `cam_angle`, for `turned`, rad, or until it rests.
 pub(super) fn flown(machine: &Machine, cam_angle: f64, turned: f64) -> Option<Vec<Event>> {
     let mut motion = machine.start_on_cam(cam_angle, 0.0).ok()?;
     let mut impacts = Vec::new();
-    let _ = machine.advance(&mut motion, goal(cam_angle + turned), &mut |event: &Event| match event.kind {
+    let _ = machine.advance(&mut motion, Goal::turned(cam_angle + turned), &mut |event: &Event| match event.kind {
         EventKind::Impact if impacts.len() == MANY_IMPACTS => ControlFlow::Break(()),
         EventKind::Impact => {
             impacts.push(*event);
@@ -357,7 +351,7 @@ impl Equations for Rest<'_> {
         const DIFFERENCE: f64 = 1e-7;
         /// Before a smooth release a late impact moves by hundreds of times as much, and by no more than it has left. At a corner the wider
         /// difference carries a curve on over the small kinks between impacts.
-        const SMALL: f64 = 1e-11;
+        const SMALL: f64 = 1e-9;
         let is_smooth = matches!(self.contact, Contact::Resting { to, .. } if !to.is_corner);
         let difference = if is_smooth { SMALL } else { DIFFERENCE };
         let off = self.reached(unknowns)?.off;

@@ -46,9 +46,9 @@ pub(super) fn curve(
         let regions = rest.regions(&from.unknowns).unwrap_or_default();
         Walk { rest, following, revolutions: orbit.revolutions, from, regions, points: Vec::new() }.run()
     };
-    // Told better, it keeps its value.
-    let middle = CurvePoint { tangent: along, ..point.clone() };
-    let Ok(middle) = rest.branch_point(&middle, orbit.revolutions, Some(special)) else { return Ok(None) };
+    let Ok(middle) = rest.branch_point(&point.unknowns, &along, orbit.revolutions, Some(special)) else {
+        return Ok(None);
+    };
     Ok(Some((middle, [-1.0, 1.0].map(walk))))
 }
 
@@ -105,7 +105,7 @@ impl Walk<'_> {
             return Ok(Some(End::Range));
         }
         if self.rest.contact.is_first(&self.rest.machine(&next.unknowns)?.0) {
-            let (unknowns, reached) = self.rest.refined(&next)?;
+            let (unknowns, reached) = self.rest.refined(&next.unknowns, &next.tangent)?;
             let (machine, _) = self.rest.machine(&unknowns)?;
             let regions = regions(&machine, &reached);
             // Past a kink it may be on another part of the curve.
@@ -137,7 +137,7 @@ impl Walk<'_> {
             machine.map_or(f64::INFINITY, |(machine, _)| contact.behind(&machine))
         });
         let tangent = if behind[0] < behind[1] { tangent } else { -tangent };
-        self.points.push(self.rest.branch_point(&before, self.revolutions, Some(special))?);
+        self.points.push(self.rest.branch_point(&before.unknowns, &before.tangent, self.revolutions, Some(special))?);
         (self.rest, self.from) = (other, CurvePoint { tangent, ..beyond });
         Ok(None)
     }
@@ -146,7 +146,7 @@ impl Walk<'_> {
     /// sign where the curve came from and where it goes on, in whatever direction. Whether it does.
     fn turn(&mut self) -> bool {
         let Some(((kind, residual), on)) = self.at_corner().zip(self.beyond_kink()) else { return false };
-        let Ok(point) = self.rest.branch_point(&on, self.revolutions, None) else { return false };
+        let Ok(point) = self.rest.branch_point(&on.unknowns, &on.tangent, self.revolutions, None) else { return false };
         let Ok(regions) = self.rest.regions(&on.unknowns) else { return false };
         if let Some(last) = self.points.last_mut() {
             let bracket = [last.value.min(point.value), last.value.max(point.value)];
@@ -219,7 +219,7 @@ impl Walk<'_> {
     fn stopped(&self, error: &NoPoint<Nowhere>) -> End {
         let reached = self.rest.reached(&self.from.unknowns);
         match () {
-            () if reached.is_ok_and(|reached| reached.impacts.len() > MANY_IMPACTS / 4) => End::Endless,
+            () if reached.is_ok_and(|reached| reached.impacts.len() > MANY_IMPACTS / 2) => End::Endless,
             () if self.at_corner().is_some() => End::Kink,
             () if matches!((error, self.rest.contact), (NoPoint::NotClosed, Contact::Resting { .. })) => End::Lost,
             () => End::OtherWay,
@@ -234,12 +234,10 @@ impl Walk<'_> {
         guess[0] += slope * (guess[1] - self.from.unknowns[1]);
         let along = DVector::from_vec(vec![0.0, 1.0]);
         let point = self.rest.settled(&guess, &along)?;
-        // Told better, it stays on the bound.
-        let point = CurvePoint { tangent: along, ..point };
         if !self.rest.contact.is_first(&self.rest.machine(&point.unknowns)?.0) {
             return Err(NoPoint::NotClosed);
         }
-        self.points.push(self.rest.branch_point(&point, self.revolutions, None)?);
+        self.points.push(self.rest.branch_point(&point.unknowns, &along, self.revolutions, None)?);
         Ok(())
     }
 
@@ -285,12 +283,12 @@ impl Rest<'_> {
         curve::closed(self, &(near - along * MOVED), along, MOVED, near.clone())
     }
 
-    /// The point across its tangent where later and later impacts have the curve, until the last of them does or that moves it no more;
+    /// The point across `along`, near one, where later and later impacts have the curve, until the last of them does or that moves it no more;
     /// and what it comes to there. An error where the next impact has it elsewhere.
-    fn refined(&self, point: &CurvePoint) -> Result<(DVector<f64>, Reached), NoPoint<Nowhere>> {
+    fn refined(&self, near: &DVector<f64>, along: &DVector<f64>) -> Result<(DVector<f64>, Reached), NoPoint<Nowhere>> {
         /// From one impact to a later one, each time.
         const STEPS: usize = 50;
-        let mut unknowns = point.unknowns.clone();
+        let mut unknowns = near.clone();
         let mut reached = self.reached(&unknowns)?;
         let mut moved = f64::INFINITY;
         for _ in 0..STEPS {
@@ -299,7 +297,7 @@ impl Rest<'_> {
             }
             let [_, contact] = reached.contact.told(&self.machine(&unknowns)?.0, &reached);
             let later = Rest { contact, ..*self };
-            let next = later.settled(&unknowns, &point.tangent);
+            let next = later.settled(&unknowns, along);
             let Some(next) = next.ok().filter(|_| contact != reached.contact) else { break };
             moved = (&next.unknowns - &unknowns).norm();
             reached = later.reached(&next.unknowns)?;
@@ -311,11 +309,12 @@ impl Rest<'_> {
 
     fn branch_point(
         &self,
-        point: &CurvePoint,
+        near: &DVector<f64>,
+        along: &DVector<f64>,
         revolutions: u64,
         special: Option<Special>,
     ) -> Result<BranchPoint, NoPoint<Nowhere>> {
-        let (unknowns, reached) = self.refined(point)?;
+        let (unknowns, reached) = self.refined(near, along)?;
         Ok(self.reached_point(&unknowns, reached, revolutions, special)?)
     }
 
