@@ -198,17 +198,12 @@ impl Place {
         rest
     }
 
-    /// Right behind a smooth seam all impacts but the last follow the law of the segment before: how much further on the cam would let go
-    /// by that, rad, and the lift there. `None` of another segment, and where it is not little beside what an impact has `left`.
+    /// Right behind a seam, as a row of a table, all impacts but the last follow the law of a segment before: how much further on the cam
+    /// would let go by that, rad, and the lift there. `None` where that is not little beside what an impact has `left`.
     fn by_law_before(self, machine: &Machine, segment: usize, left: f64) -> Option<(f64, Lift)> {
         const LITTLE: f64 = 0.1;
-        let cam = machine.cam();
-        let is_smooth = cam.corners().iter().all(|corner| corner.segment != self.segment || corner.jump_order > 2);
-        if cam.before(self.segment) != segment || !is_smooth {
-            return None;
-        }
         let here = self.cam_angle + if segment > self.segment { TAU } else { 0.0 };
-        let (cam_angle, lift) = lets_go(machine, &cam.segments()[segment], here)?;
+        let (cam_angle, lift) = lets_go(machine, &machine.cam().segments()[segment], here)?;
         ((cam_angle - here).abs() < LITTLE * left).then_some((cam_angle - here, lift))
     }
 
