@@ -274,8 +274,7 @@ fn mutants_are_looked_for_where_there_is_something() {
     let stages = stages(&root.join("src"));
     assert!(named.len() > 10 && named.iter().all(|name| stages.iter().any(|stage| stage == name)), "{named:?}");
     let explained: toml::Table = toml::from_str(&text("tests/mutants/explained.toml")).unwrap();
-    let [reasons, open] = ["reason", "open"].map(|kind| explained[kind].as_array().unwrap());
-    for reason in reasons.iter().chain(open) {
+    for reason in ["reason", "open", "slow"].iter().flat_map(|kind| explained[*kind].as_array().unwrap()) {
         assert!(reason["why"].as_str().unwrap().len() > 20, "{reason:?}");
         let files = reason.as_table().unwrap().iter().filter(|(name, _)| *name != "why");
         for (file, known) in files {
@@ -292,6 +291,16 @@ fn mutants_are_looked_for_where_there_is_something() {
                 let are_other = !others.is_empty() && others.iter().all(|other| !other.is_empty());
                 assert!(is_there && are_other, "{file}: {mutant:?}");
             }
+        }
+    }
+    let failing: toml::Table = toml::from_str(&text("tests/mutants/failing.toml")).unwrap();
+    for (file, tests) in failing["of"].as_table().unwrap() {
+        assert!(root.join(file).is_file(), "{file}");
+        for test in tests.as_array().unwrap().iter().map(|test| test.as_str().unwrap()) {
+            let words: Vec<&str> = test.split("::").collect();
+            let [module, .., function] = words.as_slice() else { panic!("{file}: {test}") };
+            let is_there = text(&format!("tests/it/{module}.rs")).contains(&format!("fn {function}("));
+            assert!(is_there && failing["seconds"].get(test).is_some(), "{file}: {test}");
         }
     }
 }

@@ -3,14 +3,16 @@
 All changes are compiled at once, as mutant schemata (Untch, Offutt, Harrold 1993): where the source says `a + b`, a copy of it
 says "a + b, but a - b in mutant 17 and a * b in mutant 18", and an environment variable says which mutant a process is. One build
 then serves thousands of mutants, of which each takes as long as the tests that reach it, quickest first, up to the first
-that fails. A first run of each test notes what it reaches.
+that fails. Which tests those are is listed in failing.toml, of each file; what passes them is asked all tests that reach it,
+which a first run of each test notes.
 
     python tests/mutants/mutants.py                   every mutant of every stage: some hours
     python tests/mutants/mutants.py simulate/again    those in files whose path has these words
     python tests/mutants/mutants.py --parts 100 --seed 7       one part of a hundred, drawn by the seed; or --seconds 60, as many as fit
     python tests/mutants/mutants.py --out tried.jsonl          in several sittings: the next goes on where one was broken off
+    python tests/mutants/mutants.py --learn tried.jsonl        no mutant: adds to failing.toml what has failed there
 
-What survives and is not in explained.toml, with a reason or as open, is listed, and the exit code is 1.
+What survives and is not in explained.toml, with a reason, as open, or as what only slow tests may tell, is listed, and the exit code is 1.
 """
 
 import argparse
@@ -38,6 +40,8 @@ import tree_sitter_rust
 
 ROOT = Path(__file__).resolve().parents[2]
 COPY = ROOT / "target" / "mutants"
+REACHED = COPY / "reached.json"
+FAILING = ROOT / "tests" / "mutants" / "failing.toml"
 STAGES = ["model", "cam", "flight", "impact", "simulate", "section", "orbit", "corner", "border_collision", "study", "interval"]
 
 ARITHMETIC = {"+": "-*", "-": "+/", "*": "+/", "/": "*%", "%": "/+"}
@@ -340,9 +344,9 @@ def copied():
     changed(COPY / "Cargo.toml", manifest)
 
 
-def cargo(words):
+def compiled():
     environment = os.environ | {"CARGO_TARGET_DIR": str(COPY / "target"), "CARGO_INCREMENTAL": "1", "RUSTFLAGS": os.environ.get("RUSTFLAGS", "")}
-    words = ["cargo", *words, "--release", "--locked", "--message-format=json"]
+    words = ["cargo", "test", "--no-run", "--test", "it", "--release", "--locked", "--message-format=json"]
     done = subprocess.run(words, cwd=COPY, env=environment, capture_output=True, text=True)
     return done, [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
 
@@ -363,7 +367,7 @@ def built(words, drawn):
             changed(COPY / file.path, file.text)
         library = (ROOT / "src" / "lib.rs").read_text() + SWITCH.replace("COUNT", str(len(mutants)))
         changed(COPY / "src" / "lib.rs", library)
-        done, messages = cargo(["check", "--lib"])
+        done, messages = compiled()
         refused = set()
         for message in messages:
             message = message.get("message", {})
@@ -381,13 +385,11 @@ def built(words, drawn):
         print(f"{len(mutants)} mutants, of which the compiler refuses {len(refused)}", flush=True)
         if not refused:
             if done.returncode:
-                sys.exit(done.stderr[-3000:])
+                errors = [message["message"]["rendered"] for message in messages if message.get("message", {}).get("level") == "error"]
+                sys.exit("\n".join(errors) or done.stderr)
             break
         unviable |= {mutants[id]["key"] for id in refused}
         known.write_text(json.dumps(sorted(unviable)))
-    done, messages = cargo(["test", "--no-run", "--test", "it"])
-    if done.returncode:
-        sys.exit("\n".join(message["message"]["rendered"] for message in messages if message.get("message", {}).get("level") == "error") or done.stderr)
     binary = next(message["executable"] for message in messages if message.get("executable") and message["target"]["name"] == "it")
     return binary, mutants
 
@@ -431,19 +433,21 @@ def ended(group):
         pass
 
 
+def named(binary):
+    listed = subprocess.run([binary, "--list"], cwd=COPY, capture_output=True, text=True, check=True).stdout
+    return [line.removesuffix(": test") for line in listed.splitlines() if line.endswith(": test")]
+
+
 def reached(binary, longest, words, jobs):
     """Of each test that passes in time: how long it takes, s, and which places it reaches."""
     stamp = hashlib.sha256(Path(binary).read_bytes()).hexdigest()
-    kept = COPY / "reached.json"
-    known = json.loads(kept.read_text()) if kept.exists() else {"asked": [], "slow": {}}
+    known = json.loads(REACHED.read_text()) if REACHED.exists() else {"asked": [], "slow": {}}
     asked = [stamp, longest, words]
     if known["asked"] == asked:
         return known["tests"]
     # What took longer than it may in another build is not waited for again.
     slow = known["slow"]
-    listed = subprocess.run([binary, "--list"], cwd=COPY, capture_output=True, text=True, check=True).stdout
-    names = [line.removesuffix(": test") for line in listed.splitlines() if line.endswith(": test")]
-    names = [name for name in names if not words or any(word in name for word in words)]
+    names = [name for name in named(binary) if not words or any(word in name for word in words)]
     tests = {}
 
     def note(name):
@@ -462,7 +466,7 @@ def reached(binary, longest, words, jobs):
     with ThreadPool(jobs) as pool:
         pool.map(note, names, chunksize=1)
     print(f"{len(tests)} of {len(names)} tests pass within {longest} s each", flush=True)
-    kept.write_text(json.dumps({"asked": asked, "slow": slow, "tests": dict(sorted(tests.items()))}))
+    REACHED.write_text(json.dumps({"asked": asked, "slow": slow, "tests": dict(sorted(tests.items()))}))
     return tests
 
 
@@ -477,16 +481,19 @@ def main():
     ask.add_argument("--enough", type=float, default=float("inf"), help="ask no further test of a mutant that has passed so many seconds of them")
     ask.add_argument("--jobs", type=int, default=1, help="so many mutants at a time")
     ask.add_argument("--out", help="write what became of each, as JSON lines; what has failed a test there already is not asked again")
+    ask.add_argument("--learn", metavar="TRIED", help="add to failing.toml what has failed in this --out, and run none")
     ask.add_argument("--list", action="store_true", help="list them, and run none")
     asked = ask.parse_args()
+    if asked.learn:
+        return learned(asked.learn, {test: took for test, (took, _) in json.loads(REACHED.read_text())["tests"].items()} if REACHED.exists() else {})
     begun = time.monotonic()
     listed = tomllib.loads((ROOT / "tests/mutants/explained.toml").read_text())
     name = lambda mutant: tuple(mutant[key] for key in ("file", "function", "code", "replacement"))
-    told, left_open = ({(file, function, code, other) for reason in listed[kind] for file, known in reason.items()
-                        if file != "why" and Path(file) in sources(asked.words) for function, code, *others in known for other in others}
-                       for kind in ("reason", "open"))
+    told, left_open, slow = ({(file, function, code, other) for reason in listed[kind] for file, known in reason.items()
+                              if file != "why" and Path(file) in sources(asked.words) for function, code, *others in known for other in others}
+                             for kind in ("reason", "open", "slow"))
 
-    gone = (told | left_open) - {name(mutant) for mutant in schemata(lambda key: True, asked.words)[1]}
+    gone = (told | left_open | slow) - {name(mutant) for mutant in schemata(lambda key: True, asked.words)[1]}
     if gone:
         sys.exit(f"listed, and there is no such mutant: {sorted(gone)}")
     binary, mutants = built(asked.words, lambda key: (number(key) - number(asked.seed)) % asked.parts == 0)
@@ -499,74 +506,108 @@ def main():
         for id in sorted(chosen):
             print(*name(mutants[id]), sep=" | ")
         return
-    tests = reached(binary, asked.longest, asked.tests, asked.jobs)
     print(f"ready after {time.monotonic() - begun:.0f} s", flush=True)
 
-    places = defaultdict(list)
-    for test, (took, noted) in tests.items():
-        for id in noted:
-            places[id].append(test)
-    place = {}
-    for id, mutant in enumerate(mutants):
-        place[id] = id if id in places or id == 0 else place[id - 1] if same_place(mutants[id - 1], mutant) else id
-
-    began, survivors = time.monotonic(), []
-    tried, caught, endless, known, still = Counter(), Counter(), Counter(), Counter(), Counter()
-    kills = Counter()
     before = {}
     if asked.out and Path(asked.out).exists():
         lines = [json.loads(line) for line in Path(asked.out).read_text().splitlines()]
-        before = {line["key"]: line["tests"] for line in lines if line["tests"] != "pass"}
+        before = {line["key"]: (line["tests"], line["failed"]) for line in lines if line["tests"] != "pass"}
     out = open(asked.out, "a") if asked.out else None
+    end_of = {id: ("explained", []) if name(mutants[id]) in told else before[mutants[id]["key"]]
+             for id in chosen if name(mutants[id]) in told or mutants[id]["key"] in before}
+    left = {}
+    kills = Counter()
     turn = threading.Lock()
+    began = time.monotonic()
 
-    def ask_one(id):
-        mutant = mutants[id]
-        with turn:
-            if time.monotonic() - began > asked.seconds:
-                return
-            tried[stage(id)] += 1
-            if name(mutant) in told:
-                known[stage(id)] += 1
-                return
-            if mutant["key"] in before:
-                (caught if before[mutant["key"]] == "fail" else endless)[stage(id)] += 1
-                return
-            # What has caught others of this file, then what is quick.
-            reach = sorted(places[place[id]], key=lambda test: tests[test][0] / (1 + kills[mutant["file"], test]))
-        done, failed, most, passed = "pass", [], 0.5, 0.0
-        while reach and done == "pass" and passed < asked.enough:
-            batch = [reach.pop(0)]
-            total = tests[batch[0]][0]
-            while reach and total + tests[reach[0]][0] < most:
-                batch.append(reach.pop(0))
-                total += tests[batch[-1]][0]
-            most *= 2
-            passed += total
-            done, failed, _ = became(binary, batch, 2 + 8 * total, str(id))
+    def ask_all(ids, seconds, tests_of):
+        """Asks these mutants their tests in turn, and returns those that pass them."""
+
+        def ask_one(id):
+            mutant = mutants[id]
+            with turn:
+                if time.monotonic() - began > asked.seconds:
+                    return
+                tests = tests_of(id)
+            done, failed, most, passed = "pass", [], 0.5, 0.0
+            while tests and done == "pass" and passed < asked.enough:
+                batch = [tests.pop(0)]
+                total = seconds[batch[0]]
+                while tests and total + seconds[tests[0]] < most:
+                    batch.append(tests.pop(0))
+                    total += seconds[batch[-1]]
+                most *= 2
+                passed += total
+                done, failed, _ = became(binary, batch, 2 + 8 * total, str(id))
             with turn:
                 kills.update((mutant["file"], test) for test in failed)
-        with turn:
-            if done == "fail":
-                caught[stage(id)] += 1
-            elif done == "too long":
-                endless[stage(id)] += 1
-            elif name(mutant) in left_open:
-                still[stage(id)] += 1
-            else:
-                survivors.append(id)
-                print("survives:", f"{mutant['file']}:{mutant['line']}", mutant["function"], "|", mutant["code"], "|", mutant["replacement"],
-                      "(reached by no test)" if not places[place[id]] else f"(of {len(reach)} tests not asked)" if reach else "", flush=True)
-            if out:
-                print(json.dumps(mutant | {"tests": done, "failed": failed}), file=out, flush=True)
+                end_of[id], left[id] = (done, failed), len(tests)
+                if out and done != "pass":
+                    print(json.dumps(mutant | {"tests": done, "failed": failed}), file=out, flush=True)
 
-    with ThreadPool(asked.jobs) as pool:
-        pool.map(ask_one, chosen, chunksize=1)
+        with ThreadPool(asked.jobs) as pool:
+            pool.map(ask_one, ids, chunksize=1)
+        return [id for id in ids if end_of.get(id, ("", []))[0] == "pass"]
+
+    failing = tomllib.loads(FAILING.read_text())
+    there = {test for test in named(binary) if not asked.tests or any(word in test for word in asked.tests)}
+    of_file = lambda id: [test for test in failing["of"].get(mutants[id]["file"], []) if test in there]
+    alive = ask_all([id for id in chosen if id not in end_of], failing["seconds"], of_file)
+    # A test that fails of itself tells nothing.
+    told_by = sorted({test for _, test in kills})
+    done, failed, _ = became(binary, told_by, 2 + 8 * sum(failing["seconds"][test] for test in told_by), "") if told_by else ("pass", [], 0)
+    if done != "pass":
+        sys.exit(f"fails without a mutant, or takes too long: {failed}")
+    known = lambda id: "open" if name(mutants[id]) in left_open else "slow" if name(mutants[id]) in slow else "pass"
+    # To note what tests reach takes longer than to ask a part of the mutants: not for those that are known to live.
+    if alive and (asked.parts == 1 or any(known(id) == "pass" for id in alive)):
+        print(f"{len(alive)} pass what is listed of their files, after {time.monotonic() - began:.0f} s", flush=True)
+        tests = reached(binary, asked.longest, asked.tests, asked.jobs)
+        places = defaultdict(list)
+        for test, (_, noted) in tests.items():
+            for id in noted:
+                places[id].append(test)
+        place = {}
+        for id, mutant in enumerate(mutants):
+            place[id] = id if id in places or id == 0 else place[id - 1] if same_place(mutants[id - 1], mutant) else id
+        # What has caught others of this file, then what is quick.
+        likely = lambda id: sorted(places[place[id]], key=lambda test: tests[test][0] / (1 + kills[mutants[id]["file"], test]))
+        left |= {id: len(likely(id)) for id in alive}
+        alive = ask_all(alive, {test: took for test, (took, _) in tests.items()}, likely)
+
+    survivors = [id for id in alive if known(id) == "pass"]
+    for id in sorted(survivors):
+        mutant = mutants[id]
+        print("survives:", f"{mutant['file']}:{mutant['line']}", mutant["function"], "|", mutant["code"], "|", mutant["replacement"],
+              "(reached by no test)" if not places[place[id]] else f"(of {left[id]} tests not asked)" if left[id] else "")
+    count = Counter((stage(id), known(id) if end == "pass" else end) for id, (end, _) in end_of.items())
     for part in in_all:
-        print(f"{part}: {in_all[part]} mutants, {tried[part]} tried, {caught[part]} fail a test, {endless[part]} take eight times as long, "
-              f"{known[part]} explained, {still[part]} open, {tried[part] - caught[part] - endless[part] - known[part] - still[part]} survive")
-    print(f"{sum(tried.values())} mutants in {time.monotonic() - began:.0f} s")
+        print(f"{part}: {in_all[part]} mutants, {sum(number for (of, _), number in count.items() if of == part)} tried, {count[part, 'fail']} fail a test, "
+              f"{count[part, 'too long']} take eight times as long, {count[part, 'explained']} explained, {count[part, 'open']} open, "
+              f"{count[part, 'slow']} pass what is quick, {count[part, 'pass']} survive")
+    print(f"{len(end_of)} mutants in {time.monotonic() - began:.0f} s")
     sys.exit(bool(survivors))
+
+
+def learned(tried, seconds):
+    """Adds to what is listed of each file until each of its mutants that failed a test fails one of those: each time the one that most of
+    what is left fail for the time that it takes."""
+    listed = tomllib.loads(FAILING.read_text())
+    seconds = listed["seconds"] | seconds
+    failed = defaultdict(dict)
+    for line in map(json.loads, Path(tried).read_text().splitlines()):
+        failed[line["file"]][line["key"]] = set(line["failed"]) & seconds.keys()
+    for file, of_file in failed.items():
+        tests = listed["of"].setdefault(file, [])
+        while left := [those for those in of_file.values() if those and not those & set(tests)]:
+            counts = Counter(test for those in left for test in those)
+            # A process takes some time to begin as well.
+            tests.append(max(sorted(counts), key=lambda test: counts[test] / (0.05 + seconds[test])))
+    asked = sorted({test for tests in listed["of"].values() for test in tests})
+    lines = ["# Tests that the mutants of a file fail, those first that most of them do, and how long each takes, s of a core: by mutants.py --learn.", "", "[of]"]
+    lines += [f"{json.dumps(file)} = {json.dumps(tests, indent=4)}" for file, tests in sorted(listed["of"].items())]
+    lines += ["", "[seconds]", *(f"{json.dumps(test)} = {round(seconds[test], 2)}" for test in asked)]
+    FAILING.write_text("\n".join(lines) + "\n")
 
 
 def same_place(one, other):
