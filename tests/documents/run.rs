@@ -26,7 +26,7 @@ pub const ELSEWHERE: &[(&str, &str, Held)] = &[
         "looks at new cases for ten minutes; tests/it/fuzz.rs looks at the same ones each time",
         Held::Target,
     ),
-    ("make mutants-sample", "takes half an hour", Held::Target),
+    ("make mutants-sample", "compiles everything once more", Held::Landing),
     ("make soak", "takes minutes", Held::Target),
     ("make check", "compiles everything once more", Held::Landing),
     ("make review", "asks a person about each snapshot; tests/it/snapshots.rs holds them", Held::Target),

@@ -344,22 +344,23 @@ def copied():
     changed(COPY / "Cargo.toml", manifest)
 
 
-def compiled():
-    environment = os.environ | {"CARGO_TARGET_DIR": str(COPY / "target"), "CARGO_INCREMENTAL": "1", "RUSTFLAGS": os.environ.get("RUSTFLAGS", "")}
+def compiled(again):
+    environment = os.environ | {"CARGO_TARGET_DIR": str(COPY / "target"), "CARGO_INCREMENTAL": str(int(again)), "RUSTFLAGS": os.environ.get("RUSTFLAGS", "")}
     words = ["cargo", "test", "--no-run", "--test", "it", "--release", "--locked", "--message-format=json"]
     done = subprocess.run(words, cwd=COPY, env=environment, capture_output=True, text=True)
     return done, [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
 
 
-def built(words, drawn):
-    """The binary with the tests of all drawn mutants that compile of these files, and the mutants."""
+def built(words, drawn, again):
+    """The binary with the tests of all drawn mutants that compile of these files, and the mutants; `again` if others of them are compiled soon."""
     known = COPY / "unviable.json"
     copied()
     if not (COPY / "target" / "release").exists() and (ROOT / "target" / "release").exists():
-        # What the package needs is compiled already. Not by links: cargo writes into what it has there.
+        # What the package needs is compiled already. Not by links: cargo writes into what it has there. What another build takes away
+        # meanwhile is compiled again.
         (COPY / "target" / "release").mkdir(parents=True)
         for part in ("deps", "build", ".fingerprint"):
-            subprocess.run(["cp", "-a", ROOT / "target" / "release" / part, COPY / "target" / "release" / part], check=True)
+            subprocess.run(["cp", "-a", ROOT / "target" / "release" / part, COPY / "target" / "release" / part], stderr=subprocess.DEVNULL)
     unviable = set(json.loads(known.read_text())) if known.exists() else set()
     while True:
         files, mutants = schemata(lambda key: key not in unviable and drawn(key), words)
@@ -367,7 +368,7 @@ def built(words, drawn):
             changed(COPY / file.path, file.text)
         library = (ROOT / "src" / "lib.rs").read_text() + SWITCH.replace("COUNT", str(len(mutants)))
         changed(COPY / "src" / "lib.rs", library)
-        done, messages = compiled()
+        done, messages = compiled(again)
         refused = set()
         for message in messages:
             message = message.get("message", {})
@@ -496,7 +497,7 @@ def main():
     gone = (told | left_open | slow) - {name(mutant) for mutant in schemata(lambda key: True, asked.words)[1]}
     if gone:
         sys.exit(f"listed, and there is no such mutant: {sorted(gone)}")
-    binary, mutants = built(asked.words, lambda key: (number(key) - number(asked.seed)) % asked.parts == 0)
+    binary, mutants = built(asked.words, lambda key: (number(key) - number(asked.seed)) % asked.parts == 0, asked.parts == 1)
     # A place notes the number of its first mutant.
     chosen = list(range(len(mutants)))
     stage = lambda id: Path(mutants[id]["file"]).parts[1].removesuffix(".rs")
