@@ -515,7 +515,7 @@ def main():
         before = {line["key"]: (line["tests"], line["failed"]) for line in lines if line["tests"] != "pass"}
     out = open(asked.out, "a") if asked.out else None
     end_of = {id: ("explained", []) if name(mutants[id]) in told else before[mutants[id]["key"]]
-             for id in chosen if name(mutants[id]) in told or mutants[id]["key"] in before}
+              for id in chosen if name(mutants[id]) in told or mutants[id]["key"] in before}
     left = {}
     kills = Counter()
     turn = threading.Lock()
@@ -543,6 +543,7 @@ def main():
             with turn:
                 kills.update((mutant["file"], test) for test in failed)
                 end_of[id], left[id] = (done, failed), len(tests)
+                # What passes may be asked more.
                 if out and done != "pass":
                     print(json.dumps(mutant | {"tests": done, "failed": failed}), file=out, flush=True)
 
@@ -573,9 +574,13 @@ def main():
             place[id] = id if id in places or id == 0 else place[id - 1] if same_place(mutants[id - 1], mutant) else id
         # What has caught others of this file, then what is quick.
         likely = lambda id: sorted(places[place[id]], key=lambda test: tests[test][0] / (1 + kills[mutants[id]["file"], test]))
-        left |= {id: len(likely(id)) for id in alive}
+        # What is not begun in time has not been tried.
+        for id in alive:
+            del end_of[id]
         alive = ask_all(alive, {test: took for test, (took, _) in tests.items()}, likely)
 
+    if out:
+        out.writelines(json.dumps(mutants[id] | {"tests": "pass", "failed": []}) + "\n" for id in alive)
     survivors = [id for id in alive if known(id) == "pass"]
     for id in sorted(survivors):
         mutant = mutants[id]
