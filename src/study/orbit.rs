@@ -87,14 +87,16 @@ fn error(likely: &Likely, machine: &Machine, orbit: &PeriodicOrbit) -> Option<Or
     const OF_EVENT: usize = 3;
     /// Impacts that are compared: of those that lead to a rest, the last are lost in rounding.
     const IMPACTS: usize = 64;
-    let events: Vec<&Event> = orbit.impacts().take(IMPACTS).chain(orbit.rests()).collect();
+    let compared =
+        |orbit: &PeriodicOrbit| -> Vec<Event> { orbit.impacts().take(IMPACTS).chain(orbit.rests()).copied().collect() };
+    let events = compared(orbit);
     let numbers = |found: &PeriodicOrbit| -> Option<Vec<f64>> {
         let [one, two] = found.multipliers();
         let of_orbit = [one.re, one.im, two.re, two.im, found.state.position, found.state.velocity];
-        let there: Vec<&Event> = found.impacts().take(IMPACTS).chain(found.rests()).collect();
-        let is_alike = there.len() == events.len() && there.iter().zip(&events).all(|(one, two)| one.kind == two.kind);
+        let there = compared(found);
+        let is_alike = there.iter().map(|event| event.kind).eq(events.iter().map(|event| event.kind));
         // An angle is told from where it is in the orbit: on another cam it may be on the other side of angle 0.
-        let of_event = |(there, here): (&&Event, &&Event)| {
+        let of_event = |(there, here): (&Event, &Event)| {
             [apart(there.cam_angle, here.cam_angle), there.velocity_before, there.velocity_after]
         };
         is_alike.then(|| of_orbit.into_iter().chain(there.iter().zip(&events).flat_map(of_event)).collect())

@@ -329,6 +329,43 @@ fn a_table_lets_go_at_a_row_where_its_acceleration_has_a_kink() {
     assert!(curve.points.len() > 5);
 }
 
+/// Of a cam of rows, one just before the place where it lets go of the follower: nearly all impacts before a rest are on the segment before
+/// that row. Where the cam's angles are counted from changes nothing, from that row included.
+#[test]
+fn an_onset_of_resting_behind_a_row_is_where_it_is_on_a_cam_that_is_turned() {
+    let like = model("laws/harmonic").with_number("follower.restitution", 0.3).unwrap();
+    // Where its lift has to be highest, in degrees, for a cam to let go at 140.
+    for (spline, highest) in [("quintic", 202.782), ("cubic", 202.872)] {
+        for behind in [0.004, 0.02, 0.3] {
+            let onset = |turned: f64| {
+                let lift = |degrees: f64| 0.1 + 0.02 * (degrees - highest - behind - turned).to_radians().cos();
+                let rows: Vec<_> = (0..36).map(|row| 10.0 * f64::from(row)).map(|at| [at, lift(at)]).collect();
+                let cam = json!({ "law": "table", "spline": spline, "rows": rows });
+                let model = Model::of_document("rows", &json!({ "follower": &like.follower, "cam": cam })).unwrap();
+                let speeds = [400.0, 600.0];
+                let ends = points(&model, 430.0, 1, speeds, "chatter");
+                let [end] = &ends[..] else { panic!("{spline} {behind}: {ends:?}") };
+                curve(&model, end, speeds, &following(&model, "stiffness", [399.0, 401.0], 0.2)).points
+            };
+            let one = onset(0.0);
+            let at = |point: &BranchPoint| point.held.as_ref().unwrap().cam_angle.to_degrees() - 140.0;
+            assert!(
+                one.iter().all(|point| (0.0..2.0 * behind + 0.02).contains(&at(point))),
+                "{:?}",
+                one.iter().map(at).collect::<Vec<_>>()
+            );
+            for turned in [220.0, 70.0] {
+                let other = onset(turned);
+                assert_eq!(one.len(), other.len(), "{spline} {behind} {turned}");
+                for (one, other) in one.iter().zip(&other) {
+                    let moved = (other.value / one.value - 1.0).abs().max((other.rpm / one.rpm - 1.0).abs());
+                    assert!(moved < 1e-11, "{spline} {behind} {turned}: {one:?} {other:?}");
+                }
+            }
+        }
+    }
+}
+
 /// The events of some kinds at some speeds, of orbits of one impact.
 fn events(follower: &Value, cam: &Value, wanted: &[Bifurcation], speeds: [f64; 2]) -> Vec<(Kind, f64)> {
     let model = Model::of_document("events", &json!({ "follower": follower, "cam": cam })).unwrap();

@@ -27,7 +27,7 @@ use crate::cam::{Lift, Segment, Side, apart, within_a_turn};
 use crate::orbit::curve::Equations;
 use crate::orbit::cycle::lift_size;
 use crate::orbit::{Course, Family, FamilyError, PeriodicOrbit};
-use crate::simulate::{Event, EventKind, Goal, Machine, accumulation};
+use crate::simulate::{Event, EventKind, Goal, Machine};
 use crate::tolerance;
 
 /// Where the cam lets go.
@@ -169,26 +169,16 @@ impl Place {
         off.is_finite().then_some(off)
     }
 
-    /// How far from `last` on infinitely many impacts end by the law before the corner, which is continued past it where two terms of their
-    /// sum are not all of it, rad.
+    /// How far from `last` on infinitely many impacts end by the law before the corner, which is continued past it, rad.
     fn rest_beyond(self, machine: &Machine, last: &Event, left: f64) -> Option<f64> {
         /// By how much the law is continued, rad, where the segment behind is as long.
         const REACH: f64 = 0.05;
         let cam = machine.cam();
-        let [before, behind] = [self.before(machine), self.segment].map(|segment| &cam.segments()[segment]);
-        let lift = before.law.lift(last.cam_angle);
-        let (pressing, rate) = (-machine.lifting(&lift), machine.lifting_rate(&lift).0);
-        let relative_velocity = last.velocity_after - last.cam_velocity;
-        let (time, left_out) =
-            accumulation(relative_velocity, machine.restitution(), pressing, rate, machine.flight().zeta());
-        let turn = machine.angular_velocity() * time;
-        if (0.0..=tolerance::CHATTER_LEFT.value).contains(&turn) && left_out <= tolerance::CHATTER_REMAINDER.value {
-            return Some(turn);
-        }
         let corner = cam.corners().iter().find(|corner| corner.segment == self.segment)?;
+        let behind = &cam.segments()[self.segment];
         let reach = REACH.min(0.5 * (behind.end - behind.start));
         let machine = machine.with_cam(cam.continued(corner, Side::Minus, reach)?);
-        let mut motion = machine.start_on_cam(last.cam_angle, relative_velocity).ok()?;
+        let mut motion = machine.start_on_cam(last.cam_angle, last.velocity_after - last.cam_velocity).ok()?;
         let end = last.cam_angle + left + reach;
         let mut rest = None;
         let _ = machine.advance(&mut motion, Goal::turned(end), &mut |event: &Event| {

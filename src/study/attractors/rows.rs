@@ -63,12 +63,12 @@ pub fn rows(model: &Model, machine: &Machine, grid: &mut Grid) -> Vec<Row> {
     let mut rows = linked(machine, grid);
     let step = step(grid);
     rows.par_iter_mut().for_each(|row| row.follow(model, grid, step));
-    let mut rows = joined(rows);
+    let mut rows = joined(machine, rows);
     beyond(model, machine, &mut rows, step);
     for row in &mut rows {
         row.fill(machine, grid);
     }
-    let mut rows = joined(rows);
+    let mut rows = joined(machine, rows);
     rows.par_iter_mut().for_each(|row| row.narrow(machine, grid));
     rows.sort_by(|one, two| one.rpm[0].total_cmp(&two.rpm[0]).then(one.rpm[1].total_cmp(&two.rpm[1])));
     rows
@@ -148,13 +148,8 @@ fn at_speed(machine: &Machine, orbit: &PeriodicOrbit) -> Option<PeriodicOrbit> {
 fn beyond(model: &Model, machine: &Machine, rows: &mut Vec<Row>, step: f64) {
     /// How often that is done.
     const DEPTH: usize = 3;
-    let holds = |rows: &[Row], (rpm, orbit): &(f64, PeriodicOrbit)| {
-        let here = machine.at_speed(angular_velocity(*rpm));
-        rows.iter().any(|row| {
-            let near = row.stretch.as_ref().and_then(|stretch| stretch.near(*rpm));
-            near.and_then(|near| at_speed(&here, near)).is_some_and(|known| known.is_same(orbit))
-        })
-    };
+    let holds =
+        |rows: &[Row], (rpm, orbit): &(f64, PeriodicOrbit)| rows.iter().any(|row| row.holds(machine, *rpm, orbit));
     let mut fresh = 0;
     for _ in 0..DEPTH {
         let next = |stretch: &Stretch| {
@@ -188,16 +183,13 @@ fn beyond(model: &Model, machine: &Machine, rows: &mut Vec<Row>, step: f64) {
     }
 }
 
-/// Rows that are on one stretch of one branch, as one.
-fn joined(rows: Vec<Row>) -> Vec<Row> {
+/// Rows that are on one stretch of one branch, as one: they have its orbits in common. Newton's method leads from one to the same orbit on the
+/// other where that is on the same segments of the cam; over rows of a table it may be next to others alone.
+fn joined(machine: &Machine, rows: Vec<Row>) -> Vec<Row> {
     let mut joined: Vec<Row> = Vec::new();
     for row in rows {
-        let same = |known: &&mut Row| {
-            let stretches = known.stretch.as_ref().zip(row.stretch.as_ref());
-            known.class == row.class
-                && stretches.is_some_and(|(one, other)| one.is_same(other))
-                && row.at.iter().all(|(index, part)| known.at.get(index).is_none_or(|other| other == part))
-        };
+        let middle = || row.stretch.iter().flat_map(Stretch::middle);
+        let same = |known: &&mut Row| middle().any(|(rpm, orbit)| known.holds(machine, rpm, orbit));
         match joined.iter_mut().find(same) {
             Some(known) => known.at.extend(row.at),
             None => joined.push(row),
@@ -210,6 +202,13 @@ impl Row {
     fn ending<'a>(&self, grid: &'a Grid, index: usize) -> Option<&'a Ending> {
         let here = grid.get(index)?.as_ref().ok()?;
         Some(&here.parts.get(*self.at.get(&index)?)?.ending)
+    }
+
+    /// Whether an orbit at a speed, rpm, is on its stretch.
+    fn holds(&self, machine: &Machine, rpm: f64, orbit: &PeriodicOrbit) -> bool {
+        let near = self.stretch.as_ref().and_then(|stretch| stretch.near(rpm));
+        let known = near.and_then(|near| at_speed(&machine.at_speed(angular_velocity(rpm)), near));
+        known.is_some_and(|known| known.is_same(orbit))
     }
 
     /// Follows the branch of an orbit to where it ceases to be stable.

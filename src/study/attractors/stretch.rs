@@ -6,7 +6,6 @@ use crate::orbit::branch::{self, Branch, BranchPoint, End, Following, Kind};
 use crate::orbit::fate::{Run, Settling};
 use crate::orbit::{Family, OrbitError, Parameter, PeriodicOrbit};
 use crate::simulate::{Machine, SimulateError, angular_velocity};
-use crate::tolerance;
 
 /// A part of a branch on which the orbits are stable and have the same numbers of revolutions and impacts.
 #[derive(Clone, Debug, PartialEq)]
@@ -132,25 +131,10 @@ impl Stretch {
         nearest.filter(|_| inside).map(|point| &point.orbit)
     }
 
-    /// Whether two begin and end at the same speeds, with impacts at the same angles.
-    pub fn is_same(&self, other: &Self) -> bool {
-        let near = |one: f64, two: f64| (one - two).abs() <= tolerance::SAME_ORBIT.value * one.abs();
-        let ([low, high], [other_low, other_high]) = (self.range(), other.range());
-        // Where runs tell an end, the branch ends at the last of its steps, which another's are not.
-        let by_runs = [0, 1].map(|side| {
-            [self, other].iter().all(|it| it.ends[side].as_ref().is_some_and(|change| !change.is_located()))
-        });
-        let ends = (by_runs[0] || near(low, other_low))
-            && (by_runs[1] || near(high, other_high))
-            && low <= other_high
-            && other_low <= high;
-        let angles = |stretch: &Self| -> Vec<f64> {
-            let first = stretch.points.first().iter().flat_map(|point| point.orbit.impacts()).collect::<Vec<_>>();
-            first.iter().map(|impact| impact.cam_angle).collect()
-        };
-        let (here, there) = (angles(self), angles(other));
-        let has = |all: &[f64], angle: f64| all.iter().any(|one| (one - angle).abs() <= tolerance::NEIGHBOURING.value);
-        ends && here.iter().all(|angle| has(&there, *angle))
+    /// Orbits of its middle half, which no other stretch begins or ends with, each at its speed, rpm.
+    pub fn middle(&self) -> impl Iterator<Item = (f64, &PeriodicOrbit)> {
+        let middle = self.points.iter().skip(self.points.len() / 4).take(self.points.len().div_ceil(2));
+        middle.map(|point| (point.rpm, &point.orbit))
     }
 
     /// The lowest and the highest speed, rpm.
