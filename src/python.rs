@@ -91,7 +91,7 @@ pub(crate) fn run<T: serde::de::DeserializeOwned>(script: &str, input: &serde_js
         .current_dir(folder.path())
         // Would keep the scripts from importing each other.
         .env_remove("PYTHONSAFEPATH")
-        // Its matrices are too small for threads, which would only wait for each other.
+        // The matrices of the scripts are too small for threads, which would only wait for each other.
         .env("OPENBLAS_NUM_THREADS", "1")
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
