@@ -7,11 +7,10 @@
 //! ```
 //!
 //! The pass around the cycle keeps two equations `F x_0 + G x_i = h`. Together with the equations of the next flight these
-//! are four, and rotations of two of them at a time leave two without `x_i`. They are orthogonal, so that no number grows over an
+//! are four, and two reflections (Householder 1958) leave two of them without `x_i`. They are orthogonal, so that no number grows over an
 //! unstable orbit. The work is proportional to the number of impacts.
 
-use nalgebra::linalg::givens::GivensRotation;
-use nalgebra::{DVector, Matrix2, SMatrix, Vector2};
+use nalgebra::{DVector, Matrix2, Vector2};
 
 /// The equations of one flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,19 +21,35 @@ pub(super) struct Link {
     pub coming: Matrix2<f64>,
 }
 
-/// `R x_i + A x_0 + B x_{i+1} = h`, with R upper triangular.
-struct Row {
-    upper: Matrix2<f64>,
-    first: Matrix2<f64>,
-    next: Matrix2<f64>,
-    right: Vector2<f64>,
-}
+/// Two equations with an upper triangle in `x_i`, and two without it: columns of `x_i`, `x_0` and `x_{i+1}`, and the right sides.
+type Reflected = [[f64; 4]; 7];
 
 /// The equations after the pass: of each impact but the first, and `last x_0 = left`.
 struct Eliminated {
-    rows: Vec<Row>,
+    rows: Vec<Reflected>,
     last: Matrix2<f64>,
     left: Vector2<f64>,
+}
+
+/// Reflects the equations from `first` on, so that in the column of that number no other has an entry (Householder).
+fn reflect(columns: &mut Reflected, first: usize) {
+    let dot = |one: &[f64; 4], other: &[f64; 4]| {
+        one[0] * other[0] + one[1] * other[1] + (one[2] * other[2] + one[3] * other[3])
+    };
+    let mut normal = columns[first];
+    normal[..first].fill(0.0);
+    // Of the sign that cancels nothing.
+    let kept = -dot(&normal, &normal).sqrt().copysign(normal[first]);
+    normal[first] -= kept;
+    let half_square = -kept * normal[first];
+    if half_square > 0.0 {
+        for column in &mut columns[first..] {
+            let along = dot(column, &normal) / half_square;
+            for (entry, normal) in column.iter_mut().zip(normal) {
+                *entry -= along * normal;
+            }
+        }
+    }
 }
 
 fn eliminate(links: &[Link], right: &DVector<f64>) -> Option<Eliminated> {
@@ -42,30 +57,29 @@ fn eliminate(links: &[Link], right: &DVector<f64>) -> Option<Eliminated> {
     let Link { mut leaving, mut coming } = *links.first()?;
     let mut left = of(0);
     let mut rows = Vec::with_capacity(links.len() - 1);
+    let none = Matrix2::zeros();
     for (index, link) in links.iter().enumerate().skip(1) {
-        // Of x_i, x_0, x_{i+1}, and the right sides.
-        let mut four = SMatrix::<f64, 4, 7>::zeros();
-        four.fixed_view_mut::<2, 2>(0, 0).copy_from(&coming);
-        four.fixed_view_mut::<2, 2>(2, 0).copy_from(&link.leaving);
-        four.fixed_view_mut::<2, 2>(0, 2).copy_from(&leaving);
-        four.fixed_view_mut::<2, 2>(2, 4).copy_from(&link.coming);
-        four.fixed_view_mut::<2, 1>(0, 6).copy_from(&left);
-        four.fixed_view_mut::<2, 1>(2, 6).copy_from(&of(index));
-        for (column, row) in [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3)] {
-            let pair = Vector2::new(four[(column, column)], four[(row, column)]);
-            if let Some((rotation, _)) = GivensRotation::cancel_y(&pair) {
-                rotation.rotate(&mut four.fixed_rows_with_step_mut::<2>(column, row - column - 1));
-            }
-        }
-        rows.push(Row {
-            upper: four.fixed_view::<2, 2>(0, 0).upper_triangle(),
-            first: four.fixed_view::<2, 2>(0, 2).into(),
-            next: four.fixed_view::<2, 2>(0, 4).into(),
-            right: four.fixed_view::<2, 1>(0, 6).into(),
-        });
-        leaving = four.fixed_view::<2, 2>(2, 2).into();
-        coming = four.fixed_view::<2, 2>(2, 4).into();
-        left = four.fixed_view::<2, 1>(2, 6).into();
+        let two = |kept: Matrix2<f64>, flight: Matrix2<f64>, column: usize| {
+            [kept[(0, column)], kept[(1, column)], flight[(0, column)], flight[(1, column)]]
+        };
+        let right = of(index);
+        let mut columns = [
+            two(coming, link.leaving, 0),
+            two(coming, link.leaving, 1),
+            two(leaving, none, 0),
+            two(leaving, none, 1),
+            two(none, link.coming, 0),
+            two(none, link.coming, 1),
+            [left[0], left[1], right[0], right[1]],
+        ];
+        reflect(&mut columns, 0);
+        reflect(&mut columns, 1);
+        let block = |column: usize| {
+            let [one, other] = [columns[column], columns[column + 1]];
+            Matrix2::new(one[2], other[2], one[3], other[3])
+        };
+        (leaving, coming, left) = (block(2), block(4), Vector2::new(columns[6][2], columns[6][3]));
+        rows.push(columns);
     }
     Some(Eliminated { rows, last: leaving + coming, left })
 }
@@ -73,19 +87,22 @@ fn eliminate(links: &[Link], right: &DVector<f64>) -> Option<Eliminated> {
 /// The determinant of the equations; of none at all 1.
 pub(super) fn determinant(links: &[Link]) -> f64 {
     let Some(Eliminated { rows, last, .. }) = eliminate(links, &DVector::zeros(2 * links.len())) else { return 1.0 };
-    // Rotations have the determinant 1, and to bring x_0 to the end moves two columns past pairs of others.
-    rows.iter().map(|row| row.upper[(0, 0)] * row.upper[(1, 1)]).product::<f64>() * last.determinant()
+    // Two reflections have the determinant 1, and to bring x_0 to the end moves two columns past pairs of others.
+    rows.iter().map(|columns| columns[0][0] * columns[1][1]).product::<f64>() * last.determinant()
 }
 
-/// The unknowns, two for each impact in turn; `None` where the equations do not determine them.
+/// The unknowns, two for each impact in turn; where the equations do not determine them `None`, or not finite.
 pub(super) fn solve(links: &[Link], right: &DVector<f64>) -> Option<DVector<f64>> {
     let Eliminated { rows, last, left } = eliminate(links, right)?;
-    let first = last.lu().solve(&left)?;
+    let first = last.try_inverse()? * left;
     let mut unknowns = DVector::zeros(2 * links.len());
     unknowns.fixed_rows_mut::<2>(0).copy_from(&first);
     let mut next = first;
-    for (index, row) in rows.iter().enumerate().rev() {
-        next = row.upper.solve_upper_triangular(&(row.right - row.first * first - row.next * next))?;
+    for (index, [one, other, known @ .., right]) in rows.iter().enumerate().rev() {
+        let values = [first[0], first[1], next[0], next[1]];
+        let left = |row: usize| known.iter().zip(values).fold(right[row], |left, (by, value)| left - by[row] * value);
+        next[1] = left(1) / other[1];
+        next[0] = (left(0) - other[0] * next[1]) / one[0];
         unknowns.fixed_rows_mut::<2>(2 * (index + 1)).copy_from(&next);
     }
     Some(unknowns)
