@@ -35,7 +35,7 @@ pub const ELSEWHERE: &[(&str, &str, Held)] = &[
     ("make python", "builds, installs and tests the package", Held::Landing),
     ("make derive-check", "takes a minute of computer algebra", Held::Landing),
     ("make verify", "needs Python's packages; tests/it/routes.rs runs the same", Held::Landing),
-    ("make report", "needs Python's packages; tests/browser opens the page", Held::Landing),
+    ("make report", "needs Python's packages; tests/it/browser.rs opens the page", Held::Landing),
     ("make claims", "writes docs/claims.md; tests/it/ledger.rs holds it fresh", Held::Target),
     ("make pictures", "writes docs/*.svg; tests/documents/main.rs draws them again", Held::Target),
 ];

@@ -13,6 +13,7 @@ mod border_conditions;
 mod bouncing;
 mod bounds;
 mod branches;
+mod browser;
 mod cam_corners;
 mod cam_laws;
 mod cam_sheet;

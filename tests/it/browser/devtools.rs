@@ -1,5 +1,4 @@
 //! A browser spoken to over its DevTools protocol: one page, its console, its requests, its hands.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::io::{BufRead, BufReader, Write};
 use std::net::TcpStream;

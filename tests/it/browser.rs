@@ -1,5 +1,4 @@
 //! What does the report's page do in a browser, opened from disk? Skipped, and said to be, where there is no Chromium.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod devtools;
 
@@ -7,48 +6,37 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use corner_impact::figures::through_corner::Moment;
-use corner_impact::model::Model;
-use corner_impact::pages::report::html;
-use corner_impact::progress::Unwatched;
-use corner_impact::report::Report;
 use corner_impact::report::through::ThroughCorner;
-use corner_impact::study::verify::External;
 use devtools::Page;
 use serde_json::Value;
 
-struct Written {
-    dossier: Report,
-    file: PathBuf,
-    _folder: tempfile::TempDir,
-}
+use crate::page::papers;
 
-/// The paper's report, written once.
-fn written() -> &'static Written {
-    static WRITTEN: OnceLock<Written> = OnceLock::new();
+/// The paper's report, written once, where the build has what it makes on its way: several runs of the tests may be at it.
+fn written() -> &'static Path {
+    static WRITTEN: OnceLock<PathBuf> = OnceLock::new();
     WRITTEN.get_or_init(|| {
-        let dossier = Report::of(&Model::built_in().unwrap(), External::LeftOut, None, &Unwatched).unwrap();
-        let folder = tempfile::tempdir().unwrap();
-        let file = folder.path().join("report.html");
-        std::fs::write(&file, html::render(&dossier).unwrap()).unwrap();
+        let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("report-{}.html", std::process::id()));
+        std::fs::write(&file, &papers().1).unwrap();
         // For whoever wants to look at it.
         if let Some(copy) = std::env::var_os("CORNER_IMPACT_PAGE") {
             std::fs::copy(&file, Path::new(&copy)).unwrap();
         }
-        Written { dossier, file, _folder: folder }
+        file
     })
 }
 
 fn through() -> &'static ThroughCorner {
-    written().dossier.through.as_ref().unwrap()
+    papers().0.through.as_ref().unwrap()
 }
 
 fn ledger() -> &'static corner_impact::paper::Claims {
-    written().dossier.claims.as_ref().unwrap()
+    papers().0.claims.as_ref().unwrap()
 }
 
 /// Open, with the slider's data unpacked.
 fn open() -> Option<Page> {
-    let mut page = Page::open(&written().file)?;
+    let mut page = Page::open(written())?;
     page.until("!document.getElementById('player').hidden");
     Some(page)
 }
@@ -139,6 +127,7 @@ fn slide(page: &mut Page, index: usize) {
 }
 
 #[test]
+#[ignore = "slow"]
 fn the_page_opens_from_disk_in_silence() {
     let Some(mut page) = open() else { return };
     assert_eq!(page.value("document.title"), "Corner impact of osorio-2008");
@@ -149,6 +138,7 @@ fn the_page_opens_from_disk_in_silence() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn the_slider_shows_the_documents_frames_and_two_orbits_become_none_at_the_corner() {
     let Some(mut page) = open() else { return };
     let (corner, last) = (through().at_corner, through().frames.len() - 1);
@@ -167,6 +157,7 @@ fn the_slider_shows_the_documents_frames_and_two_orbits_become_none_at_the_corne
 }
 
 #[test]
+#[ignore = "slow"]
 fn keys_move_the_slider() {
     let Some(mut page) = open() else { return };
     let (corner, last) = (through().at_corner, through().frames.len() - 1);
@@ -194,6 +185,7 @@ fn keys_move_the_slider() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn a_finger_moves_the_slider_and_the_diagram() {
     let Some(mut page) = open() else { return };
     page.window(360, 740, true);
@@ -210,6 +202,7 @@ fn a_finger_moves_the_slider_and_the_diagram() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn play_moves_and_pauses_and_whoever_wants_no_motion_goes_step_by_step() {
     let Some(mut page) = open() else { return };
     let corner = through().at_corner;
@@ -235,6 +228,7 @@ fn visible(page: &mut Page) -> usize {
 }
 
 #[test]
+#[ignore = "slow"]
 fn the_ledger_is_filtered_by_verdict_and_words_and_linked_to() {
     let Some(mut page) = open() else { return };
     let ledger = ledger();
@@ -273,6 +267,7 @@ fn the_ledger_is_filtered_by_verdict_and_words_and_linked_to() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn a_click_on_a_number_shows_what_it_stands_for() {
     let Some(mut page) = open() else { return };
     let shown = page.value(
@@ -308,6 +303,7 @@ fn a_click_on_a_number_shows_what_it_stands_for() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn a_narrow_screen_is_not_scrolled_sideways() {
     let Some(mut page) = open() else { return };
     for (width, height) in [(390, 844), (320, 568), (768, 1024), (1600, 900)] {
@@ -331,6 +327,7 @@ fn a_narrow_screen_is_not_scrolled_sideways() {
 
 /// The first screen is the answer, whose five sentences it holds; the contents stay in sight, and each figure can be saved.
 #[test]
+#[ignore = "slow"]
 fn the_answer_is_the_first_screen() {
     let Some(mut page) = open() else { return };
     page.window(1280, 800, false);
@@ -379,6 +376,7 @@ const CONTRAST: &str = "(() => {
 })()";
 
 #[test]
+#[ignore = "slow"]
 fn text_can_be_read_on_light_and_dark_screens() {
     let Some(mut page) = open() else { return };
     let mut papers = Vec::new();
@@ -394,6 +392,7 @@ fn text_can_be_read_on_light_and_dark_screens() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn paper_has_no_controls_and_dark_ink() {
     let Some(mut page) = open() else { return };
     page.media("print", &[("prefers-color-scheme", "dark")]);
