@@ -60,8 +60,9 @@ impl Model {
         Ok(self.follower == paper.follower && self.cam == paper.cam && self.units.length == paper.units.length)
     }
 
-    /// What is odd about numbers whose units are not said, at speeds, rpm, that are asked for or those of `[study]`: a question
-    /// for the user, no reason to refuse. Only sizes are looked at that no machine has which turns and presses as it should.
+    /// What is odd about numbers in the units that are said, or in those that are taken where none is, at speeds, rpm, that are asked for
+    /// or those of `[study]`: a question for the user, no reason to refuse. Only sizes are looked at that no machine has which turns and
+    /// presses as it should.
     pub fn doubt(&self, rpm: Option<[f64; 2]>) -> Result<Option<String>, ModelError> {
         /// m: of a cam that somebody turns.
         const LARGEST_RISE: f64 = 5.0;
@@ -70,26 +71,37 @@ impl Model {
         /// The cam's speed over the frequency of follower and spring, and a spring's compression over the rise.
         const MOST_TIMES: f64 = 15.0;
         const MOST_RISES: f64 = 100.0;
-        /// m/s^2, of weights, also where the model has no gravity.
+        /// m/s^2, of weights, also where the model has no gravity; and the most that a machine is in.
         const GRAVITY: f64 = 9.81;
+        const MOST_GRAVITY: f64 = 1000.0;
         /// From N/m to N/mm.
         const THOUSAND: f64 = 1000.0;
         let units = &self.units;
         let [says_length, says_mass, says_stiffness] = units.says;
         let cam = Cam::new(self)?;
-        let Follower { mass, stiffness, rest_position, .. } = self.follower;
+        let Follower { mass, stiffness, rest_position, gravity, .. } = self.follower;
         let lowest = cam.lowest().value;
         let (rise, compressed) = (cam.top() - lowest, lowest - rest_position);
+        let [risen, pressed, pulled] = [rise, compressed, gravity].map(|length| units.length.inside(length));
         let weights = stiffness * compressed / (mass * units.length.told(GRAVITY));
         let own = (stiffness / mass).sqrt() / TAU * 60.0;
         let slowest = rpm.or(self.study.map(|study| [study.rpm_min, study.rpm_max])).map(|[low, _]| low);
         let too_soft = |speed: f64| speed > MOST_TIMES * own && speed < MOST_TIMES * THOUSAND.sqrt() * own;
-        let is_soft = stiffness > 0.0 && (compressed > MOST_RISES * rise || slowest.is_some_and(too_soft));
+        let is_compressed = stiffness > 0.0 && compressed > MOST_RISES * rise;
+        let is_soft = is_compressed || stiffness > 0.0 && slowest.is_some_and(too_soft);
         let written = units.mass.told(mass);
-        let meant = if !says_length && rise > LARGEST_RISE {
-            format!("the lift rises by {rise:.4} m: did you mean mm?")
+        let meant = if risen > LARGEST_RISE {
+            let meant = if says_length { "is it in the unit that is said?" } else { "did you mean mm?" };
+            format!("the lift rises by {risen:.4} m: {meant}")
+        } else if pulled.abs() > MOST_GRAVITY {
+            format!("gravity of {pulled} m/s^2: did you mean mm/s^2?")
         } else if !says_stiffness && is_soft {
             format!("stiffness {stiffness} with mass {written}: did you mean N/mm?")
+        } else if is_compressed {
+            let (times, unit) = (compressed / rise, units.stiffness.name());
+            format!(
+                "the spring is pressed together by {pressed:.4} m, {times:.0} times as far as the lift rises: is its stiffness in {unit}?"
+            )
         } else if !says_mass && weights > MOST_WEIGHTS && weights.is_finite() {
             let (force, unit) = (units.force.told(stiffness * compressed), units.force.name());
             format!(

@@ -3,10 +3,9 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
-use super::start::{angle, range, rpm};
+use super::start::{angle, cam_angle, range, rpm};
 use super::threads::threads;
 use super::{CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::watched};
-use crate::cam::within_a_turn;
 use crate::figures::basins_figure;
 use crate::foreign;
 use crate::orbit::Search;
@@ -76,7 +75,7 @@ fn cells(text: &str) -> Result<[usize; 2], String> {
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let to_standard = picture::out_is_standard(arguments.out.as_ref(), arguments.summary)?;
     let model = arguments.model.read_as_drawn(session)?;
-    let section = Section::new(&model, arguments.rpm, within_a_turn(arguments.strobe))?;
+    let section = Section::new(&model, arguments.rpm, cam_angle("--strobe", arguments.strobe, session))?;
     let grid = section.grid(arguments.grid, arguments.position, arguments.velocity)?;
     let patience = Patience { revolutions: arguments.revolutions, longest: arguments.longest };
     let (clock, threads) = (Instant::now(), arguments.threads.map(usize::from));

@@ -138,6 +138,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
             return Err(CommandError::Words(words));
         }
     }
+    arguments.start.doubt(session);
     let lengths = Lengths { transient: arguments.transient, record: arguments.record };
     let chart = Chart::new(&model, arguments.rpm, [x, y], arguments.start.start(), lengths)?;
     let drawn = arguments.out.as_deref().is_some_and(|path| picture::kind(path).is_some());

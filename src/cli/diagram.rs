@@ -5,12 +5,12 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 
-use super::start::{StartArguments, angle, count, speeds};
+use super::start::{StartArguments, angle, cam_angle, count, speeds};
 use super::threads::threads;
 use super::{
     CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::Progress, progress::watched,
 };
-use crate::cam::{Cam, within_a_turn};
+use crate::cam::Cam;
 use crate::diagram::{Counted, Following, Places, Section, Speeds, Starts, Sweep};
 use crate::figures::{corner_marks, impact_diagram, loads_diagram, strobe_diagram};
 use crate::model::Model;
@@ -97,6 +97,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         return Err(CommandError::Words("--strobe is the angle of --section strobe, which is not there".into()));
     }
     let model = arguments.model.read_as_drawn(session)?;
+    arguments.start.doubt(session);
     let cam = Cam::new(&model)?;
     let corners = corner_marks(&cam);
     let sweep = Sweep {
@@ -115,7 +116,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         record: arguments.record,
         section: match arguments.section {
             SectionName::Impact => Section::Impacts,
-            SectionName::Strobe => Section::Strobe(within_a_turn(arguments.strobe.unwrap_or(0.0))),
+            SectionName::Strobe => Section::Strobe(cam_angle("--strobe", arguments.strobe.unwrap_or(0.0), session)),
         },
         growth: arguments.lyapunov.then_some(growth),
     };

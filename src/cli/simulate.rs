@@ -6,9 +6,8 @@ use std::path::{Path, PathBuf};
 use clap::ArgGroup;
 
 use super::picture::{self, Canvas, PictureArguments, is_standard, picture as drawn_only, picture_or_table};
-use super::start::{StartArguments, angle, count, rpm};
+use super::start::{StartArguments, angle, cam_angle, count, rpm};
 use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
-use crate::cam::within_a_turn;
 use crate::figures::{self, phase_plane as phase_plane_figure, time_trace, with_force};
 use crate::file::{self, Output};
 use crate::show::csv;
@@ -91,6 +90,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         ));
     }
     let model = arguments.model.read_as_drawn(session)?;
+    arguments.start.doubt(session);
     let simulation = Simulation::new(&model, arguments.rpm, arguments.start.start())?;
     let (machine, first) = (&simulation.machine, &simulation.first);
     let shown = trace.is_some() || phase_plane.is_some();
@@ -98,7 +98,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let wanted = Wanted {
         until: arguments.impacts.map_or(Until::Revolutions(arguments.revolutions), Until::Impacts),
         events: events.is_some(),
-        strobe: arguments.strobe.map(within_a_turn),
+        strobe: arguments.strobe.map(|angle| cam_angle("--strobe", angle, session)),
         drawn,
         lyapunov: arguments.lyapunov,
     };

@@ -1,5 +1,8 @@
 //! Arguments that more than one subcommand takes: speeds, and where a run starts.
 
+use std::f64::consts::TAU;
+
+use super::session::Session;
 use crate::cam::within_a_turn;
 use crate::diagram::{Placed, Speeds, Start};
 use crate::flight::State;
@@ -20,10 +23,25 @@ pub(super) struct StartArguments {
 }
 
 impl StartArguments {
+    /// Asks about the angle, once.
+    pub(super) fn doubt(&self, session: &mut Session<'_>) {
+        cam_angle("--start-angle", self.start_angle, session);
+    }
+
     pub(super) fn start(&self) -> Start {
         let follower = self.state.map_or(Placed::OnCam(self.relative_velocity.unwrap_or(0.0)), Placed::At);
         Start { cam_angle: within_a_turn(self.start_angle), follower }
     }
+}
+
+/// An angle of the cam, in [0, 2 pi): one of more than a turn is asked about, since whoever forgets the unit means degrees.
+pub(super) fn cam_angle(option: &str, angle: f64, session: &mut Session<'_>) -> f64 {
+    let of_turn = within_a_turn(angle);
+    if angle.abs() > TAU {
+        let degrees = of_turn.to_degrees();
+        session.note(&format!("{option}: {angle} rad is {degrees:.4} deg of a turn; {angle}deg is in degrees"));
+    }
+    of_turn
 }
 
 pub(super) fn finite(text: &str) -> Result<f64, String> {

@@ -435,7 +435,7 @@ impl Table<'_> {
         let largest = rows.iter().fold(0.0_f64, |largest, row| largest.max(row.lift.abs()));
         if (last.lift - first.lift).abs() > tolerance::CAM_CLOSURE.value * largest {
             let words = format!(
-                "must be {}, the lift at {} on {}: a turn later it is the same again",
+                "must be {}, the lift at {} on {}: a turn later it is the same again, and the row may be left out",
                 first.lift,
                 self.shown(first.angle_deg),
                 self.place(first)

@@ -34,11 +34,18 @@ impl Fields {
     pub(super) fn parse(file: &str, text: &str) -> Result<Self, ModelError> {
         let line_ends: Vec<usize> = text.match_indices('\n').map(|(at, _)| at).collect();
         let line_of = |offset: usize| 1 + line_ends.partition_point(|end| *end < offset);
+        let comma = |span: Range<usize>| {
+            let parts = text.split_at_checked(span.start);
+            parts.is_some_and(|(before, from)| {
+                before.ends_with(|last: char| last.is_ascii_digit()) && from.starts_with(',')
+            })
+        };
         let root = DeTable::parse(text).map_err(|error| ModelError {
             line: error.span().map(|span| line_of(span.start)),
             // Some of them are two lines long.
             ..ModelError::file(file, format!("not valid TOML: {}", error.message().replace('\n', ", ")))
                 .at(Some(text.into()), error.span())
+                .meaning(error.span().is_some_and(comma).then(|| "did you mean a decimal point?".into()))
         })?;
         let mut fields = Self::none(file, Some(text));
         let place = |span: Range<usize>| (line_of(span.start), text.get(span).unwrap_or_default().to_owned());

@@ -272,17 +272,21 @@ fn with_open(value: f64, error: Option<f64>, digits: Digits) -> Words {
 }
 
 fn trade(trade: &Trade) -> [Block; 2] {
-    let Trade { need, parameter, unit, against, against_unit, pairs } = trade;
+    let Trade { need, parameter, unit, against, against_unit, pairs, known } = trade;
+    let digits = if *known == Known::Computed { SIX } else { Digits::Significant(3) };
     let columns = [number(format!("{against} {against_unit}")), number(format!("{parameter} {unit}"))];
     let mut table = Table::new(need, columns);
-    for Pair { given, found, error, other, other_error } in pairs {
-        let found = found.map(|value| with_open(value, *error, SIX));
-        let cell = match (found, other.map(|value| with_open(value, *other_error, SIX))) {
+    for Pair { given, found, error, other, other_error, again } in pairs {
+        let found = found.map(|value| with_open(value, *error, digits));
+        let mut cell = match (found, other.map(|value| with_open(value, *other_error, digits))) {
             (None, _) => "none".into(),
             (Some(found), None) => found,
             (Some(found), Some(other)) if parameter.is_upper_bound() => words![other, " to ", found],
             (Some(found), Some(other)) => words![found, " to ", other],
         };
+        if let Some(again) = again {
+            cell = words![cell, ", and ", (*again, digits)];
+        }
         table.row([words![(*given, SIX)], cell]);
     }
     let bound = match parameter.is_upper_bound() {

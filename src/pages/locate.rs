@@ -133,8 +133,12 @@ fn searched(found: &Located) -> String {
         0 => String::new(),
         _ => format!(", {left_out} knots of its spline left out"),
     };
-    let mut words = if corners == 0 {
+    let mut words = if corners == 0 && *left_out == 0 {
         "The cam has no corner: no derivative of its lift jumps as far as can be told.".to_owned()
+    } else if corners == 0 {
+        format!(
+            "No corner is looked at: {left_out} knots of the cam's spline, or ends of dwells that its rows show, are no part of what was measured."
+        )
     } else {
         format!(
             "{corners} corner(s) of the cam{knots}. Orbits of one impact: {}. Orbits of several impacts were looked for in two ways that know \

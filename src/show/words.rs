@@ -312,13 +312,13 @@ pub(crate) fn accuracy(measured: &Measured) -> String {
     let reading = &measured.reading;
     match reading.step.filter(|_| measured.is_rounded()) {
         Some(step) => format!("lift rounded to {step} {}", reading.unit),
-        None => measured_to(reading, measured.noise_m),
+        None => known_to(reading, measured.noise_m),
     }
 }
 
-/// The same of one that is not rounded, by the noise of its lifts, m.
-pub(crate) fn measured_to(reading: &Reading, noise: f64) -> String {
-    format!("lift measured to {} {}", Digits::Aligned(2).text(reading.in_model.told(noise)), reading.unit)
+/// The same of one that is not rounded, by how its lifts spread, m: as they are measured, or as rows are too far apart for how the cam moves.
+pub(crate) fn known_to(reading: &Reading, noise: f64) -> String {
+    format!("lift known to {} {}", Digits::Aligned(2).text(reading.in_model.told(noise)), reading.unit)
 }
 
 /// How the rows of a table were understood.

@@ -105,7 +105,7 @@ fn needs_are_read_in_any_unit() {
     assert!(refused("energy below 3 mm to 3 rpm").ends_with("energy is in one of: J, mJ"));
     assert!(refused("noise below 3 mm to 3 rpm").starts_with("must be like"));
     assert!(refused("below 3 mm to 3 rpm").starts_with("must be like"));
-    assert!(in_si(Load::Force, "N").unwrap_err().ends_with("force is in one of: the model's unit, which is not named"));
+    assert!(in_si(Load::Force, "N").unwrap_err().ends_with("force is in the model's unit, which is not written"));
 }
 
 /// What a load is to stay below is in the SI's unit, and the machine that is changed as told keeps it at the speed and passes it without.

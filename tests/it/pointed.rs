@@ -82,6 +82,8 @@ fn broken_tables_and_toml_are_shown() {
         message.starts_with("error: syntax.toml:2: not valid TOML: ") && message.contains("2 | [follower\n"),
         "{message}"
     );
+    let comma = common::osorio_text(&[]).replacen("mass = ", "mass = 0,1", 1);
+    assert!(complaint("comma.toml", &comma).contains("help: did you mean a decimal point?"));
     let cam = "law = \"table\"\nfile = \"broken.csv\"\nspline = \"cubic\"\n";
     let model = common::osorio_text(&[]).split("[cam]").next().unwrap().to_owned() + "[cam]\n" + cam;
     for (row, value, says) in [

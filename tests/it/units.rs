@@ -190,6 +190,9 @@ fn angles_may_be_given_in_degrees() {
     let quarter = std::f64::consts::FRAC_PI_2.to_string();
     assert_eq!(after("90deg"), after(&quarter));
     assert_ne!(after("90deg"), after("90"));
+    let said = |angle: &str| text(corner_impact(["simulate", "--rpm", "673", "--start-angle", angle]).stderr);
+    assert!(said("90").contains("note: --start-angle: 90 rad is 116.6202 deg of a turn; 90deg is in degrees\n"));
+    assert!(!said("90deg").contains("--start-angle") && !said("6.28").contains("--start-angle"));
 }
 
 /// One note for each machine that nobody has, and none for those that somebody has.
@@ -228,6 +231,13 @@ fn numbers_that_are_odd_are_asked_about() {
     let heavy = ["0.11", "30", "preload = 22000", "10"];
     let mass = spoken(heavy, "[units]\nlength = \"mm\"\nstiffness = \"N/mm\"\nforce = \"N\"\n", "3000");
     assert!(mass.contains("22000 N, 20387 times the weight of mass 0.11: is it in kg?"), "{mass}");
+    // Units that are said, and others meant.
+    let spring =
+        spoken(["0.11", "30", "preload = 220", "10"], "[units]\nlength = \"mm\"\nstiffness = \"N/m\"\n", "3000");
+    assert!(spring.contains("by 7.3333 m, 733 times as far as the lift rises: is its stiffness in N/m?"), "{spring}");
+    let lift =
+        spoken(["0.11", "30", "preload = 220", "10000"], "[units]\nlength = \"mm\"\nstiffness = \"N/mm\"\n", "3000");
+    assert!(lift.contains("rises by 10.0000 m: is it in the unit that is said?"), "{lift}");
     for file in common::model_files() {
         assert_eq!(common::read(&file).doubt(None).unwrap(), None, "{}", file.display());
     }

@@ -99,6 +99,9 @@ pub struct Pair {
     /// How far that may be off.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub other_error: Option<f64>,
+    /// A value beyond, of those tried, with which it is as it is needed to be again.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub again: Option<f64>,
 }
 
 /// What one number has to be for each value of another.
@@ -116,6 +119,8 @@ pub struct Trade {
     pub against_unit: String,
     /// Pairs of what is given and what is found; nothing where no value does it.
     pub pairs: Vec<Pair>,
+    /// As of the need alone.
+    pub known: Known,
 }
 
 document!(Design as it {
@@ -317,7 +322,7 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
                     let changed = changed.with(against, inside(value(index)));
                     let found = needs::answer(&changed, (need, text), parameter, uncertain)?;
                     let given = value(index);
-                    let Answer { value, error, other, other_error, .. } = found;
+                    let Answer { value, error, other, other_error, again, .. } = found;
                     // Of what is not to be too much as little as will do comes first, and none at all does where nothing else is said.
                     Ok(match found.is_upper_bound && !parameter.is_upper_bound() {
                         true => Pair {
@@ -326,13 +331,15 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
                             error: other_error,
                             other: value,
                             other_error: error,
+                            again,
                         },
-                        false => Pair { given, found: value, error, other, other_error },
+                        false => Pair { given, found: value, error, other, other_error, again },
                     })
                 };
                 let pairs = (0..count).into_par_iter().map(pair).collect::<Result<_, _>>()?;
                 let (unit, against_unit) = (changed.told(parameter, 0.0).1, against_unit.clone());
-                trades.push(Trade { need: text.clone(), parameter, unit, against, against_unit, pairs });
+                let known = need.known();
+                trades.push(Trade { need: text.clone(), parameter, unit, against, against_unit, pairs, known });
             }
         }
     }

@@ -33,6 +33,13 @@ pub enum What {
     Below(Load, f64),
 }
 
+impl Need {
+    /// How it is known what it needs: loads by runs.
+    pub(super) fn known(&self) -> Known {
+        if self.what == What::NoSeparation { Known::Computed } else { Known::Sampled }
+    }
+}
+
 /// Units that loads are told in, each with what it is of the SI's.
 const UNITS: [(Load, &str, f64); 11] = [
     (Load::ImpactSpeed, "m/s", 1.0),
@@ -81,8 +88,10 @@ pub fn in_si(load: Load, unit: &str) -> Result<f64, String> {
     found.ok_or_else(|| {
         let names: Vec<&str> = of_load().map(|(_, name, _)| *name).collect();
         let (unit, name) = (foreign::value(unit), load.to_string().replace('-', " "));
-        let names = if names.is_empty() { "the model's unit, which is not named".into() } else { names.join(", ") };
-        format!("\"{unit}\": {name} is in one of: {names}")
+        match names.as_slice() {
+            [] => format!("\"{unit}\": {name} is in the model's unit, which is not written"),
+            names => format!("\"{unit}\": {name} is in one of: {}", names.join(", ")),
+        }
     })
 }
 
@@ -208,6 +217,8 @@ pub struct Answer {
     pub other: Option<f64>,
     /// How far that may be off.
     pub other_error: Option<f64>,
+    /// A value beyond, of those tried, with which a load is as it is needed to be again.
+    pub again: Option<f64>,
     /// The unit.
     pub unit: String,
     /// Why there is no value, or what else there is to say.
@@ -226,6 +237,7 @@ document!(Answer as it {
     is_upper_bound: it.is_upper_bound,
     other if_any: it.other,
     other_error if_any: it.other_error,
+    again if_any: it.again,
     note: it.note,
     known: it.known,
 });
@@ -237,7 +249,7 @@ pub(super) fn answer(
     lever: Lever,
     uncertain: f64,
 ) -> Result<Answer, SimulateError> {
-    let known = if need.what == What::NoSeparation { Known::Computed } else { Known::Sampled };
+    let known = need.known();
     let found = find(of, need, lever)?;
     let told = |value: f64| of.told(lever, value).0;
     // Of what is as little as there can be nothing is open.
@@ -257,7 +269,8 @@ pub(super) fn answer(
     let stuck = found
         .stuck
         .map(|value| format!("at {} {unit} a run makes no progress, which is taken not to do", told(value) as f32));
-    let notes: Vec<String> = [found.note.clone()].into_iter().filter(|note| !note.is_empty()).chain(stuck).collect();
+    let again = found.again.map(|value| format!("with {} {unit} it is so again", told(value) as f32));
+    let notes = [found.note.clone()].into_iter().filter(|note| !note.is_empty()).chain(again).chain(stuck);
     Ok(Answer {
         need: text.into(),
         lever,
@@ -267,8 +280,9 @@ pub(super) fn answer(
         is_upper_bound: found.is_upper_bound,
         other: found.other.map(told),
         other_error: error(|found| found.other),
+        again: found.again.map(told),
         unit,
-        note: notes.join("; "),
+        note: notes.collect::<Vec<_>>().join("; "),
         known,
     })
 }
@@ -280,6 +294,8 @@ pub(super) struct Found {
     pub other: Option<f64>,
     pub is_upper_bound: bool,
     pub note: String,
+    /// A value that does beyond where it ceases to.
+    pub again: Option<f64>,
     /// A value with which a run makes no progress.
     pub stuck: Option<f64>,
 }
@@ -361,13 +377,20 @@ pub(super) fn find(of: &Changed<'_>, need: &Need, lever: Lever) -> Result<Found,
         Some(before) => Some(edge(values[before], values[first])?),
         None => None,
     };
-    let mut beyond = None;
+    let (mut beyond, mut again) = (None, None);
     for pair in values[first..].windows(2) {
-        if !does(pair[1])? {
-            beyond = Some(edge(pair[1], pair[0])?);
-            break;
+        match (beyond, does(pair[1])?) {
+            (None, false) => beyond = Some(edge(pair[1], pair[0])?),
+            (Some(_), true) => {
+                again = Some(pair[1]);
+                break;
+            }
+            // What keeps the follower on the cam is one range.
+            (Some(_), false) if need.what == What::NoSeparation => break,
+            _ => {}
         }
     }
+    let told_stuck = |found: Found| Found { again, ..told_stuck(found) };
     Ok(told_stuck(match (before, beyond) {
         (None, Some(_)) => Found { value: beyond, is_upper_bound: !is_upper_bound, ..Found::default() },
         (Some(_), _) => Found { value: before, other: beyond, is_upper_bound, ..Found::default() },
