@@ -3,7 +3,7 @@
 //! Branches are found by searches at the speeds of a grid, which may miss orbits: what is yielded here need not be all. But it
 //! is the same whatever the range: of a part of a range, it is the part.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 use super::confirm::Candidate;
 use super::corner_impact::Way;
@@ -66,9 +66,10 @@ fn candidate(cam: &Cam, point: &BranchPoint) -> Option<Candidate> {
     }
     let corner = *cam.corners().iter().find(|corner| corner.segment == segment)?;
     let old = &cycle.impacts[impact];
-    // Where the velocity jumps, both sides have an orbit on the corner, at speeds of their own. A cam of one segment has both sides in it:
-    // it ends where it begins.
-    let is_before = old.segment != segment || cam.segments().len() == 1 && old.cam_angle > PI;
+    // Where the velocity jumps, both sides have an orbit on the corner, at speeds of their own: on the segment that ends there, and on the
+    // one that begins.
+    let on = &cam.segments()[old.segment];
+    let is_before = old.cam_angle > on.start.midpoint(on.end);
     let side = if jump_order == 1 && is_before { Side::Minus } else { Side::Plus };
     let on_corner = at_corner(cam, &corner, side, 0, old.velocity_before);
     // The angle may be named by the revolution before or after.

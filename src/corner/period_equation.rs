@@ -221,12 +221,12 @@ impl<'a> PeriodEquation<'a> {
         let half = self.revolutions as f64 * PI;
         let section = (self.corner.angle + half) % TAU;
         let machine = Machine::new(cam.clone(), &model.follower, TAU / period);
-        let (impacts, end) = match self.one_period(&machine, section, state, |turned| turned - half) {
+        let (is_hit, end) = match self.one_period(&machine, section, state, |turned| turned - half) {
             Ok(result) => result,
             Err(why) => return Verdict::Rejected(why),
         };
         // What is simulated has met the cam too slowly to hit it.
-        if impacts == 0 {
+        if !is_hit {
             return self.graze(model, cam, period);
         }
         // Half a period later it may be as high as the corner, on its way past it.
@@ -273,16 +273,16 @@ impl<'a> PeriodEquation<'a> {
         Some(Candidate { cycle, impact: 0, corner, side, period, bracket, residual, way: Way::Equation })
     }
 
-    /// Impacts and end of one period, or why it is no orbit with impacts only where `from_corner(turned)` is 0.
+    /// Whether the cam is hit in one period, and its end, or why it is no orbit with impacts only where `from_corner(turned)` is 0.
     fn one_period(
         &self,
         machine: &Machine,
         cam_angle: f64,
         start: State,
         from_corner: impl Fn(f64) -> f64,
-    ) -> Result<(usize, State), String> {
+    ) -> Result<(bool, State), String> {
         let mut motion = machine.start(cam_angle, start).map_err(|error| error.to_string())?;
-        let (mut impacts, mut why) = (0, None);
+        let (mut is_hit, mut why) = (false, None);
         let angle = |event: &Event| event.cam_angle.to_degrees();
         if motion.contact {
             return Err(format!("the follower stays on the cam at {:.4} deg", cam_angle.to_degrees()));
@@ -295,7 +295,7 @@ impl<'a> PeriodEquation<'a> {
             if event.kind == EventKind::Impact && approach <= tolerance::GRAZE_FOUND.value * scale {
                 return ControlFlow::Continue(());
             }
-            impacts += usize::from(event.kind == EventKind::Impact);
+            is_hit |= event.kind == EventKind::Impact;
             if from_corner(event.turned_since(cam_angle)).abs() > tolerance::CORNER_ANGLE.value {
                 why = Some(match event.kind {
                     EventKind::Impact => format!("the flight meets the cam elsewhere, at {:.4} deg", angle(event)),
@@ -306,7 +306,7 @@ impl<'a> PeriodEquation<'a> {
         });
         match (why, end) {
             (Some(why), _) => Err(why),
-            (None, Ok(_)) => Ok((impacts, motion.state)),
+            (None, Ok(_)) => Ok((is_hit, motion.state)),
             (None, Err(error)) => Err(error.to_string()),
         }
     }

@@ -269,10 +269,8 @@ impl FoundCornerImpacts {
 
 /// Whether a candidate is a corner impact that is known, found by another way or on another branch.
 fn is_same(known: &CornerImpact, at: &Candidate) -> bool {
-    known.corner.segment == at.corner.segment
-        && known.side == at.side
-        && is_same_speed(known.speed_rpm(), 60.0 / at.period)
-        && known.cycle.is_same(&at.cycle)
+    // At another speed it has other velocities.
+    known.corner.segment == at.corner.segment && known.side == at.side && known.cycle.is_same(&at.cycle)
 }
 
 fn is_same_speed(one: f64, two: f64) -> bool {

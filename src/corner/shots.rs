@@ -163,7 +163,7 @@ impl Shooter<'_> {
         let at_end = self.side == Side::Minus;
         let on_corner = OnCorner::of_corner(self.machine, self.rpm, &guess, 0, at_end);
         let (mut cycle, rpm) = on_corner.solved(self.model, cam)?;
-        let is_near = (self.rpm / REACH..=self.rpm * REACH).contains(&rpm);
+        let is_near = (rpm / self.rpm).max(self.rpm / rpm) <= REACH;
         if !is_near || cycle.nearest_other(0) < NEAREST_OTHER {
             return None;
         }

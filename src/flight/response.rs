@@ -129,6 +129,12 @@ impl Flight {
         self.together(&self.response_over(middle.into()), &self.response_over(t - middle))
     }
 
+    /// `s''`, 1/s: what a unit velocity is slowed down by, where these are the responses.
+    pub fn impulse_bend(&self, response: &Response<Interval>) -> Interval {
+        // s'' = -2 zeta s' - w0^2 s
+        -(response.impulse_rate * (2.0 * self.zeta) + response.impulse * self.omega0_squared)
+    }
+
     /// The responses at the sum of two times.
     fn together(&self, one: &Response<Interval>, two: &Response<Interval>) -> Response<Interval> {
         // Under a unit step: at p, with velocity s and the force 1 - w0^2 p left.

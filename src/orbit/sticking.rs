@@ -54,7 +54,7 @@ pub fn at_zero(machine: &Machine, anchor: f64) -> Result<State, SimulateError> {
 /// never leaves the cam.
 pub fn anchor(events: &[Event], revolutions: u64) -> Option<f64> {
     let longest = stretches(events, revolutions).max_by(|one, two| (one.1 - one.0).total_cmp(&(two.1 - two.0)))?;
-    Some((0.5 * (longest.0 + longest.1)).rem_euclid(TAU)).filter(|angle| *angle < TAU)
+    Some(longest.0.midpoint(longest.1).rem_euclid(TAU)).filter(|angle| *angle < TAU)
 }
 
 /// From where to where the follower is on the cam among the events of one period, rad. It leaves the cam where it is released, or where a

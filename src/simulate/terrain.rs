@@ -40,11 +40,8 @@ impl Terrain {
         let before = segments.last().into_iter().chain(segments);
         let size = segments.iter().flat_map(|segment| segment.bounds.lift).map(f64::abs).fold(0.0, f64::max);
         let steepest = segments.iter().flat_map(|segment| segment.bounds.slope).map(f64::abs).fold(0.0, f64::max);
-        let closed = tolerance::CAM_CLOSURE.value * size;
-        let entries: Vec<Entry> = before
-            .zip(segments)
-            .map(|(before, after)| entry(before, after, if cam.ends_a_continued_law(after) { 0.0 } else { closed }))
-            .collect();
+        let entries: Vec<Entry> =
+            before.zip(segments).map(|(before, after)| entry(before, after, cam.ends_a_continued_law(after))).collect();
         let kicks = entries.iter().any(|entry| entry.slope_jump > 0.0 || entry.lift_step > 0.0);
         let curvatures = segments.iter().map(|segment| segment.bounds.curvature[1]);
         let largest_curvature = if kicks { f64::INFINITY } else { curvatures.fold(f64::NEG_INFINITY, f64::max) };
@@ -55,8 +52,8 @@ impl Terrain {
     }
 }
 
-/// What changes between two segments of a cam on which lifts closer than `closed`, m, are one.
-fn entry(before: &Segment, after: &Segment, closed: f64) -> Entry {
+/// What changes between two segments of a cam: its lift only where a law ends that is continued past its segment.
+fn entry(before: &Segment, after: &Segment, may_step: bool) -> Entry {
     let (minus, plus) = (before.law.lift(before.end), after.law.lift(after.start));
     let jump = |minus: f64, plus: f64, rounding: f64| {
         if (plus - minus).abs() <= rounding { 0.0 } else { plus - minus }
@@ -64,14 +61,13 @@ fn entry(before: &Segment, after: &Segment, closed: f64) -> Entry {
     // Where segments meet, two evaluations of one lift differ by rounding, which a follower that has just left the cam
     // there must not be measured by.
     let lift_rounding = tolerance::GAP_ROUNDING.value * (minus.value.abs() + plus.value.abs());
-    let lift_step = jump(minus.value, plus.value, lift_rounding.max(closed));
-    let differ = lift_step == 0.0 && jump(minus.value, plus.value, lift_rounding) != 0.0;
+    let step = jump(minus.value, plus.value, lift_rounding);
     let scale = [minus, plus]
         .iter()
         .fold(0.0_f64, |scale, lift| scale.max(lift.value.abs()).max(lift.slope.abs()).max(lift.curvature.abs()));
     Entry {
-        lift_step,
-        seam: differ.then_some(minus.value),
+        lift_step: if may_step { step } else { 0.0 },
+        seam: (!may_step && step != 0.0).then_some(minus.value),
         slope_jump: jump(minus.slope, plus.slope, tolerance::CAM_JUMP.value * scale),
     }
 }

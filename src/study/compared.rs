@@ -48,9 +48,9 @@ impl Log {
         result.map_err(|error| self.fail(route, error)).ok()
     }
 
-    /// Whether everything ran that should have.
-    pub(super) fn is_complete(&self) -> bool {
-        self.0.iter().all(|skipped| !skipped.failed)
+    /// Whether everything ran that should have, and agrees.
+    pub(super) fn agrees(&self, comparisons: &[Agreement]) -> bool {
+        self.0.iter().all(|skipped| !skipped.failed) && comparisons.iter().all(|item| item.agrees)
     }
 }
 

@@ -244,6 +244,6 @@ fn located(model: &Model, cam: &Cam, at: &CornerImpact) -> LocatedImpact {
         2 => Happens::BorderCollision(compared::classified(&map, border, sticking)),
         _ => Happens::Smooth,
     };
-    let agrees = log.is_complete() && comparisons.iter().all(|item| item.agrees);
+    let agrees = log.agrees(&comparisons);
     LocatedImpact { at: at.clone(), speed_error: None, map, local, comparisons, skipped: log.0, agrees }
 }

@@ -137,12 +137,10 @@ impl LeftOpen {
     /// Of a corner impact with its map.
     fn new(likely: Likely, at: &CornerImpact, map: &CornerMap, sticking: Option<Side>) -> Self {
         let numbers = |speed: f64, map: &CornerMap| -> [f64; 13] {
-            let (minus, plus) = (map.minus.entries(), map.plus.entries());
-            std::array::from_fn(|index| match index {
-                0 => speed,
-                1..=6 => minus[index - 1],
-                _ => plus[index - 7],
-            })
+            let mut all = [speed; 13];
+            all[1..7].copy_from_slice(&map.minus.entries());
+            all[7..].copy_from_slice(&map.plus.entries());
+            all
         };
         let seen = Mutex::new(Vec::new());
         let there = |model: &Model, cam: &Cam| {
@@ -375,9 +373,7 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
         result => log.keep("published", result).unwrap_or_default(),
     };
 
-    let agrees = log.is_complete()
-        && comparisons.iter().all(|item| item.agrees)
-        && published.iter().all(|number| number.as_found);
+    let agrees = log.agrees(&comparisons) && published.iter().all(|number| number.as_found);
     Ok(Verification {
         model: ModelLabel::of(model),
         at,

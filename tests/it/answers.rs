@@ -164,7 +164,12 @@ fn corner_impacts_of_many_impacts_on_either_side() {
 fn corner_impacts_of_more_impacts_yet() {
     are_as_they_were(
         "answers-locate-most",
-        &["locate --rpm 194.2:194.3 --json", "locate --rpm 195.5:195.7 --json", "locate --rpm 134.5:134.6 --json"],
+        &[
+            "locate --rpm 194.2:194.3 --json",
+            "locate --rpm 195.5:195.7 --json",
+            "locate --rpm 134.5:134.6 --json",
+            "locate models/sharp-nose.toml --rpm 218.9:219.1 --json",
+        ],
     );
 }
 

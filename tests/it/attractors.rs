@@ -261,6 +261,7 @@ fn speeds_of_a_grid_are_the_same_for_every_range() {
     };
     assert!(matches!(refused([0.0, 700.0], 1.0), AttractorsError::NoRange { .. }));
     assert!(matches!(refused([700.0, 700.0], 1.0), AttractorsError::NoRange { .. }));
+    assert!(matches!(refused([700.0, f64::INFINITY], 1.0), AttractorsError::NoRange { .. }));
     assert!(matches!(refused([600.0, 700.0], 1e-9), AttractorsError::TooFine { .. }));
     assert!(matches!(refused([600.0, 700.0], 1e-300), AttractorsError::TooFine { .. }));
 }

@@ -178,6 +178,13 @@ fn every_derivative_is_the_rate_of_the_one_before() {
     }
 }
 
+/// A Taylor sum up to the third derivative is a cubic itself.
+#[test]
+fn a_little_further_on_the_lift_is_that_of_its_derivatives() {
+    let lift = Lift { value: 1.0, slope: 2.0, curvature: 3.0, third: 6.0 };
+    assert_eq!(lift.after(2.0), Lift { value: 19.0, slope: 20.0, curvature: 15.0, third: 6.0 });
+}
+
 /// High derivatives, each as the difference quotient of the one before.
 #[test]
 fn high_derivatives_follow_from_one_another() {

@@ -385,6 +385,16 @@ fn all_orbits_of_one_and_of_two_impacts_are_proved_and_orbit_has_the_same() {
     }
 }
 
+/// Of two saddles next to the corner impact: in doubles it only follows that their map has robust chaos.
+#[test]
+#[ignore = "slow"]
+fn the_hypotheses_of_robust_chaos_are_proved_with_the_matrices() {
+    for model in ["models/damped-heavy.toml", "models/overdamped.toml"] {
+        let found: Value = serde_json::from_slice(&corner_impact(["verify", model, "--json"]).stdout).unwrap();
+        assert_eq!(found["local_map"][0]["robust_chaos"]["known"], "proved", "{model}");
+    }
+}
+
 #[test]
 fn without_python_it_says_so() {
     let output = common::program(["certify"]).env("CORNER_IMPACT_PYTHON", "/nonexistent/python").output().unwrap();

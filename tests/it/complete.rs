@@ -91,6 +91,25 @@ fn a_fold_is_passed() {
     let near =
         |ends: &[f64; 2]| (ends[0].to_degrees() - 131.75).abs() < 0.01 && (ends[1].to_degrees() - 131.75).abs() < 0.01;
     assert!(!is_complete(&at) && at.undecided.iter().all(|it| near(&it.cam_angles[0])), "{at:?}");
+    // Next to it to the last digits one or both may be found, and neither is proved.
+    for ulps in -40..=40 {
+        let there = all(&machine(&model, fold * (1.0 + f64::from(ulps) * f64::EPSILON)), 1);
+        let proved = there.orbits.iter().filter(|orbit| orbit.known == Known::Proved).count();
+        assert!(is_complete(&there) || proved == below.orbits.len().min(above.orbits.len()), "{ulps}: {there:?}");
+    }
+}
+
+/// Of two impacts, one on a corner: nothing is proved of that orbit next to its speed.
+#[test]
+fn a_corner_of_one_of_two_impacts_is_left_undecided() {
+    let (paper, corner) = (common::osorio(), 736.110_814_038_711_4);
+    let [below, above] = [-1e-6, 1e-6].map(|off| all(&machine(&paper, corner + off), 2));
+    assert!(is_complete(&below) && is_complete(&above), "{below:?} {above:?}");
+    for ulps in -40..=40 {
+        let there = all(&machine(&paper, corner * (1.0 + f64::from(ulps) * f64::EPSILON)), 2);
+        let proved = there.orbits.iter().filter(|orbit| orbit.known == Known::Proved).count();
+        assert!(is_complete(&there) || proved == below.orbits.len().min(above.orbits.len()), "{ulps}: {there:?}");
+    }
 }
 
 /// At the speed of the corner impact the impact is on neither side for certain.

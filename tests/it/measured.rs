@@ -517,8 +517,10 @@ fn a_measured_corner_impact() {
         Model::of_document("the paper's cam", &document).unwrap()
     };
     let model = measured(6);
-    let found = verify(&model, External::LeftOut).unwrap();
-    assert!(found.agrees);
+    // No certificate is of a spline near rows: it is left out, which is no disagreement.
+    let found = verify(&model, External::Run).unwrap();
+    let certificate = found.skipped.iter().find(|skipped| skipped.route == "certificate").unwrap();
+    assert!(found.agrees && !certificate.failed, "{:?}", found.skipped);
     let truth = verify(&paper, External::LeftOut).unwrap();
     let open = found.measured.as_ref().unwrap();
     let (speed, map) = open.error.unwrap();

@@ -190,17 +190,20 @@ fn a_level_at_the_turn_is_reached_or_missed() {
 }
 
 /// A hair above the level and fast: the mean of the velocities takes it down, and the time has digits of its own, far above the
-/// equilibrium, near it and below.
+/// equilibrium, near it and below, in whatever unit lengths are.
 #[test]
 fn a_short_fall_keeps_its_digits() {
     let far = [0.0, 1e-12, 1e-6, 1e-3, 0.1].map(|stiffness| (stiffness, 9.81, REST, 0.45));
     let near = [0.45, -0.45].map(|level| (1.0, 0.0, 0.0, level));
     for (stiffness, gravity, rest_position, level) in far.into_iter().chain(near) {
-        let follower = Follower { mass: 1.0, damping: 0.0, stiffness, gravity, rest_position, restitution: 0.8 };
-        let start = State { position: level + 1e-9, velocity: -3.0 };
-        let (time, state) = Flight::new(&follower).fall_to(level, start).unwrap();
-        let expected = 2.0 * (start.position - level) / -(start.velocity + state.velocity);
-        assert_relative_eq!(time, expected, epsilon = 0.0, max_relative = 1e-13);
+        for unit in [1.0, 2.0_f64.powi(-60), 2.0_f64.powi(60)] {
+            let [gravity, rest_position, level] = [gravity, rest_position, level].map(|length| length * unit);
+            let follower = Follower { mass: 1.0, damping: 0.0, stiffness, gravity, rest_position, restitution: 0.8 };
+            let start = State { position: level + 1e-9 * unit, velocity: -3.0 * unit };
+            let (time, state) = Flight::new(&follower).fall_to(level, start).unwrap();
+            let expected = 2.0 * (start.position - level) / -(start.velocity + state.velocity);
+            assert_relative_eq!(time, expected, epsilon = 0.0, max_relative = 1e-13);
+        }
     }
 }
 

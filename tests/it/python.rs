@@ -85,6 +85,32 @@ fn a_script_that_fails_is_quoted() {
     }
 }
 
+/// Everything runs, and one number is another, or one orbit is not proved: the whole disagrees.
+#[cfg(unix)]
+#[test]
+#[ignore = "slow"]
+fn one_number_that_is_otherwise_and_one_refused_proof_are_enough_to_disagree() {
+    let (folder, real) = (tempfile::tempdir().unwrap(), interpreter());
+    let real = real.to_str().unwrap();
+    let changed = "import json, sys; found = json.load(sys.stdin); found['minus']['A'][0][0] = '0.5'; json.dump(found, sys.stdout)";
+    let number = format!("*evaluate.py) '{real}' \"$@\" | '{real}' -c \"{changed}\";;");
+    let proof = r#"*certify.py) cat > /dev/null; echo '{"results": [{"refused": "not today"}]}';;"#;
+    for (name, case, failed) in [("number", number.as_str(), json!([])), ("proof", proof, json!(["certificate"]))] {
+        let says = format!("case \"$*\" in {case} *) exec '{real}' \"$@\";; esac");
+        let python = executable(folder.path(), name, &says);
+        let python = ("CORNER_IMPACT_PYTHON", python.to_str().unwrap());
+        let output = verify(&["--json", "models/osorio-2008.toml"], &[python]);
+        let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let of = |list: &str, wanted: fn(&Value) -> bool, field: &str| -> Value {
+            found[list].as_array().unwrap().iter().filter(|it| wanted(it)).map(|it| it[field].clone()).collect()
+        };
+        assert_eq!((output.status.code(), &found["agrees"]), (Some(1), &json!(false)), "{name}");
+        assert_eq!(of("skipped", |it| it["failed"] == true, "route"), failed, "{name}");
+        let disagreeing = of("agreement", |it| it["agrees"] == false, "quantity");
+        assert_eq!(disagreeing == json!([]), name == "proof", "{disagreeing}");
+    }
+}
+
 /// A shell script that can be run.
 #[cfg(unix)]
 fn executable(folder: &Path, name: &str, text: &str) -> PathBuf {

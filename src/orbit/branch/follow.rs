@@ -149,7 +149,7 @@ impl Walk<'_> {
                 let away = &self.stride.from.unknowns - home;
                 // Behind a fold it may pass its start the other way, a step beside it.
                 let is_onward = self.stride.from.tangent.dot(&begin.1.tangent) > 0.0;
-                if is_onward && away.norm() < self.stride.step && away.dot(&begin.1.tangent) <= 0.0 {
+                if is_onward && away.norm() < self.stride.step {
                     return Ok((self.points, End::Closed));
                 }
             }
@@ -340,7 +340,7 @@ impl Walk<'_> {
             self.points.push(last);
         }
         self.stride.from = end_point;
-        self.signs = if smooth && self.stride.held.is_none() { signs } else { Vec::new() };
+        self.signs = if smooth { signs } else { Vec::new() };
         match first {
             Some(Located { cut: Cut::Range(_), .. }) => Ok(Some(End::Range)),
             Some(Located { cut: Cut::Halved, .. }) => Ok(Some(End::Shorter)),

@@ -292,7 +292,7 @@ impl Rest<'_> {
         let mut reached = self.reached(&unknowns)?;
         let mut moved = f64::INFINITY;
         for _ in 0..STEPS {
-            if reached.contact.is_exact(&reached) || moved <= tolerance::CYCLE_CLOSED.value {
+            if reached.contact.is_exact(&reached) {
                 return Ok((unknowns, reached));
             }
             let [_, contact] = reached.contact.told(&self.machine(&unknowns)?.0, &reached);

@@ -53,10 +53,10 @@ impl Hop {
         let turned = angles + Interval::TURN * turns as f64 - self.from.angle;
         let response = flight.response_over(turned / self.omega);
         let (force, v) = (flight.force(start.value), self.velocity);
-        // q = q0 + v0 s + f0 p,  q' = v0 s' + f0 s,  q'' = f0 - w0^2 (q - q0) - 2 zeta q'
+        // q = q0 + v0 s + f0 p,  q' = v0 s' + f0 s,  q'' = v0 s'' + f0 s'
         let displacement = v * response.impulse + force * response.step;
         let velocity = v * response.impulse_rate + force * response.impulse;
-        let acceleration = force - displacement * flight.omega0_squared() - velocity * (2.0 * flight.zeta());
+        let acceleration = v * flight.impulse_bend(&response) + force * response.impulse_rate;
         Gap {
             value: displacement - (lift.value - start.value),
             slope: velocity / self.omega - lift.slope,

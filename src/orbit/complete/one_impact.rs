@@ -48,8 +48,7 @@ impl OneImpact<'_> {
     pub(crate) fn equation(&self, lift: &Lift<Interval>, time: Interval, response: &Response<Interval>) -> Equation {
         let (r, flight) = (self.restitution, self.flight);
         let (p, s, s1) = (response.step, response.impulse, response.impulse_rate);
-        // s'' = -2 zeta s' - w0^2 s
-        let s2 = -(s1 * (2.0 * flight.zeta()) + s * flight.omega0_squared());
+        let s2 = flight.impulse_bend(response);
         let force = flight.force(lift.value);
         let back = Interval::from(r) + 1.0;
         let (a, omega) = (p * (s1 * r + 1.0) - s.squared() * r, self.turn() / time);

@@ -98,9 +98,15 @@ impl Pair<'_> {
             (mean, (one.impulse_rate - mean) / t1, step, (one.impulse - step) / t1, rise, rise_by)
         } else {
             let since = flight.response_over(t1.hull(0.0.into()));
-            let bend = -(since.impulse_rate * (2.0 * flight.zeta()) + since.impulse * flight.omega0_squared());
             let [rise, curvature] = self.between(place);
-            (since.impulse_rate, bend.half(), since.impulse, since.impulse_rate.half(), rise, [curvature.half(); 2])
+            (
+                since.impulse_rate,
+                flight.impulse_bend(&since).half(),
+                since.impulse,
+                since.impulse_rate.half(),
+                rise,
+                [curvature.half(); 2],
+            )
         };
         let mean = Varied::of(mean, mean_by, by_1);
         let [x, y] = self.lift(&lifts, [by_x, by_y]);
@@ -130,8 +136,6 @@ impl Pair<'_> {
         let (by_1, by_2) = ([-later, later], [later, -later]);
         let none = Interval::from(0.0);
         let (by_x, by_y) = ([Interval::from(1.0), none], [none, Interval::from(1.0)]);
-        let bend =
-            |of: &Response<Interval>| -(of.impulse_rate * (2.0 * flight.zeta()) + of.impulse * flight.omega0_squared());
         let force = |which: usize, by: [Interval; 2]| {
             Varied::of(forces[which], -(lifts[which].slope * flight.omega0_squared()), by)
         };
@@ -139,7 +143,8 @@ impl Pair<'_> {
             |which: usize, by: [Interval; 2]| Varied::of(lifts[which].slope, lifts[which].curvature, by) * omega;
         let (s1, s2) =
             (Varied::of(one.impulse, one.impulse_rate, by_1), Varied::of(two.impulse, two.impulse_rate, by_2));
-        let rates = [Varied::of(one.impulse_rate, bend(&one), by_1), Varied::of(two.impulse_rate, bend(&two), by_2)];
+        let rates =
+            [(&one, by_1), (&two, by_2)].map(|(of, by)| Varied::of(of.impulse_rate, flight.impulse_bend(of), by));
         let both = mean * s2 * (r + 1.0);
         let at_x = short * s2 - slope(0, by_x) * both + mean * (long * rates[1] + force(1, by_y) * s2 * s2) * r;
         let at_y = long * mean - slope(1, by_y) * both + s2 * (short * rates[0] + force(0, by_x) * s1 * mean) * r;

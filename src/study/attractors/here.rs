@@ -53,7 +53,7 @@ impl Here {
             }
             let rest = index - sampled;
             let Some([from, to]) = rests.get(rest) else { return Ok(known.get(rest - rests.len()).copied()) };
-            let angle = within_a_turn(0.5 * (from + to));
+            let angle = within_a_turn(from.midpoint(*to));
             machine.start_on_cam(angle, 0.0).map(|motion| motion.contact.then_some(motion))
         };
         let count = sampled + rests.len() + known.len();
