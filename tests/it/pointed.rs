@@ -84,6 +84,11 @@ fn broken_tables_and_toml_are_shown() {
     );
     let comma = common::osorio_text(&[]).replacen("mass = ", "mass = 0,1", 1);
     assert!(complaint("comma.toml", &comma).contains("help: did you mean a decimal point?"));
+    for other in ["mass = 12kg #", "mass = \"1\", #"] {
+        let other = common::osorio_text(&[]).replacen("mass = ", other, 1);
+        let message = complaint("other.toml", &other);
+        assert!(message.contains("not valid TOML") && !message.contains("decimal point"), "{message}");
+    }
     let cam = "law = \"table\"\nfile = \"broken.csv\"\nspline = \"cubic\"\n";
     let model = common::osorio_text(&[]).split("[cam]").next().unwrap().to_owned() + "[cam]\n" + cam;
     for (row, value, says) in [

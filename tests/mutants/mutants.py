@@ -12,7 +12,7 @@ which a first run of each test notes.
     python tests/mutants/mutants.py --out tried.jsonl          in several sittings: the next goes on where one was broken off
     python tests/mutants/mutants.py --learn tried.jsonl        no mutant: adds to failing.toml what has failed there
 
-What survives and is not in explained.toml, with a reason, as open, or as what only slow tests may tell, is listed, and the exit code is 1.
+What survives and is not in explained.toml, with a reason, is listed, and the exit code is 1.
 """
 
 import argparse
@@ -490,11 +490,10 @@ def main():
     begun = time.monotonic()
     listed = tomllib.loads((ROOT / "tests/mutants/explained.toml").read_text())
     name = lambda mutant: tuple(mutant[key] for key in ("file", "function", "code", "replacement"))
-    told, left_open, slow = ({(file, function, code, other) for reason in listed[kind] for file, known in reason.items()
-                              if file != "why" and Path(file) in sources(asked.words) for function, code, *others in known for other in others}
-                             for kind in ("reason", "open", "slow"))
+    told = {(file, function, code, other) for reason in listed["reason"] for file, known in reason.items()
+            if file != "why" and Path(file) in sources(asked.words) for function, code, *others in known for other in others}
 
-    gone = (told | left_open | slow) - {name(mutant) for mutant in schemata(lambda key: True, asked.words)[1]}
+    gone = told - {name(mutant) for mutant in schemata(lambda key: True, asked.words)[1]}
     if gone:
         sys.exit(f"listed, and there is no such mutant: {sorted(gone)}")
     binary, mutants = built(asked.words, lambda key: (number(key) - number(asked.seed)) % asked.parts == 0, asked.parts == 1)
@@ -560,9 +559,7 @@ def main():
     done, failed, _ = became(binary, told_by, 2 + 8 * sum(failing["seconds"][test] for test in told_by), "") if told_by else ("pass", [], 0)
     if done != "pass":
         sys.exit(f"fails without a mutant, or takes too long: {failed}")
-    known = lambda id: "open" if name(mutants[id]) in left_open else "slow" if name(mutants[id]) in slow else "pass"
-    # To note what tests reach takes longer than to ask a part of the mutants: not for those that are known to live.
-    if alive and (asked.parts == 1 or any(known(id) == "pass" for id in alive)):
+    if alive:
         print(f"{len(alive)} pass what is listed of their files, after {time.monotonic() - began:.0f} s", flush=True)
         tests = reached(binary, asked.longest, asked.tests, asked.jobs)
         places = defaultdict(list)
@@ -581,18 +578,17 @@ def main():
 
     if out:
         out.writelines(json.dumps(mutants[id] | {"tests": "pass", "failed": []}) + "\n" for id in alive)
-    survivors = [id for id in alive if known(id) == "pass"]
-    for id in sorted(survivors):
+    for id in sorted(alive):
         mutant = mutants[id]
         print("survives:", f"{mutant['file']}:{mutant['line']}", mutant["function"], "|", mutant["code"], "|", mutant["replacement"],
               "(reached by no test)" if not places[place[id]] else f"(of {left[id]} tests not asked)" if left[id] else "")
-    count = Counter((stage(id), known(id) if end == "pass" else end) for id, (end, _) in end_of.items())
+    count = Counter((stage(id), end) for id, (end, _) in end_of.items())
     for part in in_all:
         print(f"{part}: {in_all[part]} mutants, {sum(number for (of, _), number in count.items() if of == part)} tried, {count[part, 'fail']} fail a test, "
-              f"{count[part, 'too long']} take eight times as long, {count[part, 'explained']} explained, {count[part, 'open']} open, "
-              f"{count[part, 'slow']} pass what is quick, {count[part, 'pass']} survive")
+              f"{count[part, 'too long']} take eight times as long, {count[part, 'explained']} explained, "
+              f"{count[part, 'pass']} survive")
     print(f"{len(end_of)} mutants in {time.monotonic() - began:.0f} s")
-    sys.exit(bool(survivors))
+    sys.exit(bool(alive))
 
 
 def learned(tried, seconds):

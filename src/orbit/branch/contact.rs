@@ -249,14 +249,8 @@ impl Contact {
                     to.passed(machine, &lift, event, turned - event.turned_since(from.cam_angle))
                 };
                 let last = impacts.len().checked_sub(1)?;
-                // Before a corner any tells the same, and the last the soonest. Where it has gone over to a law before, as at a row of a
-                // table, the first after it that has not.
-                let (impact, off) = if to.is_corner {
-                    let before = impacts.iter().rposition(|event| event.segment == to.before(machine))?;
-                    (impact.min(last), passed(before)?)
-                } else {
-                    (impact.min(last)..=last).find_map(|later| Some((later, passed(later)?)))?
-                };
+                // Where it has gone over to a law before, as at a row of a table, the first after it that has not.
+                let (impact, off) = (impact.min(last)..=last).find_map(|later| Some((later, passed(later)?)))?;
                 Some(Reached { off, contact: Self::Resting { from, to, turned, impact }, impacts })
             }
         }

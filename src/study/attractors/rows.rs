@@ -65,9 +65,6 @@ pub fn rows(model: &Model, machine: &Machine, grid: &mut Grid) -> Vec<Row> {
     rows.par_iter_mut().for_each(|row| row.follow(model, grid, step));
     let mut rows = joined(machine, rows);
     beyond(model, machine, &mut rows, step);
-    for row in &mut rows {
-        row.fill(machine, grid);
-    }
     let mut rows = joined(machine, rows);
     rows.par_iter_mut().for_each(|row| row.narrow(machine, grid));
     rows.sort_by(|one, two| one.rpm[0].total_cmp(&two.rpm[0]).then(one.rpm[1].total_cmp(&two.rpm[1])));
@@ -225,21 +222,6 @@ impl Row {
     fn take(&mut self, stretch: Stretch) {
         (self.rpm, self.ends) = (stretch.range(), stretch.ends.clone());
         self.stretch = Some(stretch);
-    }
-
-    /// The orbit at the speeds of its stretch at which no run has come to it.
-    fn fill(&mut self, machine: &Machine, grid: &mut Grid) {
-        let Some(stretch) = &self.stretch else { return };
-        for (index, found) in grid.iter_mut().enumerate() {
-            let Ok(here) = found else { continue };
-            let Some(near) = stretch.near(here.rpm).filter(|_| !self.at.contains_key(&index)) else { continue };
-            let machine = machine.at_speed(angular_velocity(here.rpm));
-            let Some(orbit) = at_speed(&machine, near).filter(PeriodicOrbit::is_stable) else { continue };
-            let ending = Ending::Orbit(orbit);
-            if let Some(place) = here.parts.iter().position(|part| part.ending.is_same(&ending)) {
-                self.at.insert(index, place);
-            }
-        }
     }
 
     /// Narrows down where a motion that is no orbit begins and ends, between two speeds of the grid.
