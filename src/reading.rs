@@ -87,7 +87,7 @@ impl Model {
         let own = (stiffness / mass).sqrt() / TAU * 60.0;
         let slowest = rpm.or(self.study.map(|study| [study.rpm_min, study.rpm_max])).map(|[low, _]| low);
         let too_soft = |speed: f64| speed > MOST_TIMES * own && speed < MOST_TIMES * THOUSAND.sqrt() * own;
-        let is_compressed = stiffness > 0.0 && compressed > MOST_RISES * rise;
+        let is_compressed = stiffness > 0.0 && rise > 0.0 && compressed > MOST_RISES * rise;
         let is_soft = is_compressed || stiffness > 0.0 && slowest.is_some_and(too_soft);
         let written = units.mass.told(mass);
         let meant = if risen > LARGEST_RISE {

@@ -41,7 +41,7 @@ impl Paged for Design {
 pub(crate) fn separation(found: &Design) -> Words {
     let degrees = |angle: f64| (angle.to_degrees(), Digits::Fixed(3));
     match found.separation {
-        Separation::At { rpm, error, cam_angle } => match Measured::noisy(&found.measured) {
+        Separation::At { rpm, error, cam_angle, angle_error } => match Measured::noisy(&found.measured) {
             None => words![
                 "The follower leaves the cam first at ",
                 (rpm, Digits::Fixed(6)),
@@ -51,7 +51,11 @@ pub(crate) fn separation(found: &Design) -> Words {
             ],
             Some(cam) => words![
                 "The follower leaves the cam at ",
-                degrees(cam_angle),
+                with_open(
+                    cam_angle.to_degrees(),
+                    angle_error.map(f64::to_degrees).filter(|error| error.is_finite()),
+                    Digits::Fixed(3)
+                ),
                 " deg first (computed from the contact force), at ",
                 measured_speed(rpm, Digits::Fixed(6), error.is_finite().then_some(error), Some(cam)),
                 "."

@@ -122,7 +122,7 @@ fn the_force_on_an_eccentric_is_a_mean_and_a_sine() {
                     assert_relative_eq!(told, own.mean() + HEIGHT * sways, max_relative = 1e-12, epsilon = 1e-9);
                 }
             }
-            let Separation::At { rpm: at, error, cam_angle } = contact.separation() else { panic!() };
+            let Separation::At { rpm: at, error, cam_angle, .. } = contact.separation() else { panic!() };
             let omega = own.leaves();
             assert_relative_eq!(at, rpm(omega), max_relative = 1e-12);
             assert_abs_diff_eq!(

@@ -37,6 +37,8 @@ pub enum Separation {
         error: f64,
         /// Cam angle, rad.
         cam_angle: f64,
+        /// What a measured cam leaves open of that, rad; none of another.
+        angle_error: Option<f64>,
     },
     /// However slow: the spring does not press it on the cam here.
     NotPressed {
@@ -162,6 +164,6 @@ impl<'a> Contact<'a> {
         // dN/dw = 2 m w c'' + b c'
         let rate = 2.0 * self.follower.mass * omega * curvature + self.follower.damping * slope;
         let error = rpm(tolerance::ULP.value * size / rate.abs()) + tolerance::ULP.value * rpm(omega);
-        Separation::At { rpm: rpm(omega), error, cam_angle: at.angle }
+        Separation::At { rpm: rpm(omega), error, cam_angle: at.angle, angle_error: None }
     }
 }

@@ -5,6 +5,8 @@ pub mod contact;
 pub mod loads;
 pub mod needs;
 
+use std::f64::consts::{PI, TAU};
+
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -186,15 +188,21 @@ struct Separated {
     speed_rpm: f64,
     error_rpm: f64,
     cam_angle_rad: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    cam_angle_error_rad: Option<f64>,
     located: bool,
 }
 
 impl Design {
     fn separated(&self) -> Option<Separated> {
         match self.separation {
-            Separation::At { rpm, error, cam_angle } => {
-                Some(Separated { speed_rpm: rpm, error_rpm: error, cam_angle_rad: cam_angle, located: true })
-            }
+            Separation::At { rpm, error, cam_angle, angle_error } => Some(Separated {
+                speed_rpm: rpm,
+                error_rpm: error,
+                cam_angle_rad: cam_angle,
+                cam_angle_error_rad: angle_error,
+                located: true,
+            }),
             _ => None,
         }
     }
@@ -215,15 +223,18 @@ struct RoundEntry {
     force_n: f64,
 }
 
-/// A separation with what a measured cam leaves open of its speed; not a number where that is not known.
+/// A separation with what a measured cam leaves open of its speed and angle; not a number where that is not known.
 pub fn known(separation: Separation, likely: Option<&Likely>) -> Separation {
     let Some(likely) = likely.filter(|likely| likely.best.is_some()) else { return separation };
-    let Separation::At { rpm, error, cam_angle } = separation else { return separation };
+    let Separation::At { rpm, error, cam_angle, .. } = separation else { return separation };
+    // Past angle 0 it is as near as on this side of it.
+    let near = |angle: f64| cam_angle + (angle - cam_angle + PI).rem_euclid(TAU) - PI;
     let of = |model: &Model, cam: &Cam| match Contact::new(cam, model.follower).separation() {
-        Separation::At { rpm, .. } => Some([rpm]),
+        Separation::At { rpm, cam_angle, .. } => Some([rpm, near(cam_angle)]),
         _ => None,
     };
-    Separation::At { rpm, error: error + likely.error([rpm], of).map_or(f64::NAN, |[open]| open), cam_angle }
+    let [open, angle_error] = likely.error([rpm, cam_angle], of).unwrap_or([f64::NAN; 2]);
+    Separation::At { rpm, error: error + open, cam_angle, angle_error: Some(angle_error) }
 }
 
 /// Answers what is asked of a model; `watch` is told how far the runs are.
