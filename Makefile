@@ -109,14 +109,16 @@ mutants-sample: $(MUTATION) ## the same of a hundredth of them, drawn by the com
 
 # Each round looks at other cases; what fails is shown with its seed, and the round is the same whenever that is given.
 FUZZ_SECONDS ?= 600
-fuzz: $(VENV) ## random machines, flights, texts and command lines against laws, sixty digits and each other, for ten minutes
-	@seed=$$(date +%s); end=$$((seed + $(FUZZ_SECONDS))); while [ $$(date +%s) -lt $$end ]; do \
+fuzz: $(VENV) ## 20,000 machines of every regime against the laws of mechanics, then random flights, texts and command lines for ten minutes
+	@seed=$$(date +%s); end=$$((seed + $(FUZZ_SECONDS))); echo "PROPTEST_CASES=20000 PROPTEST_RNG_SEED=$$seed"; \
+	    PROPTEST_CASES=20000 PROPTEST_RNG_SEED=$$seed $(CARGO) test $(RELEASE) --quiet --test it -- --include-ignored --nocapture \
+	        in_every_regime || exit 1; while [ $$(date +%s) -lt $$end ]; do \
 	    seed=$$((seed + 1)); echo "PROPTEST_CASES=1000 PROPTEST_RNG_SEED=$$seed"; \
 	    PROPTEST_CASES=1000 PROPTEST_RNG_SEED=$$seed $(CARGO) test $(RELEASE) --quiet --test it -- --include-ignored --nocapture \
 	        fuzz:: || exit 1; done
 
 soak: ## a thousand million revolutions at 700 rpm, a hundred million at 670: memory, digits, halves (some minutes)
-	SOAK=all $(CARGO) test $(RELEASE) --test it -- --include-ignored --nocapture the_length_of_a_run
+	SOAK=all $(CARGO) test $(RELEASE) --test it -- --include-ignored --nocapture the_length_of_a_run a_million_impacts
 
 bench: ## time a revolution: the scan-and-bisect baseline and the simulator side by side, interleaved
 	$(CARGO) bench --locked --quiet --bench table

@@ -75,6 +75,9 @@ table! {
     /// Rounding of the gap between follower and cam.
     GAP_ROUNDING = 4.0 * f64::EPSILON, "of the follower's position and the cam's largest lift: a handful of roundings, so that \
         a dip deeper than this is an impact";
+    /// How deep below the cam a follower in flight has passed through it.
+    PASSED_THROUGH = 256.0 * f64::EPSILON, "of the follower's position and the cam's largest lift: many times the rounding that a search for \
+        contacts allows for, and at once exceeded by whatever falls through";
     /// What rounding may make of the state at the end of a simulated stretch.
     RUN_ROUNDING = 4.0 * f64::EPSILON, "of the largest position and velocity on the way: a handful of roundings, which a step \
         to be told from them must exceed";

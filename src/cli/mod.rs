@@ -44,6 +44,7 @@ pub use session::Terminal;
 
 use crate::file::{self, FileError, Output};
 use crate::model::{ModelError, Units};
+use crate::simulate::SimulateError;
 use crate::stop;
 
 /// How a command ended; the process's exit code.
@@ -127,6 +128,8 @@ enum CommandError {
         words: String,
         at: Box<ModelError>,
     },
+    /// The program found a fault of its own, which depends on the model.
+    Fault(String),
     /// Whoever read standard output has had enough.
     Unread,
 }
@@ -139,6 +142,9 @@ impl<E: Error + 'static> From<E> for CommandError {
         while let Some(error) = cause {
             if let Some(at) = error.downcast_ref::<ModelError>() {
                 return Self::Model { words, at: Box::new(at.clone()) };
+            }
+            if let Some(SimulateError::PassedThrough { .. }) = error.downcast_ref() {
+                return Self::Fault(words);
             }
             // What a stream's error holds is not its source.
             let held = error.downcast_ref::<std::io::Error>().and_then(|error| error.get_ref());
@@ -188,7 +194,15 @@ pub fn run_at(
 ) -> Exit {
     let words: Vec<OsString> = arguments.into_iter().collect();
     // What is wrong with a command line is coloured as it says itself.
-    let mut session = Session { out, err, terminal, color: session::said(&words), rpm: None, units: Units::default() };
+    let mut session = Session {
+        out,
+        err,
+        terminal,
+        color: session::said(&words),
+        rpm: None,
+        units: Units::default(),
+        model: String::new(),
+    };
     let mut command = help::command(session.width());
     let matches = command.try_get_matches_from_mut(words);
     session.rpm = matches.as_ref().ok().and_then(session::speeds);
@@ -203,6 +217,7 @@ pub fn run_at(
             CommandError::Unread => {}
             CommandError::Model { words, at } => session.complain_at(words, at),
             CommandError::Words(words) => session.complain(words),
+            CommandError::Fault(words) => session.complain(&format!("{words}; the model is {}", session.model)),
         }
         Exit::BadInput
     })

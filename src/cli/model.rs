@@ -59,6 +59,7 @@ impl ModelArgument {
         };
         let model = model.changed(&self.changes.numbers)?;
         session.units = model.units.clone();
+        session.model = model.name.clone();
         for words in notes::notes(&model, session.rpm)? {
             session.note(&words);
         }

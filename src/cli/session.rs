@@ -127,6 +127,8 @@ pub(super) struct Session<'a> {
     pub(super) rpm: Option<[f64; 2]>,
     /// Those of the model that the command is about.
     pub(super) units: Units,
+    /// Its name.
+    pub(super) model: String,
 }
 
 impl Session<'_> {

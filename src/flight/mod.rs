@@ -210,7 +210,8 @@ impl Flight {
     /// Time (s) and state at which a flight comes down to `level`, m, or `None` if it never does.
     ///
     /// For a flight that is above the level, or certain to rise above it; whatever it does before it has risen is not looked
-    /// at.
+    /// at. Signs decide whether it comes down: of the force at the level, and of what is left at the valley. Rounding may make the
+    /// fall earlier by an ulp, and never puts it off to the next swing.
     #[inline]
     pub fn fall_to(&self, level: f64, start: State) -> Option<(f64, State)> {
         let omega = match self.regime {
@@ -223,16 +224,15 @@ impl Flight {
         // On the circle (x, v/w0) about the equilibrium, from (x0, y0) to (l, -h), h^2 = x0^2 + y0^2 - l^2.
         let offset = self.rest_position - self.gravity / self.omega0_squared;
         let (x, y, l) = (start.position - offset, start.velocity / omega, level - offset);
-        // A weak spring puts the equilibrium far away, from where x - l has lost the digits of the two positions.
-        let is_far = l.abs() > 2.0 * (start.position.abs() + level.abs());
-        let drop = if is_far { start.position - level } else { x - l };
+        // x - l would have lost the digits of the two positions, by as much as the equilibrium is far.
+        let drop = start.position - level;
         let descent = drop * (x + l);
         let height_squared = descent + y * y;
-        // Above the level at all times, or, below the equilibrium, at none.
-        if !(height_squared > 0.0) {
+        // An equilibrium that is not below the level may leave a swing above it. Over one that is below, every flight comes down.
+        if l <= 0.0 && !(height_squared > 0.0) {
             return None;
         }
-        let height = height_squared.sqrt();
+        let height = height_squared.max(0.0).sqrt();
         let sine = if y < 0.0 && x * l > 0.0 {
             // y l + x h = l (y + h) + h (x - l), with y + h = (x^2 - l^2)/(h - y): nothing cancels on the way down.
             l * descent / (height - y) + height * drop
@@ -247,15 +247,17 @@ impl Flight {
     /// Under gravity alone: from `q0 - l + v0 t - g t^2/2 = 0`, in the form in which nothing cancels.
     fn fall_freely(&self, level: f64, State { position, velocity }: State) -> Option<(f64, State)> {
         let drop = position - level;
-        let speed = (velocity * velocity + 2.0 * self.gravity * drop).sqrt();
+        let speed = (velocity * velocity + 2.0 * self.gravity * drop).max(0.0).sqrt();
         let time = match velocity > 0.0 {
             true => (velocity + speed) / self.gravity,
+            // A drop too small for its square root takes no time.
+            false if speed == velocity => 0.0,
             false => 2.0 * drop / (speed - velocity),
         };
         time.is_finite().then_some((time, State { position: level, velocity: -speed }))
     }
 
-    /// The same for every follower: between two turning points position changes one way, so a bracket holds one root.
+    /// Any follower: between two turning points position changes one way, so a bracket holds one root.
     fn fall_by_search(&self, level: f64, start: State) -> Option<(f64, State)> {
         let at = |time: f64| self.fly(start, time).1;
         let rising = start.velocity > 0.0 || (start.velocity == 0.0 && self.force(start.position) > 0.0);
@@ -263,45 +265,50 @@ impl Flight {
         if !peak.is_finite() {
             return None;
         }
-        let valley = match self.regime {
-            Regime::Undamped { omega } | Regime::Underdamped { omega } => {
-                if rising {
-                    peak + PI / omega
-                } else {
-                    self.turning_point(start)
-                }
-            }
+        let begin = if rising { at(peak) } else { start };
+        let valley = match (rising, self.damped_frequency()) {
+            (false, _) => self.turning_point(start),
+            (true, Some(omega)) => peak + PI / omega,
             // Two real rates turn once.
-            Regime::Monotone { .. } if rising => f64::INFINITY,
-            Regime::Monotone { .. } => self.turning_point(start),
+            (true, None) => f64::INFINITY,
         };
-        let mut high = valley;
-        if valley.is_infinite() {
-            // Downwards without end: reached sooner or later, unless it settles above.
-            let guess = (start.position - level) / start.velocity;
-            let decay = match self.regime {
-                Regime::Monotone { fast, .. } if fast > 0.0 => 1.0 / fast,
-                // Without any force a follower at rest never falls.
-                _ => 1.0,
-            };
-            high = peak + if guess.is_finite() && guess != 0.0 { guess.abs() } else { decay };
-            // It has settled where its velocity has died out, however small or large a unit of time is.
-            while !(at(high).position < level) {
-                let State { position, velocity } = at(high);
-                if velocity == 0.0 || !position.is_finite() {
-                    return None;
+        let drop = begin.position - level;
+        // An equilibrium below the level, or gravity without a spring, draws every flight down.
+        let comes_down = self.force(level) < 0.0
+            || match valley.is_finite() {
+                // Valleys lie below the equilibrium, and later ones are shallower.
+                true => at(valley).position < level,
+                // Towards an equilibrium that is not below the level; or with no force but the damping's, which stops it after v/(2 zeta).
+                false => {
+                    let is_stopped = self.omega0_squared > 0.0 || drop >= -begin.velocity / (2.0 * self.zeta);
+                    begin.velocity < 0.0 && !(self.zeta > 0.0 && is_stopped)
                 }
-                high *= 2.0;
-            }
-        } else if !(self.force(level) < 0.0) && at(valley).position >= level {
-            // Valleys lie below the equilibrium, and later ones are shallower.
+            };
+        if !comes_down {
             return None;
         }
         // As if it fell with the acceleration that it has where it begins to.
-        let begin = if rising { at(peak) } else { start };
-        let drop = begin.position - level;
         let fastest = (begin.velocity * begin.velocity - 2.0 * self.acceleration(begin) * drop).sqrt();
-        let guess = peak + 2.0 * drop / (fastest - begin.velocity);
+        let short = 2.0 * drop / (fastest - begin.velocity);
+        let mut high = valley;
+        if valley.is_infinite() {
+            // Ever longer falls from the highest point, each longer than what rounding makes of its time.
+            let decay = match self.regime {
+                Regime::Monotone { fast, .. } if fast > 0.0 => 1.0 / fast,
+                _ => 1.0,
+            };
+            let mut fall = if short.is_normal() { 2.0 * short } else { decay }.max(tolerance::ULP.value * peak);
+            high = peak + fall;
+            while !(at(high).position < level) {
+                fall *= 2.0;
+                high = peak + fall;
+                // An equilibrium that is below the level by less than the rounding of a position.
+                if !high.is_finite() {
+                    return None;
+                }
+            }
+        }
+        let guess = peak + short;
         let mut low = peak;
         let mut time = if low < guess && guess < high { guess } else { 0.5 * (low + high) };
         while high - low > tolerance::ROOT_WIDTH.value * high {

@@ -12,7 +12,7 @@ use crate::simulate::{Event, EventKind, Machine, SimulateError};
 /// The orbit of `revolutions` that sticks to the cam at `anchor`, rad, in `[0, 2 pi)`; `None` where the follower that is
 /// put on the cam there does not stick, or is not there again.
 pub fn through(machine: &Machine, anchor: f64, revolutions: u64) -> Result<Option<PeriodicOrbit>, SimulateError> {
-    let mut motion = machine.start_on_cam(anchor, 0.0)?;
+    let mut motion = machine.start_on_cam(anchor, 0.0)?.with_each_impact();
     if !motion.contact {
         return Ok(None);
     }

@@ -14,6 +14,7 @@ impl Paged for Summary {
             let (share, error, ending) = (part.share.value, part.share.error, words::ending(&part.ending));
             lines.push(format!("  {share:.4} ± {error:.4}  {ending} ({})", part.starts));
         }
+        lines.extend(basins.failure.iter().map(|why| format!("  failed ({}): {why}", basins.failed)));
         lines.push(format!("  {wall_s:.3} s"));
         lines.into_iter().map(|line| Block::Line(line.into())).collect()
     }

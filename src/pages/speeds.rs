@@ -28,7 +28,13 @@ impl Paged for Speeds {
         page.push(Block::paragraph(how(self)));
         page.extend(self.measured.iter().filter_map(cam));
         page.extend(self.failed.iter().map(|failed| {
-            Block::paragraph(format!("At {} rpm nothing could be run: {}.", failed.speed_rpm, failed.why))
+            let what = match failed.starts {
+                Some(1) => "one start".to_owned(),
+                Some(starts) => format!("{starts} starts"),
+                None => "nothing".to_owned(),
+            };
+            let of_them = if failed.starts.is_some() { "could not be run" } else { "could be run" };
+            Block::paragraph(format!("At {} rpm {what} {of_them}: {}.", failed.speed_rpm, failed.why))
         }));
         page
     }

@@ -132,6 +132,13 @@ pub enum SimulateError {
         cam_angle.to_degrees()
     )]
     BelowCam { depth: f64, revolution: u64, cam_angle: f64 },
+    /// A flight has passed through the cam, which no follower does: a fault of this program.
+    #[error(
+        "simulate: a fault of this program: at {rpm} rpm the follower has passed through the cam, {depth:.3e} m deep at cam angle \
+         {:.4} deg of revolution {revolution}, at position {position} m with velocity {velocity} m/s",
+        cam_angle.to_degrees()
+    )]
+    PassedThrough { depth: f64, revolution: u64, cam_angle: f64, position: f64, velocity: f64, rpm: f64 },
     /// More events in one revolution, or steps from one event to the next, than a run may have.
     #[error(
         "simulate: no progress: {events} events or steps in revolution {revolution}, and still at cam angle {:.6} deg",

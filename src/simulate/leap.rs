@@ -107,9 +107,9 @@ pub(super) struct Leap {
 }
 
 impl Machine {
-    /// The segments that a flight off the cam certainly clears, from where it is to the end of one of them, up to `left` rad on.
+    /// The segments that a flight off the cam certainly clears, from where it is to the end of one of them.
     #[inline]
-    pub(super) fn leap(&self, motion: &Motion, left: f64) -> Option<Leap> {
+    pub(super) fn leap(&self, motion: &Motion) -> Option<Leap> {
         let chords = &self.terrain.chords.from;
         if chords.is_empty() || motion.gap == Some(0.0) {
             return None;
@@ -141,7 +141,7 @@ impl Machine {
             // By q'' + q''' x at most the bound is bent upwards, so that it is no further below its chord than that h^2/8.
             let bent = (2.0 * half + 6.0 * sixth.max(0.0) * turn).max(0.0);
             let least = rounding + chord.rise + bent * chord.square;
-            if turn < left && gaps[0] > least && gaps[1] > least {
+            if gaps[0] > least && gaps[1] > least {
                 segment += SIZES[level];
                 (before, turned) = (after, turn);
                 level += usize::from(rises && level + 1 < SIZES.len());

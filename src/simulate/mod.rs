@@ -39,7 +39,7 @@ use crate::stop;
 use crate::tolerance;
 use again::Turn;
 pub use event::{Event, EventKind, Met, Observer, SimulateError, Unobserved, Work};
-use motion::Known;
+use motion::{Chatter, Known, Stopped};
 pub use motion::{Goal, Motion};
 pub use sticking::accumulation;
 use terrain::Terrain;
@@ -143,6 +143,9 @@ impl Machine {
             settled: false,
             last_impact: f64::NAN,
             known: Known { segment, angle: cam_angle, lift },
+            chatter: Chatter::Anywhere,
+            stopped: None,
+            seen: None,
             events: (0, 0),
         };
         if gap <= rounding {
@@ -199,13 +202,17 @@ impl Machine {
     /// Advances `motion` until the cam reaches `goal`, or until the observer breaks right after an event.
     ///
     /// An event in the last instant is left to the run that goes on from there; a stick is shown with the impact that led to
-    /// it.
+    /// it. Where a run is stopped changes no bit of what comes after: see [`Stopped`].
     pub fn advance(
         &self,
         motion: &mut Motion,
         goal: Goal,
         observer: &mut impl Observer,
     ) -> Result<ControlFlow<()>, SimulateError> {
+        let mut until = None;
+        if motion.left(&goal) > 0.0 {
+            until = motion.stopped.take().and_then(|stopped| stopped.undo(motion, self.angular_velocity));
+        }
         let mut steps = 0_u32;
         loop {
             // On the way in, and then from time to time.
@@ -218,14 +225,19 @@ impl Machine {
             if !(left > 0.0) && motion.cam_angle < TAU {
                 return Ok(ControlFlow::Continue(()));
             }
-            let step =
-                if motion.contact { self.follow(motion, left, observer)? } else { self.fly(motion, left, observer)? };
+            let step = match until.take() {
+                Some(until) if left < until => Step::Reached { until },
+                _ if motion.contact => self.follow(motion, left, observer)?,
+                _ if motion.chatter == Chatter::Due => self.end_chatter(motion, left, observer),
+                _ => self.fly(motion, left, observer)?,
+            };
             match step {
                 Step::Moved => {}
                 Step::Event => self.counted(motion)?,
-                Step::Reached => {
-                    (motion.revolution, motion.cam_angle) = (goal.revolution, goal.cam_angle);
-                    motion.segment = self.cam().segment_at(goal.cam_angle);
+                Step::Reached { until } => {
+                    let begun = *motion;
+                    self.show_at(motion, goal, left, observer)?;
+                    motion.stopped = Some(Stopped::of(&begun, until, motion));
                     return Ok(ControlFlow::Continue(()));
                 }
                 Step::Broken => {
@@ -235,6 +247,63 @@ impl Machine {
                 }
             }
         }
+    }
+
+    /// Puts cam and follower where they are at `goal`, `left` rad on in the present stretch of flight or contact.
+    fn show_at(
+        &self,
+        motion: &mut Motion,
+        goal: Goal,
+        left: f64,
+        observer: &mut impl Observer,
+    ) -> Result<(), SimulateError> {
+        if motion.chatter == Chatter::Due {
+            // In the middle of infinitely many impacts: as many of them as there are up to here.
+            let mut shown = motion.with_each_impact();
+            let _ = self.advance(&mut shown, goal, &mut Unobserved)?;
+            let Motion { revolution, cam_angle, state, contact, segment, gap, lift, .. } = shown;
+            let chatter = Chatter::Anywhere;
+            *motion = Motion { revolution, cam_angle, state, contact, segment, gap, lift, chatter, ..*motion };
+            return Ok(());
+        }
+        let segment = &self.cam().segments()[motion.segment];
+        let angle = motion.cam_angle + left;
+        if motion.contact {
+            motion.state = on_cam(&segment.law.lift(angle), self.angular_velocity);
+        } else {
+            let time = left / self.angular_velocity;
+            self.flown(motion, time, observer);
+            let (displacement, state) = self.flight.fly(motion.state, time);
+            let gap = motion.gap.filter(|_| angle <= segment.end);
+            motion.gap = gap.map(|gap| gap + displacement - segment.law.rise(motion.cam_angle, left));
+            motion.state = state;
+        }
+        motion.lift = None;
+        (motion.revolution, motion.cam_angle) = (goal.revolution, goal.cam_angle);
+        motion.segment = self.cam().segment_at(goal.cam_angle);
+        self.above_cam(motion, || self.gap(motion))
+    }
+
+    /// Shows an observer what it has not seen yet of a stretch of flight of `time`, s, from where `motion` is.
+    #[inline(always)]
+    fn flown(&self, motion: &mut Motion, time: f64, observer: &mut impl Observer) {
+        let (state, seen) = motion.seen.take().unwrap_or((motion.state, 0.0));
+        observer.flight(&self.flight, state, time - seen);
+    }
+
+    /// An error where a flight has passed through the cam: a fault of this program, which no run goes on from.
+    #[inline(always)]
+    fn above_cam(&self, motion: &Motion, gap: impl Fn() -> f64) -> Result<(), SimulateError> {
+        let State { position, velocity } = motion.state;
+        if position > self.terrain.top {
+            return Ok(());
+        }
+        let gap = gap();
+        if gap >= -tolerance::PASSED_THROUGH.value * (position.abs() + self.terrain.size) {
+            return Ok(());
+        }
+        let (revolution, cam_angle, rpm) = (motion.revolution, motion.cam_angle, 60.0 * self.angular_velocity / TAU);
+        Err(SimulateError::PassedThrough { depth: -gap, revolution, cam_angle, position, velocity, rpm })
     }
 
     /// Counts an event, unless there are more of them in one revolution than a run may have.
@@ -296,48 +365,48 @@ impl Machine {
         Ok(motion.state)
     }
 
-    /// One stretch of flight: over the top of the cam, or up to a contact or the end of a segment.
+    /// One stretch of flight: over the top of the cam, or up to a contact or the end of a segment. Where it ends does not depend on how
+    /// much, `left`, rad, is left of the run.
     #[inline(always)]
     fn fly<O: Observer>(&self, motion: &mut Motion, left: f64, observer: &mut O) -> Result<Step, SimulateError> {
         let omega = self.angular_velocity;
         let top = self.terrain.top;
-        let start = motion.state;
         let clears = self.clears(motion, top);
         if motion.settled
             && let Some(jerk) = clears
             && let Some(again) = self.again(motion, jerk)
         {
             let left = left - omega * again.time;
-            if left > 0.0 {
-                if O::COUNTS {
-                    observer.work(Work { repeats: 1, ..Work::default() });
-                }
-                observer.flight(&self.flight, start, again.time);
-                motion.revolution += 1;
-                motion.cam_angle = again.cam_angle;
-                return Ok(self.strike(motion, again.velocity, &again.lift, left, observer));
+            if !(left > 0.0) {
+                return Ok(Step::Reached { until: omega * again.time });
             }
+            if O::COUNTS {
+                observer.work(Work { repeats: 1, ..Work::default() });
+            }
+            self.flown(motion, again.time, observer);
+            motion.revolution += 1;
+            motion.cam_angle = again.cam_angle;
+            return Ok(self.strike(motion, again.velocity, &again.lift, left, observer));
         }
-        if start.position > top || clears.is_some() {
-            let (time, state) = match self.flight.fall_to(top, start) {
-                Some((time, state)) if omega * time < left => (time, state),
-                _ => {
-                    let time = left / omega;
-                    observer.flight(&self.flight, start, time);
-                    motion.state = self.flight.fly(start, time).1;
-                    (motion.gap, motion.lift) = (None, None);
-                    return Ok(Step::Reached);
-                }
+        if motion.state.position > top || clears.is_some() {
+            let Some((time, state)) = self.flight.fall_to(top, motion.state) else {
+                return Ok(Step::Reached { until: f64::INFINITY });
             };
-            observer.flight(&self.flight, start, time);
+            if !(omega * time < left) {
+                return Ok(Step::Reached { until: omega * time });
+            }
+            self.flown(motion, time, observer);
             self.turn_over(motion, omega * time);
             (motion.state, motion.gap, motion.lift) = (state, None, None);
             // What is exactly at the top would be looked at as above it once more.
             return if state.position <= top { Ok(Step::Moved) } else { Err(self.not_finite(motion)) };
         }
-        if let Some(leap) = self.leap(motion, left) {
-            observer.flight(&self.flight, start, leap.time);
-            (motion.state, motion.gap) = (self.flight.fly(start, leap.time).1, None);
+        if let Some(leap) = self.leap(motion) {
+            if !(omega * leap.time < left) {
+                return Ok(Step::Reached { until: omega * leap.time });
+            }
+            self.flown(motion, leap.time, observer);
+            (motion.state, motion.gap) = (self.flight.fly(motion.state, leap.time).1, None);
             motion.segment = leap.segment;
             self.enter_next(motion)?;
             if leap.lands {
@@ -347,28 +416,32 @@ impl Machine {
         }
         let segment = &self.cam().segments()[motion.segment];
         let within = segment.end - motion.cam_angle;
-        let (last, span) = if left < within { (true, left) } else { (false, within) };
+        let span = if motion.chatter == Chatter::WithinRun { within.min(left) } else { within };
+        let end = span / omega;
         let expected = motion.expected.map(|angle| (angle - motion.cam_angle) / omega);
         let passage = if O::COUNTS {
             let work = Cell::default();
-            let passage = Window::new(self, motion, &work).pass(span / omega, expected);
+            let passage = Window::new(self, motion, &work).pass(end, expected);
             observer.work(work.get());
             passage
         } else {
-            Window::new(self, motion, ()).pass(span / omega, expected)
+            Window::new(self, motion, ()).pass(end, expected)
         };
         match passage {
+            Passage::Free { .. } if left < within => Ok(Step::Reached { until: span }),
+            Passage::Contact { time, .. } | Passage::Below { time, .. } | Passage::NoProgress { time }
+                if !(omega * time < left) =>
+            {
+                Ok(Step::Reached { until: omega * time })
+            }
             Passage::Free { state, gap } => {
-                observer.flight(&self.flight, start, span / omega);
+                self.flown(motion, end, observer);
                 (motion.state, motion.gap, motion.lift) = (state, gap, None);
-                if last {
-                    return Ok(Step::Reached);
-                }
                 self.enter_next(motion)?;
                 Ok(Step::Moved)
             }
             Passage::Contact { time, velocity, lift } => {
-                observer.flight(&self.flight, start, time);
+                self.flown(motion, time, observer);
                 // A contact found at the segment's end belongs to it, whatever the last bit says.
                 motion.cam_angle = (motion.cam_angle + omega * time).min(segment.end);
                 Ok(self.strike(motion, velocity, &lift, left - omega * time, observer))
@@ -444,11 +517,13 @@ impl Machine {
                 let Motion { revolution, cam_angle, .. } = *motion;
                 return Err(SimulateError::BelowCam { depth: -gap, revolution, cam_angle });
             }
-        } else if let Some(lift) = entry.seam {
+            return Ok(());
+        }
+        if let Some(lift) = entry.seam {
             // The gap goes on as it was.
             motion.gap.get_or_insert(motion.state.position - lift);
         }
-        Ok(())
+        self.above_cam(motion, || motion.gap.unwrap_or(motion.state.position - entry.lift))
     }
 
     /// Brings a motion that an observer has stopped at a whole turn to the start of the next, where no lift steps.
@@ -492,7 +567,7 @@ impl Machine {
         let step = if motion.contact {
             self.report(motion, EventKind::Stick, observer)
         } else {
-            self.end_chatter(motion, lift, left, observer)
+            self.end_chatter(motion, left, observer)
         };
         if enough { Step::Broken } else { step }
     }
@@ -519,6 +594,11 @@ impl Machine {
     }
 }
 
+/// The state of a follower that goes with the cam.
+fn on_cam(lift: &Lift, omega: f64) -> State {
+    State { position: lift.value, velocity: omega * lift.slope }
+}
+
 /// The error of a search that took all its steps and is `turn`, rad, further on.
 fn no_progress(motion: &Motion, turn: f64) -> SimulateError {
     let (revolution, cam_angle) = (motion.revolution, motion.cam_angle + turn);
@@ -529,8 +609,10 @@ fn no_progress(motion: &Motion, turn: f64) -> SimulateError {
 enum Step {
     Moved,
     Event,
-    /// At the end of the run, state and gap as they are there.
-    Reached,
+    /// The run ends in a stretch of flight or contact that is not over before `until`, rad after it began.
+    Reached {
+        until: f64,
+    },
     /// The observer wants no more.
     Broken,
 }

@@ -28,8 +28,68 @@ pub struct Motion {
     pub(super) settled: bool,
     pub(super) last_impact: f64,
     pub(super) known: Known,
+    pub(super) chatter: Chatter,
+    /// Where the run goes on from, if it was stopped between two events.
+    pub(super) stopped: Option<Stopped>,
+    /// How much of the present stretch of flight an observer has seen already: from which state, s.
+    pub(super) seen: Option<(State, f64)>,
     /// The revolution of the last event, and the events in it so far, however often the run was split.
     pub(super) events: (u64, u32),
+}
+
+/// When the sum of infinitely many impacts is taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Chatter {
+    /// As soon as it is known, whether it ends before the run does or not.
+    Anywhere,
+    /// Next.
+    Due,
+    /// Only where it ends before the run does: otherwise each impact up to there is looked for, and none beyond.
+    WithinRun,
+}
+
+/// The stretch of flight or contact in which a run was stopped.
+///
+/// A motion that was stopped shows cam and follower where it was stopped, and goes on from where the stretch began, so that a run
+/// has the same events, bit for bit, wherever it is stopped to be looked at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Stopped {
+    turns: u64,
+    cam_angle: f64,
+    state: State,
+    segment: usize,
+    gap: Option<f64>,
+    lift: Option<Lift>,
+    contact: bool,
+    chatter: Chatter,
+    /// The next event, or the next segment, is so much after the stretch began, rad.
+    pub until: f64,
+    /// Angle and state that the motion shows, and its stick.
+    shown: (f64, State, bool),
+}
+
+impl Stopped {
+    /// The stretch that began at `begun` and is not over before `until`, rad; `shown` is the motion where it was stopped.
+    pub fn of(begun: &Motion, until: f64, shown: &Motion) -> Self {
+        let Motion { cam_angle, state, segment, gap, lift, contact, chatter, .. } = *begun;
+        let turns = shown.revolution - begun.revolution;
+        let shown = (shown.cam_angle, shown.state, shown.contact);
+        Self { turns, cam_angle, state, segment, gap, lift, contact, chatter, until, shown }
+    }
+
+    /// Takes `motion` back to where the stretch began, and returns its `until`; does nothing to a motion that was changed since.
+    pub fn undo(self, motion: &mut Motion, omega: f64) -> Option<f64> {
+        let Self { cam_angle, state, segment, gap, lift, contact, chatter, until, shown, .. } = self;
+        let revolution = motion.revolution.checked_sub(self.turns)?;
+        if shown != (motion.cam_angle, motion.state, motion.contact) {
+            return None;
+        }
+        let is_flight = !contact && chatter != Chatter::Due;
+        let turned = self.turns as f64 * TAU + (motion.cam_angle - cam_angle);
+        let seen = is_flight.then_some((motion.state, turned / omega));
+        *motion = Motion { revolution, cam_angle, state, segment, gap, lift, contact, chatter, seen, ..*motion };
+        Some(until)
+    }
 }
 
 /// An angle, rad, and a segment's lift there, evaluated and not summed: a settled motion's impacts are close to it.
@@ -59,6 +119,12 @@ impl Goal {
 }
 
 impl Motion {
+    /// Sees each impact up to the goal of a run, also where infinitely many of them end soon after it. Such a run depends on its goal to
+    /// rounding, and hops that are lower than the rounding of a gap are resolved better near it.
+    pub(crate) fn with_each_impact(self) -> Self {
+        Self { chatter: Chatter::WithinRun, ..self }
+    }
+
     /// The goal `revolutions` further on, at the angle where the cam is now.
     pub fn after(&self, revolutions: u64) -> Goal {
         Goal { revolution: self.revolution.saturating_add(revolutions), cam_angle: self.cam_angle }

@@ -2,8 +2,9 @@
 
 use std::f64::consts::TAU;
 
+use super::motion::Chatter;
 use super::terrain::Entry;
-use super::{EventKind, MOST_STEPS, Machine, Motion, Observer, SimulateError, Step, no_progress};
+use super::{EventKind, MOST_STEPS, Machine, Motion, Observer, SimulateError, Step, no_progress, on_cam};
 use crate::cam::{Lift, Segment};
 use crate::flight::State;
 use crate::tolerance;
@@ -45,30 +46,35 @@ impl Machine {
     }
 
     /// After an impact: goes to where infinitely many more end, if that is so near that two terms of their sum are all of it.
-    pub(super) fn end_chatter(
-        &self,
-        motion: &mut Motion,
-        lift: &Lift,
-        left: f64,
-        observer: &mut impl Observer,
-    ) -> Step {
-        let pressing = -self.lifting(lift);
+    pub(super) fn end_chatter(&self, motion: &mut Motion, left: f64, observer: &mut impl Observer) -> Step {
+        let segment = &self.cam().segments()[motion.segment];
+        let lift = motion.lift.unwrap_or_else(|| segment.law.lift(motion.cam_angle));
+        let pressing = -self.lifting(&lift);
         let relative_velocity = motion.state.velocity - self.angular_velocity * lift.slope;
         // Cheaply first: most impacts are far from the last, and where nothing presses or nothing is lost, all are.
         let first = 2.0 * relative_velocity * self.angular_velocity;
         if first > tolerance::CHATTER_TURN.value * pressing * (1.0 - self.restitution) {
             return Step::Event;
         }
-        let (rate, _) = self.lifting_rate(lift);
+        let (rate, _) = self.lifting_rate(&lift);
         let (time, left_out) = accumulation(relative_velocity, self.restitution, pressing, rate, self.flight.zeta());
-        let segment = &self.cam().segments()[motion.segment];
-        let angle = motion.cam_angle + self.angular_velocity * time;
-        let inside = angle <= segment.end && self.angular_velocity * time < left;
-        if !(inside && left_out <= tolerance::CHATTER_REMAINDER.value) {
+        let turn = self.angular_velocity * time;
+        let angle = motion.cam_angle + turn;
+        if !(angle <= segment.end && left_out <= tolerance::CHATTER_REMAINDER.value) {
             return Step::Event;
         }
-        motion.cam_angle = angle;
-        self.stick(motion, &segment.law.lift(angle), observer)
+        if turn < left {
+            motion.cam_angle = angle;
+            if motion.chatter == Chatter::Due {
+                motion.chatter = Chatter::Anywhere;
+            }
+            return self.stick(motion, &segment.law.lift(angle), observer);
+        }
+        if motion.chatter == Chatter::WithinRun {
+            return Step::Event;
+        }
+        motion.chatter = Chatter::Due;
+        Step::Reached { until: turn }
     }
 
     /// Puts the follower on the cam, to stay.
@@ -88,19 +94,21 @@ impl Machine {
         let omega = self.angular_velocity;
         let segment = &self.cam().segments()[motion.segment];
         let within = segment.end - motion.cam_angle;
-        let (last, span) = if left < within { (true, left) } else { (false, within) };
-        if let Some(turn) =
-            self.turn_to_sign(1.0, motion.cam_angle, segment, span).map_err(|turn| no_progress(motion, turn))?
-        {
+        let turn = match self.turn_to_sign(1.0, motion.cam_angle, segment, within) {
+            Ok(turn) => turn,
+            Err(turn) if turn < left => return Err(no_progress(motion, turn)),
+            Err(turn) => return Ok(Step::Reached { until: turn }),
+        };
+        if let Some(turn) = turn.filter(|turn| *turn < left) {
             motion.cam_angle += turn;
             let lift = segment.law.lift(motion.cam_angle);
             return Ok(self.let_go(motion, &lift, on_cam(&lift, omega), observer));
         }
-        let before = on_cam(&segment.law.lift(motion.cam_angle + span), omega);
-        (motion.state, motion.gap, motion.lift) = (before, Some(0.0), None);
-        if last {
-            return Ok(Step::Reached);
+        if left < within {
+            return Ok(Step::Reached { until: turn.unwrap_or(within) });
         }
+        let before = on_cam(&segment.law.lift(segment.end), omega);
+        (motion.state, motion.gap, motion.lift) = (before, Some(0.0), None);
         self.enter_next(motion)?;
         let entry = self.terrain.entries[motion.segment];
         let next = &self.cam().segments()[motion.segment];
@@ -108,7 +116,7 @@ impl Machine {
         let after = on_cam(&lift, omega);
         if entry.slope_jump > 0.0 && entry.lift_step == 0.0 {
             // The cam's velocity jumps towards the follower.
-            return Ok(self.strike(motion, before.velocity, &lift, left - span, observer));
+            return Ok(self.strike(motion, before.velocity, &lift, left - within, observer));
         }
         if entry.slope_jump < 0.0 || entry.lift_step < 0.0 {
             let gap = motion.gap;
@@ -252,9 +260,4 @@ impl Machine {
         }
         Err(omega * time)
     }
-}
-
-/// The state of a follower that goes with the cam.
-fn on_cam(lift: &Lift, omega: f64) -> State {
-    State { position: lift.value, velocity: omega * lift.slope }
 }

@@ -30,6 +30,8 @@ pub(super) struct Entry {
     /// The lift before it, m, where the two differ by more than rounding and are the same for all that: a cam whose numbers
     /// were typed to ten digits, or whose lift is 0 there.
     pub seam: Option<f64>,
+    /// The lift where this one starts, m.
+    pub lift: f64,
     /// m/rad.
     pub slope_jump: f64,
 }
@@ -68,6 +70,7 @@ fn entry(before: &Segment, after: &Segment, may_step: bool) -> Entry {
     Entry {
         lift_step: if may_step { step } else { 0.0 },
         seam: (!may_step && step != 0.0).then_some(minus.value),
+        lift: plus.value,
         slope_jump: jump(minus.slope, plus.slope, tolerance::CAM_JUMP.value * scale),
     }
 }

@@ -43,7 +43,7 @@ pub struct Speeds {
     pub attractors: Vec<Attractor>,
     /// Where there are several.
     pub coexistence: Vec<Coexistence>,
-    /// Speeds at which nothing could be run.
+    /// Speeds at which nothing, or not every start, could be run.
     pub failed: Vec<Failed>,
 }
 
@@ -153,11 +153,14 @@ pub struct Coexistence {
     pub attractors: Vec<String>,
 }
 
-/// A speed at which nothing could be run.
+/// A speed at which nothing, or not every start, could be run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Failed {
     /// rpm.
     pub speed_rpm: f64,
+    /// How many starts could not be run; none are named where nothing could.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub starts: Option<usize>,
     /// Why.
     pub why: String,
 }
@@ -267,7 +270,13 @@ pub fn speeds(
             at,
         }
     };
-    let failed = |(rpm, error): &(f64, SimulateError)| Failed { speed_rpm: *rpm, why: error.to_string() };
+    let failed = |found: &Result<Here, (f64, SimulateError)>| {
+        let (speed_rpm, starts, error) = match found {
+            Err((rpm, error)) => (*rpm, None, *error),
+            Ok(here) => (here.rpm, Some(here.failed.len()), here.failed.first()?.1),
+        };
+        is_inside(speed_rpm).then(|| Failed { speed_rpm, starts, why: error.to_string() })
+    };
     Ok(Speeds {
         model: model.name.clone(),
         rpm: range,
@@ -286,12 +295,7 @@ pub fn speeds(
                 attractors: over.rows.iter().map(|index| name(*index)).collect(),
             })
             .collect(),
-        failed: grid
-            .iter()
-            .filter_map(|found| found.as_ref().err())
-            .filter(|(rpm, _)| is_inside(*rpm))
-            .map(failed)
-            .collect(),
+        failed: grid.iter().filter_map(failed).collect(),
     })
 }
 

@@ -568,7 +568,7 @@ fn from_starts(model: &Model, rpm: f64) -> Here {
 /// In a hundred thousand revolutions runs bounced on for long before they came to rest: a start that was not seen to rest was only not waited for.
 #[test]
 fn chaos_that_is_seen_to_rest_is_no_other_motion_than_what_rests() {
-    for rpm in [655.0, 665.2, 680.5] {
+    for rpm in [655.0, 665.2, 668.1] {
         let here = from_starts(&common::osorio(), rpm);
         assert!(here.wandering.rested > 0 && here.wandering.revolutions >= 100_000, "{rpm}: {:?}", here.wandering);
         let wild: Vec<&Ending> =
@@ -589,7 +589,7 @@ fn runs_that_wander_are_told_together() {
 /// Whatever rests goes on as the cam lets go of it. Where all that is repeats, each run that wandered until it rested has left what it was on.
 #[test]
 fn what_wanders_and_rests_where_all_repeats_has_left() {
-    for rpm in [304.8, 308.2, 333.7] {
+    for rpm in [304.8, 333.7, 334.0] {
         let here = from_starts(&common::osorio(), rpm);
         assert!(here.parts.iter().all(|part| part.ending.period().is_some()), "{rpm}: {:?}", here.parts);
         assert!(
@@ -604,7 +604,7 @@ fn what_wanders_and_rests_where_all_repeats_has_left() {
 /// not; what rests and repeats soon is a motion of its own, that a follower at rest on the table goes on with as well.
 #[test]
 fn what_is_left_in_the_end_is_left_from_its_rests_and_what_repeats_is_not() {
-    for (restitution, rpm, rests) in [(0.65, 1051.3, 1), (0.7, 1256.5, 0)] {
+    for (restitution, rpm, rests) in [(0.65, 1052.9, 1), (0.7, 1256.5, 0)] {
         let model = ball().with_number("follower.restitution", restitution).unwrap();
         let here = from_starts(&model, rpm);
         assert!(here.wandering.left > 0, "{rpm}: {:?}", here.wandering);

@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use crate::common;
+use crate::properties::depth;
 use corner_impact::cam::Cam;
 use corner_impact::model::Model;
 use corner_impact::orbit::branch::{Branch, BranchPoint, End, Following, Kind};
@@ -237,9 +238,12 @@ fn simulated_impacts(model: &Model) -> impl Fn(&BranchPoint) -> usize + '_ {
 fn least_clearance(map: &StroboscopicMap, orbit: &PeriodicOrbit) -> f64 {
     let machine = &map.machine;
     let slowest = orbit.impacts().map(|event| event.cam_velocity - event.velocity_before).fold(f64::INFINITY, f64::min);
-    let mut least = slowest / machine.angular_velocity();
     let motion = machine.start(0.0, orbit.state).unwrap();
     let (samples, events) = corner_impact::section::trace(machine, motion, 1, 20_000).unwrap();
+    // Where the run takes the touch for an impact, it would have dipped so deep below the cam.
+    let impacts = events.iter().filter(|event| event.kind == EventKind::Impact);
+    let touches = impacts.map(|event| depth(machine, event));
+    let mut least = touches.fold(slowest / machine.angular_velocity(), f64::min);
     for window in samples.windows(3) {
         let is_least = window[1].gap < window[0].gap && window[1].gap < window[2].gap;
         let at_impact = events.iter().any(|event| (event.turned_since(0.0) - window[1].turned).abs() < 1e-3);

@@ -75,6 +75,7 @@ mod published;
 mod python;
 mod random;
 mod random_orbits;
+mod regimes;
 mod resting;
 mod roots;
 mod rounded;

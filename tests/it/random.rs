@@ -117,6 +117,38 @@ fn follower() -> impl Strategy<Value = String> {
     })
 }
 
+/// `[follower]` in every regime: damping from none to overdamped, with a spring and without one, and all kinds of impact.
+fn follower_of_every_regime() -> impl Strategy<Value = String> {
+    let gravity = prop_oneof![Just(0.0), Just(9.81), unit().prop_map(|u| spread(u, 0.1, 100.0))];
+    let restitution =
+        prop_oneof![Just(0.0), Just(1e-6), Just(1.0), unit(), unit().prop_map(|u| 1.0 - spread(u, 1e-4, 0.1))];
+    let stiffness = prop_oneof![1 => Just(0.0), 3 => unit().prop_map(|u| spread(u, 1.0, 1e4))];
+    let damping = prop_oneof![
+        Just(0.0),
+        Just(1.0),
+        unit().prop_map(|u| spread(u, 1e-8, 1e-3)),
+        unit().prop_map(|u| spread(u, 1e-3, 1.0)),
+        unit().prop_map(|u| spread(u, 1.0, 100.0))
+    ];
+    (damping, stiffness, gravity, restitution).prop_map(|(damping, stiffness, gravity, restitution)| {
+        let damping = damping * if stiffness == 0.0 { 1.0 } else { 2.0 * f64::sqrt(stiffness) };
+        format!(
+            "mass = 1.0\ndamping = {damping:?}\nstiffness = {stiffness:?}\ngravity = {gravity:?}\n\
+             restitution = {restitution:?}\n"
+        )
+    })
+}
+
+/// A cam whose lift is the same all round, so that it stands still however it turns.
+fn still() -> impl Strategy<Value = Law> {
+    unit().prop_map(|offset| {
+        (
+            format!("law = \"harmonic\"\noffset = {:?}\namplitudes = [0.0]\nphases_deg = [0.0]\n", around(offset, 1.0)),
+            None,
+        )
+    })
+}
+
 /// `[cam]`, and the table that it names.
 type Law = (String, Option<String>);
 
@@ -262,11 +294,15 @@ pub fn model(text: &str, table: Option<&str>) -> Model {
 }
 
 fn cases(law: impl Strategy<Value = Law>) -> impl Strategy<Value = Case> {
+    cases_with(follower(), law)
+}
+
+fn cases_with(follower: impl Strategy<Value = String>, law: impl Strategy<Value = Law>) -> impl Strategy<Value = Case> {
     let rest = unit();
     let speed = (0..5, unit());
     let angle = (0..4, unit());
     let start = (0..6, unit(), unit());
-    (follower(), law, rest, speed, angle, start).prop_map(|(follower, (law, table), rest, speed, angle, start)| {
+    (follower, law, rest, speed, angle, start).prop_map(|(follower, (law, table), rest, speed, angle, start)| {
         let text = |rest: f64| format!("[follower]\nrest_position = {rest:?}\n{follower}\n[cam]\n{law}");
         // Where the cam is, from a model of the same cam.
         let cam = Cam::new(&model(&text(0.0), table.as_deref())).unwrap();
@@ -316,6 +352,16 @@ pub fn cases_of_few_laws() -> impl Strategy<Value = Case> {
 /// Machines of every law, for what is asked of their models.
 pub fn cases_of_every_law() -> impl Strategy<Value = Case> {
     cases(law())
+}
+
+/// Machines of every law and every regime, one in five with a cam that stands still.
+pub fn cases_of_every_regime() -> impl Strategy<Value = Case> {
+    cases_with(follower_of_every_regime(), prop_oneof![4 => law(), 1 => still()])
+}
+
+/// Machines of every regime whose cam stands still.
+pub fn cases_that_stand_still() -> impl Strategy<Value = Case> {
+    cases_with(follower_of_every_regime(), still())
 }
 
 /// Machines whose flights pass many segments at once.

@@ -249,6 +249,7 @@ fn a_motion_of_another_speed_comes_to_what_there_is() {
         sampled: 0,
         rests: 0,
         wandering: Wandering { revolutions: 100_000, left, rested: 0 },
+        failed: Vec::new(),
     };
     let comes_to = |from: f64, to: f64, left: u64| {
         let from = machine(&paper, from);
@@ -273,7 +274,14 @@ fn a_motion_of_another_speed_comes_to_what_there_is() {
 #[test]
 fn what_only_its_own_orbit_begins_on_is_not_reached() {
     let motion = machine(&common::osorio(), 700.0).start_on_cam(0.0, 1.0).unwrap();
-    let here = Here { rpm: 700.0, parts: Vec::new(), sampled: 4, rests: 2, wandering: Wandering::default() };
+    let here = Here {
+        rpm: 700.0,
+        parts: Vec::new(),
+        sampled: 4,
+        rests: 2,
+        wandering: Wandering::default(),
+        failed: Vec::new(),
+    };
     for (starts, reached, count) in
         [(vec![], true, 0), (vec![6], false, 0), (vec![5, 6], true, 0), (vec![4], true, 0), (vec![3, 4], true, 1)]
     {

@@ -178,7 +178,8 @@ impl Place {
         let behind = &cam.segments()[self.segment];
         let reach = REACH.min(0.5 * (behind.end - behind.start));
         let machine = machine.with_cam(cam.continued(corner, Side::Minus, reach)?);
-        let mut motion = machine.start_on_cam(last.cam_angle, last.velocity_after - last.cam_velocity).ok()?;
+        let motion = machine.start_on_cam(last.cam_angle, last.velocity_after - last.cam_velocity).ok()?;
+        let mut motion = motion.with_each_impact();
         let end = last.cam_angle + left + reach;
         let mut rest = None;
         let _ = machine.advance(&mut motion, Goal::turned(end), &mut |event: &Event| {
@@ -290,7 +291,7 @@ impl Contact {
 
 /// The impacts of a follower that the cam lets go of at `cam_angle`, for `turned`, rad, or until it rests.
 pub(super) fn flown(machine: &Machine, cam_angle: f64, turned: f64) -> Option<Vec<Event>> {
-    let mut motion = machine.start_on_cam(cam_angle, 0.0).ok()?;
+    let mut motion = machine.start_on_cam(cam_angle, 0.0).ok()?.with_each_impact();
     let mut impacts = Vec::new();
     let _ = machine.advance(&mut motion, Goal::turned(cam_angle + turned), &mut |event: &Event| match event.kind {
         EventKind::Impact if impacts.len() == MANY_IMPACTS => ControlFlow::Break(()),

@@ -66,6 +66,8 @@ pub struct Ensemble {
     pub parts: Vec<Part>,
     /// The runs that were waited for longest.
     pub wandering: Wandering,
+    /// The starts whose runs could not go on, and why.
+    pub failed: Vec<Failed>,
 }
 
 /// Revolutions that wandering runs are given all together: a chaos that is left once in a tenth of them is seen to be left.
@@ -74,7 +76,7 @@ const POOL: u64 = 100_000;
 const MEASURED: usize = 4;
 
 /// The start that could not be run, and why.
-type Failed = (usize, SimulateError);
+pub type Failed = (usize, SimulateError);
 /// What follows each release, rad.
 type Fates = Vec<(f64, Fate, Ending)>;
 
@@ -85,13 +87,16 @@ struct End {
     motion: Motion,
     /// Whether it had wandered before, for long enough to have forgotten its start.
     wandered: bool,
+    /// Why it could not go on.
+    failed: Option<SimulateError>,
 }
 
 impl Ensemble {
     /// Runs `count` starts side by side, told to `watch` one by one; `start` gives none where one is impossible.
     ///
     /// What a rest leads to is found once for each release. A run that does neither is waited for as long as all such runs
-    /// together say: if one of them comes to an orbit in the end, none of them is on an attractor yet.
+    /// together say: if one of them comes to an orbit in the end, none of them is on an attractor yet. A run that cannot go on costs
+    /// its own start; it is an error where no other start is left.
     pub fn of(
         settling: &Settling<'_>,
         patience: Patience,
@@ -103,22 +108,38 @@ impl Ensemble {
         let first = |index: usize| {
             told();
             let run = start(index)?.map(|mut motion| -> Result<End, SimulateError> {
-                Ok(End { run: settling.run(&mut motion, patience.revolutions)?, motion, wandered: false })
+                Ok(End { run: settling.run(&mut motion, patience.revolutions)?, motion, wandered: false, failed: None })
             });
             run.transpose()
         };
-        let runs = (0..count).into_par_iter().map(|index| first(index).map_err(|error| (index, error)));
-        let mut ends: Vec<Option<End>> = runs.collect::<Result<_, _>>()?;
+        let mut failed = Vec::new();
+        let runs: Vec<_> = (0..count).into_par_iter().map(first).collect();
+        let run = |(index, run): (usize, Result<Option<End>, SimulateError>)| {
+            run.unwrap_or_else(|error| {
+                failed.push((index, error));
+                None
+            })
+        };
+        let mut ends: Vec<Option<End>> = runs.into_iter().enumerate().map(run).collect();
         let mut fates = Fates::new();
         follow(settling, &ends, &mut fates)?;
-        let (outlast, wandering) = wait(settling, &mut ends, &fates, watch)?;
+        let (outlast, wandering) = wait(settling, &mut ends, &fates, watch);
+        for (index, end) in ends.iter_mut().enumerate() {
+            if let Some(error) = end.as_ref().and_then(|end| end.failed) {
+                failed.push((index, error));
+                *end = None;
+            }
+        }
+        if let Some(failure) = failed.first().filter(|_| ends.iter().all(Option::is_none)) {
+            return Err(*failure);
+        }
         follow(settling, &ends, &mut fates)?;
         let exits = exits(&ends, &fates);
         let wandering = Wandering { left: exits.len() as u64, ..wandering };
         let wanders = if exits.is_empty() { told_wandering(settling, &ends, &fates, outlast, watch)? } else { exits };
         // What is left sooner or later is left from each of its rests as well.
         let wanders_on = |ending: &Ending| wandering.left > 0 && is_wandering(ending);
-        let mut ensemble = Self { parts: Vec::new(), wandering };
+        let mut ensemble = Self { parts: Vec::new(), wandering, failed };
         let mut wanderers = wanders.iter().cycle();
         for (index, end) in ends.into_iter().enumerate() {
             let Some(End { run, mut motion, .. }) = end else { continue };
@@ -175,12 +196,7 @@ impl Ensemble {
 
 /// Runs those that wander on, until all of them together have run for as long as is told; what leaves at first was only slow
 /// to settle, and does not count. With whether these are runs of another motion than those that had rested by then.
-fn wait(
-    settling: &Settling<'_>,
-    ends: &mut [Option<End>],
-    fates: &Fates,
-    watch: &dyn Watch,
-) -> Result<(bool, Wandering), Failed> {
+fn wait(settling: &Settling<'_>, ends: &mut [Option<End>], fates: &Fates, watch: &dyn Watch) -> (bool, Wandering) {
     /// Revolutions that do not count, and the least that is worth a look for an orbit after them.
     const SLOW: u64 = 200;
     const LEAST: u64 = 32;
@@ -189,22 +205,28 @@ fn wait(
     let followed = fates.iter().filter(|(_, fate, _)| matches!(fate, Fate::Wanders { .. })).count() as u64;
     let released = Wandering { revolutions: (followed * LONGEST_REST).min(POOL / 2), ..Wandering::default() };
     loop {
-        let wanderers = ends.iter().flatten().filter(|end| end.run == Run::Wanders).count() as u64;
+        let goes_on = |end: &&End| end.run == Run::Wanders && end.failed.is_none();
+        let wanderers = ends.iter().flatten().filter(goes_on).count() as u64;
         if wanderers == 0 || all.is_some_and(|all| all.revolutions >= POOL) {
             let all = all.unwrap_or_default();
-            return Ok((outlasts(all, soon), all));
+            return (outlasts(all, soon), all);
         }
         let told = each(watch, "runs that end on nothing so far", wanderers as usize);
-        let runs = ends.par_iter_mut().enumerate().map(|(index, end)| -> Result<Wandering, Failed> {
-            let Some(End { run: run @ Run::Wanders, motion, wandered }) = end else { return Ok(Wandering::default()) };
+        let runs = ends.par_iter_mut().map(|end| {
+            let Some(End { run: run @ Run::Wanders, motion, wandered, failed: failed @ None }) = end else {
+                return Wandering::default();
+            };
             told();
             let begun = motion.revolution;
             *wandered = all.is_some();
-            *run = settling.run(motion, round).map_err(|error| (index, error))?;
+            match settling.run(motion, round) {
+                Ok(ended) => *run = ended,
+                Err(error) => *failed = Some(error),
+            }
             let revolutions = motion.revolution - begun;
-            Ok(Wandering { revolutions, left: 0, rested: u64::from(matches!(run, Run::Released(_))) })
+            Wandering { revolutions, left: 0, rested: u64::from(matches!(run, Run::Released(_))) }
         });
-        let found = runs.try_reduce(Wandering::default, |one, other| Ok(one.with(other)))?;
+        let found = runs.reduce(Wandering::default, Wandering::with);
         if all.is_none() {
             soon = ends.iter().flatten().map(soon_rested).fold(soon, Wandering::with);
         }

@@ -1,6 +1,6 @@
 //! The attractors at one speed.
 
-use super::ensemble::{Ensemble, Part, Patience, Wandering};
+use super::ensemble::{Ensemble, Failed, Part, Patience, Wandering};
 use super::starts::Starts;
 use crate::cam::within_a_turn;
 use crate::orbit::ending::Ending;
@@ -21,6 +21,8 @@ pub struct Here {
     pub rests: usize,
     /// The runs that were waited for longest.
     pub wandering: Wandering,
+    /// The starts whose runs could not go on, and why.
+    pub failed: Vec<Failed>,
 }
 
 impl Here {
@@ -57,9 +59,9 @@ impl Here {
             machine.start_on_cam(angle, 0.0).map(|motion| motion.contact.then_some(motion))
         };
         let count = sampled + rests.len() + known.len();
-        let Ensemble { parts, wandering } =
+        let Ensemble { parts, wandering, failed } =
             Ensemble::of(&settling, patience, count, start, &Unwatched).map_err(|(_, error)| error)?;
-        Ok(Self { rpm, parts, sampled, rests: rests.len(), wandering })
+        Ok(Self { rpm, parts, sampled, rests: rests.len(), wandering, failed })
     }
 
     /// Whether a run has come to a part, from the sample, from rest on the cam or from a neighbouring speed, and not only one

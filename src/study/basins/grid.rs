@@ -126,6 +126,11 @@ pub struct Basins {
     pub parts: Vec<Basin>,
     /// Runs that neither rested nor came to an orbit soon, all together.
     pub wandering: Wandering,
+    /// How many starts could not be run.
+    pub failed: usize,
+    /// Why the first of these could not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub failure: Option<String>,
     /// For each cell the index of its part; nothing where the start is below the cam.
     #[serde(skip)]
     pub cells: Vec<Option<usize>>,
@@ -143,6 +148,7 @@ impl Basins {
             let share = Estimate::share(part.starts.len(), starts);
             parts.push(Basin { ending: part.ending, starts: part.starts.len(), share });
         }
-        Self { grid, starts, parts, wandering: found.wandering, cells }
+        let failure = found.failed.first().map(|(_, error)| error.to_string());
+        Self { grid, starts, parts, wandering: found.wandering, failed: found.failed.len(), failure, cells }
     }
 }
