@@ -35,7 +35,7 @@ fn runs_that_wander_share_a_hundred_thousand_revolutions() {
 /// motion, which no run has left by resting.
 #[test]
 fn what_rests_as_seldom_as_it_did_at_first_is_one_motion() {
-    for (rpm, rested) in [(524.0, 39), (643.0, 25), (307.0, 15)] {
+    for (rpm, rested) in [(524.0, 39), (643.0, 25), (307.0, 9)] {
         let (parts, wandering) = parts(&common::osorio(), rpm, 64);
         assert_eq!(parts, [(Kind::Resting, true, 64)], "{rpm}");
         assert_eq!((wandering.left, wandering.rested), (0, rested), "{rpm}");
