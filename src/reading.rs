@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::cam::Cam;
 use crate::file;
-use crate::model::{Follower, Model, ModelError, OSORIO_2008};
+use crate::model::{Follower, Model, ModelError, Numeral, OSORIO_2008};
 use crate::tolerance;
 
 impl Model {
@@ -38,8 +38,9 @@ impl Model {
 
     /// The same model with other numbers, of `[study]` as well, each named as for [`Self::path_of`], checked together as the
     /// file is; they become a part of its name.
-    pub fn changed(&self, numbers: &[(String, f64)]) -> Result<Self, ModelError> {
-        self.renamed(numbers)?.sprung()
+    pub fn changed<N: Clone + Into<Numeral>>(&self, numbers: &[(String, N)]) -> Result<Self, ModelError> {
+        let numbers: Vec<_> = numbers.iter().map(|(name, number)| (name.clone(), number.clone().into())).collect();
+        self.renamed(&numbers)?.sprung()
     }
 
     /// The same model with a smoothing spline near other lifts at the angles of its table, m, of a weight by its logarithm, with

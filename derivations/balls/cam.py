@@ -4,13 +4,15 @@ from bisect import bisect_right
 from dataclasses import dataclass
 from math import floor, tau
 
-from flint import arb
+from flint import arb, ctx
 
 from .numbers import Refused, Undecided, between, hull, overlap
 from .profiles import pieces_of
 
 # Starts of pieces are looked up in doubles: what lies nearer than this to a start is compared in balls.
 NEAR = 1e-9
+# Parts of a turn that are looked at at once for the lowest lift, and bits of it that rounding may take: few first.
+MOST_PARTS, ROUNDED = 1000, (3, 6, 12, 24)
 
 
 @dataclass(frozen=True)
@@ -96,6 +98,51 @@ class Cam:
                 return piece
         raise Undecided(f"it is not proved on which piece of the cam the angle {angle.str(8)} lies")
 
+    def lowest(self):
+        """A ball that holds the lowest lift, as narrow as rounding lets it be."""
+        found = (self._lowest(arb(2) ** (bits - ctx.prec)) for bits in ROUNDED)
+        lowest = next((one for one in found if one is not None), None)
+        if lowest is None:
+            raise Undecided("the lowest lift of the cam, where the preload is, is not decided")
+        return lowest
+
+    def _lowest(self, smallest):
+        """The same to such a part of the lift's size: parts of a turn are halved until they leave no more open; None where that takes too many."""
+        # Parts by their ends, which are points, each with the piece that it may meet.
+        parts = [(piece, piece[0].lower(), piece[1].upper()) for piece in map(self._piece, range(len(self.laws)))]
+        some = [law.derivatives(angle)[0] for start, end, law, _ in map(self._piece, range(len(self.laws))) for angle in (start, (start + end) / 2)]
+        size, most, least = hull(some).abs_upper(), min(one.upper() for one in some), []
+        while parts:
+            seen = []
+            for (start, end, law, _), low, high in parts:
+                over, middle = between(low, high), ((low + high) / 2).mid()
+                (lift, *_, third), (at, slope, curvature, _) = law.derivatives(over), law.derivatives(middle)
+                # By Taylor's formula, or as it comes: the lift may be as flat as a dwell at either end of a rise.
+                off = over - middle
+                form = at + off * (slope + off / 2 * (curvature + off / 3 * third))
+                seen.append((middle, lift.lower().max(form.lower())))
+                if middle > start and middle < end:
+                    most = most.min(at.upper())
+            halves = []
+            for (piece, low, high), (middle, lower) in zip(parts, seen):
+                if lower >= most - size * smallest or not high - low > smallest:
+                    least.append(lower)
+                else:
+                    halves += [(piece, low, middle), (piece, middle, high)]
+            if len(halves) > MOST_PARTS + len(self.laws):
+                return None
+            parts = halves
+        return between(min(least), most)
+
+    def sections(self, turns):
+        """The parts of so many turns of the cam, each without a jump of its velocity inside, as pieces whose laws go on past their ends."""
+        count = len(self.laws)
+        jumps = [index for index, smooth in enumerate(self.smooth) if smooth is not None and smooth < 2]
+        if not jumps:
+            return [Piece(arb(0), turns * self.turn, self)]
+        ends = [index + turn * count for turn in range(turns) for index in jumps] + [jumps[0] + turns * count]
+        return [Section(self, first, after).piece() for first, after in zip(ends, ends[1:])]
+
     def seen(self, angle):
         """(c, c', c'', c''') over the ball, the hull of all pieces that it may meet, each over its part; and whether c and c' are
         continuous over it for certain, so that Taylor's formula holds with the hull of c''."""
@@ -123,6 +170,29 @@ class Piece:
     def holds(self, angle):
         """Whether all of a ball is proved to lie between its ends."""
         return bool(angle > self.start and angle < self.end)
+
+
+class Section:
+    """The law of the pieces from one to the one before another, counted on through the revolutions: c and c' are continuous where these
+    meet, and the first and the last of them go on past their ends."""
+
+    def __init__(self, cam, first, after):
+        self.pieces = [cam._piece(index) for index in range(first, after)]
+
+    def piece(self):
+        """The section with its ends."""
+        return Piece(self.pieces[0][0], self.pieces[-1][1], self)
+
+    def derivatives(self, angle):
+        """(c, c', c'', c''') over the ball, the hull of all pieces that it may meet, each over its part."""
+        each = []
+        for index, (start, end, law, shift) in enumerate(self.pieces):
+            low = start if index > 0 else start.min(angle.lower())
+            high = end if index + 1 < len(self.pieces) else end.max(angle.upper())
+            part = overlap(angle, between(low, high))
+            if part is not None:
+                each.append(law.derivatives(part - shift))
+        return each[0] if len(each) == 1 else tuple(hull(order) for order in zip(*each))
 
 
 class Turned:

@@ -7,19 +7,27 @@ from flint import arb
 
 from .numbers import Refused, decimal
 
-FIELDS = ("mass", "damping", "stiffness", "gravity", "rest_position", "restitution")
+FIELDS = ("mass", "damping", "stiffness", "gravity", "restitution")
 
 
 class Follower:
-    """The [follower] table: its numbers as the rationals that their decimals are, so that its kind of damping is decided."""
+    """The [follower] table: its numbers as the rationals that their decimals are, so that its kind of damping is decided.
 
-    def __init__(self, table):
-        missing = [name for name in FIELDS if name not in table]
+    `lowest` gives the lowest lift of the cam, where a spring with a preload presses with it: k (lowest - rest) = preload.
+    """
+
+    def __init__(self, table, lowest):
+        spring = "preload" if "preload" in table else "rest_position"
+        missing = [name for name in (*FIELDS, spring) if name not in table]
         if missing:
             raise Refused(f"no follower.{missing[0]}")
-        mass, damping, stiffness, gravity, rest, restitution = (decimal(table[name]) for name in FIELDS)
+        mass, damping, stiffness, gravity, restitution, rest = (decimal(table[name]) for name in (*FIELDS, spring))
         if not (mass > 0 and damping >= 0 and stiffness >= 0 and 0 <= restitution <= 1):
             raise Refused("follower: needs mass > 0, damping >= 0, stiffness >= 0 and restitution from 0 to 1")
+        if spring == "preload":
+            if not stiffness > 0:
+                raise Refused("follower.preload needs a spring")
+            rest = lowest() - arb(rest / stiffness)
         zeta, omega0_squared = damping / (2 * mass), stiffness / mass
         # Under critical damping above 0, beyond it below.
         discriminant = omega0_squared - zeta * zeta

@@ -31,7 +31,8 @@ class Machine:
         for name in ("follower", "cam"):
             if not isinstance(document.get(name), dict):
                 raise Refused(f"no {name}")
-        self.follower, self.cam = Follower(document["follower"]), Cam(document["cam"])
+        self.cam = Cam(document["cam"])
+        self.follower = Follower(document["follower"], self.cam.lowest)
 
 
 @dataclass(frozen=True)

@@ -23,14 +23,15 @@ class Undecided(Refused):
 
 
 def decimal(value):
-    """A decimal, as text or as an integer, as the rational number that it is."""
+    """A decimal, as text or as an integer, as the rational number that it is; text may go on with " * a/b", a quotient of whole numbers."""
     if isinstance(value, bool) or not isinstance(value, (str, int)):
         raise Refused(f"{value!r} is not a number")
-    _, _, exponent = str(value).lower().partition("e")
+    written, _, factor = str(value).partition("*")
+    _, _, exponent = written.lower().partition("e")
     try:
         if exponent and abs(int(exponent)) > LARGEST_EXPONENT:
             raise Refused(f"{value!r} is beyond what a double holds")
-        number = Fraction(value)
+        number = Fraction(written) * Fraction(factor or 1)
     except ValueError as error:
         raise Refused(f"{value!r} is not a number") from error
     return fmpq(number.numerator, number.denominator)

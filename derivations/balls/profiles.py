@@ -136,11 +136,14 @@ def _missed(law, span, after):
 
 def spline(table):
     """The periodic spline through the rows, solved in balls: of degree 3 it agrees up to c'', of degree 5 up to c''''."""
+    turn = fmpq(360)
     rows = [(decimal(row["angle_deg"]), decimal(row["lift"])) for row in table.get("rows", ())]
+    # In one turn, from 0 on.
+    rows = sorted((angle - turn * (angle / turn).floor(), lift) for angle, lift in rows)
     degree = {"cubic": 3, "quintic": 5}.get(table.get("spline"))
     if degree is None or not 3 <= len(rows) <= MOST_ROWS:
         raise Refused(f"cam: a table is certified as a cubic or quintic spline of 3 to {MOST_ROWS} rows")
-    turn, count, size = fmpq(360), len(rows), (degree - 1) // 2
+    count, size = len(rows), (degree - 1) // 2
     ends = rows[1:] + [(rows[0][0] + turn, rows[0][1])]
     # Widths in units of the mean one; the unknowns of a row are its slope and, of degree 5, its curvature.
     gaps = [(fmpq(count) * (b - a) / turn, v, w - v) for (a, v), (b, w) in zip(rows, ends)]

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::{CommandError, progress::watched, session::Session, start::finite};
-use crate::model::Model;
+use crate::model::{Model, Numeral};
 use crate::orbit::Parameter;
 use crate::show::notes;
 
@@ -22,14 +22,14 @@ pub(super) struct ModelArgument {
 pub(super) struct Changes {
     /// Take VALUE for a number of the model: restitution=0.7, or a whole path, follower.mass=2 (may be repeated).
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = change)]
-    pub(super) numbers: Vec<(String, f64)>,
+    pub(super) numbers: Vec<(String, Numeral)>,
 }
 
 /// `NAME=VALUE`.
-fn change(text: &str) -> Result<(String, f64), String> {
+fn change(text: &str) -> Result<(String, Numeral), String> {
     let (name, number) =
         text.split_once('=').ok_or("must be NAME=VALUE: a number of the model, and what it is to be")?;
-    Ok((name.trim().into(), finite(number)?))
+    Ok((name.trim().into(), Numeral { number: finite(number)?, text: number.trim().into() }))
 }
 
 impl ModelArgument {

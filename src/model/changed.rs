@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::fields::{Field, Value};
-use super::{CamProfile, Model, ModelError, Spline, TableProfile, Tolerance, nearest};
+use super::{CamProfile, Model, ModelError, Numeral, Spline, TableProfile, Tolerance, nearest};
 
 impl Model {
     /// The dotted path of the number of follower or cam that a user calls `name`: the path itself, or the end of one that no
@@ -32,20 +32,20 @@ impl Model {
 
     /// The same model with another number in `field`, a dotted path, checked as the file is but for what needs the cam.
     pub(crate) fn rewritten(&self, field: &str, number: f64) -> Result<Self, ModelError> {
-        Self::from_fields(self.fields.with_number(field, number)?)
+        Self::from_fields(self.fields.with_number(field, number.into())?)
     }
 
     /// The same model with other numbers, of `[study]` as well, each named as for [`Self::path_of`], checked together as the file is but for
     /// what needs the cam; they become a part of its name.
-    pub(crate) fn renamed(&self, numbers: &[(String, f64)]) -> Result<Self, ModelError> {
+    pub(crate) fn renamed(&self, numbers: &[(String, Numeral)]) -> Result<Self, ModelError> {
         let (mut fields, mut new) = (self.fields.clone(), Vec::new());
         for (name, number) in numbers {
             let path = self.path_in(&["follower", "cam", "study"], name, &[])?.to_owned();
             if new.iter().any(|(changed, _)| *changed == path) {
                 return Err(ModelError::file(self.file(), format!("{path} is set twice")));
             }
-            fields = fields.with_number(&path, *number)?;
-            new.push((path, *number));
+            fields = fields.with_number(&path, number.clone())?;
+            new.push((path, number.number));
         }
         let mut changes = self.changes.clone();
         changes.retain(|(path, _)| new.iter().all(|(changed, _)| changed != path));

@@ -5,6 +5,7 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::numeral::Numeral;
 use super::{ModelError, nearest};
 use crate::foreign;
 
@@ -142,14 +143,12 @@ impl Fields {
     }
 
     /// The same fields with another number in one of them.
-    pub(super) fn with_number(&self, path: &str, number: f64) -> Result<Self, ModelError> {
+    pub(super) fn with_number(&self, path: &str, number: Numeral) -> Result<Self, ModelError> {
         let mut fields = self.clone();
         match fields.fields.get_mut(path) {
             Some(field @ Field { value: Value::Number(_), .. }) => {
-                field.value = Value::Number(number);
-                // In digits, but for what nobody would count.
-                let digits = number.to_string();
-                field.written = if digits.len() > 24 { format!("{number:e}") } else { digits };
+                field.value = Value::Number(number.number);
+                field.written = number.text;
                 field.line = None;
                 fields.text = None;
                 Ok(fields)

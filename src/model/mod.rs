@@ -7,8 +7,10 @@
 mod changed;
 mod complaint;
 mod document;
+mod exact;
 mod fields;
 mod nearest;
+mod numeral;
 mod profile;
 mod rows;
 mod table;
@@ -23,6 +25,7 @@ use serde::Serialize;
 pub use complaint::ModelError;
 use fields::{Allowed, Fields};
 pub use nearest::nearest;
+pub use numeral::Numeral;
 pub(crate) use profile::CORNER_ROUNDING;
 pub(crate) use profile::{
     ArcsProfile, MOST_COEFFICIENTS, MotionSegment, PolynomialSegment, ProgramProfile, RectifiedSineProfile,
@@ -31,7 +34,7 @@ pub use profile::{CamProfile, HarmonicProfile, Motion};
 pub(crate) use rows::Row;
 pub use rows::{Layout, Separator};
 pub use table::Reading;
-pub(crate) use table::{Smoothing, Spline, TableProfile, Tolerance};
+pub(crate) use table::{MOST_PROVED_ROWS, Smoothing, Spline, TableProfile, Tolerance};
 pub use units::{Converted, Unit, Units};
 
 /// The model whose numbers the paper prints, built in so that the binary needs no other file.

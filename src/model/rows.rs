@@ -173,6 +173,13 @@ impl Table<'_> {
         ModelError { line, ..ModelError::file(&self.file, allowed) }.in_line(self.text, None)
     }
 
+    /// Angle and lift of the row in a line, as they are written but for the decimal point.
+    pub(super) fn cells(&self, layout: &Layout, line: usize) -> Option<[String; 2]> {
+        let (text, _) = without_comment(self.text.lines().nth(line.checked_sub(1)?)?);
+        let cells = layout.separator.columns(text)?;
+        Some(cells.map(|cell| if layout.decimal_comma { cell.replace(',', ".") } else { cell.to_owned() }))
+    }
+
     /// The rows of the text, and how it is laid out.
     pub(super) fn rows(&self) -> Result<(Vec<Row>, Layout), ModelError> {
         let lines = || self.text.lines().enumerate().map(|(index, line)| (index + 1, line.trim()));

@@ -8,9 +8,13 @@ use serde::Serialize;
 use super::ModelError;
 use super::fields::{Allowed, Fields, Pair, Value};
 use super::rows::{Layout, MOST_ROWS, Row, Table};
+use super::toml;
 use super::units::{LENGTHS, Unit, Units};
 use crate::file;
 use crate::tolerance;
+
+/// Rows of a table that proofs take.
+pub(crate) const MOST_PROVED_ROWS: usize = 1000;
 
 /// A spline through the rows of a file, or near them.
 #[derive(Clone, Debug, PartialEq)]
@@ -115,6 +119,10 @@ pub struct Reading {
     /// It, as a part of the model's unit of length.
     #[serde(skip)]
     pub in_model: Unit,
+    /// Angle and lift of every row as they are written, degrees and the unit of lifts; none of angles in radians, of lifts that are
+    /// those of another table, and of more rows than proofs take.
+    #[serde(skip)]
+    pub(crate) written: Vec<[String; 2]>,
     /// The unit of angles in the table.
     pub angle_unit: &'static str,
     /// The layout of its text; none where the model has the rows itself.
@@ -154,6 +162,8 @@ const FEWEST_ROWS: usize = 3;
 const FEWEST_SMOOTHED: usize = 12;
 /// More corners or dwells than any cam has.
 const MOST_FEATURES: usize = 1000;
+/// Rows of a table that proofs take, and a last one that repeats the first.
+const MOST_WRITTEN: usize = MOST_PROVED_ROWS + 1;
 /// The fields of `law = "table"`, and the file that they name, if they do not have its rows.
 pub(super) fn read(fields: &mut Fields) -> Result<TableProfile, ModelError> {
     fields.may_hold("cam.rows");
@@ -332,6 +342,13 @@ impl Table<'_> {
             }
         }
         self.in_radians = angle == 1;
+        let mut written = Vec::new();
+        if angle == 0 && rows.len() <= MOST_WRITTEN {
+            written = match (named, fields.fields.get("cam.rows")) {
+                (Some(layout), _) => rows.iter().filter_map(|row| self.cells(layout, row.line)).collect(),
+                (None, field) => field.map_or_else(Vec::new, |field| toml::pairs(&field.written)),
+            };
+        }
         let repeats_first = self.turned(&mut rows)?;
         let fewest = if spline == Kind::Smoothing { FEWEST_SMOOTHED } else { FEWEST_ROWS };
         if rows.len() < fewest {
@@ -343,9 +360,11 @@ impl Table<'_> {
             Kind::Quintic => Spline::Quintic,
             Kind::Smoothing => Spline::Smoothing(smoothing(fields, step, &in_model)?),
         };
+        written.truncate(if written.len() < rows.len() { 0 } else { rows.len() });
         let reading = Reading {
             unit: unit.name().to_owned(),
             in_model,
+            written,
             angle_unit: ["deg", "rad"][angle],
             layout,
             rows: rows.len(),

@@ -7,6 +7,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::ModelError;
 use super::fields::{Field, Fields, Value};
+use super::numeral::Numeral;
 
 /// The number that a value of TOML is.
 fn number(value: &DeValue<'_>) -> Option<f64> {
@@ -27,6 +28,23 @@ fn pair(value: &DeValue<'_>) -> Option<[f64; 2]> {
         (Some(one), Some(two), None) => Some([one?, two?]),
         _ => None,
     }
+}
+
+/// Pairs of numbers in an array of TOML, each number as the decimal that is written; none where it is something else.
+pub(super) fn pairs(array: &str) -> Vec<[String; 2]> {
+    let text = format!("rows = {array}");
+    let Ok(table) = DeTable::parse(&text) else { return Vec::new() };
+    let Some(DeValue::Array(rows)) = table.get_ref().get("rows").map(Spanned::get_ref) else { return Vec::new() };
+    let decimal = |value: &Spanned<DeValue<'_>>| {
+        let number = number(value.get_ref())?;
+        let text = text.get(value.span())?.to_owned();
+        Some(Numeral { number, text }.decimal())
+    };
+    let row = |row: &Spanned<DeValue<'_>>| match row.get_ref() {
+        DeValue::Array(items) => Some([decimal(items.first()?)?, decimal(items.get(1)?)?]),
+        _ => None,
+    };
+    rows.iter().map(row).collect::<Option<_>>().unwrap_or_default()
 }
 
 impl Fields {

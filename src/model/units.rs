@@ -9,15 +9,15 @@ use std::borrow::Cow;
 use super::ModelError;
 use super::fields::{Allowed, Fields};
 
-/// A unit: its name, and how much of the unit inside one of it is, as a quotient of numbers that are as exact as can be.
+/// A unit: its name, and how much of the unit inside one of it is, as a quotient of whole numbers, which is exact.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unit {
     name: Cow<'static, str>,
-    ratio: [f64; 2],
+    ratio: [u128; 2],
 }
 
 impl Unit {
-    const fn new(name: &'static str, above: f64, below: f64) -> Self {
+    const fn new(name: &'static str, above: u128, below: u128) -> Self {
         Self { name: Cow::Borrowed(name), ratio: [above, below] }
     }
 
@@ -28,48 +28,53 @@ impl Unit {
 
     /// A value in it as it is inside.
     pub fn inside(&self, value: f64) -> f64 {
-        value * self.ratio[0] / self.ratio[1]
+        value * self.ratio[0] as f64 / self.ratio[1] as f64
     }
 
     /// A value from inside in it.
     pub fn told(&self, value: f64) -> f64 {
-        value * self.ratio[1] / self.ratio[0]
+        value * self.ratio[1] as f64 / self.ratio[0] as f64
+    }
+
+    /// The quotient that takes it to the unit inside; none where that is 1.
+    pub(super) fn factor(&self) -> Option<[u128; 2]> {
+        (self.ratio[0] != self.ratio[1]).then_some(self.ratio)
     }
 
     /// The same unit as a part of another one, which is then the unit inside.
     pub(super) fn in_parts_of(&self, other: &Self) -> Self {
-        let ratio = if self.ratio == other.ratio { [1.0; 2] } else { self.over(other) };
+        let ratio = if self.ratio == other.ratio { [1; 2] } else { self.over(other) };
         Self { name: self.name.clone(), ratio }
     }
 
-    fn over(&self, other: &Self) -> [f64; 2] {
+    fn over(&self, other: &Self) -> [u128; 2] {
         [self.ratio[0] * other.ratio[1], self.ratio[1] * other.ratio[0]]
     }
 }
 
 /// Units by name, as parts of the SI's; the first is the SI's own.
 pub(super) static LENGTHS: [Unit; 6] = [
-    Unit::new("m", 1.0, 1.0),
-    Unit::new("cm", 1.0, 100.0),
-    Unit::new("mm", 1.0, 1000.0),
-    Unit::new("um", 1.0, 1e6),
-    Unit::new("in", 127.0, 5000.0),
-    Unit::new("ft", 381.0, 1250.0),
+    Unit::new("m", 1, 1),
+    Unit::new("cm", 1, 100),
+    Unit::new("mm", 1, 1000),
+    Unit::new("um", 1, 1_000_000),
+    Unit::new("in", 127, 5000),
+    Unit::new("ft", 381, 1250),
 ];
 const MASSES: [Unit; 5] = [
-    Unit::new("kg", 1.0, 1.0),
-    Unit::new("g", 1.0, 1000.0),
-    Unit::new("t", 1000.0, 1.0),
-    Unit::new("lb", 45_359_237.0, 1e8),
-    Unit::new("oz", 45_359_237.0, 16e8),
+    Unit::new("kg", 1, 1),
+    Unit::new("g", 1, 1000),
+    Unit::new("t", 1000, 1),
+    Unit::new("lb", 45_359_237, 100_000_000),
+    Unit::new("oz", 45_359_237, 1_600_000_000),
 ];
 const FORCES: [Unit; 5] = [
-    Unit::new("N", 1.0, 1.0),
-    Unit::new("mN", 1.0, 1000.0),
-    Unit::new("kN", 1000.0, 1.0),
-    Unit::new("kgf", 980_665.0, 1e5),
+    Unit::new("N", 1, 1),
+    Unit::new("mN", 1, 1000),
+    Unit::new("kN", 1000, 1),
+    Unit::new("kgf", 980_665, 100_000),
     // A pound times the standard acceleration of gravity.
-    Unit::new("lbf", 44_482_216_152_605.0, 1e13),
+    Unit::new("lbf", 44_482_216_152_605, 10_000_000_000_000),
 ];
 
 /// The units of a model file.
@@ -220,7 +225,7 @@ impl Default for Units {
     /// The SI's.
     fn default() -> Self {
         let [length, mass, force] = [&LENGTHS[0], &MASSES[0], &FORCES[0]].map(Unit::clone);
-        let [stiffness, damping, gravity] = ["N/m", "N s/m", "m/s^2"].map(|name| Unit::new(name, 1.0, 1.0));
+        let [stiffness, damping, gravity] = ["N/m", "N s/m", "m/s^2"].map(|name| Unit::new(name, 1, 1));
         Self { are_given: false, says: [false; 3], length, mass, force, stiffness, damping, gravity, degrees: false }
     }
 }

@@ -20,7 +20,7 @@ use crate::corner::map::{Eigenvalue, Own, Sides};
 use crate::corner::range::{RangeError, Rejected, find_corner_impacts};
 use crate::corner::{CornerImpact, CornerMap, SideMap};
 use crate::known::Known;
-use crate::model::{Model, ModelError, Study};
+use crate::model::{MOST_PROVED_ROWS, Model, ModelError, Study};
 use crate::progress::Watch;
 use crate::python::{self, PythonError};
 use crate::simulate::Machine;
@@ -295,18 +295,19 @@ pub(super) fn prove(model: &Model, candidates: Vec<Value>, bits: u32) -> Result<
 /// What the script says of a model, asked for by a field of its own.
 fn ask<T: DeserializeOwned>(model: &Model, bits: u32, (field, value): (&str, Value)) -> Result<T, CertifyError> {
     if is_beyond(model) {
-        let allowed = format!("proofs are of splines through the rows, cubic or quintic, and of {ROWS} rows at most");
+        let allowed =
+            format!("proofs are of splines through the rows, cubic or quintic, and of {MOST_PROVED_ROWS} rows at most");
         return Err(model.reject("cam.spline", allowed).into());
     }
-    Ok(python::run("certify.py", &json!({ "follower": model.follower, "cam": model.cam, "bits": bits, field: value }))?)
+    let mut document = model.exact();
+    document["bits"] = json!(bits);
+    document[field] = value;
+    Ok(python::run("certify.py", &document)?)
 }
-
-/// Rows of a table that the script takes.
-const ROWS: usize = 1000;
 
 /// Whether a model has a cam of which nothing is proved.
 pub(super) fn is_beyond(model: &Model) -> bool {
-    model.is_smoothed() || model.table().is_some_and(|table| table.rows.len() > ROWS)
+    model.is_smoothed() || model.table().is_some_and(|table| table.rows.len() > MOST_PROVED_ROWS)
 }
 
 /// Where a corner impact is thought to be, its flights in order from the corner on.

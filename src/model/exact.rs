@@ -1,0 +1,89 @@
+//! The numbers of a model as proofs take them: the rationals that are written, as text.
+//!
+//! Each number is a decimal, or a decimal times a quotient of whole numbers, `"1.25 * 1/1000"`, which takes it to the units inside.
+
+use serde_json::{Map, Value as Item, json};
+
+use super::fields::{Fields, Value};
+use super::numeral::Numeral;
+use super::{Model, Unit};
+
+impl Model {
+    /// The follower and the cam as tables of a model file in SI units, or in the file's unit of length, with every number as text.
+    ///
+    /// A preload is there in the place of the rest position where the file has it. A number that no field of the file has, such as a lift of
+    /// another table, is the shortest decimal that reads back as its double.
+    pub(crate) fn exact(&self) -> Item {
+        let it = &self.follower;
+        let spring = match self.preload {
+            Some(preload) => ("preload", preload),
+            None => ("rest_position", it.rest_position),
+        };
+        let numbers = [
+            ("mass", it.mass),
+            ("damping", it.damping),
+            ("stiffness", it.stiffness),
+            ("gravity", it.gravity),
+            ("restitution", it.restitution),
+            spring,
+        ];
+        let exact = |(name, number): (&str, f64)| {
+            let text = self.fields.exact(&format!("follower.{name}"), self.units.of_follower(name), number);
+            (name.to_owned(), text.into())
+        };
+        let follower: Map<String, Item> = numbers.into_iter().map(exact).collect();
+        let mut cam = json!(self.cam);
+        self.fields.make_exact("cam", &mut cam);
+        if let Some(table) = self.table().filter(|table| !table.reading.written.is_empty()) {
+            let lift = |text: &str| times(text.to_owned(), Some(&table.reading.in_model));
+            let rows =
+                table.reading.written.iter().map(|[angle, row]| json!({ "angle_deg": angle, "lift": lift(row) }));
+            cam["rows"] = rows.collect();
+        }
+        json!({ "follower": follower, "cam": cam })
+    }
+
+    /// Whether the rows of its table, if it has one, are the decimals that are written, and not the doubles that they became.
+    pub(crate) fn has_exact_rows(&self) -> bool {
+        self.table().is_none_or(|table| !table.reading.written.is_empty())
+    }
+}
+
+/// A decimal in a unit, as it is inside.
+fn times(decimal: String, unit: Option<&Unit>) -> String {
+    match unit.and_then(Unit::factor) {
+        Some([above, below]) => format!("{decimal} * {above}/{below}"),
+        None => decimal,
+    }
+}
+
+impl Fields {
+    /// The text of a number that became `inside`; that of the double where no such field is there.
+    fn exact(&self, path: &str, unit: Option<&Unit>, inside: f64) -> String {
+        let became = |number: f64| unit.map_or(number, |unit| unit.inside(number));
+        match self.fields.get(path) {
+            Some(field) => match field.value {
+                Value::Number(number) if became(number) == inside => {
+                    times(Numeral { number, text: field.written.clone() }.decimal(), unit)
+                }
+                _ => format!("{inside:?}"),
+            },
+            None => format!("{inside:?}"),
+        }
+    }
+
+    /// Puts the text of each number in its place.
+    fn make_exact(&self, path: &str, item: &mut Item) {
+        match item {
+            Item::Object(table) => {
+                table.iter_mut().for_each(|(name, item)| self.make_exact(&format!("{path}.{name}"), item))
+            }
+            Item::Array(items) => {
+                let items = items.iter_mut().enumerate();
+                items.for_each(|(index, item)| self.make_exact(&format!("{path}[{index}]"), item));
+            }
+            Item::Number(number) => *item = self.exact(path, None, number.as_f64().unwrap_or(f64::NAN)).into(),
+            _ => {}
+        }
+    }
+}
