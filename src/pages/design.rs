@@ -65,7 +65,11 @@ pub(crate) fn separation(found: &Design) -> Words {
             ],
         },
         Separation::NotPressed { cam_angle } => {
-            words!["The follower leaves the cam at every speed: nothing presses it on at ", degrees(cam_angle), " deg."]
+            words![
+                "The follower leaves the cam however slow that turns: nothing presses it on at ",
+                degrees(cam_angle),
+                " deg."
+            ]
         }
         Separation::Kink { cam_angle } => words![
             "The follower leaves the cam at every speed: the cam's velocity jumps at ",

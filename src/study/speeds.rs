@@ -33,7 +33,7 @@ pub struct Speeds {
     pub starts: usize,
     /// Whether runs began on the stable orbits of two impacts in one revolution, too.
     pub two_impacts: bool,
-    /// Where the follower first leaves the cam, by the force between them; its error has what a measured cam leaves open.
+    /// Where the follower first leaves the cam above the lowest speed, by the force between them; its error has what a measured cam leaves open.
     pub separation: Separation,
     /// How well the cam is known, if it is measured.
     pub measured: Option<Measured>,

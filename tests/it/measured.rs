@@ -1214,7 +1214,7 @@ fn rough(seed: u64, count: usize) -> Vec<[f64; 2]> {
     let mut rows: Vec<[f64; 2]> = (0..count)
         .map(|row| [360.0 * (row as f64 + next().powi(8)) / count as f64, 0.04 + 0.001 * (8.0 * next()).floor()])
         .collect();
-    if seed.is_multiple_of(3) {
+    if count >= 8 && seed.is_multiple_of(3) {
         rows[1][0] = rows[0][0] + 1e-3;
     }
     rows

@@ -124,7 +124,7 @@ pub struct Attractors {
     pub rows: Vec<Row>,
     /// Where there are several.
     pub coexistence: Vec<Coexistence>,
-    /// Where the follower first leaves the cam, by the force between them.
+    /// Where the follower first leaves the cam above the lowest speed, by the force between them.
     pub separation: Separation,
 }
 
@@ -192,7 +192,7 @@ pub fn attractors(
     exchange(&machine, &mut grid);
     watch.at("where each begins and ends", 0, 0);
     let mut rows = rows::rows(model, &machine, &mut grid);
-    let separation = Contact::new(machine.cam(), model.follower).separation();
+    let separation = Contact::new(machine.cam(), model.follower).separation_above(low);
     if let Separation::At { rpm, error, .. } = separation {
         rows.iter_mut().for_each(|row| row.detaches(rpm, error));
     }

@@ -43,7 +43,8 @@ pub enum Separation {
         /// What a measured cam leaves open of that, rad; none of another.
         angle_error: Option<f64>,
     },
-    /// However slow: the spring does not press it on the cam here, or a damper holds back a follower that nothing presses on.
+    /// However slow: the spring does not press it on the cam here, or a damper holds back a follower that nothing presses on. Faster, its
+    /// inertia may press it on for some speeds.
     NotPressed {
         /// Cam angle, rad.
         cam_angle: f64,
@@ -112,18 +113,21 @@ impl<'a> Contact<'a> {
         Least { value: if is_rounding { 0.0 } else { value }, ..least }
     }
 
-    /// What rounding may make of N on a segment: of what does not depend on w, and of what w and w^2 are multiplied by. The angle is
-    /// rounded, too, which moves each derivative of the lift by a part of the next one.
-    fn roundings(&self, segment: usize) -> [f64; 3] {
-        let Follower { mass, damping, stiffness, gravity, rest_position, .. } = self.follower;
+    /// The rounding of c, c' and c'' on a segment, in their units: as their ranges are widened.
+    fn of_lift(&self, segment: usize) -> [f64; 3] {
         let Bounds { lift, slope, curvature, third } = self.cam.segments()[segment].bounds;
         let [lift, slope, curvature] = [lift, slope, curvature].map(|[low, high]| low.abs().max(high.abs()));
-        let terms = [
-            stiffness * (lift + rest_position.abs() + TAU * slope) + mass * gravity.abs(),
-            damping * (slope + TAU * curvature),
-            mass * (curvature + TAU * third),
-        ];
+        // The angle is rounded, too, which moves each derivative by a part of the next one.
+        let terms = [lift + TAU * slope, slope + TAU * curvature, curvature + TAU * third];
         terms.map(|term| tolerance::RANGE_ROUNDING.value * term)
+    }
+
+    /// The rounding of N on a segment: of what does not depend on w, and of what w and w^2 are multiplied by.
+    fn roundings(&self, segment: usize) -> [f64; 3] {
+        let Follower { mass, damping, stiffness, gravity, rest_position, .. } = self.follower;
+        let [lift, slope, curvature] = self.of_lift(segment);
+        let kept = stiffness * rest_position.abs() + mass * gravity.abs();
+        [stiffness * lift + tolerance::RANGE_ROUNDING.value * kept, damping * slope, mass * curvature]
     }
 
     /// The largest N at a speed, rpm.
@@ -131,15 +135,21 @@ impl<'a> Contact<'a> {
         self.constant() - self.cam.least(self.weights(angular_velocity(rpm)).map(|weight| -weight)).value
     }
 
-    /// The least angular velocity from which on N is negative where the cam's lift is this, on a segment; infinite where rounding leaves
-    /// none.
-    fn root(&self, segment: usize, lift: &Lift) -> f64 {
+    /// The least angular velocity above `from` from which on N is negative where the cam's lift is this, on a segment; infinite where rounding
+    /// leaves none.
+    ///
+    /// ```text
+    /// N(from + d) = N(from) + (b c' + 2 m c'' from) d + m c'' d^2
+    /// ```
+    fn root(&self, segment: usize, lift: &Lift, from: f64) -> f64 {
         let Follower { mass, damping, .. } = self.follower;
-        let (still, linear, square) = (self.force(lift, 0.0), damping * lift.slope, mass * lift.curvature);
-        let rounding = self.roundings(segment);
+        let about = |[still, linear, square]: [f64; 3]| [still, linear + 2.0 * square * from, square];
+        let [still, linear, square] = about([self.force(lift, from), damping * lift.slope, mass * lift.curvature]);
+        let [of_still, of_linear, of_square] = about(self.roundings(segment));
+        let of_still = of_still + from * (of_linear - from * of_square);
         // What rounding may have made is no root.
-        let beyond = first_root([still + rounding[0], linear + rounding[1], square + rounding[2]]);
-        if beyond.is_finite() { first_root([still.max(0.0), linear, square]).min(beyond) } else { beyond }
+        let beyond = first_root([still + of_still, linear + of_linear, square + of_square]);
+        from + if beyond.is_finite() { first_root([still.max(0.0), linear, square]).min(beyond) } else { beyond }
     }
 
     /// The lowest lift where the follower falls to it: the segment, the angle, rad, and the order n of `c - c_min = a x^n + ...` at a
@@ -147,8 +157,7 @@ impl<'a> Contact<'a> {
     fn bottoms(&self) -> impl Iterator<Item = (usize, f64, usize)> {
         let lowest = self.cam.lowest();
         let is_lowest = move |(index, segment): &(usize, &Segment)| {
-            let above = segment.law.lift(segment.end).value - lowest.value;
-            self.follower.stiffness * above <= self.roundings(*index)[0]
+            segment.law.lift(segment.end).value - lowest.value <= self.of_lift(*index)[0]
         };
         let ends =
             self.cam.segments().iter().enumerate().filter(is_lowest).map(|(index, segment)| (index, segment.end));
@@ -179,7 +188,7 @@ impl<'a> Contact<'a> {
 
     /// The least angular velocity from which on N is negative on the way down to a lowest lift, and the place. With a damper and little that
     /// presses, the place may be nearer to the lowest lift than any angle that is looked at all round.
-    fn first_before(&self, segment: usize, bottom: f64) -> (f64, Least) {
+    fn first_before(&self, segment: usize, bottom: f64, from: f64) -> (f64, Least) {
         /// Halvings of the way: down to the rounding of an angle.
         const HALVINGS: i32 = 48;
         /// Thirds that are left out of the way between three of them.
@@ -191,7 +200,7 @@ impl<'a> Contact<'a> {
         for halving in 0..HALVINGS {
             let before = way * 0.5_f64.powi(halving);
             let found = at(before);
-            let root = self.root(segment, &found.lift);
+            let root = self.root(segment, &found.lift, from);
             if root < best.0 {
                 (best, reach) = ((root, found), before);
             }
@@ -201,7 +210,7 @@ impl<'a> Contact<'a> {
             let third = (high - low) / 3.0;
             let [one, two] = [low + third, high - third].map(|before| {
                 let found = at(before);
-                (self.root(segment, &found.lift), found)
+                (self.root(segment, &found.lift, from), found)
             });
             if one.0 < two.0 {
                 high -= third
@@ -219,21 +228,35 @@ impl<'a> Contact<'a> {
     }
 
     /// Where the follower first leaves the cam.
+    pub fn separation(&self) -> Separation {
+        self.separation_from(0.0)
+    }
+
+    /// Where the follower first leaves the cam above a speed, rpm. A follower that leaves it at a lower speed may be on it again: the inertia
+    /// presses on a follower at the lowest lift, and more so the faster the cam turns.
+    pub fn separation_above(&self, rpm: f64) -> Separation {
+        let first = self.separation();
+        if first.speed() > rpm { first } else { self.separation_from(angular_velocity(rpm)) }
+    }
+
+    /// Where the follower first leaves the cam above an angular velocity, rad/s.
     ///
     /// From the least root among angles close by each other: N at that speed is least somewhere, and 0 there at a lower speed yet,
     /// and so on; each step squares what is left (Dinkelbach 1967).
-    pub fn separation(&self) -> Separation {
+    fn separation_from(&self, from: f64) -> Separation {
         /// Angles that are looked at first.
         const LOOKED: usize = 1440;
         const STEPS: usize = 50;
         if let Some(cam_angle) = self.kink {
             return Separation::Kink { cam_angle };
         }
-        let still = self.least(0.0);
-        if still.value < 0.0 {
-            return Separation::NotPressed { cam_angle: still.angle };
+        let rpm = |omega: f64| omega / TAU * 60.0;
+        let pressed = self.least(rpm(from));
+        if pressed.value < 0.0 {
+            return Separation::NotPressed { cam_angle: pressed.angle };
         }
-        if still.value == 0.0
+        if from == 0.0
+            && pressed.value == 0.0
             && let Some(cam_angle) = self.held_back()
         {
             return Separation::NotPressed { cam_angle };
@@ -245,16 +268,15 @@ impl<'a> Contact<'a> {
             let angle = index as f64 * TAU / LOOKED as f64;
             self.place(self.cam.segment_at(angle), angle)
         });
-        let looked = ends.chain(between).map(|place| (self.root(place.segment, &place.lift), place));
+        let looked = ends.chain(between).map(|place| (self.root(place.segment, &place.lift, from), place));
         // Without a damper nothing but the mass is held back, and that not on the way to rest.
         let damped = (self.follower.damping > 0.0).then(|| self.bottoms()).into_iter().flatten();
-        let before = damped.map(|(segment, bottom, _)| self.first_before(segment, bottom));
+        let before = damped.map(|(segment, bottom, _)| self.first_before(segment, bottom, from));
         let first = looked.chain(before).min_by(|one, other| one.0.total_cmp(&other.0));
         let Some((mut omega, mut at)) = first.filter(|(omega, _)| omega.is_finite()) else { return Separation::Never };
-        let rpm = |omega: f64| omega / TAU * 60.0;
         for _ in 0..STEPS {
             let here = self.least(rpm(omega));
-            let next = self.root(here.segment, &here.lift);
+            let next = self.root(here.segment, &here.lift, from);
             // Not on a dwell, where N may be 0 as well.
             if here.value <= 0.0 && next.is_finite() {
                 at = here;
