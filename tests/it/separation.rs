@@ -76,7 +76,14 @@ fn a_spring_that_is_just_slack_at_the_lowest_lift_lets_go_at_the_top() {
     }
     let preload = found.needs.iter().find(|answer| answer.lever == Lever::Preload).unwrap();
     assert_eq!((preload.value, preload.note.as_str()), (Some(0.0), "as little as there can be will do"));
-    let found = over(&model, [250.0, 330.0], 20.0);
+}
+
+/// `speeds` has the speed of `design`, to the last bit, and ends there what stays on the cam.
+#[test]
+fn speeds_has_the_separation_of_design() {
+    let model = machine(SLACK, &program("cycloidal", 0.0));
+    let Separation::At { rpm, error, .. } = separation(&model) else { panic!() };
+    let found = over(&model, [0.8 * rpm, 1.2 * rpm], 20.0);
     assert_eq!(found.detachment(), Some([rpm, error]));
     let end = found.attractors[0].death.as_ref().unwrap();
     assert_eq!((end.cause.name(), end.rpm, end.bracket), ("detachment", rpm, [rpm - error, rpm + error]));
@@ -113,6 +120,7 @@ fn no_force_on_a_dwell_is_no_separation() {
 /// The curve of detachment is of the place that lets go, not of the dwell, where the force is 0 at every speed. There is no other scale of
 /// time than that of the spring: `w^2` goes with the stiffness.
 #[test]
+#[ignore = "slow"]
 fn the_curve_of_detachment_is_of_the_place_that_lets_go() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("slack.toml");
@@ -194,8 +202,7 @@ fn a_follower_that_nothing_presses_on_is_thrown_off_at_every_speed() {
         assert_eq!(separation(&free(TWO_LOBES)).name(), "at-every-speed");
         let still = TWO_LOBES.replace("[0.0, 0.02]", "[0.0, 0.0]");
         assert_eq!(separation(&free(&still)), Separation::Never);
-        let model = free(TWO_LOBES);
-        let found = over(&model, [250.0, 330.0], 40.0);
+        let found = over(&free(&program("cycloidal", 0.0)), [250.0, 330.0], 40.0);
         let off = found.off_for_good().unwrap();
         assert!(off.words.starts_with("Every start leaves the cam for good"), "{}", off.words);
         assert!(off.shares.len() == found.run && off.shares.iter().all(|off| off.share.value == 1.0));
@@ -206,13 +213,13 @@ fn a_follower_that_nothing_presses_on_is_thrown_off_at_every_speed() {
         "stiffness = 0.0\nrest_position = 0.0\ngravity = -9.81\ndamping = 0.0",
         "stiffness = 1000.0\nrest_position = 0.5\ngravity = 0.0\ndamping = 3.0",
     ] {
-        let text = format!("[follower]\nmass = 0.5\nrestitution = 0.5\n{lines}\n[cam]\n{TWO_LOBES}");
+        let text = format!("[follower]\nmass = 0.5\nrestitution = 0.5\n{lines}\n[cam]\n{}", program("cycloidal", 0.0));
         let found = over(&Model::parse("up.toml", &text).unwrap(), [250.0, 330.0], 40.0);
         assert_eq!(found.off.len(), found.run, "{lines}");
         let document = serde_json::to_value(&found).unwrap();
         assert!(document["off_for_good"]["words"].as_str().unwrap().starts_with("Every start"), "{lines}");
     }
-    assert_eq!(over(&machine(SLACK, TWO_LOBES), [250.0, 330.0], 40.0).off_for_good(), None);
+    assert_eq!(over(&machine(SLACK, &program("cycloidal", 0.0)), [250.0, 330.0], 40.0).off_for_good(), None);
 }
 
 /// A weight that falls upwards takes the follower off a slow cam; the inertia presses it on a faster one at the lowest lift, where
@@ -233,8 +240,6 @@ fn a_follower_that_nothing_presses_on_at_rest_is_on_a_faster_cam() {
         assert_relative_eq!(contact.separation_above(low).speed(), speed, max_relative = 1e-12);
         assert_eq!(stays(&model, low), speed > 0.0, "{low}");
     }
-    let found = over(&model, [1.1 * on, 1.1 * off], 50.0);
-    assert_relative_eq!(found.detachment().unwrap()[0], off, max_relative = 1e-12);
 }
 
 /// The case with its spring pressing by nothing, by little, by much or as it was, and gravity in half of the cases.
