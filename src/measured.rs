@@ -18,8 +18,11 @@ pub struct Measured {
     pub reading: Reading,
     /// The step of the decimal grid that all lifts lie on, m; none where there is none above the rounding of a double.
     pub step_m: Option<f64>,
-    /// The standard deviation of the rows about a smooth motion, m, by generalised cross-validation.
+    /// The standard deviation of the rows about a smooth motion, m, by generalised cross-validation; not a number where it is unknown.
     pub noise_m: f64,
+    /// Why the noise is unknown, of a spline through the rows: no smooth motion could be fitted to them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub noise_unknown: Option<String>,
     /// Rows that are far from where the rows beside them say.
     pub strays: Vec<Stray>,
     /// How far the cam is from a row at most, m.
@@ -38,7 +41,7 @@ pub struct Measured {
     pub dwells_are_found: bool,
     /// Its largest second derivative, m/rad^2.
     pub largest_curvature: f64,
-    /// How far that may be off, m/rad^2.
+    /// How far that may be off, m/rad^2; not a number where the noise is unknown.
     pub curvature_error: f64,
 }
 
@@ -76,10 +79,43 @@ pub struct Likely {
 const TABLES: u64 = 16;
 
 impl Likely {
-    /// Of the cam of a model; none where it is not of a table, or of one with too few rows to tell.
+    /// The accuracy of the cam of a model; none where that is not of a table, or of one with too few rows to tell.
+    ///
+    /// A spline through the rows needs no smoothing: where no smooth motion can be fitted to them, only their noise is unknown.
     pub fn of(model: &Model) -> Result<Option<Self>, ModelError> {
         let Some(profile) = model.table().filter(|table| table.may_be_smoothed()) else { return Ok(None) };
         let own = profile.spline.smoothing();
+        match Self::fitted(model, profile, own) {
+            Err(why) if own.is_none() => Self::unknown(model, profile, &why).map(Some),
+            likely => likely.map(Some),
+        }
+    }
+
+    /// The accuracy of a spline through rows whose noise is unknown.
+    fn unknown(model: &Model, profile: &TableProfile, why: &ModelError) -> Result<Self, ModelError> {
+        let largest = curvatures(&Cam::new(model)?).into_iter().fold(0.0, |most: f64, one| most.max(one.abs()));
+        let reading = Reading::clone(&profile.reading);
+        let measured = Measured {
+            step_m: reading.step.map(|step| reading.in_model.inside(step)),
+            reading,
+            noise_m: f64::NAN,
+            noise_unknown: Some(why.allowed.clone()),
+            strays: strays(profile),
+            largest_distance_m: 0.0,
+            is_noisy: false,
+            is_smoothed: false,
+            corners_deg: Vec::new(),
+            corners_are_found: false,
+            dwells_deg: Vec::new(),
+            dwells_are_found: false,
+            largest_curvature: largest,
+            curvature_error: f64::NAN,
+        };
+        Ok(Self { measured, best: None, closer: None, others: Vec::new() })
+    }
+
+    /// The accuracy by the smoothing spline near the rows.
+    fn fitted(model: &Model, profile: &TableProfile, own: Option<&Smoothing>) -> Result<Self, ModelError> {
         let fitted = fit(model, profile, own.unwrap_or(&Smoothing::default()))?;
         let half_step = profile.reading.half_step();
         let noise = if fitted.noise.is_finite() { fitted.noise } else { 0.0 };
@@ -114,7 +150,7 @@ impl Likely {
             (own, noise, strays(profile)),
             (best.as_ref(), &others),
         );
-        Ok(Some(Self { measured, best, closer, others }))
+        Ok(Self { measured, best, closer, others })
     }
 
     /// How far numbers that depend on the cam may be off: by how far they are from those of the best guess, by twice what they differ
@@ -178,18 +214,20 @@ fn even(table: u64, row: u64) -> f64 {
     (bits >> 11) as f64 / 2.0_f64.powi(52) - 1.0
 }
 
+/// The second derivatives of a cam, m/rad^2, at angles all round.
+fn curvatures(cam: &Cam) -> Vec<f64> {
+    /// Four to a degree, and none at a row of whole degrees.
+    const ANGLES: u32 = 1439;
+    let angle = |part: u32| std::f64::consts::TAU * (f64::from(part) + 0.5) / f64::from(ANGLES);
+    (0..ANGLES).map(|part| cam.lift(angle(part)).curvature).collect()
+}
+
 fn measured(
     (reading, own_cam): (Reading, &Cam),
     fitted: &Fit,
     (own, noise_m, strays): (Option<&Smoothing>, f64, Vec<Stray>),
     (best, others): (Option<&LikelyCam>, &[LikelyCam]),
 ) -> Measured {
-    /// Angles at which second derivatives are compared: four to a degree, and none at a row of whole degrees.
-    const ANGLES: u32 = 1439;
-    let curvatures = |cam: &Cam| -> Vec<f64> {
-        let angle = |part: u32| std::f64::consts::TAU * (f64::from(part) + 0.5) / f64::from(ANGLES);
-        (0..ANGLES).map(|part| cam.lift(angle(part)).curvature).collect()
-    };
     let own_curvatures = curvatures(own_cam);
     let mut curvature_error = 0.0_f64;
     if let Some((_, best)) = best {
@@ -208,6 +246,7 @@ fn measured(
         step_m: reading.step.map(|step| reading.in_model.inside(step)),
         reading,
         noise_m,
+        noise_unknown: None,
         strays,
         largest_distance_m: if own.is_some() { fitted.distance() } else { 0.0 },
         is_noisy: best.is_some(),
@@ -290,6 +329,8 @@ pub enum Openness {
     Told(Box<Measured>),
     /// Of a table of too many rows to be told at once: what its rows spread by, m.
     Noise(f64),
+    /// No smooth motion could be fitted to the rows, for this reason.
+    Unknown(String),
 }
 
 impl Openness {
@@ -305,7 +346,9 @@ impl Openness {
         if profile.rows.len() > MOST_ROWS {
             return Ok(Some(Self::Noise(spread)));
         }
-        let measured = Likely::of(model)?.map(|likely| likely.measured).filter(|cam| cam.is_noisy);
-        Ok(measured.map(|measured| Self::Told(Box::new(measured))))
+        Ok(Likely::of(model)?.and_then(|Likely { measured, .. }| match measured.noise_unknown {
+            Some(why) => Some(Self::Unknown(why)),
+            None => measured.is_noisy.then(|| Self::Told(Box::new(measured))),
+        }))
     }
 }

@@ -145,6 +145,17 @@ impl Cam {
     }
 }
 
+impl Segment {
+    /// The lowest order of a derivative that is not 0 at an angle, rad, where the slope is; none where the lift stays, as far as can be told.
+    pub(crate) fn order_at(&self, angle: f64) -> Option<usize> {
+        let (jet, sizes, terms) = (self.law.jet(angle), sizes(self), self.law.terms(angle));
+        (2..=Jet::HIGHEST_JUMP).find(|order| {
+            let rounding = tolerance::JET_ROUNDING.value * (sizes[order + 1] + terms.0[*order].abs());
+            jet.0[*order].abs() > tolerance::CAM_JUMP.value * sizes[*order] + rounding
+        })
+    }
+}
+
 /// The largest derivative of each order over a segment: of eight samples, so that zeros in step with them hide none.
 fn sizes(segment: &Segment) -> [f64; Jet::ORDERS] {
     const SAMPLES: usize = 8;

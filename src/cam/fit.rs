@@ -87,6 +87,10 @@ pub(crate) fn fit(model: &Model, profile: &TableProfile, smoothing: &Smoothing) 
     let weighed = |layout: &Layout| {
         weight(model, profile, smoothing.tolerance, &|weight| layout.smoothed(&lifts, 10.0_f64.powf(weight)))
     };
+    // Dwells that were found and leave no motion between them are none: the rows are so rough that all of them look alike.
+    if smoothing.dwells_deg.is_none() && layout(&features).is_err() {
+        features.dwells.clear();
+    }
     let mut laid = layout(&features)?;
     let mut weight = weighed(&laid)?;
     if (smoothing.corners_deg.is_none() || smoothing.are_near) && !features.corners.is_empty() {

@@ -72,9 +72,9 @@ fn of_segment(index: usize, segment: &Segment, weights: [f64; 4]) -> Least {
     };
     let looked: Vec<Least> = (0..=count).map(|place| at(angle(place))).collect();
     let mut least = if looked[count].value < looked[0].value { looked[count] } else { looked[0] };
-    // The turn of a cosine begins and ends anywhere: the least may be between either end and its neighbour.
-    let places = if waves > 0 { 0..=count } else { 1..=count - 1 };
-    for place in places {
+    // The least may be between either end and its neighbour: the turn of a cosine begins and ends anywhere, and a damper pulls right
+    // before a dwell.
+    for place in 0..=count {
         let [before, here, after] = [looked[place.saturating_sub(1)], looked[place], looked[count.min(place + 1)]];
         if here.value <= before.value && here.value <= after.value && falls(before.angle) && !falls(after.angle) {
             let ends = [before.angle, after.angle];

@@ -8,7 +8,7 @@ use crate::corner::CornerImpact;
 use crate::model::{Model, ModelError};
 use crate::orbit::branch::Branch;
 use crate::simulate::{Machine, angular_velocity};
-use crate::study::attractors::detachment;
+use crate::study::design::contact::Contact;
 use crate::study::speeds::usual_range;
 use crate::study::verify::{External, Verification, verify};
 
@@ -152,14 +152,13 @@ impl Subject {
         } else if paper {
             Ok(Shown::PAPERS.0)
         } else {
-            match detachment(model, [slowest, fastest]) {
-                Ok(Some(rpm)) => Ok(Shown::slow(rpm)),
-                Ok(None) => Err(format!(
+            let leaves = Contact::new(&cam, model.follower).separation().speed();
+            (slowest < leaves && leaves <= fastest).then(|| Shown::slow(leaves)).ok_or_else(|| {
+                format!(
                     "from {slowest} to {fastest} rpm there is no speed at which the follower begins to leave the cam: it leaves it at \
                      each, or at none"
-                )),
-                Err(error) => Err(error.to_string()),
-            }
+                )
+            })
         };
         let fast = match &findings {
             Ok(_) if paper => Ok(Shown::PAPERS.1),

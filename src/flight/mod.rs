@@ -99,6 +99,12 @@ impl Flight {
         self.omega0_squared
     }
 
+    /// g, m/s^2.
+    #[inline]
+    pub(crate) fn gravity(&self) -> f64 {
+        self.gravity
+    }
+
     /// The frequency of the free oscillation, rad/s, or `None` if there is none.
     pub fn damped_frequency(&self) -> Option<f64> {
         match self.regime {

@@ -151,9 +151,7 @@ impl<'a> Settling<'a> {
             if motion.contact && self.stays(*motion)? {
                 return Ok(Run::Stays);
             }
-            if self.floats
-                && motion.state.position > self.top
-                && self.machine.flight().fall_to(self.top, motion.state).is_none()
+            if self.is_off_for_good(motion)
                 && let Some(orbit) = free(self.machine, motion.state)
             {
                 return Ok(Run::Arrives(orbit));
@@ -180,6 +178,13 @@ impl<'a> Settling<'a> {
             }
         }
         Ok(Run::Wanders)
+    }
+
+    /// Whether the follower is off the cam for good: its flight never comes down to the top of the cam.
+    pub fn is_off_for_good(&self, motion: &Motion) -> bool {
+        self.floats
+            && motion.state.position > self.top
+            && self.machine.flight().fall_to(self.top, motion.state).is_none()
     }
 
     /// What a run from `motion` ends on, if it is waited for so many revolutions, and from a release on as long as for any.

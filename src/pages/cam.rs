@@ -54,6 +54,10 @@ pub(crate) fn measured(measured: &Measured) -> Vec<Block> {
     let told =
         |length: f64| words![(measured.reading.in_model.told(length), Digits::Aligned(2)), " ", &measured.reading.unit];
     let mut blocks = vec![Block::paragraph(format!("table: {}", words::reading(&measured.reading)))];
+    if let Some(why) = &measured.noise_unknown {
+        blocks.push(Block::paragraph(words::noise_unknown(why)));
+        return blocks;
+    }
     let accuracy = match measured.step_m {
         Some(_) => words::accuracy(measured),
         None => "lifts with all digits of a double".to_owned(),

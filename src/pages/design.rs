@@ -8,6 +8,7 @@ use crate::show::Paged;
 use crate::show::block::{Block, Column, Mark, Span, Table, Words, words};
 use crate::show::digits::{Digits, with_error};
 use crate::show::page::text;
+use crate::show::words::noise_unknown;
 use crate::study::design::contact::Separation;
 use crate::study::design::needs::Answer;
 use crate::study::design::{Design, Pair, Trade};
@@ -25,6 +26,8 @@ impl Paged for Design {
         let mut page = vec![title];
         page.extend(source(&self.model.source));
         page.extend([Block::Gap, Block::paragraph(separation(self))]);
+        let unknown = self.measured.as_ref().and_then(|measured| measured.noise_unknown.as_deref());
+        page.extend(unknown.map(|why| Block::paragraph(noise_unknown(why))));
         if let Some(words) = margin(self) {
             page.push(Block::paragraph(words));
         }
@@ -62,7 +65,11 @@ pub(crate) fn separation(found: &Design) -> Words {
             ],
         },
         Separation::NotPressed { cam_angle } => {
-            words!["The follower leaves the cam at every speed: nothing presses it on at ", degrees(cam_angle), " deg."]
+            words![
+                "The follower leaves the cam however slow that turns: nothing presses it on at ",
+                degrees(cam_angle),
+                " deg."
+            ]
         }
         Separation::Kink { cam_angle } => words![
             "The follower leaves the cam at every speed: the cam's velocity jumps at ",

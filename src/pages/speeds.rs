@@ -25,6 +25,7 @@ impl Paged for Speeds {
         for attractor in &self.attractors {
             page.extend(rests(attractor).map(Block::paragraph));
         }
+        page.extend(self.off_for_good().map(|off| Block::paragraph(off.words)));
         page.push(Block::paragraph(how(self)));
         page.extend(self.measured.iter().filter_map(cam));
         page.extend(self.failed.iter().map(|failed| {
@@ -75,10 +76,9 @@ fn open(found: &Speeds, end: &Change) -> Option<f64> {
 
 /// Where the follower first leaves the cam.
 pub(crate) fn detachment(found: &Speeds) -> Words {
-    let stays = found.attractors.iter().any(|attractor| attractor.kind == crate::orbit::ending::Kind::Stays);
-    match found.detachment {
-        Some(rpm) => measured_speed(rpm, Digits::Fixed(6), found.detachment_error, found.measured.as_ref()),
-        None if stays => "no speed in between".into(),
+    match found.detachment() {
+        Some([rpm, _]) => measured_speed(rpm, Digits::Fixed(6), found.detachment_error(), found.measured.as_ref()),
+        None if found.separation.speed() > found.rpm[1] => "no speed in between".into(),
         None => format!("{} rpm already, or below", found.rpm[0]).into(),
     }
 }
@@ -115,6 +115,9 @@ pub(crate) fn how(found: &Speeds) -> String {
 
 /// What errors stand for, where the cam is measured.
 pub(crate) fn cam(measured: &Measured) -> Option<Block> {
+    if let Some(why) = &measured.noise_unknown {
+        return Some(Block::paragraph(words::noise_unknown(why)));
+    }
     let words = format!(
         "± is what the cam leaves open, {}: how far the event moves among cams that are as likely. It is ? where that is not known: \
          the event is not there on each of those cams, or runs could not tell.",

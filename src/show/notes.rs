@@ -4,7 +4,7 @@ use crate::cam::Stray;
 use crate::measured::{Openness, Remarks};
 use crate::model::{Model, ModelError, TableProfile};
 use crate::show::digits::Digits;
-use crate::show::words::{accuracy, known_to};
+use crate::show::words::{accuracy, known_to, noise_unknown};
 
 /// What is odd about a model, at speeds, rpm, that are asked for or those of `[study]`: numbers in unlikely units, rows that are slips, what
 /// was given and the rows contradict.
@@ -66,6 +66,7 @@ pub fn as_drawn(model: &Model) -> Result<Option<String>, ModelError> {
             let percent = Digits::Aligned(2).text(100.0 * cam.curvature_error / cam.largest_curvature);
             (accuracy(&cam), format!("to {percent} % of its largest value"))
         }
+        Openness::Unknown(why) => return Ok(Some(noise_unknown(&why))),
         Openness::Noise(spread) => (known_to(&profile.reading, spread), "as far as `cam` tells".into()),
     };
     Ok(Some(format!(

@@ -307,6 +307,14 @@ pub(crate) fn range(ends: [f64; 2], digits: Digits) -> String {
     }
 }
 
+/// That the noise of the rows of a table is unknown, and why.
+pub(crate) fn noise_unknown(why: &str) -> String {
+    format!(
+        "How far the rows are from a smooth motion is unknown, since none could be fitted to them (it {why}). The cam is the spline through \
+         the rows; what is said of it has no ± of the table."
+    )
+}
+
 /// What a table of lifts is not exact for.
 pub(crate) fn accuracy(measured: &Measured) -> String {
     let reading = &measured.reading;

@@ -180,7 +180,7 @@ impl Machine {
         let velocity = if is_none { cam_velocity } else { cam_velocity + relative_velocity };
         motion.state = State { position: lift.value, velocity };
         (motion.gap, motion.lift) = (Some(0.0), Some(*lift));
-        motion.contact = is_none && self.lifting(lift) <= 0.0;
+        motion.contact = is_none && !self.lets_go(lift);
     }
 
     /// How far rounding may move the gap of a follower at `position`, m.

@@ -33,6 +33,14 @@ impl Machine {
         self.flight.acceleration(on_cam(lift, omega)) - omega * omega * lift.curvature
     }
 
+    /// Whether the cam lets go of a follower that goes with it: the acceleration of the gap is above 0 by more than rounding. No force at all
+    /// is enough to stay.
+    #[inline]
+    pub(super) fn lets_go(&self, lift: &Lift) -> bool {
+        let (_, rounding) = self.lifting_rate(lift);
+        self.lifting(lift) > rounding
+    }
+
     /// The time derivative of [`Machine::lifting`] along the cam, m/s^3, and how far rounding may move `lifting`, m/s^2.
     pub(crate) fn lifting_rate(&self, lift: &Lift) -> (f64, f64) {
         let omega = self.angular_velocity;
@@ -41,7 +49,9 @@ impl Machine {
         let terms = self.flight.force(lift.value).abs()
             + w * lift.value.abs()
             + 2.0 * zeta * omega * lift.slope.abs()
-            + omega * omega * lift.curvature.abs();
+            + omega * omega * lift.curvature.abs()
+            // A spring that carries the weight leaves nothing of it.
+            + self.flight.gravity().abs();
         (rate, tolerance::GAP_ROUNDING.value * terms)
     }
 
@@ -126,7 +136,7 @@ impl Machine {
             motion.gap = gap;
             return Ok(step);
         }
-        if self.lifting(&lift) > 0.0 {
+        if self.lets_go(&lift) {
             return Ok(self.let_go(motion, &lift, after, observer));
         }
         motion.state = after;
@@ -145,7 +155,7 @@ impl Machine {
     pub fn rests(&self) -> Result<Vec<[f64; 2]>, SimulateError> {
         let mut rests: Vec<[f64; 2]> = Vec::new();
         let mut from = None;
-        let lifts = |segment: &Segment| self.lifting(&segment.law.lift(segment.start)) > 0.0;
+        let lifts = |segment: &Segment| self.lets_go(&segment.law.lift(segment.start));
         let ends =
             |segment: &Segment, entry: &Entry| entry.slope_jump != 0.0 || entry.lift_step != 0.0 || lifts(segment);
         let segments = self.cam().segments();
@@ -157,7 +167,6 @@ impl Machine {
                 rests.push([begun, angle]);
                 from = None;
             }
-            // No force at all is enough to stay.
             from = from.or((!lifts(segment)).then_some(angle));
             loop {
                 let sign = if from.is_some() { 1.0 } else { -1.0 };
@@ -198,6 +207,10 @@ impl Machine {
         let omega = self.angular_velocity;
         let (w, zeta) = (self.flight.omega0_squared(), self.flight.zeta());
         let bounds = &segment.bounds;
+        // On a dwell the force is what it is where that begins.
+        if bounds.slope == [0.0; 2] {
+            return Ok(None);
+        }
         // The whole segment at once: each term at its largest.
         let end = usize::from(sign < 0.0);
         let forces = bounds.lift.map(|lift| sign * self.flight.force(lift));

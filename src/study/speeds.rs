@@ -15,9 +15,9 @@ use crate::progress::Watch;
 use crate::simulate::{EventKind, Machine, SimulateError, angular_velocity};
 use crate::study::attractors::{
     Attractors, AttractorsError, Cause, Change, Grid, Here, Part, Resolution, Row, Wandering, attractors,
-    detachment_near,
 };
-use crate::study::design::contact::Contact;
+use crate::study::design::contact::{Contact, Separation};
+use crate::study::design::known;
 use crate::study::machine;
 
 /// What a machine does over a range of speeds: the document of `speeds --json`.
@@ -33,16 +33,18 @@ pub struct Speeds {
     pub starts: usize,
     /// Whether runs began on the stable orbits of two impacts in one revolution, too.
     pub two_impacts: bool,
-    /// Where the follower first leaves the cam, rpm; `None` where it never does, or does so at the lowest speed already.
-    pub detachment: Option<f64>,
-    /// How far a measured cam may have moved that, rpm.
-    pub detachment_error: Option<f64>,
+    /// Where the follower first leaves the cam above the lowest speed, by the force between them; its error has what a measured cam leaves open.
+    pub separation: Separation,
     /// How well the cam is known, if it is measured.
     pub measured: Option<Measured>,
     /// The attractors, by rising speed.
     pub attractors: Vec<Attractor>,
     /// Where there are several.
     pub coexistence: Vec<Coexistence>,
+    /// Speeds at which starts leave the cam for good, by rising speed, and how many do.
+    pub off: Vec<Off>,
+    /// How many speeds of the range were run.
+    pub run: usize,
     /// Speeds at which nothing, or not every start, could be run.
     pub failed: Vec<Failed>,
 }
@@ -56,13 +58,34 @@ document!(Speeds as it {
     starts: it.starts,
     two_impacts: it.two_impacts,
     missed_below_share: it.missed(),
-    detachment_rpm: it.detachment,
-    detachment_error_rpm if_any: it.detachment_error,
+    detachment_rpm: it.detachment().map(|[rpm, _]| rpm),
+    detachment_error_rpm if_any: it.detachment_error(),
     measured if_any: it.measured,
     attractors: it.attractors,
     coexistence: it.coexistence,
+    off_for_good if_any: it.off_for_good(),
     failed: it.failed,
 });
+
+/// The share of the sample's starts that leave the cam for good at a speed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Off {
+    /// rpm.
+    pub rpm: f64,
+    /// Their share.
+    pub share: Estimate,
+}
+
+document!(Off as it { speed_rpm: it.rpm, share: it.share.value, error: it.share.error });
+
+/// Which starts leave the cam for good: a flight that never comes down to it again ends on no attractor that has impacts.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct OffForGood {
+    /// In a sentence.
+    pub words: String,
+    /// At each speed at which there are any.
+    pub shares: Vec<Off>,
+}
 
 /// An attractor over a range of speeds.
 #[derive(Clone, Debug)]
@@ -174,9 +197,37 @@ impl Speeds {
     pub fn missed(&self) -> f64 {
         (HIT / self.starts as f64).min(1.0)
     }
-}
 
-impl Speeds {
+    /// Which starts leave the cam for good, if any do.
+    pub fn off_for_good(&self) -> Option<OffForGood> {
+        let ([first, .., last] | [first @ last]) = self.off.as_slice() else { return None };
+        let all = self.off.iter().filter(|off| off.share.value == 1.0).count();
+        let words = match (all, self.off.len()) {
+            (all, _) if all == self.run => {
+                "Every start leaves the cam for good, at every speed that was run: nothing brings the follower back."
+                    .into()
+            }
+            (_, some) => format!(
+                "Starts leave the cam for good at {some} of {} speeds, {} to {} rpm: all of them at {all}. Nothing brings the follower back.",
+                self.run, first.rpm, last.rpm
+            ),
+        };
+        Some(OffForGood { words, shares: self.off.clone() })
+    }
+
+    /// The speed at which the follower first leaves the cam, and how far that may be off, rpm; none outside of the range, or where there is no
+    /// such speed.
+    pub fn detachment(&self) -> Option<[f64; 2]> {
+        let Separation::At { rpm, error, .. } = self.separation else { return None };
+        (self.rpm[0] <= rpm && rpm <= self.rpm[1]).then_some([rpm, error])
+    }
+
+    /// How far a measured cam may have moved the detachment, rpm; none of another cam, or where that is not known.
+    pub fn detachment_error(&self) -> Option<f64> {
+        Measured::noisy(&self.measured)?;
+        self.detachment().map(|[_, error]| error).filter(|error| error.is_finite())
+    }
+
     /// The fastest impact that was seen on an attractor, m/s relative to the cam, and at which speed, rpm.
     pub fn hardest(&self) -> Option<[f64; 2]> {
         let all = self.attractors.iter().flat_map(|attractor| &attractor.at);
@@ -229,22 +280,20 @@ pub fn speeds(
     resolution: Resolution,
     watch: &dyn Watch,
 ) -> Result<Speeds, AttractorsError> {
-    let Attractors { grid, mut rows, coexistence, detachment, .. } = attractors(model, range, resolution, watch)?;
+    let Attractors { grid, mut rows, coexistence, separation, .. } = attractors(model, range, resolution, watch)?;
     let lowest = machine(model, range[0])?;
     watch.at("what the measured cam leaves open", 0, 0);
     let likely = Likely::of(model)?;
     let noisy = likely.as_ref().filter(|likely| likely.best.is_some());
+    let separation = known(separation, noisy);
     if let Some(likely) = noisy {
         rows.par_iter_mut().for_each(|row| {
-            let errors = [0, 1].map(|side| error(&lowest, likely, row, side, &grid));
+            let errors = [0, 1].map(|side| error(&lowest, (likely, separation), row, side, &grid));
             for (change, error) in row.ends.iter_mut().zip(errors) {
                 change.iter_mut().for_each(|change| change.error = error);
             }
         });
     }
-    let first = |rpm: f64| {
-        noisy?.error([rpm], |model, cam| detachment_near(model, cam, rpm).map(|rpm| [rpm])).map(|[error]| error)
-    };
     let is_inside = |rpm: f64| range[0] <= rpm && rpm <= range[1];
     let attractor = |(index, row): (usize, &Row)| {
         let at = row.at.iter().filter_map(|(place, part)| {
@@ -270,6 +319,9 @@ pub fn speeds(
             at,
         }
     };
+    let run = || grid.iter().filter_map(|found| found.as_ref().ok()).filter(|here| is_inside(here.rpm));
+    let off = run().filter(|here| here.off_for_good > 0);
+    let off = off.map(|here| Off { rpm: here.rpm, share: Estimate::share(here.off_for_good, here.sampled) }).collect();
     let failed = |found: &Result<Here, (f64, SimulateError)>| {
         let (speed_rpm, starts, error) = match found {
             Err((rpm, error)) => (*rpm, None, *error),
@@ -283,8 +335,9 @@ pub fn speeds(
         step: resolution.step.rpm(),
         starts: resolution.starts,
         two_impacts: resolution.two_impacts,
-        detachment,
-        detachment_error: detachment.and_then(first),
+        separation,
+        off,
+        run: run().count(),
         measured: likely.map(|likely| likely.measured),
         attractors: rows.par_iter().enumerate().map(attractor).collect(),
         coexistence: coexistence
@@ -301,7 +354,13 @@ pub fn speeds(
 
 /// How far a measured cam may have moved what an attractor begins or ends with, rpm: by the event's equations, or by runs where it is
 /// known by runs.
-fn error(machine: &Machine, likely: &Likely, row: &Row, side: usize, grid: &Grid) -> Option<f64> {
+fn error(
+    machine: &Machine,
+    (likely, separation): (&Likely, Separation),
+    row: &Row,
+    side: usize,
+    grid: &Grid,
+) -> Option<f64> {
     let change = row.ends[side].as_ref()?;
     let (rpm, speed) = (change.rpm, angular_velocity(change.rpm));
     let machine = machine.at_speed(speed);
@@ -310,7 +369,11 @@ fn error(machine: &Machine, likely: &Likely, row: &Row, side: usize, grid: &Grid
         likely.error([rpm], |model, cam| moved(model, cam).map(|rpm| [rpm])).map(|[error]| error)
     };
     match (change.cause, event) {
-        (Cause::Detachment, _) => by_equations(&|model, cam| detachment_near(model, cam, rpm)),
+        // One speed has one error.
+        (Cause::Detachment, _) => match separation {
+            Separation::At { error, .. } => Some(error).filter(|error| error.is_finite()),
+            _ => None,
+        },
         (_, Some(event)) => by_equations(&|model, cam| event.moved(model, cam)),
         (Cause::Runs, None) => likely
             .error_by_runs(rpm, |model, cam| row.moved(&Machine::new(cam.clone(), &model.follower, speed), grid, side)),

@@ -78,7 +78,7 @@ fn a_ball_on_a_table_has_the_motions_of_the_textbook_from_any_range() {
     assert_abs_diff_eq!(flip, 978.740280, epsilon = 1e-6);
     for (range, step) in [([500.0, 1400.0], 50.0), ([530.0, 1000.0], 20.0), ([550.0, 960.0], 50.0)] {
         let found = found(&ball(), range, step, 24);
-        assert_relative_eq!(found.detachment.unwrap(), detachment, max_relative = 1e-12);
+        assert_relative_eq!(found.detachment().unwrap()[0], detachment, max_relative = 1e-12);
         let one = periodic(&found, (1, 1)).unwrap();
         let birth = one.birth.as_ref().unwrap();
         assert_eq!(birth.cause, Cause::Fold);

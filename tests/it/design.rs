@@ -285,8 +285,7 @@ fn what_cannot_be_answered_is_told() {
     assert_eq!((output.status.code(), path.exists()), (Some(2), false), "{}", text(output.stderr));
 }
 
-/// Of a machine whose cam stays at its lowest lift and that nothing else presses, any preload keeps the follower on it to some speed: the answer
-/// is that, at once. And where nothing presses at all, a run on the stay makes no progress, and the other numbers are answered.
+/// A machine whose cam stays at its lowest lift and that nothing else presses needs no preload to some speed: the answer is that, at once.
 #[test]
 #[ignore = "slow"]
 fn any_preload_above_none_is_an_answer() {
@@ -312,7 +311,7 @@ fn any_preload_above_none_is_an_answer() {
         of(found.needs.iter().find(|answer| answer.lever == Lever::Preload).unwrap());
     };
     preload("no separation to 3000 rpm", &|found| {
-        assert_eq!((found.value, found.note.as_str()), (Some(0.0), "any above 0 will do"), "{found:?}");
+        assert_eq!((found.value, found.note.as_str()), (Some(0.0), "as little as there can be will do"), "{found:?}");
     });
     preload("energy below 0.1 J to 5500 rpm", &|found| {
         assert!(found.value.is_some_and(|value| (400.0..480.0).contains(&value)), "{found:?}");

@@ -262,11 +262,11 @@ fn what_is_done_already_has_its_ends() {
     let found = answers(&table, "no separation to 950 rpm");
     let mass = found.iter().find(|it| it.lever == Lever::Mass).unwrap();
     assert_eq!((mass.value, mass.note.as_str()), (None, "no mass above 1.9e-6 kg does it, the others kept"));
-    // Without gravity and preload it is off the cam at rest; with any it stays up to `m w^2 = 2 k`, and none is the least.
+    // Without gravity and preload nothing presses at the lowest lift, which is no separation: it stays up to `m^2 w^2 = 2 k m - b^2`.
     let hung = OWN.model(true, false).with_number("follower.gravity", 0.0).unwrap();
     let found = answers(&hung, "no separation to 500 rpm");
     let preload = found.iter().find(|it| it.lever == Lever::Preload).unwrap();
-    assert_eq!((preload.value, preload.note.as_str()), (Some(0.0), "any above 0 will do"));
+    assert_eq!((preload.value, preload.note.as_str()), (Some(0.0), "as little as there can be will do"));
     // Gravity of its own presses a mass however little the spring does.
     let light = Eccentric { stiffness: 100.0, rest: 0.08, damping: 0.0, ..OWN };
     let found = answers(&light.model(true, false), "no separation to 50 rpm");

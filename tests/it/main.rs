@@ -83,6 +83,7 @@ mod routes;
 mod scales;
 mod second_order;
 mod section_numbers;
+mod separation;
 mod set;
 mod settled;
 mod settling;

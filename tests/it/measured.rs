@@ -10,7 +10,7 @@ use corner_impact::model::{Model, Study};
 use corner_impact::orbit::{PeriodicOrbit, Search};
 use corner_impact::progress::Unwatched;
 use corner_impact::show::Paged;
-use corner_impact::study::attractors::{Cause, Change, Resolution, Step, detachment_near};
+use corner_impact::study::attractors::{Cause, Change, Resolution, Step};
 use corner_impact::study::design::contact::{Contact, Separation};
 use corner_impact::study::design::needs::Answer;
 use corner_impact::study::design::{Asked, design, known};
@@ -112,7 +112,7 @@ fn separation_does_not_hang_on_where_the_rows_fall() {
     for motion in ["cycloidal", "modified-sine", "poly345"] {
         let truth = machine(program(motion, 90.0, 60.0, 60.0)).unwrap();
         let cam = Cam::new(&truth).unwrap();
-        let leaves = detachment_near(&truth, &cam, 4200.0).unwrap();
+        let leaves = first(&truth, &cam);
         for places in [2, 3, 4] {
             for by in [0.0, 0.1, 0.25, 0.5, 0.7, 0.85] {
                 let (found, error) = separation(smoothing(&shifted(&cam, places, by), &json!({})));
@@ -177,12 +177,17 @@ fn a_dwell_that_the_rows_contradict_is_told() {
     }
 }
 
+/// The speed at which the follower first leaves a cam, rpm.
+fn first(model: &Model, cam: &Cam) -> f64 {
+    Contact::new(cam, model.follower).separation().speed()
+}
+
 /// Where the follower first leaves the cam, and how far that may be off.
 fn separation(cam: Value) -> (f64, f64) {
     let model = machine(cam).unwrap();
-    let found = detachment_near(&model, &Cam::new(&model).unwrap(), 3285.0).unwrap();
+    let found = first(&model, &Cam::new(&model).unwrap());
     let likely = Likely::of(&model).unwrap().unwrap();
-    let [error] = likely.error([found], |model, cam| detachment_near(model, cam, found).map(|rpm| [rpm])).unwrap();
+    let [error] = likely.error([found], |model, cam| Some([first(model, cam)])).unwrap();
     (found, error)
 }
 
@@ -199,7 +204,7 @@ fn separation_is_known_to_within_what_is_said() {
     ] {
         let truth = machine(program(motion, span, 13.71, top)).unwrap();
         let cam = Cam::new(&truth).unwrap();
-        let leaves = detachment_near(&truth, &cam, 3000.0).unwrap();
+        let leaves = first(&truth, &cam);
         assert_abs_diff_eq!(leaves, 3285.37, epsilon = 0.02);
         let angle = |model: &Model| {
             let cam = Cam::new(model).unwrap();
@@ -231,7 +236,7 @@ fn separation_is_known_to_within_what_is_said() {
         assert!(leaves - found > 0.01 * leaves && leaves - found <= error, "{motion}, cubic: {found} ± {error}");
         through["rows"] = smoothing(&rounded(&cam, 2), &json!({}))["rows"].clone();
         let model = machine(through).unwrap();
-        let found = detachment_near(&model, &Cam::new(&model).unwrap(), 3285.0).unwrap();
+        let found = first(&model, &Cam::new(&model).unwrap());
         assert!(found < 0.6 * leaves, "{motion}, cubic: {found}");
     }
 }
@@ -1196,4 +1201,76 @@ fn a_corner_impact_of_a_measured_cam_is_as_far_off_as_is_said() {
     let (error, _) = open.error.unwrap();
     assert!((found.at.speed_rpm() - 673.234445).abs() <= error && error < 0.5, "{} {error}", found.at.speed_rpm());
     assert!(open.verdicts.iter().map(|told| told.cams).sum::<usize>() > 10, "{:?}", open.verdicts);
+}
+
+/// Rows at random, of a table that nobody could have measured, from which a spline is drawn all the same.
+fn rough(seed: u64, count: usize) -> Vec<[f64; 2]> {
+    let mut bits = seed;
+    let mut next = || {
+        bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (bits >> 11) as f64 / 2.0_f64.powi(53)
+    };
+    // Angles of an even grid, some of them close together, and lifts of few values.
+    let mut rows: Vec<[f64; 2]> = (0..count)
+        .map(|row| [360.0 * (row as f64 + next().powi(8)) / count as f64, 0.04 + 0.001 * (8.0 * next()).floor()])
+        .collect();
+    if count >= 8 && seed.is_multiple_of(3) {
+        rows[1][0] = rows[0][0] + 1e-3;
+    }
+    rows
+}
+
+/// The noise of rows is known or it is said that it is not; that costs the cam nothing, and no command.
+#[test]
+fn a_spline_through_rough_rows_is_never_refused() {
+    let case = [
+        [84.7859, 0.045562],
+        [115.1225, 0.046744],
+        [132.4371, 0.046842],
+        [161.4759, 0.044638],
+        [182.2986, 0.042219],
+        [182.5445, 0.046409],
+        [251.4643, 0.041071],
+        [287.6182, 0.046922],
+        [287.9566, 0.046354],
+        [290.2375, 0.043765],
+        [304.1736, 0.047985],
+        [335.9606, 0.04194],
+    ];
+    let tables = (0..24).map(|seed| rough(seed, 3 + seed as usize % 12)).chain([case.to_vec()]);
+    let mut told = 0;
+    for rows in tables {
+        for spline in ["cubic", "quintic"] {
+            let cam = json!({ "law": "table", "spline": spline, "unit": "m", "rows": rows });
+            let model = machine(cam).unwrap_or_else(|why| panic!("{why}: {rows:?}"));
+            let likely = Likely::of(&model).unwrap_or_else(|why| panic!("{why}: {rows:?}"));
+            assert_eq!(likely.is_some(), rows.len() >= 12);
+            let Some(likely) = likely else { continue };
+            assert_eq!(likely.measured.noise_unknown.is_some(), likely.measured.noise_m.is_nan(), "{rows:?}");
+            told += usize::from(likely.measured.noise_m.is_finite());
+        }
+    }
+    assert!(told >= 8, "{told}");
+}
+
+/// Two rows so close together that no smooth motion is fitted to them.
+#[test]
+fn a_noise_that_is_unknown_is_said_to_be() {
+    let mut rows: Vec<[f64; 2]> =
+        (0..16).map(|row| [22.5 * f64::from(row), 0.04 + 0.001 * f64::from(row % 5)]).collect();
+    rows[7][0] = rows[6][0] + 1e-9;
+    let model = machine(json!({ "law": "table", "spline": "cubic", "unit": "m", "rows": rows })).unwrap();
+    let measured = Likely::of(&model).unwrap().unwrap().measured;
+    let why = measured.noise_unknown.clone().unwrap();
+    assert!(why.contains("for a spline near them") && measured.noise_m.is_nan() && !measured.is_noisy, "{measured:?}");
+    assert!(measured.largest_curvature > 0.0 && measured.curvature_error.is_nan());
+    let sheet =
+        corner_impact::study::cam::CamSheet::new(&model, &Cam::new(&model).unwrap(), 3).unwrap().text().unwrap();
+    let design =
+        design(&model, &Asked { rpm: Some([10.0, 10.0]), ..Asked::default() }, &Unwatched).unwrap().text().unwrap();
+    let as_drawn = corner_impact::show::notes::as_drawn(&model).unwrap().unwrap();
+    for page in [sheet, design, as_drawn] {
+        let page = page.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(page.contains("How far the rows are from a smooth motion is unknown"), "{page}");
+    }
 }

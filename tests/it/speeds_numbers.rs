@@ -93,7 +93,7 @@ fn where_the_cam_is_left_is_told_within_the_range() {
     // a omega^2 = g of a table that goes up and down by a millimetre.
     let leaves = crate::design_numbers::rpm((9.81_f64 / 0.001).sqrt());
     for (range, is_told) in [([945.0, 947.0], true), ([947.0, 949.0], false), ([942.0, 944.0], false)] {
-        let found = over(&ball(), range, 1.0, 1).unwrap().detachment;
+        let found = speeds(&ball(), range, resolution(1.0, 1), &Unwatched).unwrap().detachment().map(|[rpm, _]| rpm);
         assert_eq!(found.is_some(), is_told, "{range:?}");
         assert!(found.is_none_or(|rpm| (rpm - leaves).abs() < 1e-6), "{found:?}");
     }
@@ -101,7 +101,7 @@ fn where_the_cam_is_left_is_told_within_the_range() {
     let text = "[follower]\nmass = 2.0\nrestitution = 0.5\ndamping = 3.0\nstiffness = 800.0\ngravity = 9.81\nrest_position = 0.25\n\
                 [cam]\nlaw = \"harmonic\"\noffset = 0.1\namplitudes = [0.02]\nphases_deg = [0.0]\n";
     let held = Model::parse("held.toml", text).unwrap();
-    assert_eq!(over(&held, [50.0, 150.0], 50.0, 1).unwrap().detachment, None);
+    assert_eq!(speeds(&held, [50.0, 150.0], resolution(50.0, 1), &Unwatched).unwrap().detachment(), None);
 }
 
 /// A motion that rests at most of the speeds of a grid, and is chaotic at some, is one that rests.

@@ -74,6 +74,11 @@ fn greatest(machine: &Machine, is_wanted: impl Fn(Place) -> bool) -> Option<(f64
     let (cam, segments) = (machine.cam(), machine.cam().segments());
     let mut jumps = vec![false; segments.len()];
     cam.corners().iter().filter(|corner| corner.jump_order <= 2).for_each(|corner| jumps[corner.segment] = true);
+    // On a dwell that a slack spring does not press on it is 0 at every speed.
+    let is_slack = |segment: &Segment| {
+        let lift = segment.law.lift(segment.start);
+        segment.bounds.slope == [0.0; 2] && machine.lifting(&lift).abs() <= machine.lifting_rate(&lift).1
+    };
     let mut best: Option<(f64, Place)> = None;
     for (index, segment) in segments.iter().enumerate() {
         let at = |part: usize| segment.start + (segment.end - segment.start) * part as f64 / SAMPLES as f64;
@@ -88,10 +93,13 @@ fn greatest(machine: &Machine, is_wanted: impl Fn(Place) -> bool) -> Option<(f64
         // Where it jumps either side may be the greatest; elsewhere segments meet in the middle of a rise or a fall, or at the top of one.
         let next = (index + 1) % segments.len();
         let rises_behind = machine.lifting_rate(&segments[next].law.lift(segments[next].start)).0 > 0.0;
+        if is_slack(segment) {
+            continue;
+        }
         if jumps[index] {
             keep(segment.start, Place { segment: index, cam_angle: segment.start, is_corner: true });
         }
-        if jumps[next] || rises(segment.end) && !rises_behind {
+        if !is_slack(&segments[next]) && (jumps[next] || rises(segment.end) && !rises_behind) {
             keep(segment.end, Place { segment: next, cam_angle: segments[next].start, is_corner: true });
         }
         for part in 0..SAMPLES {

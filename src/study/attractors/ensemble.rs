@@ -64,6 +64,8 @@ pub struct Part {
 pub struct Ensemble {
     /// The motions, in the order of the first start of each.
     pub parts: Vec<Part>,
+    /// The starts whose runs leave the cam for good.
+    pub off_for_good: Vec<usize>,
     /// The runs that were waited for longest.
     pub wandering: Wandering,
     /// The starts whose runs could not go on, and why.
@@ -139,10 +141,13 @@ impl Ensemble {
         let wanders = if exits.is_empty() { told_wandering(settling, &ends, &fates, outlast, watch)? } else { exits };
         // What is left sooner or later is left from each of its rests as well.
         let wanders_on = |ending: &Ending| wandering.left > 0 && is_wandering(ending);
-        let mut ensemble = Self { parts: Vec::new(), wandering, failed };
+        let mut ensemble = Self { wandering, failed, ..Self::default() };
         let mut wanderers = wanders.iter().cycle();
         for (index, end) in ends.into_iter().enumerate() {
             let Some(End { run, mut motion, .. }) = end else { continue };
+            if settling.is_off_for_good(&motion) {
+                ensemble.off_for_good.push(index);
+            }
             let mut wandering_from = None;
             let ending = match run {
                 Run::Arrives(orbit) => Some(Ending::Orbit(orbit)),

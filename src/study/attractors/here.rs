@@ -17,6 +17,8 @@ pub struct Here {
     pub parts: Vec<Part>,
     /// How many starts of the sample were run.
     pub sampled: usize,
+    /// How many of these leave the cam for good.
+    pub off_for_good: usize,
     /// How many were from rest on the cam, one for each place where that lets go of the follower; they follow the sample's.
     pub rests: usize,
     /// The runs that were waited for longest.
@@ -59,9 +61,10 @@ impl Here {
             machine.start_on_cam(angle, 0.0).map(|motion| motion.contact.then_some(motion))
         };
         let count = sampled + rests.len() + known.len();
-        let Ensemble { parts, wandering, failed } =
+        let Ensemble { parts, off_for_good, wandering, failed } =
             Ensemble::of(&settling, patience, count, start, &Unwatched).map_err(|(_, error)| error)?;
-        Ok(Self { rpm, parts, sampled, rests: rests.len(), wandering, failed })
+        let off_for_good = off_for_good.into_iter().filter(|start| *start < sampled).count();
+        Ok(Self { rpm, parts, sampled, off_for_good, rests: rests.len(), wandering, failed })
     }
 
     /// Whether a run has come to a part, from the sample, from rest on the cam or from a neighbouring speed, and not only one

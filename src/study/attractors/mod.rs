@@ -28,9 +28,10 @@ use crate::model::{Model, ModelError};
 use crate::progress::Watch;
 use crate::simulate::{Machine, SimulateError};
 use crate::stop;
+use crate::study::design::contact::{Contact, Separation};
 use crate::study::machine;
 pub use change::{Cause, Change};
-pub use detachment::{detachment, detachment_near};
+pub use detachment::detachment;
 
 pub use ensemble::{Ensemble, Part, Patience, Wandering};
 pub use here::Here;
@@ -123,8 +124,8 @@ pub struct Attractors {
     pub rows: Vec<Row>,
     /// Where there are several.
     pub coexistence: Vec<Coexistence>,
-    /// Where the follower first leaves the cam, rpm; `None` where it never does, or does at the lowest speed already.
-    pub detachment: Option<f64>,
+    /// Where the follower first leaves the cam above the lowest speed, by the force between them.
+    pub separation: Separation,
 }
 
 /// Why a range of speeds cannot be looked through.
@@ -191,14 +192,13 @@ pub fn attractors(
     exchange(&machine, &mut grid);
     watch.at("where each begins and ends", 0, 0);
     let mut rows = rows::rows(model, &machine, &mut grid);
-    let detachment = detachment::between_speeds(&machine, &grid);
-    if let Some(bracket) = detachment {
-        rows.iter_mut().for_each(|row| row.detaches(bracket));
+    let separation = Contact::new(machine.cam(), model.follower).separation_above(low);
+    if let Separation::At { rpm, error, .. } = separation {
+        rows.iter_mut().for_each(|row| row.detaches(rpm, error));
     }
     rows.retain_mut(|row| row.cut(range));
     let coexistence = coexistence(&rows, &grid);
-    let detachment = detachment.map(|[_, off]| off).filter(|rpm| low <= *rpm && *rpm <= high);
-    Ok(Attractors { range, grid, rows, coexistence, detachment })
+    Ok(Attractors { range, grid, rows, coexistence, separation })
 }
 
 /// Runs on, at each speed, what its neighbours have and it has not, until that finds nothing new.

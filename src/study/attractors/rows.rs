@@ -316,15 +316,15 @@ impl Row {
         counts.into_iter().max_by_key(|(_, count)| *count).map_or(Kind::Periodic, |(kind, _)| kind)
     }
 
-    /// What is told of where it ends by runs, if that is where the follower leaves the cam: `bracket` holds the speed, rpm.
-    pub(super) fn detaches(&mut self, bracket: [f64; 2]) {
-        let rpm = bracket[1];
+    /// Gives an end that is known by runs the speed at which the follower leaves the cam, rpm, and its rounding, if that is in the bracket.
+    pub(super) fn detaches(&mut self, rpm: f64, error: f64) {
         for (end, own) in self.ends.iter_mut().zip(&mut self.rpm) {
             if let Some(change) = end
                 && change.cause == Cause::Runs
-                && change.bracket[0] <= rpm
-                && bracket[0] <= change.bracket[1]
+                && change.bracket[0] <= rpm + error
+                && rpm - error <= change.bracket[1]
             {
+                let bracket = [rpm - error, rpm + error];
                 *change = Change { rpm, bracket, cause: Cause::Detachment, point: None, error: None };
                 *own = rpm;
             }

@@ -6,11 +6,14 @@
 //! N(theta, w) = m w^2 c'' + b w c' + k (c - rest_position) + m g
 //! ```
 //!
-//! No run is made: this is a second route to the detachment that `speeds` finds by runs.
+//! The follower separates where N would have to be negative: the cam cannot pull. A force of 0 separates nothing, as on a dwell that a slack
+//! spring does not press on. Rounding of N counts as 0.
+//!
+//! No run is made. `speeds` takes the speed from here; its runs look whether the follower stays, and tests compare the two.
 
 use std::f64::consts::TAU;
 
-use crate::cam::{Cam, Least, Lift};
+use crate::cam::{Bounds, Cam, Least, Lift, Segment};
 use crate::model::Follower;
 use crate::simulate::angular_velocity;
 use crate::tolerance;
@@ -40,7 +43,8 @@ pub enum Separation {
         /// What a measured cam leaves open of that, rad; none of another.
         angle_error: Option<f64>,
     },
-    /// However slow: the spring does not press it on the cam here.
+    /// However slow: the spring does not press it on the cam here, or a damper holds back a follower that nothing presses on. Faster, its
+    /// inertia may press it on for some speeds.
     NotPressed {
         /// Cam angle, rad.
         cam_angle: f64,
@@ -99,10 +103,31 @@ impl<'a> Contact<'a> {
         [stiffness, damping * omega, mass * omega * omega, 0.0]
     }
 
-    /// Where N is least at a speed, rpm.
+    /// The least N at a speed, rpm, and where it is; 0 where it is rounding.
     pub fn least(&self, rpm: f64) -> Least {
-        let least = self.cam.least(self.weights(angular_velocity(rpm)));
-        Least { value: least.value + self.constant(), ..least }
+        let omega = angular_velocity(rpm);
+        let least = self.cam.least(self.weights(omega));
+        let value = least.value + self.constant();
+        let [still, linear, square] = self.roundings(least.segment);
+        let is_rounding = value.abs() <= still + omega * (linear + omega * square);
+        Least { value: if is_rounding { 0.0 } else { value }, ..least }
+    }
+
+    /// The rounding of c, c' and c'' on a segment, in their units: as their ranges are widened.
+    fn of_lift(&self, segment: usize) -> [f64; 3] {
+        let Bounds { lift, slope, curvature, third } = self.cam.segments()[segment].bounds;
+        let [lift, slope, curvature] = [lift, slope, curvature].map(|[low, high]| low.abs().max(high.abs()));
+        // The angle is rounded, too, which moves each derivative by a part of the next one.
+        let terms = [lift + TAU * slope, slope + TAU * curvature, curvature + TAU * third];
+        terms.map(|term| tolerance::RANGE_ROUNDING.value * term)
+    }
+
+    /// The rounding of N on a segment: of what does not depend on w, and of what w and w^2 are multiplied by.
+    fn roundings(&self, segment: usize) -> [f64; 3] {
+        let Follower { mass, damping, stiffness, gravity, rest_position, .. } = self.follower;
+        let [lift, slope, curvature] = self.of_lift(segment);
+        let kept = stiffness * rest_position.abs() + mass * gravity.abs();
+        [stiffness * lift + tolerance::RANGE_ROUNDING.value * kept, damping * slope, mass * curvature]
     }
 
     /// The largest N at a speed, rpm.
@@ -110,52 +135,156 @@ impl<'a> Contact<'a> {
         self.constant() - self.cam.least(self.weights(angular_velocity(rpm)).map(|weight| -weight)).value
     }
 
-    /// The least angular velocity at which N is 0 where the cam's lift is this: the smaller positive root of
-    /// `m c'' w^2 + b c' w + (k (c - rest) + m g) = 0`, infinite where there is none.
-    fn root(&self, lift: &Lift) -> f64 {
+    /// The least angular velocity above `from` from which on N is negative where the cam's lift is this, on a segment; infinite where rounding
+    /// leaves none.
+    ///
+    /// ```text
+    /// N(from + d) = N(from) + (b c' + 2 m c'' from) d + m c'' d^2
+    /// ```
+    fn root(&self, segment: usize, lift: &Lift, from: f64) -> f64 {
         let Follower { mass, damping, .. } = self.follower;
-        let (square, linear, still) = (mass * lift.curvature, damping * lift.slope, self.force(lift, 0.0));
-        let root = (linear * linear - 4.0 * square * still).sqrt();
-        // Without a difference of two numbers of one size; no number where the discriminant is negative.
-        let omega = 2.0 * still / (root - linear);
-        if omega > 0.0 { omega } else { f64::INFINITY }
+        let about = |[still, linear, square]: [f64; 3]| [still, linear + 2.0 * square * from, square];
+        let [still, linear, square] = about([self.force(lift, from), damping * lift.slope, mass * lift.curvature]);
+        let [of_still, of_linear, of_square] = about(self.roundings(segment));
+        let of_still = of_still + from * (of_linear - from * of_square);
+        // What rounding may have made is no root.
+        let beyond = first_root([still + of_still, linear + of_linear, square + of_square]);
+        from + if beyond.is_finite() { first_root([still.max(0.0), linear, square]).min(beyond) } else { beyond }
+    }
+
+    /// The lowest lift where the follower falls to it: the segment, the angle, rad, and the order n of `c - c_min = a x^n + ...` at a
+    /// distance x before it.
+    fn bottoms(&self) -> impl Iterator<Item = (usize, f64, usize)> {
+        let lowest = self.cam.lowest();
+        let is_lowest = move |(index, segment): &(usize, &Segment)| {
+            segment.law.lift(segment.end).value - lowest.value <= self.of_lift(*index)[0]
+        };
+        let ends =
+            self.cam.segments().iter().enumerate().filter(is_lowest).map(|(index, segment)| (index, segment.end));
+        let places = ends.chain([(lowest.segment, lowest.angle)]);
+        places.filter_map(|(index, angle)| Some((index, angle, self.cam.segments()[index].order_at(angle)?)))
+    }
+
+    /// Where the follower is held back however slow the cam turns, rad, if it is, of a follower that nothing presses on at the lowest lift.
+    ///
+    /// Without a spring nothing presses it on anywhere; with one it is a damper that may hold it back on the way down to the lowest lift:
+    ///
+    /// ```text
+    /// k = 0    N = w (b c' + m w c'')
+    /// k > 0    N = a x^(n-2) (k x^2 - n b w x + n (n - 1) m w^2)    negative at some x of the size of w where n b^2 > 4 (n - 1) k m
+    /// ```
+    fn held_back(&self) -> Option<f64> {
+        let Follower { mass, damping, stiffness, .. } = self.follower;
+        if stiffness == 0.0 {
+            let least = self.cam.least(if damping > 0.0 { [0.0, 1.0, 0.0, 0.0] } else { [0.0, 0.0, 1.0, 0.0] });
+            return (least.value < 0.0).then_some(least.angle);
+        }
+        let holds = |order: usize| {
+            let n = order as f64;
+            n * damping * damping > 4.0 * (n - 1.0) * stiffness * mass
+        };
+        self.bottoms().find(|(.., order)| holds(*order)).map(|(_, angle, _)| angle)
+    }
+
+    /// The least angular velocity from which on N is negative on the way down to a lowest lift, and the place. With a damper and little that
+    /// presses, the place may be nearer to the lowest lift than any angle that is looked at all round.
+    fn first_before(&self, segment: usize, bottom: f64, from: f64) -> (f64, Least) {
+        /// Halvings of the way: down to the rounding of an angle.
+        const HALVINGS: i32 = 48;
+        /// Thirds that are left out of the way between three of them.
+        const THIRDS: usize = 60;
+        let way = bottom - self.cam.segments()[segment].start;
+        let at = |before: f64| self.place(segment, bottom - before);
+        let mut best = (f64::INFINITY, at(way));
+        let mut reach = way;
+        for halving in 0..HALVINGS {
+            let before = way * 0.5_f64.powi(halving);
+            let found = at(before);
+            let root = self.root(segment, &found.lift, from);
+            if root < best.0 {
+                (best, reach) = ((root, found), before);
+            }
+        }
+        let (mut low, mut high) = (0.5 * reach, (2.0 * reach).min(way));
+        for _ in 0..THIRDS {
+            let third = (high - low) / 3.0;
+            let [one, two] = [low + third, high - third].map(|before| {
+                let found = at(before);
+                (self.root(segment, &found.lift, from), found)
+            });
+            if one.0 < two.0 {
+                high -= third
+            } else {
+                low += third
+            }
+            let nearer = if one.0 < two.0 { one } else { two };
+            best = if nearer.0 < best.0 { nearer } else { best };
+        }
+        best
+    }
+
+    fn place(&self, segment: usize, angle: f64) -> Least {
+        Least { segment, angle, value: f64::NAN, lift: self.cam.segments()[segment].law.lift(angle) }
     }
 
     /// Where the follower first leaves the cam.
+    pub fn separation(&self) -> Separation {
+        self.separation_from(0.0)
+    }
+
+    /// Where the follower first leaves the cam above a speed, rpm. A follower that leaves it at a lower speed may be on it again: the inertia
+    /// presses on a follower at the lowest lift, and more so the faster the cam turns.
+    pub fn separation_above(&self, rpm: f64) -> Separation {
+        let first = self.separation();
+        if first.speed() > rpm { first } else { self.separation_from(angular_velocity(rpm)) }
+    }
+
+    /// Where the follower first leaves the cam above an angular velocity, rad/s.
     ///
     /// From the least root among angles close by each other: N at that speed is least somewhere, and 0 there at a lower speed yet,
     /// and so on; each step squares what is left (Dinkelbach 1967).
-    pub fn separation(&self) -> Separation {
+    fn separation_from(&self, from: f64) -> Separation {
         /// Angles that are looked at first.
         const LOOKED: usize = 1440;
         const STEPS: usize = 50;
         if let Some(cam_angle) = self.kink {
             return Separation::Kink { cam_angle };
         }
-        let still = self.least(0.0);
-        if still.value <= 0.0 {
-            return Separation::NotPressed { cam_angle: still.angle };
-        }
-        let ends = self
-            .cam
-            .segments()
-            .iter()
-            .flat_map(|segment| [segment.law.lift(segment.start), segment.law.lift(segment.end)]);
-        let between = (0..LOOKED).map(|index| self.cam.lift(index as f64 * TAU / LOOKED as f64));
-        let first = ends.chain(between).map(|lift| self.root(&lift)).fold(f64::INFINITY, f64::min);
-        if !first.is_finite() {
-            return Separation::Never;
-        }
         let rpm = |omega: f64| omega / TAU * 60.0;
-        let mut omega = first;
-        let mut at = self.least(rpm(omega));
+        let pressed = self.least(rpm(from));
+        if pressed.value < 0.0 {
+            return Separation::NotPressed { cam_angle: pressed.angle };
+        }
+        if from == 0.0
+            && pressed.value == 0.0
+            && let Some(cam_angle) = self.held_back()
+        {
+            return Separation::NotPressed { cam_angle };
+        }
+        let segments = self.cam.segments().iter().enumerate();
+        let ends =
+            segments.flat_map(|(index, segment)| [segment.start, segment.end].map(|angle| self.place(index, angle)));
+        let between = (0..LOOKED).map(|index| {
+            let angle = index as f64 * TAU / LOOKED as f64;
+            self.place(self.cam.segment_at(angle), angle)
+        });
+        let looked = ends.chain(between).map(|place| (self.root(place.segment, &place.lift, from), place));
+        // Without a damper nothing but the mass is held back, and that not on the way to rest.
+        let damped = (self.follower.damping > 0.0).then(|| self.bottoms()).into_iter().flatten();
+        let before = damped.map(|(segment, bottom, _)| self.first_before(segment, bottom, from));
+        let first = looked.chain(before).min_by(|one, other| one.0.total_cmp(&other.0));
+        let Some((mut omega, mut at)) = first.filter(|(omega, _)| omega.is_finite()) else { return Separation::Never };
         for _ in 0..STEPS {
-            let next = self.root(&at.lift);
+            let here = self.least(rpm(omega));
+            let next = self.root(here.segment, &here.lift, from);
+            // Not on a dwell, where N may be 0 as well.
+            if here.value <= 0.0 && next.is_finite() {
+                at = here;
+            }
             if !(next < omega) {
                 break;
             }
             omega = next;
-            at = self.least(rpm(omega));
         }
         let [of_lift, of_slope, of_curvature, _] = self.weights(omega).map(f64::abs);
         let Lift { value, slope, curvature, .. } = at.lift;
@@ -166,4 +295,12 @@ impl<'a> Contact<'a> {
         let error = rpm(tolerance::ULP.value * size / rate.abs()) + tolerance::ULP.value * rpm(omega);
         Separation::At { rpm: rpm(omega), error, cam_angle: at.angle, angle_error: None }
     }
+}
+
+/// The first positive root of `still + linear w + square w^2`, infinite where there is none.
+fn first_root([still, linear, square]: [f64; 3]) -> f64 {
+    let root = (linear * linear - 4.0 * square * still).sqrt();
+    // Without a difference of two numbers of one size; no number where the discriminant is negative.
+    let omega = 2.0 * still / (root - linear);
+    if omega > 0.0 { omega } else { f64::INFINITY }
 }
