@@ -34,7 +34,7 @@ SMALLEST = 2.0**-24
 @dataclass(frozen=True)
 class Orbit:
     """Impacts as (angle, velocity relative to the cam after it), the derivative of the impact map once around, and the kind:
-    stable, saddle (a multiplier above 1) or flip (one below -1)."""
+    stable, saddle (a multiplier above 1), flip (one below -1) or neutral (a pair on the unit circle, of a follower that loses nothing)."""
 
     impacts: list
     derivative: arb_mat
@@ -47,6 +47,8 @@ class Orbits:
     def __init__(self, machine, speed):
         self.machine, self.speed = machine, speed
         self.turn, self.period = machine.cam.turn, machine.cam.turn / speed
+        # Then every impact and every flight keeps areas: det M = 1.
+        self.lossless = machine.follower.restitution == 1 and machine.follower.zeta == 0
         if not self.machine.follower.restitution > 0:
             raise Refused("a follower without restitution does not leave the cam")
 
@@ -198,7 +200,7 @@ class Orbits:
             step = derivative(flight, time)
             around = arb_mat([[step[row, column] for column in range(2)] for row in range(2)]) * around
             impacts.append((angle.value, relative))
-        return Orbit(impacts, around, kind(around))
+        return Orbit(impacts, around, kind(around, self.lossless))
 
 
 def _inside(value, ends):
@@ -212,11 +214,13 @@ def _holds(box, root):
     return all(bool(whole.contains(one)) for whole, one in zip(box, root))
 
 
-def kind(around):
+def kind(around, lossless):
     """What the derivative of a return map says of its fixed point, from the signs of 1 - tr + det, 1 + tr + det and 1 - det."""
-    trace, determinant = around[0, 0] + around[1, 1], around.det()
+    trace, determinant = around[0, 0] + around[1, 1], 1 if lossless else around.det()
     if sign(1 - trace + determinant, "det(I - M)") < 0:
         return "saddle"
     if sign(1 + trace + determinant, "det(I + M)") < 0:
         return "flip"
+    if lossless:
+        return "neutral"
     return "stable" if sign(1 - determinant, "1 - det M") > 0 else "unstable"

@@ -9,10 +9,10 @@ use serde::{Deserialize, Serialize};
 
 use super::Degenerate;
 use super::conditions::{Condition, Decides, conditions};
-use super::local_map::LocalMap;
+use super::local_map::{LocalMap, stability};
 use crate::cam::Side;
 use crate::corner::map::{CornerMap, Eigenvalue, SideMap, Sides};
-use crate::orbit::eigenvalues;
+use crate::orbit::{Stability, eigenvalues};
 use crate::tolerance;
 
 /// What happens to the fixed point at the border.
@@ -71,6 +71,8 @@ pub struct SideCounts {
     pub below_minus_one: usize,
     /// Whether both eigenvalues lie inside the unit circle.
     pub stable: bool,
+    /// What becomes of small deviations from the side's fixed point.
+    pub stability: Stability,
     /// `(I - A)^{-1} B`, the fixed point for dT = 1 s: m, m/s.
     pub fixed_point: Vector2<f64>,
     /// `det(I - A)`.
@@ -108,6 +110,7 @@ document!(Classification as kind {
     fixed_points_exist_for: kind.sides(|side| side.exists_for),
     period_two_orbit: kind.period_two_orbit,
     stable: kind.sides(|side| side.stable),
+    stability: kind.sides(|side| side.stability),
     fixed_point_per_unit_period: kind.sides(|side| [side.fixed_point[0], side.fixed_point[1]]),
     determinant_of_identity_minus_a: kind.sides(|side| side.determinant),
     border: [kind.border.0[0], kind.border.0[1], kind.border.1],
@@ -158,6 +161,7 @@ fn side_counts(
 ) -> Result<SideCounts, Degenerate> {
     let eigenvalues = side.eigenvalues();
     let [above_one, below_minus_one] = counts(name, &eigenvalues)?;
+    let stability = stability(&eigenvalues);
     // x = A x + B dT
     let whole = Matrix2::identity() - side.a;
     let fixed_point = whole.try_inverse().map(|inverse| inverse * side.b);
@@ -172,7 +176,8 @@ fn side_counts(
     Ok(SideCounts {
         above_one,
         below_minus_one,
-        stable: eigenvalues.iter().all(|value| value.re.hypot(value.im) < 1.0),
+        stable: stability == Stability::Stable,
+        stability,
         fixed_point,
         determinant: whole.determinant(),
         exists_for: if distance * sign > 0.0 { Speeds::Slower } else { Speeds::Faster },

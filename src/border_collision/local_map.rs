@@ -8,6 +8,7 @@ use nalgebra::{Matrix2, RowVector2, Vector2};
 use super::word::Word;
 use crate::cam::Side;
 use crate::corner::map::{CornerMap, Eigenvalue, SideMap};
+use crate::orbit::Stability;
 use crate::tolerance;
 
 /// A piecewise-linear map of the plane with one border.
@@ -39,6 +40,7 @@ document!(PeriodicOrbit as orbit {
     word: orbit.word.to_string(),
     points: orbit.points.iter().map(|point| [point[0], point[1]]).collect::<Vec<_>>(),
     multipliers: orbit.multipliers,
+    stability: orbit.stability(),
     stable: orbit.stable(),
     admissible: orbit.admissible(),
     margin: orbit.margin,
@@ -52,7 +54,12 @@ impl PeriodicOrbit {
 
     /// Whether both multipliers lie inside the unit circle.
     pub fn stable(&self) -> bool {
-        self.multipliers.iter().all(|value| value.re.hypot(value.im) < 1.0)
+        self.stability() == Stability::Stable
+    }
+
+    /// What becomes of small deviations from it.
+    pub fn stability(&self) -> Stability {
+        stability(&self.multipliers)
     }
 }
 
@@ -121,6 +128,13 @@ impl LocalMap {
         let words = Word::primitive(longest);
         words.iter().filter_map(|word| self.orbit(word, mu)).filter(PeriodicOrbit::admissible).collect()
     }
+}
+
+/// What becomes of small deviations under a matrix with these eigenvalues.
+pub(super) fn stability(eigenvalues: &[Eigenvalue; 2]) -> Stability {
+    let [one, two] = eigenvalues.map(|value| value.re.hypot(value.im));
+    let modulus = if one > two { one } else { two };
+    Stability::of_modulus(modulus, tolerance::UNIT_EIGENVALUE.value)
 }
 
 /// `det(z I - A) = z^2 - z tr A + det A` for z = 1 or -1, and the sum of its terms' sizes.

@@ -8,7 +8,8 @@ use crate::figures::cam::{CornerMark, corner_marks};
 use crate::figures::impacts::{WHOLE_CAM, cloud, impact_angles, shown_impacts};
 use crate::figures::{Entry, Fast, SPEED, Subject, by_stability, drawn};
 use crate::orbit::branch::{Branch, BranchPoint, Kind, find_branches};
-use crate::orbit::{Course, Search};
+use crate::orbit::{Course, Search, Stability};
+use crate::show::words;
 
 /// Around the corner impact.
 pub(crate) const FAST_IMPACTS: Entry = Entry {
@@ -82,7 +83,7 @@ pub fn branches_figure(
     let others = (!others.is_empty()).then(|| cloud(range, &others));
     let others = others.map(|cloud| Series::new("other runs", Colour::Grey, Data::Density(cloud)));
     let mut series: Vec<Series> = repeating.into_iter().chain(others).collect();
-    series.extend(by_stability(["stable", "unstable"], |stable| lines(branches, stable)));
+    series.extend(by_stability(words::stability, |stability| lines(branches, stability)));
     let points = || branches.iter().flat_map(|branch| &branch.points);
     let sticking = points().filter(|point| matches!(point.orbit.course, Course::Sticking(_)));
     let sticking =
@@ -119,9 +120,9 @@ fn place(point: &BranchPoint, which: usize) -> Option<[f64; 2]> {
     Some([point.value, impact.cam_angle.to_degrees()])
 }
 
-/// The phases of each impact along the branches where they are stable, or not, with a break before each line.
-fn lines(branches: &[Branch], stable: bool) -> Vec<[f64; 2]> {
-    let all = branches.iter().flat_map(Branch::lines).filter(|line| line.stable == stable);
+/// The phases of each impact along the branches where these are of one stability, with a break before each line.
+fn lines(branches: &[Branch], stability: Stability) -> Vec<[f64; 2]> {
+    let all = branches.iter().flat_map(Branch::lines).filter(|line| line.stability == stability);
     all.flat_map(|line| {
         let points = line.points.into_iter().map(|[value, angle]| [value, angle.to_degrees()]);
         std::iter::once(BREAK).chain(points)

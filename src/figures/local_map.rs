@@ -13,7 +13,8 @@ use crate::draw::{Axis, BREAK, Beside, Colour, Figure, Mark, Panel, Series, Stro
 use crate::figures::section::Crossings;
 use crate::figures::{Entry, Subject, by_stability, drawn};
 use crate::orbit::branch::{Branch, Following};
-use crate::orbit::{Parameter, PeriodicOrbit, Search, search};
+use crate::orbit::{Parameter, PeriodicOrbit, Search, Stability, search};
+use crate::show::words;
 
 /// The figure of the report.
 pub(crate) const LOCAL_MAP: Entry = Entry {
@@ -47,8 +48,8 @@ pub struct Ray {
     pub word: String,
     /// Sign of the changes of period for which it exists: -1 at faster speeds.
     pub sign: f64,
-    /// Whether it is stable.
-    pub stable: bool,
+    /// Whether small deviations from it die out.
+    pub stability: Stability,
     /// Positions of its points, m, for a change of the period by `sign`, s: they grow in proportion to it.
     pub positions: Vec<f64>,
     /// Velocities, m/s, for the same.
@@ -86,7 +87,7 @@ impl Subject {
             short.map(|orbit| Ray {
                 word: orbit.word.to_string(),
                 sign: outcome.mu,
-                stable: orbit.stable(),
+                stability: orbit.stability(),
                 positions: orbit.points.iter().map(|point| point[0]).collect(),
                 velocities: orbit.points.iter().map(|point| point[1]).collect(),
             })
@@ -173,8 +174,12 @@ fn panel(shown: &NextToCorner, range: [f64; 2], name: &str, with_names: bool) ->
         points.chain([BREAK])
     });
     let mut series = vec![Series::line(label("the machine's own orbits"), Colour::Grey, Stroke::Thick, machine)];
-    series.extend(by_stability([label("of the local map: stable"), label("unstable")], |stable| {
-        let rays = shown.rays.iter().filter(|ray| ray.stable == stable);
+    let of = |stability| match stability {
+        Stability::Stable => label("of the local map: stable"),
+        other => label(words::stability(other)),
+    };
+    series.extend(by_stability(of, |stability| {
+        let rays = shown.rays.iter().filter(|ray| ray.stability == stability);
         let ends = rays.flat_map(|ray| {
             ray.positions.iter().map(move |position| [ray.sign * shown.reach * per_second, position * shown.reach])
         });

@@ -26,6 +26,7 @@ use serde::Serialize;
 
 use crate::draw::{Axis, Colour, Figure, Series, Stroke};
 use crate::model::Units;
+use crate::orbit::Stability;
 use crate::show::command::command;
 
 pub use basins::basins_figure;
@@ -182,10 +183,17 @@ fn position() -> Axis {
     Axis::new("follower position q at the section", "m")
 }
 
-/// Lines of what is stable, unbroken, and of what is unstable, broken, as far as there are any.
-fn by_stability(labels: [&str; 2], points: impl Fn(bool) -> Vec<[f64; 2]>) -> impl Iterator<Item = Series> {
-    let [stable, unstable] = labels;
-    let stable = Series::line(stable, Colour::Blue, Stroke::Solid, points(true)).if_any();
-    let unstable = Series::line(unstable, Colour::Vermilion, Stroke::Dashed, points(false)).if_any();
-    stable.into_iter().chain(unstable)
+/// Lines of what is stable, unbroken, of what is unstable, broken, and of what is neutral, dotted, as far as there are any.
+fn by_stability<'a>(
+    label: impl Fn(Stability) -> &'a str,
+    points: impl Fn(Stability) -> Vec<[f64; 2]>,
+) -> impl Iterator<Item = Series> {
+    let strokes = [
+        (Stability::Stable, Colour::Blue, Stroke::Solid),
+        (Stability::Unstable, Colour::Vermilion, Stroke::Dashed),
+        (Stability::Neutral, Colour::Green, Stroke::Dotted),
+    ];
+    strokes.into_iter().filter_map(move |(stability, colour, stroke)| {
+        Series::line(label(stability), colour, stroke, points(stability)).if_any()
+    })
 }

@@ -7,7 +7,8 @@ use crate::figures::trace::TRANSIENT;
 use crate::figures::{Entry, Fast, SPEED, Subject, by_stability, drawn, position};
 use crate::flight::State;
 use crate::orbit::branch::{Branch, BranchPoint};
-use crate::orbit::{Course, Cycle};
+use crate::orbit::{Course, Cycle, Stability};
+use crate::show::words;
 use crate::simulate::{Machine, SimulateError, angular_velocity};
 
 /// The stroboscopic diagram around the corner impact.
@@ -62,8 +63,8 @@ const STATES: usize = 20_000;
 /// A piece of a branch at the section: one crossing of the orbits along it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Crossings {
-    /// Whether the orbits are stable.
-    pub stable: bool,
+    /// That of the orbits.
+    pub stability: Stability,
     /// Speed, rpm, and position at the section, m.
     pub points: Vec<[f64; 2]>,
 }
@@ -75,8 +76,8 @@ fn section_diagram(title: &str, runs: Density, branches: &[Crossings], corner: [
     let heights = branches.iter().flat_map(|line| &line.points).chain([&corner]).filter(shown).map(|[_, q]| *q);
     let all = widened(extent(heights.chain(all)), 0.03);
     let mut series = vec![Series::new("runs", Colour::Grey, Data::Density(runs))];
-    series.extend(by_stability(["stable", "unstable"], |stable| {
-        let lines = branches.iter().filter(|line| line.stable == stable);
+    series.extend(by_stability(words::stability, |stability| {
+        let lines = branches.iter().filter(|line| line.stability == stability);
         lines.flat_map(|line| line.points.iter().copied().chain([BREAK])).collect()
     }));
     series.push(Series::points("corner impact", Colour::Ink, Marker::Ring, [corner]));
@@ -130,14 +131,14 @@ impl Subject {
                     let [one, other] = pair else { continue };
                     let ends = crossing(&machine, one, angle, turn).zip(crossing(&machine, other, angle, turn));
                     // A piece takes the stability of its end that is no special point.
-                    let stable = if one.special.is_some() { other } else { one }.orbit.is_stable();
+                    let stability = if one.special.is_some() { other } else { one }.orbit.judgement.stability;
                     let Some((from, to)) = ends else {
                         all.extend(open.take());
                         continue;
                     };
                     match &mut open {
-                        Some(line) if line.stable == stable => line.points.push(to),
-                        _ => all.extend(open.replace(Crossings { stable, points: vec![from, to] })),
+                        Some(line) if line.stability == stability => line.points.push(to),
+                        _ => all.extend(open.replace(Crossings { stability, points: vec![from, to] })),
                     }
                 }
                 all.extend(open);

@@ -10,7 +10,7 @@ use serde::Serialize;
 use crate::cam::{Cam, Lift};
 use crate::corner::CornerImpact;
 use crate::model::Model;
-use crate::orbit::{Course, Cycle, Eigenvalue, PeriodicOrbit, Search, search};
+use crate::orbit::{Course, Cycle, Eigenvalue, PeriodicOrbit, Search, Stability, search};
 use crate::section::trace;
 use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError, angular_velocity};
 
@@ -62,6 +62,7 @@ pub struct Shown {
     /// Where the impact is, seen from the corner.
     pub place: Place,
     pub stable: bool,
+    pub stability: Stability,
     /// Cam angle of the impact.
     pub angle_deg: f64,
     /// That angle less the corner's.
@@ -82,6 +83,7 @@ impl Shown {
         Self {
             place,
             stable: orbit.is_stable(),
+            stability: orbit.judgement.stability,
             angle_deg,
             from_corner_deg: (angle_deg - corner.to_degrees() + 540.0).rem_euclid(360.0) - 180.0,
             position_m: impact.position,

@@ -117,7 +117,13 @@ impl Flight {
     #[inline]
     pub fn acceleration(&self, state: State) -> f64 {
         // eq:fb1   q'' = -2 zeta q' - w0^2 (q - rest) - g; the paper measures q from where the spring is slack, rest = 0
-        self.force(state.position) - 2.0 * self.zeta * state.velocity
+        self.acceleration_at(state.position, state.velocity)
+    }
+
+    /// `q''` in free flight at a position, m, with a velocity, m/s: m/s^2.
+    #[inline]
+    pub(crate) fn acceleration_at<N: Number>(&self, position: N, velocity: N) -> N {
+        self.force(position) - velocity * (2.0 * self.zeta)
     }
 
     /// Acceleration at rest at `position`: spring and gravity alone, m/s^2.

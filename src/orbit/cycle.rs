@@ -94,12 +94,17 @@ impl Cycle {
         self.struck(machine, index).cam_velocity - self.impacts[index].velocity_before
     }
 
+    /// How often the cam passes angle 0 from one impact to the next.
+    pub(super) fn turns(&self, index: usize) -> f64 {
+        let next = (index + 1) % self.impacts.len();
+        let later = if next == 0 { self.revolutions as f64 } else { 0.0 };
+        later + self.impacts[next].revolution as f64 - self.impacts[index].revolution as f64
+    }
+
     /// The angle turned from one impact to the next, rad.
     pub fn turn(&self, index: usize) -> f64 {
         let next = (index + 1) % self.impacts.len();
-        let (from, to) = (&self.impacts[index], &self.impacts[next]);
-        let later = if next == 0 { self.revolutions as f64 } else { 0.0 };
-        (later + to.revolution as f64 - from.revolution as f64) * TAU + (to.cam_angle - from.cam_angle)
+        self.turns(index) * TAU + (self.impacts[next].cam_angle - self.impacts[index].cam_angle)
     }
 
     /// How near on the cam another impact is to one, rad.

@@ -5,6 +5,7 @@
 //! |---|---|
 //! | `cycle` | an orbit as its impacts, the equations that close it, Newton's method |
 //! | `chain` | linear equations that link each impact with the next, in one pass |
+//! | [`stability`] | whether small deviations from an orbit die out |
 //! | `departure` | whether a cycle is an orbit of the cam as it is, by simulation |
 //! | `complete` | all orbits of one impact, or of two in one revolution, by enclosures |
 //! | [`mod@search`] | orbits of one machine: those, and others from many starts |
@@ -28,6 +29,7 @@ mod multipliers;
 mod naming;
 pub mod search;
 pub mod settle;
+pub mod stability;
 pub(crate) mod sticking;
 
 use nalgebra::Matrix2;
@@ -44,6 +46,7 @@ pub use family::Parameter;
 pub(crate) use family::{Family, FamilyError};
 pub use multipliers::{Eigenvalue, eigenvalues};
 pub use search::{Search, Searched, search, search_all};
+pub use stability::{Judgement, Stability};
 
 /// A motion that repeats after a number of revolutions.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,8 +57,11 @@ pub struct PeriodicOrbit {
     pub events: Vec<Event>,
     /// The follower when the cam is at angle 0.
     pub state: State,
-    /// How one period carries a small deviation of that state, 2x2; 0 where the follower sticks on the way.
+    /// How one period carries a small deviation of that state, 2x2; 0 where the follower sticks on the way, and not a number where it
+    /// rests on the cam with restitution 1, when no bounce ends in a rest.
     pub matrix: Matrix2<f64>,
+    /// Whether small deviations die out, and how well the multipliers are known.
+    pub judgement: Judgement,
     /// How far the orbit is from closing, over its size.
     pub residual: f64,
     /// What kind of motion it is.
@@ -72,6 +78,10 @@ document!(PeriodicOrbit as orbit {
     contact: orbit.rests().map(Rest).collect::<Vec<_>>(),
     state: [orbit.state.position, orbit.state.velocity],
     multipliers: orbit.multipliers(),
+    multipliers_known: Known::Computed,
+    multipliers_error: orbit.judgement.error,
+    stability: orbit.judgement.stability,
+    stability_known: orbit.judgement.known,
     stable: orbit.is_stable(),
     course: orbit.course.name(),
     residual: orbit.residual,
@@ -119,8 +129,9 @@ impl PeriodicOrbit {
         let cycle = cycle.in_order();
         let (state, matrix) = cycle.at_section(machine, 0.0);
         let events = cycle.events(machine);
+        let judgement = Judgement::of_cycle(machine, &cycle, residual, &matrix);
         let (revolutions, course) = (cycle.revolutions, Course::Impacts(cycle));
-        Self { revolutions, events, state, matrix, residual, course, known: Known::Computed }
+        Self { revolutions, events, state, matrix, judgement, residual, course, known: Known::Computed }
     }
 
     /// The impacts of one period.
@@ -138,9 +149,9 @@ impl PeriodicOrbit {
         eigenvalues(&self.matrix)
     }
 
-    /// Whether small deviations die out.
+    /// Whether small deviations die out: neither of an unstable orbit nor of a neutral one.
     pub fn is_stable(&self) -> bool {
-        self.multipliers().iter().all(|multiplier| multiplier.modulus() < 1.0)
+        self.judgement.stability == Stability::Stable
     }
 
     /// Whether two orbits are the same motion.

@@ -6,9 +6,10 @@
 
 use std::f64::consts::TAU;
 
-use super::complete::{Solved, Standing, Undecided, of_one_impact, of_two_impacts};
+use super::complete::{Solved, Standing, Undecided, joined, of_one_impact, of_two_impacts};
 use super::settle::{MOST_IMPACTS, close, near_run, period};
-use super::{Course, Cycle, PeriodicOrbit};
+use super::{Course, Cycle, Judgement, PeriodicOrbit};
+use crate::interval::Interval;
 use crate::known::{Complete, Known};
 use crate::progress::Watch;
 use crate::simulate::{EventKind, Machine, SimulateError};
@@ -94,13 +95,16 @@ impl<'a> Found<'a> {
 
     /// Everything that solves the equations of so many impacts, or may.
     fn all(&mut self, impacts: usize, solved: Vec<Solved>) {
-        let undecided = self.searched.undecided.len();
-        for Solved { guess, angles, standing } in solved {
+        let mut undecided = Vec::new();
+        for Solved { guess, angles, velocities, standing } in solved {
             if standing == Standing::NoOrbit {
                 continue;
             }
             // Newton's method gives the digits; where it leads elsewhere, they are not those of what is proved.
             let orbit = close(self.machine, &guess);
+            let places: Vec<_> =
+                angles.iter().copied().zip(velocities).map(|(angle, before)| [angle, before]).collect();
+            let proved = Judgement::proved(self.machine, &guess, &places);
             let guess = guess.in_order();
             let is_at = |cycle: &Cycle| {
                 let pairs = cycle.impacts.iter().zip(&guess.impacts);
@@ -112,15 +116,22 @@ impl<'a> Found<'a> {
                 Some(orbit)
                     if standing == Standing::Orbit && matches!(&orbit.course, Course::Impacts(it) if is_at(it)) =>
                 {
-                    self.searched.orbits.push(PeriodicOrbit { known: Known::Proved, ..orbit });
+                    let judgement = proved.map_or(orbit.judgement, |stability| Judgement {
+                        stability,
+                        known: Known::Proved,
+                        ..orbit.judgement
+                    });
+                    self.searched.orbits.push(PeriodicOrbit { known: Known::Proved, judgement, ..orbit });
                     continue;
                 }
                 orbit => orbit.into_iter().for_each(|orbit| self.keep(orbit)),
             }
-            let cam_angles = angles.iter().map(|angle| [angle.low(), angle.high()]).collect();
-            self.searched.undecided.push(Undecided { cam_angles });
+            undecided.push(angles);
         }
-        let known = if self.searched.undecided.len() > undecided { Known::Sampled } else { Known::Proved };
+        let known = if undecided.is_empty() { Known::Proved } else { Known::Sampled };
+        let ends = |angles: Vec<Interval>| angles.iter().map(|angle| [angle.low(), angle.high()]).collect();
+        let ranges = joined(undecided).into_iter().map(|angles| Undecided { cam_angles: ends(angles) });
+        self.searched.undecided.extend(ranges);
         let revolutions = self.wanted.revolutions;
         self.searched.complete.push(Complete { revolutions, impacts, known });
     }

@@ -9,7 +9,7 @@ use std::ops::ControlFlow;
 
 use super::cycle::lift_size;
 use super::multipliers::{Eigenvalue, eigenvalues};
-use super::{Course, Cycle, PeriodicOrbit, sticking};
+use super::{Course, Cycle, Judgement, PeriodicOrbit, Stability, sticking};
 use crate::flight::State;
 use crate::known::Known;
 use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError};
@@ -95,9 +95,7 @@ pub(super) fn near_run(
             free(machine, motion.state)
         };
         // What a run settles on draws it in, or keeps it; Newton's method finds what a run only passes too.
-        let holds = |orbit: &PeriodicOrbit| {
-            orbit.multipliers().iter().all(|multiplier| multiplier.modulus() <= 1.0 + tolerance::SAME_ORBIT.value)
-        };
+        let holds = |orbit: &PeriodicOrbit| orbit.judgement.stability != Stability::Unstable;
         if let Some(orbit) = orbit.filter(holds) {
             return Ok(Some(orbit));
         }
@@ -113,7 +111,8 @@ pub(super) fn free(machine: &Machine, state: State) -> Option<PeriodicOrbit> {
     let matrix = flight.propagator(TAU / machine.angular_velocity());
     let residual = flight.acceleration(state).abs() / machine.angular_velocity().powi(2) / lift_size(machine);
     let (events, course, known) = (Vec::new(), Course::Free, Known::Computed);
-    let orbit = PeriodicOrbit { revolutions: 1, events, state, matrix, residual, course, known };
+    let judgement = Judgement::of_flight(machine, &matrix);
+    let orbit = PeriodicOrbit { revolutions: 1, events, state, matrix, judgement, residual, course, known };
     (state.position.is_finite() && state.position > machine.cam().top()).then_some(orbit)
 }
 

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Matrix2;
 
-use super::{Course, PeriodicOrbit};
+use super::{Course, Judgement, PeriodicOrbit};
 use crate::flight::State;
 use crate::known::Known;
 use crate::simulate::{Event, EventKind, Machine, SimulateError};
@@ -33,11 +33,18 @@ pub fn through(machine: &Machine, anchor: f64, revolutions: u64) -> Result<Optio
         revolutions,
         events,
         state: at_zero,
-        matrix: Matrix2::zeros(),
+        matrix: matrix(machine),
+        judgement: Judgement::of_rest(machine),
         residual: closing / super::cycle::lift_size(machine),
         course: Course::Sticking(anchor),
         known: Known::Computed,
     }))
+}
+
+/// The matrix that carries a small deviation once around an orbit that sticks, 2x2: 0, as infinitely many impacts before a rest leave
+/// nothing of it. With restitution 1 no bounce ends in a rest, and there is no such matrix.
+pub fn matrix(machine: &Machine) -> Matrix2<f64> {
+    Matrix2::from_element(if machine.restitution() < 1.0 { 0.0 } else { f64::NAN })
 }
 
 /// The follower at the next passage of angle 0.

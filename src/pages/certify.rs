@@ -1,6 +1,8 @@
 //! The page of `certify`: what is proved of each corner impact, with the digits that are, and what is not.
 
 use crate::ball::Ball;
+use crate::orbit::Stability;
+use crate::pages::some_of;
 use crate::show::block::{Block, Column, Mark, Span, Table, Words, words};
 use crate::show::digits::Digits;
 use crate::show::{Paged, words};
@@ -206,7 +208,9 @@ fn certificate(of: &Certificate) -> Vec<Block> {
         conditions.row([condition.name.as_str().into(), words![&condition.value.mid], (Mark::Good, sign).into()]);
     }
     let near = |side: &ProvedSide| {
-        format!("{}, {}", words::speeds(Some(side.fixed_point_exists_for)), words::stability(side.stable))
+        // No eigenvalue is on the unit circle: there nothing is proved.
+        let stability = if side.stable { Stability::Stable } else { Stability::Unstable };
+        format!("{}, {}", words::speeds(Some(side.fixed_point_exists_for)), words::stability(stability))
     };
     let within = |side: &ProvedSide| side.followed.as_ref().map(|followed| Digits::Size.text(followed.period_within_s));
     let how_far = match (within(&of.sides.minus), within(&of.sides.plus)) {
@@ -300,16 +304,4 @@ fn refused(all: &[Unproved]) -> Vec<Block> {
         words![(speed, Digits::Fixed(6)), " rpm at ", (angle, Digits::Fixed(4)), " deg: ", &one.why]
     }));
     page
-}
-
-/// Each in a line, but for a long list's rest.
-fn some_of<T>(all: &[T], what: &str, line: impl Fn(&T) -> Words) -> Vec<Block> {
-    /// Longest list that is printed line by line.
-    const LONGEST: usize = 12;
-    let mut lines: Vec<_> = all.iter().take(LONGEST).map(|one| Block::Paragraph(4, line(one))).collect();
-    if all.len() > LONGEST {
-        let rest = words::many((all.len() - LONGEST) as u64, &format!("more {what}"));
-        lines.push(Block::Paragraph(4, format!("and {rest}; --json lists them").into()));
-    }
-    lines
 }

@@ -7,6 +7,7 @@ use nalgebra::Vector2;
 
 use crate::border_collision::{LocalOutcome, RobustChaos, RoundedCorner};
 use crate::cam::Side;
+use crate::orbit::Stability;
 use crate::show::block::{Block, Column, Span, Table, Words, about, words};
 use crate::show::digits::Digits;
 use crate::show::words;
@@ -63,7 +64,7 @@ pub(crate) fn blocks(found: &Verification) -> Vec<Block> {
         let orbits = outcome
             .orbits
             .iter()
-            .map(|orbit| words![Span::Code(orbit.word.to_string()), " ", words::stability(orbit.stable())]);
+            .map(|orbit| words![Span::Code(orbit.word.to_string()), " ", words::stability(orbit.stability())]);
         let title = format!("Every periodic orbit {}", words::speeds(Speeds::of(outcome.mu)));
         blocks.push(Block::Details(title.into(), vec![Block::paragraph(Words::joined(orbits, ", "))]));
     }
@@ -100,9 +101,13 @@ fn motions(outcome: &LocalOutcome) -> Vec<(Words, Words)> {
     let ends = words![outcome.starts(), " motions: ", Words::joined(ends, "; ")];
     let mut lines = vec![(words::speeds(speeds).into(), ends)];
     if speeds.is_some() {
-        let (stable, unstable): (Vec<_>, Vec<_>) = outcome.orbits.iter().partition(|orbit| orbit.stable());
-        let words = format!("periodic orbits: stable {}; unstable {}", listed(&stable), listed(&unstable));
-        lines.push(("".into(), words.into()));
+        let of = |stability: Stability| {
+            let orbits: Vec<_> = outcome.orbits.iter().filter(|orbit| orbit.stability() == stability).collect();
+            let is_told = stability != Stability::Neutral || !orbits.is_empty();
+            is_told.then(|| format!("{} {}", words::stability(stability), listed(&orbits)))
+        };
+        let each = [Stability::Stable, Stability::Unstable, Stability::Neutral].into_iter().filter_map(of);
+        lines.push(("".into(), format!("periodic orbits: {}", each.collect::<Vec<_>>().join("; ")).into()));
     }
     lines.extend(outcome.robust_chaos.iter().map(|chaos| ("".into(), theorem(chaos))));
     lines

@@ -91,9 +91,9 @@ fn meanings(found: &[LocatedImpact]) -> Vec<Block> {
                     "{}: {scenario}. Fixed points: impacts before the corner at speeds {}, {}; after it {}, {}.",
                     index + 1,
                     minus.exists_for,
-                    words::stability(minus.stable),
+                    words::stability(minus.stability),
                     plus.exists_for,
-                    words::stability(plus.stable),
+                    words::stability(plus.stability),
                 )));
             }
             other if !said.contains(&scenario) => {

@@ -1,6 +1,7 @@
 //! The page of each command, laid out from what was found.
 
-use crate::show::block::Block;
+use crate::show::block::{Block, Words};
+use crate::show::words;
 
 mod basins;
 pub(crate) mod branches;
@@ -23,4 +24,16 @@ mod verify;
 /// Where a model's numbers come from, where it says so.
 fn source(said: &str) -> Option<Block> {
     (!said.is_empty()).then(|| Block::paragraph(said))
+}
+
+/// Each in a line, but for a long list's rest.
+fn some_of<T>(all: &[T], what: &str, line: impl Fn(&T) -> Words) -> Vec<Block> {
+    /// Longest list that is printed line by line.
+    const LONGEST: usize = 12;
+    let mut lines: Vec<_> = all.iter().take(LONGEST).map(|one| Block::Paragraph(4, line(one))).collect();
+    if all.len() > LONGEST {
+        let rest = words::many((all.len() - LONGEST) as u64, &format!("more {what}"));
+        lines.push(Block::Paragraph(4, format!("and {rest}; --json lists them").into()));
+    }
+    lines
 }

@@ -3,7 +3,8 @@
 use crate::known::{Complete, Known};
 use crate::measured::Measured;
 
-use crate::orbit::{Course, Eigenvalue, PeriodicOrbit, Undecided};
+use crate::orbit::{Course, Eigenvalue, PeriodicOrbit, Stability, Undecided};
+use crate::pages::some_of;
 use crate::show::block::{Block, Mark, Span, Words, words};
 use crate::show::digits::{Digits, with_error};
 use crate::show::{Paged, words};
@@ -24,7 +25,8 @@ impl Paged for Orbits {
             page.extend(self.measured.as_ref().map(|cam| left_open(cam, error.as_ref())));
         }
         page.extend(self.complete.iter().map(complete));
-        page.extend(self.undecided.iter().map(undecided));
+        page.extend(some_of(&self.undecided, "place", undecided));
+        page.extend(how_known(&self.orbits));
         if self.measured.is_some() && !self.complete.is_empty() {
             page.push(Block::paragraph("What is proved is proved of the cam as it is drawn through the rows."));
         }
@@ -42,9 +44,21 @@ fn complete(of: &Complete) -> Block {
     Block::paragraph(format!("Orbits of {impacts} in {turns}: {others}."))
 }
 
-fn undecided(at: &Undecided) -> Block {
+fn undecided(at: &Undecided) -> Words {
     let angles = at.cam_angles.iter().map(|ends| words::range(ends.map(f64::to_degrees), Digits::Fixed(6)));
-    Block::paragraph(format!("Not decided: impacts at {} deg.", angles.collect::<Vec<_>>().join(" and ")))
+    format!("Not decided: impacts at {} deg.", angles.collect::<Vec<_>>().join(" and ")).into()
+}
+
+/// What is proved of the orbits, and what is computed only.
+fn how_known(orbits: &[PeriodicOrbit]) -> Option<Block> {
+    let proved = orbits.iter().filter(|orbit| orbit.known == Known::Proved).count();
+    let judged = orbits.iter().filter(|orbit| orbit.judgement.known == Known::Proved).count();
+    (proved > 0).then(|| {
+        Block::paragraph(format!(
+            "Existence is proved of {proved} of these orbits, stability or instability of {judged}. All digits are computed, those of \
+             the multipliers too."
+        ))
+    })
 }
 
 /// How far an orbit's numbers may be off, and why.
@@ -95,21 +109,29 @@ fn one(number: usize, orbit: &PeriodicOrbit, error: Option<&OrbitError>) -> Vec<
         Course::Impacts(_) => words::many(impacts as u64, "impact"),
     };
     let largest = orbit.multipliers().map(Eigenvalue::modulus).into_iter().fold(0.0, f64::max);
-    let stable = match orbit.is_stable() {
+    let stability = orbit.judgement.stability;
+    let stable = match stability {
+        Stability::Neutral => (Mark::Doubtful, words::stability(stability)),
         _ if error.is_some_and(|error| (largest - 1.0).abs() <= error.multiplier) => {
             (Mark::Doubtful, "stable or unstable, which the cam leaves open")
         }
-        true => (Mark::Good, words::stability(true)),
-        false => (Mark::Doubtful, words::stability(false)),
+        Stability::Stable => (Mark::Good, words::stability(stability)),
+        Stability::Unstable => (Mark::Doubtful, words::stability(stability)),
     };
-    let ten = known(10, error.map(|error| error.multiplier));
+    let ten = known(10, Some(error.map_or(orbit.judgement.error, |error| error.multiplier)));
     let [one, two] = orbit.multipliers().map(|multiplier| Span::Complex([multiplier.re, multiplier.im], ten));
+    let multipliers = match orbit.course {
+        Course::Sticking(_) if orbit.judgement.error.is_nan() => {
+            "     multipliers   none: with restitution 1 no bounce ends in a rest".into()
+        }
+        _ => words!["     multipliers   ", one, "   ", two],
+    };
     let q = known(12, error.map(|error| error.state[0])).text(orbit.state.position);
     let v = known(9, error.map(|error| error.state[1])).text(orbit.state.velocity);
     let mut lines = vec![
         Block::Gap,
         Block::Line(words![format!("  {number}. {turns}, {what}, "), stable]),
-        Block::Line(words!["     multipliers   ", one, "   ", two]),
+        Block::Line(multipliers),
         Block::Line(words![
             format!("     at cam angle 0   q = {q} "),
             Span::Unit("m"),

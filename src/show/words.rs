@@ -13,6 +13,7 @@ use crate::covering::Unproved;
 use crate::covering::prove::Relation;
 use crate::measured::Measured;
 use crate::model::{Reading, Separator};
+use crate::orbit::Stability;
 use crate::orbit::branch::{self, Bifurcation};
 use crate::orbit::ending::{Ending, Kind};
 use crate::published::Verdict;
@@ -172,8 +173,12 @@ pub(crate) fn listed(numbers: &[u64]) -> String {
     }
 }
 
-pub(crate) fn stability(stable: bool) -> &'static str {
-    if stable { "stable" } else { "unstable" }
+pub(crate) fn stability(stability: Stability) -> &'static str {
+    match stability {
+        Stability::Stable => "stable",
+        Stability::Unstable => "unstable",
+        Stability::Neutral => "neutral",
+    }
 }
 
 /// Speeds on one side of that of the corner impact, or that speed.

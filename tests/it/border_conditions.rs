@@ -7,6 +7,7 @@ use corner_impact::border_collision::long_run::End;
 use corner_impact::border_collision::word::Word;
 use corner_impact::border_collision::{Degenerate, LocalMap, classify, conditions};
 use corner_impact::corner::map::{CornerMap, SideMap};
+use corner_impact::orbit::Stability;
 use nalgebra::{Matrix2, RowVector2, Vector2};
 
 /// `count` values from `low` to `high`.
@@ -47,6 +48,20 @@ fn feigins_counts_say_what_the_orbits_do() {
         }
     }
     assert!(seen.len() == 3 && seen.values().all(|count| *count > 100), "{seen:?}");
+}
+
+/// A pair on the unit circle, whatever the last bit of its modulus is; and a pair a millionth inside or outside of it.
+#[test]
+fn a_side_with_a_pair_on_the_unit_circle_is_neutral() {
+    let told = |determinants: [f64; 2]| {
+        let (map, border) = planted([1.2, 0.3], determinants, [1.0, 1e-3]);
+        let verdict = classify(&map, border).unwrap();
+        let orbit = LocalMap::new(&map, border).orbit(&Word::read("L").unwrap(), 1.0).unwrap();
+        assert_eq!((orbit.stability(), orbit.stable()), (verdict.minus.stability, verdict.minus.stable));
+        [verdict.minus.stability, verdict.plus.stability]
+    };
+    assert_eq!(told([1.0, 1.0 - 1e-6]), [Stability::Neutral, Stability::Stable]);
+    assert_eq!(told([1.0 + 1e-6, 1.0]), [Stability::Unstable, Stability::Neutral]);
 }
 
 fn named<'a>(all: &'a [Condition], name: &str) -> &'a Condition {

@@ -14,6 +14,7 @@ use corner_impact::draw::{Data, Figure, Look, Series, svg};
 use corner_impact::figures::{Effort, Neighbour, Outline, Plate, Subject, listed, plate, plates, unit_of};
 use corner_impact::flight::State;
 use corner_impact::model::{Model, OSORIO_2008};
+use corner_impact::orbit::Stability;
 use corner_impact::simulate::EventKind;
 use rayon::prelude::*;
 
@@ -444,7 +445,9 @@ fn both_fixed_points_of_the_local_map_are_on_the_faster_side() {
     let mut rays: Vec<(&str, f64, bool, f64, f64)> = shown
         .rays
         .iter()
-        .map(|ray| (ray.word.as_str(), ray.sign, ray.stable, ray.positions[0], ray.velocities[0]))
+        .map(|ray| {
+            (ray.word.as_str(), ray.sign, ray.stability == Stability::Stable, ray.positions[0], ray.velocities[0])
+        })
         .collect();
     rays.sort_by(|one, two| one.0.cmp(two.0));
     let [minus, plus] = rays[..] else { panic!("{rays:?}") };
@@ -474,7 +477,7 @@ fn both_fixed_points_of_the_local_map_are_on_the_faster_side() {
         assert_relative_eq!(word.at[1] / word.at[0] * 1e6, -slope, max_relative = 1e-6);
     }
     for line in &shown.machine {
-        let slope = if line.stable { -plus.3 } else { -minus.3 };
+        let slope = if line.stability == Stability::Stable { -plus.3 } else { -minus.3 };
         let near = line.points.iter().filter(|[change, _]| *change < 0.0 && *change > -0.05 * shown.reach);
         for [change, position] in near.filter(|[change, _]| *change < -1e-3 * shown.reach) {
             assert_relative_eq!(position / change, slope, max_relative = 0.02);

@@ -90,6 +90,7 @@ mod settling;
 mod simulate;
 mod snapshots;
 mod speeds_numbers;
+mod stability;
 mod steps;
 mod sticking;
 mod stopped;

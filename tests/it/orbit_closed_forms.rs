@@ -9,7 +9,7 @@ use corner_impact::cam::Cam;
 use corner_impact::flight::State;
 use corner_impact::model::Model;
 use corner_impact::orbit::branch::{Branch, BranchPoint, End, Following, Kind};
-use corner_impact::orbit::{Eigenvalue, Parameter, PeriodicOrbit, Search, search, settle};
+use corner_impact::orbit::{Eigenvalue, Parameter, PeriodicOrbit, Search, Stability, search, settle};
 use corner_impact::simulate::{Machine, angular_velocity};
 use serde_json::Value;
 
@@ -147,6 +147,9 @@ fn the_one(branch: &Branch, is: impl Fn(&Kind) -> bool, derived: f64) -> &Branch
     near(point.value, derived, derived.abs(), special.kind.name());
     assert!(special.residual <= 1e-9, "{special:?}");
     let [low, high] = special.bracket;
+    if [Kind::Fold, Kind::Flip].contains(&special.kind) {
+        assert_eq!(point.orbit.judgement.stability, Stability::Neutral, "{point:?}");
+    }
     let rounding = DIGITS * derived.abs();
     assert!(low - rounding <= point.value && point.value <= high + rounding, "{} in {special:?}", point.value);
     point

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use crate::random;
 use corner_impact::orbit::branch::{Branch, Following};
-use corner_impact::orbit::{Course, Parameter, PeriodicOrbit, Search, search};
+use corner_impact::orbit::{Course, Parameter, PeriodicOrbit, Search, Stability, search};
 use corner_impact::section::StroboscopicMap;
 use corner_impact::simulate::{Machine, angular_velocity};
 use proptest::prelude::*;
@@ -49,6 +49,14 @@ fn every_orbit_found_closes() {
                 if let Some(missed) = missed(&case.machine, orbit) {
                     prop_assert!(missed <= 1.0, "{missed:e} {orbit:?}");
                 }
+                // The verdict, which is made by the trace and the determinant, against the moduli of the eigenvalues.
+                let modulus = orbit.multipliers().iter().fold(0.0_f64, |most, one| most.max(one.modulus()));
+                let by_modulus = Stability::of_modulus(modulus, orbit.judgement.error);
+                prop_assert!(
+                    [by_modulus, orbit.judgement.stability].contains(&Stability::Neutral)
+                        || by_modulus == orbit.judgement.stability,
+                    "{orbit:?}"
+                );
                 prop_assert_eq!(orbits.iter().filter(|other| other.is_same(orbit)).count(), 1);
             }
         }

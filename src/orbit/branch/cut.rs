@@ -5,7 +5,7 @@ use nalgebra::DVector;
 use super::held::Held;
 use super::problem::{Problem, Units};
 use super::switch::{self, Exit};
-use super::{BranchPoint, Following, Kind, OnCurve, Special, gap, halved};
+use super::{BranchPoint, Following, Kind, OnCurve, Special, gap, halved, special};
 use crate::bracket::{Seen, regula_falsi};
 use crate::orbit::curve::{self, CurvePoint, NoPoint};
 use crate::orbit::{Cycle, Departure, Family, FamilyError, PeriodicOrbit};
@@ -231,7 +231,7 @@ impl Stride<'_> {
             OnCurve { cam_angle: held.cam_angle(&cycle), sides }
         });
         let cycle = self.held.map_or_else(|| cycle.clone(), |held| held.orbit(&cycle));
-        let orbit = PeriodicOrbit::of_cycle(&machine, cycle, residual);
+        let orbit = special::judged(PeriodicOrbit::of_cycle(&machine, cycle, residual), special);
         Ok(BranchPoint { held, rpm, value: self.value(&point.unknowns), orbit, special })
     }
 

@@ -6,7 +6,7 @@ use super::cut::{Cut, Located, Stride};
 use super::held::Held;
 use super::problem::{Problem, Units};
 use super::switch::{self, Exit};
-use super::{BranchPoint, End, Following, HalfBranch, Special, gap};
+use super::{BranchPoint, End, Following, HalfBranch, Special, gap, special};
 use crate::orbit::curve::{self, CurvePoint, NoPoint};
 use crate::orbit::{Cycle, Departure, Family, FamilyError, OrbitError, PeriodicOrbit};
 use crate::tolerance;
@@ -329,7 +329,8 @@ impl Walk<'_> {
         if let (Some(Located { cut: Cut::Halved, .. }), (cycle, machine, _)) =
             (&first, problem.unpack(&end_point.unknowns)?)
         {
-            last.orbit = PeriodicOrbit::of_cycle(&machine, cycle.shortest(), last.orbit.residual);
+            let whole = PeriodicOrbit::of_cycle(&machine, cycle.shortest(), last.orbit.residual);
+            last.orbit = special::judged(whole, special);
         }
         let grown = if end_point.steps <= 4 { 1.5 } else { 1.0 };
         drop(problem);

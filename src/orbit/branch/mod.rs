@@ -34,7 +34,7 @@ mod switch;
 
 use nalgebra::Matrix2;
 
-use super::{Family, FamilyError, OrbitError, Parameter, PeriodicOrbit};
+use super::{Family, FamilyError, OrbitError, Parameter, PeriodicOrbit, Stability};
 use crate::model::Model;
 use crate::tolerance;
 pub(crate) use doubled::{crossing, doubled};
@@ -153,11 +153,11 @@ impl End {
     }
 }
 
-/// One impact of the orbits of a branch, as far as it is the same impact and its orbit as stable.
+/// One impact of the orbits of a branch, as far as it is the same impact and its orbits are of one stability.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImpactLine {
-    /// Whether the orbits are stable.
-    pub stable: bool,
+    /// That of the orbits.
+    pub stability: Stability,
     /// The parameter, and the cam angle of the impact, rad.
     pub points: Vec<[f64; 2]>,
 }
@@ -248,18 +248,20 @@ impl Branch {
         for pair in self.points.windows(2) {
             let [one, other] = pair else { continue };
             // A piece takes the stability of its end that is no special point.
-            let stable = if one.special.is_some() { other } else { one }.orbit.is_stable();
+            let stability = if one.special.is_some() { other } else { one }.orbit.judgement.stability;
             let mut onward = Vec::new();
             for (from, to) in special::same_impacts(&one.orbit, &other.orbit) {
                 let [here, there] = [(one, from), (other, to)].map(|(point, index)| {
                     [point.value, point.orbit.impacts().nth(index).map_or(f64::NAN, |impact| impact.cam_angle)]
                 });
-                let same = open.iter().position(|(index, line)| *index == from && line.stable == stable);
+                let same = open.iter().position(|(index, line)| *index == from && line.stability == stability);
                 let over = (there[1] - here[1]).abs() > std::f64::consts::PI;
-                let (_, mut line) = same
-                    .map_or_else(|| (from, ImpactLine { stable, points: vec![here] }), |place| open.swap_remove(place));
+                let (_, mut line) = same.map_or_else(
+                    || (from, ImpactLine { stability, points: vec![here] }),
+                    |place| open.swap_remove(place),
+                );
                 if over {
-                    done.push(std::mem::replace(&mut line, ImpactLine { stable, points: vec![there] }));
+                    done.push(std::mem::replace(&mut line, ImpactLine { stability, points: vec![there] }));
                 } else {
                     line.points.push(there);
                 }

@@ -11,7 +11,7 @@ use crate::cam::{Corner, apart};
 use crate::flight::State;
 use crate::known::Known;
 use crate::orbit::curve::{self, CurvePoint, NoPoint};
-use crate::orbit::{Course, Family, FamilyError, OrbitError, PeriodicOrbit, sticking};
+use crate::orbit::{Course, Family, FamilyError, Judgement, OrbitError, PeriodicOrbit, sticking};
 use crate::simulate::{Event, Machine};
 use crate::tolerance;
 
@@ -339,7 +339,8 @@ impl Rest<'_> {
             revolutions,
             events: impacts,
             state: sticking::at_zero(&machine, anchor).unwrap_or(unknown),
-            matrix: Matrix2::zeros(),
+            matrix: sticking::matrix(&machine),
+            judgement: Judgement::of_rest(&machine),
             residual: off.abs(),
             course: Course::Sticking(anchor),
             known: Known::Computed,

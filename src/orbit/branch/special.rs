@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use serde::Serialize;
 
-use crate::orbit::{Course, Impact, PeriodicOrbit};
+use crate::orbit::{Course, Impact, Judgement, PeriodicOrbit, Stability};
 
 /// What changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -116,6 +116,14 @@ impl Kind {
             Self::Detachment => "detachment",
         }
     }
+}
+
+/// The orbit at a point where something changes: neutral where a multiplier is 1 or -1 by the equations of the point, on whichever side
+/// of the circle rounding has put it. The other multiplier has the size of det M, which is 1 at most.
+pub(super) fn judged(orbit: PeriodicOrbit, special: Option<Special>) -> PeriodicOrbit {
+    let on_circle = special.is_some_and(|special| matches!(special.kind, Kind::Fold | Kind::Flip | Kind::Branching));
+    let stability = if on_circle { Stability::Neutral } else { orbit.judgement.stability };
+    PeriodicOrbit { judgement: Judgement { stability, ..orbit.judgement }, ..orbit }
 }
 
 /// Where it changes, and how well that is known.

@@ -47,21 +47,47 @@ pub(super) struct Solved {
     pub guess: Cycle,
     /// The angle of each impact, rad.
     pub angles: Vec<Interval>,
+    /// The velocity of the follower before each impact, m/s.
+    pub velocities: Vec<Interval>,
     pub standing: Standing,
 }
 
-/// Boxes one next to the other as one; their order along the first side is kept.
-pub(crate) fn joined<const N: usize>(mut boxes: Vec<[Interval; N]>) -> Vec<[Interval; N]> {
-    boxes.sort_by(|one, two| one[0].low().total_cmp(&two[0].low()));
-    let mut joined: Vec<[Interval; N]> = Vec::new();
-    'boxes: for next in boxes {
-        for last in joined.iter_mut().rev() {
-            if last.iter().zip(&next).all(|(one, other)| one.common(*other).is_some()) {
-                *last = std::array::from_fn(|side| last[side].hull(next[side]));
-                continue 'boxes;
-            }
+/// Boxes that have no point in common, each the hull of those that touch: in order along the first side.
+pub(crate) fn joined<B: AsRef<[Interval]> + AsMut<[Interval]>>(mut boxes: Vec<B>) -> Vec<B> {
+    let low = |place: &B| place.as_ref().first().map_or(f64::NAN, |side| side.low());
+    let in_order = |boxes: &mut Vec<B>| boxes.sort_by(|one, two| low(one).total_cmp(&low(two)));
+    in_order(&mut boxes);
+    let mut joined: Vec<B> = Vec::new();
+    for mut next in boxes {
+        let touches =
+            |last: &B, next: &B| last.as_ref().iter().zip(next.as_ref()).all(|(one, two)| one.common(*two).is_some());
+        // A hull may touch what none of its parts does.
+        while let Some(index) = joined.iter().rposition(|last| touches(last, &next)) {
+            let last = joined.swap_remove(index);
+            next.as_mut().iter_mut().zip(last.as_ref()).for_each(|(side, other)| *side = side.hull(*other));
         }
         joined.push(next);
     }
+    in_order(&mut joined);
     joined
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn place(sides: [[f64; 2]; 2]) -> [Interval; 2] {
+        sides.map(|[low, high]| Interval::new(low, high))
+    }
+
+    /// Three in a row of which the middle one comes last, two that touch at a corner alone, and one that is apart on one side only.
+    #[test]
+    fn boxes_that_touch_are_one_whatever_their_order() {
+        let row = [[[0.0, 1.0], [0.0, 1.0]], [[0.1, 1.0], [2.0, 3.0]], [[0.2, 1.0], [1.0, 2.0]]].map(place);
+        let corner = [[[4.0, 5.0], [4.0, 5.0]], [[5.0, 6.0], [5.0, 6.0]]].map(place);
+        let apart = place([[0.0, 1.0], [7.0, 8.0]]);
+        let all = [&corner[..], &[apart], &row].concat();
+        let expected = [[[0.0, 1.0], [7.0, 8.0]], [[0.0, 1.0], [0.0, 3.0]], [[4.0, 6.0], [4.0, 6.0]]].map(place);
+        assert_eq!(joined(all), expected);
+    }
 }

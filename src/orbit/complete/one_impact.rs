@@ -167,7 +167,9 @@ pub(crate) fn of_one_impact(machine: &Machine, revolutions: u64) -> Vec<Solved> 
     };
     let solved = equation.solutions(time).into_iter().map(|solution| {
         let standing = standing(&solution);
-        Solved { guess: solution.guess, angles: vec![solution.angle], standing }
+        let lift = equation.cam.segments()[solution.segment].law.lift_over(solution.angle);
+        let before = equation.velocities(lift.value, time).map_or(Interval::EVERYTHING, |[before, _]| before);
+        Solved { guess: solution.guess, angles: vec![solution.angle], velocities: vec![before], standing }
     });
     solved.collect()
 }

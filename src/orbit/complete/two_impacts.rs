@@ -256,7 +256,8 @@ pub(crate) fn of_two_impacts(machine: &Machine, watch: &dyn Watch) -> Vec<Solved
                 if all.iter().any(again) {
                     return;
                 }
-                all.push(Solved { guess: pair.guess(&place), angles: place.to_vec(), standing });
+                let velocities = pair.flights(&place).velocities(machine).before.to_vec();
+                all.push(Solved { guess: pair.guess(&place), angles: place.to_vec(), velocities, standing });
             };
             roots.into_iter().for_each(|place| add(place, pair.standing(&place)));
             joined(undecided).into_iter().for_each(|place| add(place, Standing::Undecided));

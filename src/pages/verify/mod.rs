@@ -6,6 +6,7 @@ use crate::agreement::{Agreement, Quantity, shared_decimals};
 use crate::border_collision::feigin::{Scenario, SideCounts};
 use crate::border_collision::{Classification, NormalForm, Refusal};
 use crate::cam::Side;
+use crate::orbit::Stability;
 use crate::pages::local_map;
 use crate::pages::source;
 use crate::pages::speeds::measured_speed;
@@ -188,8 +189,8 @@ fn classification(kind: &Classification) -> Vec<(Words, Words)> {
         words::meaning(kind.scenario, kind.minus.stable || kind.plus.stable)
     ];
     let fate = |side: &SideCounts| {
-        let stability = if side.stable { "a stable" } else { "an unstable" };
-        format!("{stability} one at speeds {}", words::speeds(Some(side.exists_for)))
+        let article = if side.stability == Stability::Unstable { "an" } else { "a" };
+        format!("{article} {} one at speeds {}", words::stability(side.stability), words::speeds(Some(side.exists_for)))
     };
     let fixed = words!["minus: ", fate(minus), Span::Break, "plus:  ", fate(plus)];
     [("Feigin's counts", counts.into()), ("verdict", verdict), ("fixed points", fixed)]

@@ -76,6 +76,8 @@ pub enum OrbitKind {
     Flip,
     /// A pair outside of the unit circle.
     Unstable,
+    /// A pair on the unit circle: the follower loses nothing.
+    Neutral,
 }
 
 named!(OrbitKind, OrbitEvent);

@@ -12,7 +12,7 @@
   const minus = (text) => text.replace("-", "\u2212");
   const fixed = (value, places) => minus(value.toFixed(places));
   const rpm = (frame) => `${frame.rpm.toFixed(places.speed)} rpm`;
-  const kind = (orbit) => (orbit.stable ? "stable" : "unstable");
+  const kind = (orbit) => orbit.stability;
 
   const element = (parent, name, attributes, text) => {
     const made = document.createElementNS(SVG, name);
@@ -64,7 +64,7 @@
     frames.forEach((frame) => {
       const seen = new Set();
       frame.orbits.forEach((orbit) => {
-        const key = `${orbit.place} ${orbit.stable}`;
+        const key = `${orbit.place} ${orbit.stability}`;
         if (seen.has(key)) return;
         seen.add(key);
         if (!open.has(key)) {

@@ -56,7 +56,7 @@ fn player(through: &ThroughCorner, velocity: &str) -> Markup {
                 div.panel {
                     p.summary role="status" aria-live="polite" id="summary" {}
                     ul.key {
-                        li.stable { "stable orbit" } li.unstable { "unstable orbit" } li.run { "run that came from faster speeds" } li.rising { "run that came from slower speeds" }
+                        li.stable { "stable orbit" } li.unstable { "unstable orbit" } li.neutral { "neutral orbit" } li.run { "run that came from faster speeds" } li.rising { "run that came from slower speeds" }
                     }
                 }
                 (panel("revolution", "One revolution.", html! { "Follower and cam against the cam angle; a ring is an impact." }))
@@ -91,7 +91,7 @@ fn table(through: &ThroughCorner) -> Table {
             let multipliers = orbit.multipliers.map(|value| Span::Complex([value.re, value.im], seven).into());
             table.row([
                 rpm.clone(),
-                words::stability(orbit.stable).into(),
+                words::stability(orbit.stability).into(),
                 orbit.place.to_string().into(),
                 words![(orbit.angle_deg, Digits::Fixed(4))],
                 words![(orbit.velocity_before_m_s, seven)],

@@ -1,0 +1,297 @@
+//! Whether small deviations from a periodic motion die out: the one place that decides it.
+//!
+//! The matrix M that carries a deviation once around has the multipliers as its eigenvalues. Its determinant is known in closed form
+//! and is 1 at most, so that both are inside the unit circle, or one is outside (Jury 1962), as
+//!
+//! ```text
+//! det M < 1 and |tr M| < 1 + det M        |tr M| > 1 + det M
+//! ```
+//!
+//! A lossless follower has det M = 1: its multipliers are a pair on the unit circle where |tr M| < 2. Between the two, within the
+//! error of the trace, a multiplier is 1 or -1. Deciding by the trace needs no root, so that multipliers that nearly meet, which an
+//! error moves by its square root, do no harm.
+
+use nalgebra::Matrix2;
+use serde::Serialize;
+
+use super::cycle::{Cycle, lift_size};
+use super::multipliers::eigenvalues;
+use crate::flight::Flight;
+use crate::impact::{ImpactRates, rebound};
+use crate::interval::Interval;
+use crate::known::Known;
+use crate::simulate::Machine;
+use crate::tolerance;
+
+/// What becomes of small deviations from a periodic motion, by its multipliers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Stability {
+    /// All multipliers are inside the unit circle: deviations die out.
+    Stable,
+    /// A multiplier is outside the unit circle: deviations grow.
+    Unstable,
+    /// The largest modulus of a multiplier is 1 within its error: to first order deviations neither die out nor grow.
+    Neutral,
+}
+
+named!(Stability);
+
+impl Stability {
+    /// By the largest modulus of a multiplier and its error.
+    pub fn of_modulus(modulus: f64, error: f64) -> Self {
+        if modulus + error < 1.0 {
+            Self::Stable
+        } else if modulus - error > 1.0 {
+            Self::Unstable
+        } else {
+            Self::Neutral
+        }
+    }
+
+    /// By the range of |tr M|, that of 1 + det M, and whether det M is below 1; none where a multiplier may be inside or outside.
+    fn of_trace([least, most]: [f64; 2], [low, high]: [f64; 2], loses: bool) -> Option<Self> {
+        if least > high {
+            Some(Self::Unstable)
+        } else if most < low {
+            Some(if loses { Self::Stable } else { Self::Neutral })
+        } else {
+            None
+        }
+    }
+}
+
+/// The stability of a motion, with what is known of its multipliers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Judgement {
+    /// The verdict.
+    pub stability: Stability,
+    /// Proved where the verdict holds for every number of the enclosures that the orbit is proved to be in, else computed.
+    pub known: Known,
+    /// A bound on the distance of each computed multiplier from the true one, to first order in the errors of the matrix; not a number
+    /// where there are no multipliers.
+    pub error: f64,
+}
+
+/// A 2x2 matrix by rows, whose entries are known to lie in intervals.
+type Rows = [[Interval; 2]; 2];
+
+/// The angle, rad, and the velocity before, m/s, of an impact.
+pub(super) type Place = [Interval; 2];
+
+/// The propagator of a flight of a time, s.
+fn propagator(flight: &Flight, time: Interval) -> Rows {
+    let response = flight.response_over(time);
+    let spring = flight.omega0_squared();
+    let (p, s) = (response.step, response.impulse);
+    [[-(p * spring) + 1.0, s], [-(s * spring), response.impulse_rate]]
+}
+
+fn product(left: &Rows, right: &Rows) -> Rows {
+    [0, 1].map(|row| [0, 1].map(|column| left[row][0] * right[0][column] + left[row][1] * right[1][column]))
+}
+
+/// Impact by impact its saltation matrix and the flight to the next one, wherever in `places` the impacts are.
+fn factors(machine: &Machine, cycle: &Cycle, places: &[Place]) -> Vec<Rows> {
+    let (flight, r, omega) = (machine.flight(), machine.restitution(), machine.angular_velocity());
+    let count = cycle.impacts.len();
+    let factor = |(index, &[angle, velocity_before]): (usize, &Place)| {
+        let lift = machine.cam().segments()[cycle.impacts[index].segment].law.lift_over(angle);
+        let cam_velocity = lift.slope * omega;
+        let rates = ImpactRates {
+            restitution: r,
+            velocity_before,
+            acceleration_before: flight.acceleration_at(lift.value, velocity_before),
+            acceleration_after: flight.acceleration_at(lift.value, rebound(r, velocity_before, cam_velocity)),
+            cam_velocity,
+            cam_acceleration: lift.curvature * omega * omega,
+        };
+        let next = (index + 1) % count;
+        let turn = Interval::TURN * cycle.turns(index);
+        let turn = if next == index { turn } else { turn + places[next][0] - angle };
+        product(&propagator(flight, turn / Interval::from(omega)), &rates.saltation_rows())
+    };
+    places.iter().enumerate().map(factor).collect()
+}
+
+/// The middle of each entry.
+fn middle(rows: &Rows) -> Matrix2<f64> {
+    Matrix2::from_fn(|row, column| rows[row][column].middle())
+}
+
+/// tr M of a product of factors, and its error to first order.
+///
+/// With P the product of the factors before one of them, F, and R that of those after it, an error dF and the rounding of F P change
+/// the trace by
+///
+/// ```text
+/// tr(R dF P)        at most        tr(|R| (|dF| + 2 u |F|) |P|)
+/// ```
+fn trace(factors: &[Rows]) -> (f64, f64) {
+    let mut after = vec![Matrix2::<f64>::identity()];
+    for factor in factors.iter().skip(1).rev() {
+        let last = after[after.len() - 1];
+        after.push(last * middle(factor));
+    }
+    let (mut before, mut error) = (Matrix2::<f64>::identity(), 0.0);
+    for (factor, after) in factors.iter().zip(after.iter().rev()) {
+        let centre = middle(factor);
+        let radius = Matrix2::from_fn(|row, column| 0.5 * factor[row][column].width());
+        let off = radius + centre.abs() * (2.0 * tolerance::ULP.value);
+        let moved = after.abs() * off * before.abs();
+        error += moved.trace();
+        before = centre * before;
+    }
+    (before.trace(), error)
+}
+
+/// How far eigenvalues of `matrix` may be from those with the trace and the determinant that are known better.
+///
+/// A computed multiplier mu misses the true characteristic polynomial by p, and the true multipliers by d1 and d2 with d1 d2 = p: the
+/// nearer one by the root of p at most, and by 2 p/g where they are as far apart as g.
+fn multipliers_error(matrix: &Matrix2<f64>, (trace, error): (f64, f64), determinant: f64) -> f64 {
+    let pair = eigenvalues(matrix);
+    let terms = (matrix[(0, 0)] * matrix[(1, 1)]).abs() + (matrix[(0, 1)] * matrix[(1, 0)]).abs();
+    let off = (matrix.determinant() - determinant).abs() + 2.0 * tolerance::ULP.value * terms;
+    let gap = (pair[0].re - pair[1].re).hypot(pair[0].im - pair[1].im);
+    let of_one = |modulus: f64| {
+        let missed = modulus * ((matrix.trace() - trace).abs() + error) + off;
+        missed.sqrt().min(2.0 * missed / gap)
+    };
+    pair.into_iter().map(|one| of_one(one.modulus())).fold(0.0, |most, one| if one <= most { most } else { one })
+}
+
+impl Judgement {
+    /// The verdict on a product of factors with a determinant that is known, and the error of the eigenvalues of `matrix`.
+    fn of(factors: &[Rows], determinant: f64, loses: bool, matrix: &Matrix2<f64>) -> Self {
+        let (middle, error) = trace(factors);
+        let size = middle.abs();
+        let room = error + tolerance::ULP.value * (1.0 + size + determinant);
+        let decided = Stability::of_trace([size - room, size + room], [1.0 + determinant; 2], loses);
+        let error = multipliers_error(matrix, (middle, error), determinant);
+        Self { stability: decided.unwrap_or(Stability::Neutral), known: Known::Computed, error }
+    }
+
+    /// The verdict on a cycle that closes within `residual` of its size, and whose matrix at angle 0 was computed as `matrix`.
+    ///
+    /// The impacts are known to the last correction of Newton's method, or to what rounding makes of it next to a fold, where the
+    /// equations hardly determine them: an ulp over det(I - M), and half of the digits at most.
+    pub(super) fn of_cycle(machine: &Machine, cycle: &Cycle, residual: f64, matrix: &Matrix2<f64>) -> Self {
+        /// How many times as far off as that they may be.
+        const ROOM: f64 = 4.0;
+        let determinant = cycle.determinant(machine);
+        let singular = (1.0 - matrix.trace() + determinant).abs().clamp(tolerance::ULP.value.sqrt(), 1.0);
+        let part = ROOM * (residual + tolerance::ULP.value / singular);
+        let speed = lift_size(machine) * machine.angular_velocity();
+        let around = |middle: f64, radius: f64| Interval::new(middle - radius, middle + radius);
+        let places = cycle.impacts.iter().map(|impact| {
+            let rounding = tolerance::ULP.value * impact.velocity_before.abs();
+            let angle = around(impact.cam_angle, part);
+            [angle, around(impact.velocity_before, part * speed + rounding)]
+        });
+        let factors = factors(machine, cycle, &places.collect::<Vec<_>>());
+        Self::of(&factors, determinant, loses(machine), matrix)
+    }
+
+    /// The verdict on a follower that stays above the cam.
+    pub(super) fn of_flight(machine: &Machine, matrix: &Matrix2<f64>) -> Self {
+        let (flight, omega) = (machine.flight(), machine.angular_velocity());
+        let time = Interval::TURN / Interval::from(omega);
+        // det M = e^{-b T/m}
+        let determinant = (-2.0 * flight.zeta() * std::f64::consts::TAU / omega).exp();
+        Self::of(&[propagator(flight, time)], determinant, flight.zeta() > 0.0, matrix)
+    }
+
+    /// The verdict on a follower that rests on the cam.
+    ///
+    /// With restitution below 1 infinitely many impacts leave nothing of a deviation. With restitution 1 no bounce ends in a rest, and
+    /// there is no matrix. A low bounce of speed u then keeps u^3 over the force of contact, an adiabatic invariant of many
+    /// bounces in a revolution, but for what the damper takes of it: `u ~ e^{-b t/(3 m)}`.
+    pub(super) fn of_rest(machine: &Machine) -> Self {
+        let stability = if loses(machine) { Stability::Stable } else { Stability::Neutral };
+        let error = if machine.restitution() < 1.0 { 0.0 } else { f64::NAN };
+        Self { stability, known: Known::Computed, error }
+    }
+
+    /// The verdict that holds wherever in `places` the impacts of a cycle are; none where it is not the same for all of them.
+    pub(super) fn proved(machine: &Machine, cycle: &Cycle, places: &[Place]) -> Option<Stability> {
+        let factors = factors(machine, cycle, places);
+        let determinant = |of: &Rows| of[0][0] * of[1][1] - of[0][1] * of[1][0];
+        let whole = factors.iter().copied().reduce(|before, next| product(&next, &before))?;
+        let trace = whole[0][0] + whole[1][1];
+        let least = if trace.holds_zero() { 0.0 } else { trace.low().abs().min(trace.high().abs()) };
+        let size = [least, trace.low().abs().max(trace.high().abs())];
+        let determinant = factors.iter().map(determinant).fold(Interval::from(1.0), |all, one| all * one);
+        let sum = determinant + 1.0;
+        Stability::of_trace(size, [sum.low(), sum.high()], loses(machine))
+    }
+}
+
+/// Whether impacts or flights lose anything, so that det M is below 1.
+fn loses(machine: &Machine) -> bool {
+    machine.restitution() < 1.0 || machine.flight().zeta() > 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PART: f64 = 1e-6;
+
+    fn exactly(entries: [[f64; 2]; 2]) -> Rows {
+        entries.map(|row| row.map(Interval::from))
+    }
+
+    fn close(told: f64, expected: f64) {
+        assert!((told - expected).abs() <= 1e-3 * expected.abs(), "{told:e} {expected:e}");
+    }
+
+    /// Each entry of each factor in turn is moved, and the trace of the product taken anew.
+    #[test]
+    fn the_error_of_a_trace_is_what_its_entries_move_it_by() {
+        let plain = [[[2.0, 1.0], [0.5, -3.0]], [[1.0, -0.2], [4.0, 1.0]], [[0.3, 7.0], [-1.0, 2.0]]];
+        let product = |of: &[[[f64; 2]; 2]; 3]| {
+            let [first, second, third] = of.map(|rows| Matrix2::from_fn(|row, column| rows[row][column]));
+            (third * second * first).trace()
+        };
+        let mut expected = 0.0;
+        for (factor, row, column) in (0..12).map(|index| (index / 4, index / 2 % 2, index % 2)) {
+            let mut moved = plain;
+            moved[factor][row][column] += PART;
+            expected += (product(&moved) - product(&plain)).abs();
+        }
+        let around = |middle: f64| Interval::new(middle - PART, middle + PART);
+        let (middle, error) = trace(&plain.map(|rows| rows.map(|row| row.map(around))));
+        close(middle, product(&plain));
+        close(error, expected);
+        // Of one factor alone what rounding makes of its diagonal.
+        close(trace(&[exactly([[3.0, 9.0], [9.0, -5.0]])]).1, 16.0 * tolerance::ULP.value);
+    }
+
+    #[test]
+    fn a_multiplier_is_off_by_its_polynomial_over_the_gap_or_by_the_root_of_it() {
+        let [apart, double] = [Matrix2::new(3.0, 0.0, 0.0, 1.0), Matrix2::identity()];
+        close(multipliers_error(&apart, (4.0 + PART, PART), 3.0), 6.0 * PART);
+        close(multipliers_error(&apart, (4.0, 0.0), 3.0 + PART), PART);
+        close(multipliers_error(&double, (2.0, 1e-8), 1.0), 1e-4);
+        for matrix in [Matrix2::new(1e3, 0.0, 0.0, -1e3), Matrix2::new(0.0, 1e3, 1e3, 0.0)] {
+            close(multipliers_error(&matrix, (0.0, 0.0), -1e6), 2e3 * tolerance::ULP.value);
+        }
+        let turning = Matrix2::new(0.0, 1.0, -1.0, 0.0);
+        close(multipliers_error(&turning, (0.0, PART), 1.0), PART);
+        assert!(multipliers_error(&Matrix2::from_element(f64::NAN), (0.0, 0.0), 1.0).is_nan());
+    }
+
+    #[test]
+    fn a_modulus_decides_beyond_its_error_and_a_trace_between_its_bounds() {
+        let of = |modulus| Stability::of_modulus(modulus, 0.1);
+        assert_eq!(
+            [0.8, 0.95, 1.05, 1.2].map(of),
+            [Stability::Stable, Stability::Neutral, Stability::Neutral, Stability::Unstable]
+        );
+        let of = |size, loses| Stability::of_trace(size, [1.4, 1.6], loses);
+        assert_eq!([of([0.0, 1.3], true), of([0.0, 1.3], false)], [Some(Stability::Stable), Some(Stability::Neutral)]);
+        assert_eq!([of([1.7, 9.0], true), of([1.7, 9.0], false)], [Some(Stability::Unstable); 2]);
+        assert_eq!([[0.0, 1.5], [1.5, 1.5], [1.5, 9.0]].map(|size| of(size, true)), [None; 3]);
+    }
+}
