@@ -70,7 +70,7 @@ fn a_follower_at_rest_is_touched_where_the_cams_top_is_as_high() {
     let orbit = free(&model, 20.0);
     let cases = [
         ("offset", [-1.05, -0.95], -1.0, true),
-        ("amplitudes.0", [0.9, 1.1], 1.02, true),
+        ("cam.amplitudes[0]", [0.9, 1.1], 1.02, true),
         ("rest_position", [-0.1, 0.1], -0.02, false),
         ("gravity", [0.0, 0.1], 0.02, true),
     ];
@@ -242,8 +242,10 @@ fn motions_stay_near_a_graze_or_jump_as_its_class_says() {
     for lambda in [0.15, 0.5, 0.9] {
         let rpm = rpm_of(3.0, lambda);
         assert_ne!(touch(&wall(3.0, 1.0, -1.01), rpm).class, GrazeClass::Jump);
-        let part = far.map(|far| strays(3.0, rpm, far, 300) / far.sqrt());
-        assert!(part.iter().all(|part| *part < 4.0), "{lambda}: {part:?}");
+        // An impact leaves no more than (1 + r) sqrt(2 a far) above the follower's own velocity.
+        let most = 1.8 * 2.0_f64.sqrt() * angular_velocity(rpm);
+        let part = far.map(|far| strays(3.0, rpm, far, 300) / far.sqrt() / most);
+        assert!(part.iter().all(|part| *part < 2.0), "{lambda}: {part:?}");
     }
 }
 
@@ -282,8 +284,8 @@ fn the_orbits_beyond_a_graze_are_where_its_class_has_them() {
         let found = beyond(3.0, rpm_of(3.0, lambda), above);
         assert!(matches!(found, Ending::Chaotic(_)), "{found:?}");
     }
-    for far in [1e-4, 3e-5, 1e-5] {
-        let found = beyond(3.0, rpm_of(3.0, 0.9), far);
+    for far in [1e-3, 3e-4, 1e-4] {
+        let found = beyond(3.0, rpm_of(3.0, 0.75), far);
         assert!(matches!(found, Ending::Chaotic(_)), "{far}: {found:?}");
     }
 }

@@ -16,8 +16,8 @@
 //! ```
 //!
 //! A follower that oscillates has such an n, unless its oscillation is in resonance with the cam, `s(n T) = 0`. One that does not has
-//! `s > 0` always. Then impacts stay small, and as the graze is approached the last decides to which eigenvalue a deviation shrinks in one
-//! passage, `lambda = e^(-slow T)` (Chin, Ott, Nusse, Grebogi 1994; Fredriksson, Nordmark 1997):
+//! `s > 0` always. Then impacts stay small. Close to the graze the slower of its two rates decides, by what it leaves of a deviation after
+//! one passage, `lambda = e^(-slow T)` (Chin, Ott, Nusse, Grebogi 1994; Fredriksson, Nordmark 1997):
 //!
 //! ```text
 //! lambda < 1/4          stable orbits of one impact in n passages, each beside the next as well; n grows without end
@@ -42,7 +42,7 @@ pub enum GrazeClass {
     Jump,
     /// Stable orbits of one impact in ever more passages, two of them side by side in part.
     PeriodAdding,
-    /// The same with chaos between them.
+    /// Stable orbits of one impact in ever more passages, with chaos between them.
     PeriodAddingChaos,
     /// Chaos of small impacts.
     Chaos,
@@ -170,7 +170,7 @@ pub enum Border {
     Resonance(u64),
 }
 
-/// Those speeds in a range, rpm, of a cam with so many tops, at most `most`.
+/// Speeds in a range, rpm, at which the class is undecided, of a cam with so many tops: at most `most` of them.
 pub(super) fn borders(machine: &Machine, tops: usize, [low, high]: [f64; 2], most: usize) -> Vec<(f64, Border)> {
     let per_rpm = angular_velocity(1.0);
     // A passage takes T = 2 pi/(omega tops).
