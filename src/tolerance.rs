@@ -113,6 +113,9 @@ table! {
     /// When relative velocity at the impact counts as none.
     GRAZING = 1e-9, "of the velocities it is the difference of: 1/(v - c') would amplify the rounding of a double to 1e-7, \
         the last size at which five decimals mean anything";
+    /// From which second derivative on the cam falls away from its top as a parabola does, m/rad^2.
+    FLAT_TOP = 1e-6, "of the cam's lift, times a radian: the top of a fourth power is located to 1e-5 rad, and its second derivative \
+        there is a thousandth of this";
     /// The relative velocity of an impact that may be a graze, simulated.
     GRAZE_FOUND = 1e-6, "of the velocities it is the difference of: a graze is found where the gap falls below its rounding, \
         so its velocity is of the size of the root of that rounding";

@@ -3,11 +3,11 @@
 use serde::Serialize;
 
 use super::feigin::{Scenario, scenario};
-use crate::orbit::branch::{Branch, BranchPoint, End, Kind, Special};
+use crate::orbit::branch::{Branch, BranchPoint, End, GrazeClass, Kind, Special};
 use crate::orbit::{Eigenvalue, eigenvalues};
 use crate::tolerance;
 
-/// What happens at a corner impact, by the eigenvalues of its map alone.
+/// What happens at a corner impact, by the eigenvalues of its map alone, or beyond the graze of an orbit without impacts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Happening {
@@ -18,6 +18,9 @@ pub enum Happening {
     /// Two matrices meet: Feigin's scenario.
     #[serde(untagged)]
     BorderCollision(Scenario),
+    /// An orbit without impacts grazes.
+    #[serde(untagged)]
+    Graze(GrazeClass),
 }
 
 named!(Happening);
@@ -34,7 +37,7 @@ pub struct EventPoint {
     /// Turns of the cam in one period.
     pub revolutions: u64,
     pub impacts: usize,
-    /// At a corner impact.
+    /// At a corner impact, and at the graze of an orbit without impacts.
     pub happening: Option<Happening>,
     /// Two of the orbit; at a corner impact two with the law before the corner, then two with the law after it.
     pub multipliers: Vec<Eigenvalue>,
@@ -50,7 +53,7 @@ impl EventPoint {
         let happening = match (kind, sides) {
             (Kind::Corner { jump_order: 2, .. }, [minus, plus]) => Some(of_sides([*minus, *plus])),
             (Kind::Corner { .. }, _) => Some(Happening::NotPiecewiseLinear),
-            _ => None,
+            _ => held.as_ref().and_then(|held| held.class).map(Happening::Graze),
         };
         Self {
             rpm: *rpm,

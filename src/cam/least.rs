@@ -2,8 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use super::{Cam, Law, Lift, Segment};
+use super::{Cam, Law, Lift, Segment, apart};
 use crate::bracket::{Width, halve};
+use crate::tolerance;
 
 /// Where on a cam something is least.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,10 +23,36 @@ pub struct Least {
 const OF_A_TURN: f64 = 1440.0;
 const OF_A_SEGMENT: usize = 8;
 
+/// The highest lift is where this is least.
+const UPSIDE_DOWN: [f64; 4] = [-1.0, 0.0, 0.0, 0.0];
+
 impl Cam {
     /// The lowest lift.
     pub fn lowest(&self) -> Least {
         self.least([1.0, 0.0, 0.0, 0.0])
+    }
+
+    /// The highest lift.
+    pub fn highest(&self) -> Least {
+        let least = self.least(UPSIDE_DOWN);
+        Least { value: -least.value, ..least }
+    }
+
+    /// The places that are as high as the highest but for rounding, each once, by rising angle; of a dwell its ends.
+    pub(crate) fn tops(&self) -> Vec<Least> {
+        let segments = self.segments().iter().enumerate();
+        let all: Vec<Least> = segments.flat_map(|(index, segment)| places(index, segment, UPSIDE_DOWN)).collect();
+        let highest = self.highest().value;
+        let size = all.iter().fold(0.0_f64, |size, place| size.max(place.value.abs()));
+        let mut tops: Vec<Least> = Vec::new();
+        for place in all.into_iter().map(|place| Least { value: -place.value, ..place }) {
+            let is_new = |known: &Least| apart(known.angle, place.angle) > tolerance::CORNER_ANGLE.value;
+            if highest - place.value <= tolerance::RANGE_ROUNDING.value * size && tops.iter().all(is_new) {
+                tops.push(place);
+            }
+        }
+        tops.sort_by(|one, other| one.angle.total_cmp(&other.angle));
+        tops
     }
 
     /// Where `a_0 c + a_1 c' + a_2 c'' + a_3 c'''` is least: from the sign of its derivative between neighbouring angles, of which the
@@ -46,11 +73,22 @@ impl Cam {
 impl Segment {
     /// Its lowest and its highest lift, m.
     pub fn extremes(&self) -> [f64; 2] {
-        [of_segment(0, self, [1.0, 0.0, 0.0, 0.0]).value, -of_segment(0, self, [-1.0, 0.0, 0.0, 0.0]).value]
+        [of_segment(0, self, [1.0, 0.0, 0.0, 0.0]).value, -of_segment(0, self, UPSIDE_DOWN).value]
     }
 }
 
 fn of_segment(index: usize, segment: &Segment, weights: [f64; 4]) -> Least {
+    let places = places(index, segment, weights);
+    places.into_iter().reduce(|least, found| if found.value < least.value { found } else { least }).unwrap_or_else(
+        || {
+            let lift = segment.law.lift(segment.start);
+            Least { segment: index, angle: segment.start, value: f64::NAN, lift }
+        },
+    )
+}
+
+/// The ends of a segment, the lower first, and the places between them that are lower than their neighbours.
+fn places(index: usize, segment: &Segment, weights: [f64; 4]) -> Vec<Least> {
     let Segment { start, end, law, .. } = segment;
     let at = |angle: f64| {
         let lift = law.lift(angle);
@@ -71,7 +109,11 @@ fn of_segment(index: usize, segment: &Segment, weights: [f64; 4]) -> Least {
         weights[0] * slope + weights[1] * curvature + weights[2] * third + weights[3] * fourth < 0.0
     };
     let looked: Vec<Least> = (0..=count).map(|place| at(angle(place))).collect();
-    let mut least = if looked[count].value < looked[0].value { looked[count] } else { looked[0] };
+    let mut all = if looked[count].value < looked[0].value {
+        vec![looked[count], looked[0]]
+    } else {
+        vec![looked[0], looked[count]]
+    };
     // The least may be between either end and its neighbour: the turn of a cosine begins and ends anywhere, and a damper pulls right
     // before a dwell.
     for place in 0..=count {
@@ -80,9 +122,8 @@ fn of_segment(index: usize, segment: &Segment, weights: [f64; 4]) -> Least {
             let ends = [before.angle, after.angle];
             let Ok(found) = halve::<std::convert::Infallible>(ends, Width::Halvings(60), |angle| Ok(!falls(angle)));
             let found = at(found[1]);
-            let found = if found.value < here.value { found } else { here };
-            least = if found.value < least.value { found } else { least };
+            all.push(if found.value < here.value { found } else { here });
         }
     }
-    least
+    all
 }

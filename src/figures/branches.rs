@@ -64,7 +64,9 @@ fn mark(kind: &Kind) -> usize {
         Kind::Graze { .. } => 3,
         Kind::Chatter | Kind::Detachment => 4,
         // Of another figure.
-        Kind::Type { .. } | Kind::Cusp | Kind::DegenerateGraze | Kind::Place | Kind::Turn => MARKED.len(),
+        Kind::Type { .. } | Kind::Cusp | Kind::DegenerateGraze | Kind::Class(_) | Kind::Place | Kind::Turn => {
+            MARKED.len()
+        }
     }
 }
 
@@ -112,12 +114,18 @@ fn by_recurrence(settled: &[[f64; 2]]) -> (Vec<[f64; 2]>, Vec<[f64; 2]>) {
     (repeating, others)
 }
 
-/// Where a special point of one of the marked kinds is drawn: at the impact that it is about, or the first.
+/// Where a special point of one of the marked kinds is drawn: at the impact that it is about, or the first; at the touch of an orbit
+/// without impacts.
 fn place(point: &BranchPoint, which: usize) -> Option<[f64; 2]> {
     let special = point.special.filter(|special| mark(&special.kind) == which)?;
     let index = if let Kind::Corner { impact, .. } = special.kind { impact } else { 0 };
-    let impact = point.orbit.impacts().nth(index).or_else(|| point.orbit.impacts().next())?;
-    Some([point.value, impact.cam_angle.to_degrees()])
+    let impact = point.orbit.impacts().nth(index).or_else(|| point.orbit.impacts().next());
+    let angle = match (impact, special.kind) {
+        (Some(impact), _) => impact.cam_angle,
+        (None, Kind::Graze { turned, .. }) => turned,
+        (None, _) => return None,
+    };
+    Some([point.value, angle.to_degrees()])
 }
 
 /// The phases of each impact along the branches where these are of one stability, with a break before each line.

@@ -25,10 +25,11 @@ const EVENTS: [(Bifurcation, &str, Colour, Stroke); 5] = [
 ];
 
 /// Points where a curve changes its type, by the name of what changes.
-const MARKED: [(&str, &str, Marker); 3] = [
+const MARKED: [(&str, &str, Marker); 4] = [
     ("type", "a multiplier is 1 or -1", Marker::Ring),
     ("cusp", "cusp", Marker::Diamond),
     ("degenerate-graze", "degenerate graze", Marker::Triangle),
+    ("class", "class of a graze", Marker::Square),
 ];
 
 /// Speed up, the parameter across; its name, its unit, its range, and its value in the model, which is marked.

@@ -113,6 +113,14 @@ impl Flight {
         }
     }
 
+    /// The rate at which a deviation that does not oscillate dies out in the end, 1/s: 0 without a spring. `None` where it oscillates.
+    pub fn slowest_rate(&self) -> Option<f64> {
+        match self.regime {
+            Regime::Monotone { slow, .. } => Some(slow),
+            Regime::Undamped { .. } | Regime::Underdamped { .. } => None,
+        }
+    }
+
     /// `q''` in free flight, m/s^2.
     #[inline]
     pub fn acceleration(&self, state: State) -> f64 {

@@ -2,13 +2,14 @@
 //!
 //! Orbits of one impact, and of two in one revolution where they are asked for, are all found, by enclosures. Of the others two
 //! ways each find what the other may miss: long runs settle on stable orbits, and short runs from many starts on the cam give
-//! Newton's method the guesses from which it finds unstable ones.
+//! Newton's method the guesses from which it finds unstable ones. The follower at rest above the cam is known in closed form.
 
 use std::f64::consts::TAU;
 
 use super::complete::{Solved, Standing, Undecided, joined, of_one_impact, of_two_impacts};
-use super::settle::{MOST_IMPACTS, close, near_run, period};
+use super::settle::{MOST_IMPACTS, close, free, near_run, period};
 use super::{Course, Cycle, Judgement, PeriodicOrbit};
+use crate::flight::State;
 use crate::interval::Interval;
 use crate::known::{Complete, Known};
 use crate::progress::Watch;
@@ -139,6 +140,11 @@ impl<'a> Found<'a> {
     /// The other ways, and everything in order.
     fn search(mut self) -> Result<Searched, SimulateError> {
         let mut error = None;
+        // The equilibrium, if the cam does not reach it: no run from the cam need come to it.
+        let state = State { position: self.machine.cam().top(), velocity: 0.0 };
+        if self.machine.flight().omega0_squared() > 0.0 {
+            free(self.machine, state).into_iter().for_each(|orbit| self.keep(orbit));
+        }
         for start in 0..LONG_RUNS {
             let angle = TAU * start as f64 / LONG_RUNS as f64;
             let speed = start as f64 / LONG_RUNS as f64 * velocity_scale(self.machine);

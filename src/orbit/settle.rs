@@ -103,8 +103,14 @@ pub(super) fn near_run(
     Ok(None)
 }
 
-/// The follower at rest above the cam, near `state`: where no force is left on it. `None` where it falls, or meets the cam.
+/// The follower at rest above the cam, near `state`. `None` where it falls, or meets the cam.
 pub(super) fn free(machine: &Machine, state: State) -> Option<PeriodicOrbit> {
+    at_rest(machine, state).filter(|orbit| orbit.state.position > machine.cam().highest().value)
+}
+
+/// The follower at rest near `state`, where no force is left on it, wherever the cam is; without a spring or gravity that is anywhere.
+/// `None` where it falls.
+pub(super) fn at_rest(machine: &Machine, state: State) -> Option<PeriodicOrbit> {
     let (flight, force) = (machine.flight(), machine.flight().force(state.position));
     let above = if force == 0.0 { 0.0 } else { force / flight.omega0_squared() };
     let state = State { position: state.position + above, velocity: 0.0 };
@@ -113,7 +119,7 @@ pub(super) fn free(machine: &Machine, state: State) -> Option<PeriodicOrbit> {
     let (events, course, known) = (Vec::new(), Course::Free, Known::Computed);
     let judgement = Judgement::of_flight(machine, &matrix);
     let orbit = PeriodicOrbit { revolutions: 1, events, state, matrix, judgement, residual, course, known };
-    (state.position.is_finite() && state.position > machine.cam().top()).then_some(orbit)
+    state.position.is_finite().then_some(orbit)
 }
 
 /// Runs `revolutions` and returns the events on the way.

@@ -2,7 +2,7 @@
 
 use crate::border_collision::event_curve::EventPoint;
 use crate::border_collision::{EventCurve, RoundedCorner};
-use crate::orbit::branch::{Branch, BranchPoint, Kind, Special};
+use crate::orbit::branch::{Border, Branch, BranchPoint, Kind, Special};
 use crate::show::words;
 use crate::tolerance;
 
@@ -38,8 +38,13 @@ fn passed(point: &BranchPoint, kind: Kind) -> String {
             let angle = point.orbit.impacts().nth(impact).map_or(f64::NAN, |impact| impact.cam_angle.to_degrees());
             format!("corner impact: impact {} at {angle:.4} deg, jump of order {jump_order}", impact + 1)
         }
-        Kind::Graze { before, after, .. } => format!("graze: from {before} to {after} impacts"),
-        Kind::Type { .. } | Kind::Cusp | Kind::DegenerateGraze | Kind::Place | Kind::Turn => on_curve(kind),
+        Kind::Graze { before, after, first, .. } => {
+            let beyond = first.map(words::first_touch).unwrap_or_default();
+            format!("graze: from {before} to {after} impacts{beyond}")
+        }
+        Kind::Type { .. } | Kind::Cusp | Kind::DegenerateGraze | Kind::Class(_) | Kind::Place | Kind::Turn => {
+            on_curve(kind)
+        }
         Kind::Chatter => "chatter: the follower ceases to stick to the cam".into(),
         Kind::Detachment => "detachment: the follower leaves the cam for the first time".into(),
     }
@@ -57,6 +62,11 @@ fn on_curve(kind: Kind) -> String {
             format!("a multiplier {side} is {multiplier}")
         }
         Kind::Cusp => "cusp: two folds meet".into(),
+        Kind::Class(Border::Eigenvalue(value)) => format!("a multiplier of the orbit without impacts is {value:.4}"),
+        Kind::Class(Border::Resonance(passages)) => {
+            let passages = words::many(passages, "passage");
+            format!("resonance: {passages} of the cam's top after an impact the follower is at its equilibrium again")
+        }
         Kind::DegenerateGraze => "degenerate graze: follower and cam have one acceleration where they touch".into(),
         Kind::Place => "the follower leaves the cam at two places at once".into(),
         Kind::Turn => "the curve turns round".into(),
@@ -84,6 +94,10 @@ pub(crate) fn curve(
         _ if !angle.is_finite() => format!("of {impacts} impact(s) in {} revolution(s)", here.revolutions),
         Kind::Corner { impact, jump_order, .. } => {
             format!("impact {} of {impacts} at {angle:.4} deg, jump of order {jump_order}", impact + 1)
+        }
+        Kind::Graze { after, first: Some(touch), .. } => {
+            let side = words::touch_side(touch.larger);
+            format!("from 0 to {after} impacts {side}, at {angle:.4} deg")
         }
         Kind::Graze { .. } => format!("from {impacts} to {} impacts, at {angle:.4} deg", impacts + 1),
         Kind::Detachment => format!("at {angle:.4} deg"),

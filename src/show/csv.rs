@@ -232,7 +232,8 @@ pub(crate) fn speeds(found: &Surveyed) -> String {
 pub(crate) fn branches(parameter: &str, branches: &[Branch]) -> String {
     let mut lines = String::from(
         "rpm,parameter,value,revolutions,impacts,cam_angle_rad,position_m,velocity_m_s,multiplier_1_re,multiplier_1_im,\
-         multiplier_2_re,multiplier_2_im,stable,special,branch,jump_order,bracket_low,bracket_high,special_residual,stability\n",
+         multiplier_2_re,multiplier_2_im,stable,special,branch,jump_order,bracket_low,bracket_high,special_residual,stability,\
+         graze_class\n",
     );
     let points = branches.iter().zip(1..).flat_map(|(branch, index)| branch.points.iter().map(move |p| (index, p)));
     for (index, point) in points {
@@ -240,16 +241,17 @@ pub(crate) fn branches(parameter: &str, branches: &[Branch]) -> String {
         let (turns, stable, impacts) = (orbit.revolutions, orbit.is_stable(), orbit.impacts().count());
         let first = orbit.impacts().next().map(|first| (first.cam_angle, first.position, first.velocity_after));
         let (angle, position, velocity) = first.unwrap_or((0.0, orbit.state.position, orbit.state.velocity));
-        let order = match special.map(|special| special.kind) {
-            Some(Kind::Corner { jump_order, .. }) => Some(jump_order),
-            _ => None,
+        let (order, class) = match special.map(|special| special.kind) {
+            Some(Kind::Corner { jump_order, .. }) => (Some(jump_order), None),
+            Some(Kind::Graze { first, .. }) => (None, first.map(|first| first.class)),
+            _ => (None, None),
         };
         let (order, low) = (cell(order), cell(special.map(|special| special.bracket[0])));
         let (high, residual) = (cell(special.map(|special| special.bracket[1])), cell(special.map(|s| s.residual)));
         let (special, both) = (special.map_or("", |special| special.kind.name()), multipliers(orbit.multipliers()));
         let _ = write!(lines, "{rpm},{parameter},{value},{turns},{impacts},{angle},{position},{velocity},{both},");
-        let _ =
-            writeln!(lines, "{stable},{special},{index},{order},{low},{high},{residual},{}", orbit.judgement.stability);
+        let (stability, class) = (orbit.judgement.stability, cell(class));
+        let _ = writeln!(lines, "{stable},{special},{index},{order},{low},{high},{residual},{stability},{class}");
     }
     lines
 }

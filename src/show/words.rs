@@ -14,7 +14,7 @@ use crate::covering::prove::Relation;
 use crate::measured::Measured;
 use crate::model::{Reading, Separator};
 use crate::orbit::Stability;
-use crate::orbit::branch::{self, Bifurcation};
+use crate::orbit::branch::{self, Bifurcation, Doubt, FirstTouch, GrazeClass};
 use crate::orbit::ending::{Ending, Kind};
 use crate::published::Verdict;
 use crate::show::block::{Mark, Symbol, Words, words};
@@ -64,6 +64,44 @@ pub(crate) fn events(kind: branch::Kind) -> &'static str {
         Bifurcation::Detachment => "detachments",
         Bifurcation::Resting => "onsets of resting",
     })
+}
+
+/// What is known of the motions beyond the graze of an orbit without impacts, behind the name of that.
+pub(crate) fn first_touch(touch: FirstTouch) -> String {
+    let beyond = match (touch.class, touch.back, touch.doubt) {
+        (GrazeClass::Jump, Some((passages, depth)), _) => {
+            let (passages, depth) = (many(passages, "passage"), Digits::Significant(2).text(depth));
+            format!(
+                "nothing nearby attracts, since {passages} of the cam's top later an impact is followed by a harder one,                  up to a depth of some {depth} m"
+            )
+        }
+        (GrazeClass::PeriodAdding, ..) => {
+            "stable orbits of one impact in ever more revolutions towards the graze, with ranges that overlap".into()
+        }
+        (GrazeClass::PeriodAddingChaos, ..) => {
+            "stable orbits of one impact in ever more revolutions towards the graze, with chaos between them".into()
+        }
+        (GrazeClass::Chaos, ..) => "chaos of impacts that shrink towards the graze".into(),
+        (_, _, doubt) => doubt.map_or("", doubted).to_owned(),
+    };
+    format!(" {}; class {}: {beyond}", touch_side(touch.larger), touch.class)
+}
+
+/// On which side of a number the cam reaches a follower at rest.
+pub(crate) fn touch_side(larger: bool) -> &'static str {
+    if larger { "at larger values" } else { "at smaller values" }
+}
+
+/// Why the class of a graze is undecided.
+fn doubted(doubt: Doubt) -> &'static str {
+    match doubt {
+        Doubt::Sharp => "the cam's velocity jumps at its top",
+        Doubt::Flat => "the cam does not fall away from its top as a parabola does",
+        Doubt::Places => "the cam is as high at several places that are not alike",
+        Doubt::Unheld => "nothing returns the follower to where it was",
+        Doubt::Resonance => "the follower's oscillation is in resonance with the cam",
+        Doubt::Boundary => "the eigenvalue is at the boundary of two classes",
+    }
 }
 
 /// One of several events.

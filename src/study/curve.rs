@@ -5,7 +5,7 @@ use super::StudyError;
 use super::locate::{Happens, LocatedImpact, locate};
 use crate::border_collision::{EventCurve, RoundedCorner, rounded};
 use crate::model::{CORNER_ROUNDING, Model, Study};
-use crate::orbit::branch::{Bifurcation, Branch, Following, Kind, special_points};
+use crate::orbit::branch::{Bifurcation, Branch, Following, Kind, special_points, touches};
 use crate::orbit::{Parameter, Search};
 use crate::progress::Watch;
 
@@ -37,7 +37,11 @@ pub fn curves(
     let start = own.clamp(low, high);
     let model = &if start == own { model.clone() } else { model.with_number(path, start)? };
     let is_wanted = |kind: Kind| kind.bifurcation().is_some_and(|event| events.contains(&event));
-    let points = special_points(model, rpm, wanted, is_wanted, watch)?.points;
+    // An orbit without impacts meets nothing along a branch in the speed.
+    let points = match wanted.impacts {
+        Some(0) => Vec::new(),
+        _ => special_points(model, rpm, wanted, is_wanted, watch)?.points,
+    };
     let of_event = |event: Bifurcation| {
         points
             .iter()
@@ -50,6 +54,13 @@ pub fn curves(
         let curve = Branch::of_event(model, point, rpm, following)?.map(|curve| EventCurve::new(&curve, kind));
         // One curve may go through several of the events.
         curves.extend(curve.filter(|curve| !curves.iter().any(|known| known.is_same(curve))));
+    }
+    // An orbit without impacts grazes at all speeds or at none: no branch in the speed meets it.
+    let is_free = wanted.revolutions == 1 && wanted.impacts.is_none_or(|impacts| impacts == 0);
+    if events.contains(&Bifurcation::Graze) && is_free {
+        for (curve, kind) in touches(model, rpm, following)? {
+            curves.push(EventCurve::new(&curve, kind));
+        }
     }
     let sharp =
         if path == CORNER_ROUNDING { sharp(&model.with_number(path, 0.0)?, rpm, wanted, watch)? } else { Vec::new() };

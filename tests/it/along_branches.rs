@@ -34,7 +34,7 @@ fn resting(model: &Model, rpm: f64, speeds: [f64; 2], kind: Kind) -> (Branch, Br
 
 #[test]
 fn each_event_that_has_a_curve_is_of_its_kind() {
-    let graze = Kind::Graze { before: 1, after: 2, turned: 1.0 };
+    let graze = Kind::Graze { before: 1, after: 2, turned: 1.0, first: None };
     let corner = Kind::Corner { impact: 0, segment: 1, jump_order: 2 };
     let kinds = [corner, Kind::Fold, Kind::Flip, graze, Kind::Detachment, Kind::Chatter];
     assert_eq!(kinds.map(|kind| kind.bifurcation().unwrap()), Bifurcation::ALL);

@@ -44,6 +44,7 @@ mod drawing;
 mod dynamics;
 mod explain;
 mod figures;
+mod first_touch;
 mod fuzz;
 mod global;
 mod hostile;

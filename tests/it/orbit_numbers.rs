@@ -81,7 +81,7 @@ fn special(kind: Kind, residual: f64) -> String {
         Kind::Corner { impact, segment, jump_order } => {
             format!("corner of impact {impact}, segment {segment}, order {jump_order}")
         }
-        Kind::Graze { before, after, turned } => format!("graze from {before} to {after} at {turned:.5}"),
+        Kind::Graze { before, after, turned, .. } => format!("graze from {before} to {after} at {turned:.5}"),
         Kind::Type { after_corner, multiplier } => format!("type {after_corner:?} {multiplier}"),
         other => other.name().into(),
     }

@@ -313,7 +313,7 @@ fn a_point_of_a_branch_is_a_cause() {
         [cause(Event::Fold), cause(Event::Branching), cause(Event::Flip)],
         [Cause::Fold, Cause::Fold, Cause::Flip]
     );
-    let graze = Event::Graze { before: 1, after: 2, turned: 0.3 };
+    let graze = Event::Graze { before: 1, after: 2, turned: 0.3, first: None };
     assert_eq!([cause(graze), cause(Event::Detachment)], [Cause::Graze { impacts: [1, 2] }, Cause::Detachment]);
     let at = |jump_order: usize| Event::Corner { impact: 0, segment: 3, jump_order };
     assert_eq!(

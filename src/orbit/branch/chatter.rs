@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::{BranchPoint, End, Following, Kind, Special};
-use crate::orbit::{Family, OrbitError, PeriodicOrbit, curve, sticking};
+use crate::orbit::{Family, OrbitError, PeriodicOrbit, sticking};
 use crate::simulate::Machine;
 use crate::tolerance;
 
@@ -17,13 +17,7 @@ pub(super) fn half(
     direction: f64,
 ) -> Result<(Vec<BranchPoint>, End), OrbitError> {
     let span = following.range[1] - following.range[0];
-    let (mut edge, mut end) = (following.range[usize::from(direction > 0.0)], End::Range);
-    // Up to the last value that the model allows.
-    if let Err(why) = family.machine(&[edge])
-        && let Some(last) = curve::limit(value, edge, |value| family.machine(&[value]).is_err())
-    {
-        (edge, end) = (last, End::edge(direction > 0.0, &why));
-    }
+    let (edge, end) = following.bound(family, value, direction);
     let longest = following.longest_step * span;
     let closest = tolerance::SPECIAL_POINT.value * span;
     // One that never leaves the cam is anchored where the cam presses most, since what throws it off may begin anywhere else.

@@ -228,7 +228,7 @@ impl Stride<'_> {
         let held = self.held.map(|held| {
             let sides = held.sides(&cycle, &machine);
             let sides = sides.iter().map(|side| side.at_section(&machine, 0.0).1).collect();
-            OnCurve { cam_angle: held.cam_angle(&cycle), sides }
+            OnCurve { cam_angle: held.cam_angle(&cycle), sides, class: None }
         });
         let cycle = self.held.map_or_else(|| cycle.clone(), |held| held.orbit(&cycle));
         let orbit = special::judged(PeriodicOrbit::of_cycle(&machine, cycle, residual), special);

@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 
 use super::cut::{Cut, Located, Stride};
-use super::held::Held;
+use super::held::{Held, Pinned};
 use super::problem::{Problem, Units};
 use super::switch::{self, Exit};
 use super::{BranchPoint, End, Following, HalfBranch, Special, gap, special};
@@ -19,6 +19,7 @@ const FIRST: f64 = 0.02;
 const STRAIGHT: f64 = 0.985;
 
 /// Where a walk starts.
+#[derive(Clone, Copy)]
 pub(super) struct Start<'a> {
     pub(super) cycle: &'a Cycle,
     /// Of the free numbers; the last is the one that the walk is about.
@@ -67,6 +68,31 @@ pub(super) fn half(
     direction: f64,
 ) -> Result<HalfBranch, OrbitError> {
     Stride::begun(family, start, following)?.half(direction)
+}
+
+/// The branch from the touch of an orbit without impacts on, with the impacts of the start's cycle, which are touches there.
+pub(super) fn from_touch(family: &Family, start: &Start<'_>, following: &Following) -> Result<HalfBranch, OrbitError> {
+    let mut cycle = start.cycle.clone();
+    for impact in 0..cycle.impacts.len() {
+        let stride = Stride::begun(family, &Start { cycle: &cycle, ..*start }, following)?;
+        let Ok(tangent) = switch::from_touch(&stride.problem(), &stride.from.unknowns) else {
+            return Ok((Vec::new(), End::Graze));
+        };
+        // A top where two segments meet is on the one that the impact moves into.
+        let (machine, _) = family.machine(start.values)?;
+        let segment = &machine.cam().segments()[cycle.impacts[impact].segment];
+        let (angle, moves) = (cycle.impacts[impact].cam_angle, tangent[2 * impact]);
+        if angle <= segment.start && moves < 0.0 || angle >= segment.end && moves > 0.0 {
+            cycle = Pinned { impact, at_end: moves > 0.0 }.other_side(&cycle, &machine);
+        }
+    }
+    let mut stride = Stride::begun(family, &Start { cycle: &cycle, ..*start }, following)?;
+    let Ok(tangent) = switch::from_touch(&stride.problem(), &stride.from.unknowns) else {
+        return Ok((Vec::new(), End::Graze));
+    };
+    stride.from.tangent = tangent;
+    let fresh = Some(Exit::Touch { impact: 0, turned: 0.0 });
+    Walk { stride, fresh, signs: Vec::new(), points: Vec::new() }.run()
 }
 
 /// The curve of what is held, in both directions from what is there at the last number's first value: the point there, if there

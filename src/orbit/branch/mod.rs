@@ -12,6 +12,7 @@
 //! | `follow` | one direction of a branch, step by step; `chatter` where the follower sticks |
 //! | `problem`, `held` | the equations, with numbers of the model free; what holds besides along a curve in two of them |
 //! | `cut`, `gap`, `halved` | what a step passes, and where: corners, folds, flips; grazes; the end of a doubled period |
+//! | `free`, `first_touch` | orbits without impacts, and their graze: what is known of the motions beyond it |
 //! | `rest`, `contact` | curves of what becomes of a follower on the cam: where it leaves it, where it rests no more |
 //! | `moved` | the events of a machine that differs a little |
 //! | `switch` | the cycle beyond a corner or a graze, and which way leads there |
@@ -22,7 +23,9 @@ mod contact;
 mod cut;
 mod doubled;
 mod find;
+mod first_touch;
 mod follow;
+mod free;
 mod gap;
 mod halved;
 mod held;
@@ -39,6 +42,8 @@ use crate::model::Model;
 use crate::tolerance;
 pub(crate) use doubled::{crossing, doubled};
 pub(crate) use find::{FoundBranches, GRID_RATIO, MetPoints, find_branches, special_points};
+pub use first_touch::{Border, Doubt, FirstTouch, GrazeClass};
+pub(crate) use free::touches;
 pub(crate) use moved::Event;
 pub(crate) use special::Special;
 pub use special::{Bifurcation, Kind};
@@ -54,6 +59,19 @@ pub struct Following {
     pub longest_step: f64,
     /// Points in one direction after which the branch is given up.
     pub most_points: usize,
+}
+
+impl Following {
+    /// The last value in one direction from `value`: the end of the range, or the last that the model allows.
+    fn bound(&self, family: &Family, value: f64, direction: f64) -> (f64, End) {
+        let edge = self.range[usize::from(direction > 0.0)];
+        if let Err(why) = family.machine(&[edge])
+            && let Some(last) = super::curve::limit(value, edge, |value| family.machine(&[value]).is_err())
+        {
+            return (last, End::edge(direction > 0.0, &why));
+        }
+        (edge, End::Range)
+    }
 }
 
 /// An orbit on a branch.
@@ -78,6 +96,8 @@ pub struct OnCurve {
     pub cam_angle: f64,
     /// The matrix of one period; of a corner impact that with the law before the corner and that with the law after it.
     pub sides: Vec<Matrix2<f64>>,
+    /// Of a graze of an orbit without impacts: its class.
+    pub class: Option<GrazeClass>,
 }
 
 /// Why a branch goes no further in one direction.
@@ -108,8 +128,10 @@ pub enum End {
     MostPoints,
     /// Impacts without number: the follower begins to chatter there, or ceases to.
     Chatter,
-    /// The orbit never meets the cam: it is followed no further.
+    /// The end of a range of speeds, of an orbit without impacts: it is as far from the cam at each speed.
     Clear,
+    /// No spring holds the follower above the cam any more.
+    Falls,
     /// An impact of the orbit at a corner, beyond which its curve is none.
     Corner,
     /// A graze beyond which no orbit nearby continues the branch.
@@ -143,7 +165,10 @@ impl End {
             Self::Degenerate => "a degenerate graze: the flight that touches does not leave the cam again".into(),
             Self::MostPoints => "the number of points that was asked for".into(),
             Self::Chatter => "the onset of chattering".into(),
-            Self::Clear => "it stays clear of the cam, and is followed no further".into(),
+            Self::Clear => {
+                "the end of the range; a follower at rest is as far from the cam at every speed, so that there is no graze".into()
+            }
+            Self::Falls => "a place from which nothing holds the follower above the cam".into(),
             Self::Corner => "an impact at a corner, beyond which nothing continues it".into(),
             Self::Graze => "a graze, beyond which no orbit continues it".into(),
             Self::Shorter => "an orbit of fewer revolutions, which it branches off from".into(),
@@ -188,12 +213,12 @@ impl Branch {
         let half = |direction| match &orbit.course {
             super::Course::Impacts(cycle) => {
                 let start = follow::Start { cycle, values: &[value], spans: &spans, held: None };
-                follow::half(family, &start, following, direction)
+                free::onward(family, follow::half(family, &start, following, direction)?, following)
             }
             super::Course::Sticking(anchor) => {
                 chatter::half(family, value, (*anchor, orbit.revolutions), following, direction)
             }
-            super::Course::Free => Ok((Vec::new(), End::Clear)),
+            super::Course::Free => free::half(family, value, orbit.state, following, direction),
         };
         let middle = BranchPoint { held: None, rpm, value, orbit: orbit.clone(), special: None };
         Ok(Self::joined([half(-1.0)?, half(1.0)?], middle))
@@ -287,6 +312,7 @@ impl Branch {
                 (super::Course::Sticking(_), super::Course::Sticking(_)) => {
                     nearest.orbit.revolutions == orbit.revolutions
                 }
+                (super::Course::Free, super::Course::Free) => true,
                 _ => special::apart(&nearest.orbit, orbit).is_some_and(|(apart, _)| apart <= reach),
             }
         })

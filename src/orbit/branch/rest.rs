@@ -345,7 +345,7 @@ impl Rest<'_> {
             course: Course::Sticking(anchor),
             known: Known::Computed,
         };
-        let held = Some(OnCurve { cam_angle, sides: vec![Matrix2::zeros()] });
+        let held = Some(OnCurve { cam_angle, sides: vec![Matrix2::zeros()], class: None });
         Ok(BranchPoint { rpm, value: unknowns[1] * self.spans[1], orbit, held, special })
     }
 }

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use serde::Serialize;
 
+use super::first_touch::{Border, FirstTouch};
 use crate::orbit::{Course, Impact, Judgement, PeriodicOrbit, Stability};
 
 /// What changes.
@@ -32,6 +33,8 @@ pub enum Kind {
         after: usize,
         /// Where the touch is, as the angle that the cam has turned since angle 0 of revolution 0, rad.
         turned: f64,
+        /// Of an orbit without impacts: what is known of the motions beyond.
+        first: Option<FirstTouch>,
     },
     /// Along a curve of corner impacts or grazes: a multiplier of the map on one side of the corner, or of the orbit without
     /// the touch, passes 1 or -1: a fold or a flip meets the curve.
@@ -43,6 +46,8 @@ pub enum Kind {
     },
     /// Along a curve of folds: a cusp, where two of them meet.
     Cusp,
+    /// Along a curve of grazes of orbits without impacts: the class of the graze is undecided there, and may change.
+    Class(Border),
     /// Along a curve of grazes: follower and cam have one acceleration at the touch.
     DegenerateGraze,
     /// Along a curve of detachment: where the follower leaves the cam first changes from one place to another.
@@ -110,6 +115,7 @@ impl Kind {
             Self::Type { .. } => "type",
             Self::Cusp => "cusp",
             Self::DegenerateGraze => "degenerate-graze",
+            Self::Class(_) => "class",
             Self::Place => "place",
             Self::Turn => "turn",
             Self::Chatter => "chatter",

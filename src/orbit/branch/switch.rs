@@ -33,10 +33,12 @@ pub(super) fn kind(exit: Exit, cycle: &Cycle, machine: &Machine, order: usize) -
             let next = (segment + 1) % machine.cam().segments().len();
             Kind::Corner { impact, segment: if past_end { next } else { segment }, jump_order: order }
         }
-        Exit::Tangent { impact } => Kind::Graze { before: count, after: count - 1, turned: turned_at(impact) },
+        Exit::Tangent { impact } => {
+            Kind::Graze { before: count, after: count - 1, turned: turned_at(impact), first: None }
+        }
         Exit::Touch { impact, turned } => {
             let turned = gap::least(cycle, machine, impact, turned).map_or(turned, |(_, least)| least);
-            Kind::Graze { before: count, after: count + 1, turned: turned_at(impact) + turned }
+            Kind::Graze { before: count, after: count + 1, turned: turned_at(impact) + turned, first: None }
         }
     }
 }
@@ -124,28 +126,44 @@ pub(super) fn direction(
     problem: &Problem<'_>,
     unknowns: &DVector<f64>,
 ) -> Result<DVector<f64>, NoPoint<FamilyError>> {
+    growing(problem, unknowns, |cycle, machine| match exit {
+        Exit::Corner { impact, past_end } => {
+            // From the corner, which a number of the cam may move.
+            let impact = &cycle.impacts[impact];
+            let segment = &machine.cam().segments()[impact.segment];
+            if past_end { impact.cam_angle - segment.start } else { segment.end - impact.cam_angle }
+        }
+        // An impact needs an approach, a flight a gap.
+        Exit::Touch { .. } => moved_impact(exit).map_or(f64::NAN, |impact| cycle.approach(machine, impact)),
+        Exit::Tangent { impact } => {
+            let count = from.impacts.len();
+            let before = (impact + count - 1) % count;
+            // In the cycle without the impact the one before it has this index.
+            let index = if impact == 0 { count - 2 } else { before };
+            gap::least(cycle, machine, index, from.turn(before)).map_or(f64::NAN, |(gap, _)| gap)
+        }
+    })
+}
+
+/// The unit direction in which the solutions lead from a touch of an orbit without impacts, with an impact at each place.
+pub(super) fn from_touch(problem: &Problem<'_>, unknowns: &DVector<f64>) -> Result<DVector<f64>, NoPoint<FamilyError>> {
+    growing(problem, unknowns, |cycle, machine| {
+        (0..cycle.impacts.len()).map(|impact| cycle.approach(machine, impact)).fold(f64::INFINITY, f64::min)
+    })
+}
+
+/// The unit direction of the solutions in which a quantity grows.
+fn growing(
+    problem: &Problem<'_>,
+    unknowns: &DVector<f64>,
+    quantity: impl Fn(&Cycle, &Machine) -> f64,
+) -> Result<DVector<f64>, NoPoint<FamilyError>> {
     /// A small step, to see in which direction the orbit leaves.
     const TRIAL: f64 = 1e-6;
     let tangent = first_tangent(problem, unknowns)?;
     let measure = |step: f64| -> Result<f64, NoPoint<FamilyError>> {
         let (cycle, machine, _) = problem.unpack(&(unknowns + &tangent * step))?;
-        Ok(match exit {
-            Exit::Corner { impact, past_end } => {
-                // From the corner, which a number of the cam may move.
-                let impact = &cycle.impacts[impact];
-                let segment = &machine.cam().segments()[impact.segment];
-                if past_end { impact.cam_angle - segment.start } else { segment.end - impact.cam_angle }
-            }
-            // An impact needs an approach, a flight a gap.
-            Exit::Touch { .. } => moved_impact(exit).map_or(f64::NAN, |impact| cycle.approach(&machine, impact)),
-            Exit::Tangent { impact } => {
-                let count = from.impacts.len();
-                let before = (impact + count - 1) % count;
-                // In the cycle without the impact the one before it has this index.
-                let index = if impact == 0 { count - 2 } else { before };
-                gap::least(&cycle, &machine, index, from.turn(before)).map_or(f64::NAN, |(gap, _)| gap)
-            }
-        })
+        Ok(quantity(&cycle, &machine))
     };
     // Where it cannot be measured, neither is the greater.
     match measure(TRIAL)?.partial_cmp(&measure(-TRIAL)?) {

@@ -95,7 +95,9 @@ impl Change {
             (Kind::Detachment, _) => Cause::Detachment,
             (Kind::Corner { .. } | Kind::Chatter, _) => Cause::Runs,
             // Of curves in two numbers.
-            (Kind::Type { .. } | Kind::Cusp | Kind::DegenerateGraze | Kind::Place | Kind::Turn, _) => Cause::Runs,
+            (Kind::Type { .. } | Kind::Cusp | Kind::DegenerateGraze | Kind::Class(_) | Kind::Place | Kind::Turn, _) => {
+                Cause::Runs
+            }
         };
         Self { rpm, bracket: special.bracket, cause, point: Some(Box::new(point.clone())), error: None }
     }

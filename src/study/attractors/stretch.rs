@@ -180,7 +180,7 @@ fn walk<'a>(
     taken.extend(pending.cloned());
     match (pending, end) {
         (Some(point), _) => Some(Change::of_point(point)),
-        (None, End::Range | End::Closed | End::MostPoints) => None,
+        (None, End::Range | End::Clear | End::Closed | End::MostPoints) => None,
         (None, _) => Some(Change { rpm: last, bracket: [last; 2], cause: Cause::Runs, point: None, error: None }),
     }
 }

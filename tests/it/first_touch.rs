@@ -1,0 +1,335 @@
+//! Is an orbit without impacts followed to where the cam comes to touch it, and is what is said of the motions beyond so in the simulator?
+
+use std::f64::consts::{PI, TAU};
+
+use corner_impact::cam::Cam;
+use corner_impact::model::Model;
+use corner_impact::orbit::branch::{
+    Bifurcation, Border, Branch, BranchPoint, Doubt, End, FirstTouch, Following, GrazeClass, Kind,
+};
+use corner_impact::orbit::ending::Ending;
+use corner_impact::orbit::fate::Settling;
+use corner_impact::orbit::{Course, Parameter, PeriodicOrbit, Search, search};
+use corner_impact::progress::Unwatched;
+use corner_impact::simulate::{Machine, angular_velocity};
+use corner_impact::study::curve::curves;
+
+/// An oscillator of mass 1 at 0, and a wall that is moved harmonically by 1 about an offset.
+fn wall(damping: f64, stiffness: f64, offset: f64) -> Model {
+    on_cam(
+        damping,
+        stiffness,
+        &format!("law = \"harmonic\"\noffset = {offset:?}\namplitudes = [1.0]\nphases_deg = [0.0]"),
+    )
+}
+
+fn on_cam(damping: f64, stiffness: f64, cam: &str) -> Model {
+    let follower = format!(
+        "[follower]\nmass = 1.0\ndamping = {damping:?}\nstiffness = {stiffness:?}\ngravity = 0.0\nrest_position = 0.0\nrestitution = 0.8"
+    );
+    Model::parse("wall.toml", &format!("name = \"wall\"\n{follower}\n[cam]\n{cam}")).unwrap()
+}
+
+fn machine(model: &Model, rpm: f64) -> Machine {
+    Machine::new(Cam::new(model).unwrap(), &model.follower, angular_velocity(rpm))
+}
+
+fn free(model: &Model, rpm: f64) -> PeriodicOrbit {
+    let found = search(&machine(model, rpm), &Search { revolutions: 1, impacts: Some(0) }).unwrap();
+    let [orbit] = &found[..] else { panic!("{found:?}") };
+    assert!(orbit.course == Course::Free && orbit.events.is_empty(), "{orbit:?}");
+    orbit.clone()
+}
+
+fn follow(model: &Model, rpm: f64, orbit: &PeriodicOrbit, parameter: &str, range: [f64; 2]) -> Branch {
+    let parameter = Parameter::named(model, parameter).unwrap();
+    let following = Following { parameter, range, longest_step: 0.05, most_points: 100 };
+    Branch::through(model, rpm, orbit, &following).unwrap()
+}
+
+fn graze(branch: &Branch) -> (&BranchPoint, FirstTouch) {
+    let first = |point: &BranchPoint| match point.special?.kind {
+        Kind::Graze { first, .. } => first,
+        _ => None,
+    };
+    let mut grazes = branch.points.iter().filter_map(|point| Some((point, first(point)?)));
+    let found = grazes.next().unwrap_or_else(|| panic!("no graze: {:?}", branch.ends));
+    assert!(grazes.next().is_none());
+    found
+}
+
+/// The touch of the wall at 0, with the follower at rest above it.
+fn touch(model: &Model, rpm: f64) -> FirstTouch {
+    graze(&follow(model, rpm, &free(model, rpm), "offset", [-1.02, -0.99])).1
+}
+
+/// The equilibrium is rest - g m/k, and the wall's top at offset + amplitude.
+#[test]
+fn a_follower_at_rest_is_touched_where_the_cams_top_is_as_high() {
+    let model = wall(0.1, 1.0, -1.02);
+    let orbit = free(&model, 20.0);
+    let cases = [
+        ("offset", [-1.05, -0.95], -1.0, true),
+        ("cam.amplitudes[0]", [0.9, 1.1], 1.02, true),
+        ("rest_position", [-0.1, 0.1], -0.02, false),
+        ("gravity", [0.0, 0.1], 0.02, true),
+    ];
+    for (name, range, at, larger) in cases {
+        let branch = follow(&model, 20.0, &orbit, name, range);
+        let (point, first) = graze(&branch);
+        assert!((point.value - at).abs() < 1e-12 && first.larger == larger, "{name}: {} {first:?}", point.value);
+        let special = point.special.unwrap();
+        assert!(matches!(special.kind, Kind::Graze { before: 0, after: 1, turned: 0.0, .. }), "{special:?}");
+        assert!(special.residual < 1e-15 && special.bracket[1] - special.bracket[0] < 1e-15, "{special:?}");
+        let (mut clear, mut struck) = (0, 0);
+        for other in branch.points.iter().filter(|point| point.special.is_none()) {
+            let is_beyond = (other.value > at) == larger;
+            match &other.orbit.course {
+                // e^{-b T/2m} in a revolution.
+                Course::Free => {
+                    assert!(!is_beyond, "{name} = {}", other.value);
+                    let modulus = other.orbit.multipliers()[0].modulus();
+                    assert!((modulus - (-0.05 * 60.0 / 20.0_f64).exp()).abs() < 1e-12 && other.orbit.is_stable());
+                    clear += 1;
+                }
+                _ => struck += usize::from(other.orbit.impacts().count() == 1 && !other.orbit.is_stable()),
+            }
+        }
+        assert!(clear > 3 && struck > 3, "{name}: {clear} {struck} {:?}", branch.ends);
+    }
+}
+
+/// What is beyond the graze is on one branch with what is before it, from whichever side it is followed.
+#[test]
+fn a_branch_that_loses_its_only_impact_goes_on_at_rest() {
+    let model = wall(0.1, 1.0, -1.02);
+    let there = follow(&model, 20.0, &free(&model, 20.0), "offset", [-1.05, -0.95]);
+    let struck =
+        there.points.iter().find(|point| point.special.is_none() && point.orbit.impacts().count() == 1).unwrap();
+    let other = wall(0.1, 1.0, struck.value);
+    let back = follow(&other, 20.0, &struck.orbit, "offset", [-1.05, -0.95]);
+    let (point, first) = graze(&back);
+    assert!((point.value + 1.0).abs() < 1e-9 && point.orbit.course == Course::Free, "{point:?}");
+    assert_eq!((first.class, first.larger), (GrazeClass::Jump, true));
+    let last = [&back.points[0], &back.points[back.points.len() - 1]].map(|point| &point.orbit.course);
+    assert!(last.contains(&&Course::Free) && back.ends.contains(&End::Range), "{:?}", back.ends);
+}
+
+/// The equilibrium and the cam's top are the same at every speed.
+#[test]
+fn no_speed_makes_the_cam_touch_a_follower_at_rest() {
+    let model = wall(0.1, 1.0, -1.02);
+    let branch = follow(&model, 20.0, &free(&model, 20.0), "rpm", [10.0, 30.0]);
+    assert_eq!(branch.ends, [End::Clear, End::Clear]);
+    assert!(branch.points.len() > 20 && branch.points.iter().all(|point| point.special.is_none()));
+}
+
+/// lambda of a follower with real rates: e^{-slow T} with slow = (b - sqrt(b^2 - 4 k))/2.
+fn rpm_of(damping: f64, lambda: f64) -> f64 {
+    let slow = 0.5 * (damping - (damping * damping - 4.0).sqrt());
+    60.0 * slow / -lambda.ln()
+}
+
+#[test]
+fn the_class_of_a_graze_goes_by_the_eigenvalue() {
+    for damping in [2.0, 3.0] {
+        for (lambda, class) in [
+            (0.01, GrazeClass::PeriodAdding),
+            (0.2499, GrazeClass::PeriodAdding),
+            (0.2501, GrazeClass::PeriodAddingChaos),
+            (0.6666, GrazeClass::PeriodAddingChaos),
+            (0.6667, GrazeClass::Chaos),
+            (0.99, GrazeClass::Chaos),
+        ] {
+            let first = touch(&wall(damping, 1.0, -1.01), rpm_of(damping, lambda));
+            assert_eq!((first.class, first.back, first.doubt), (class, None, None), "{damping} {lambda}");
+        }
+        for lambda in [0.25, 2.0 / 3.0] {
+            let first = touch(&wall(damping, 1.0, -1.01), rpm_of(damping, lambda));
+            assert_eq!(first.doubt, Some(Doubt::Boundary), "{damping} {lambda}");
+        }
+    }
+    // One that oscillates: the first n with s(n T) < 0 by trial, and the depth at which the root gives back what it is given.
+    for (damping, rpm) in [(0.1, 20.0), (0.1, 16.0), (0.0, 8.0), (0.5, 50.0), (1.0, 7.0), (0.1, 200.0)] {
+        let oscillation = (1.0 - 0.25 * damping * damping as f64).sqrt();
+        let time = 60.0 / rpm;
+        let response =
+            |n: u64| (-0.5 * damping * n as f64 * time).exp() * (oscillation * n as f64 * time).sin() / oscillation;
+        let passages = (1..).find(|n| response(*n) < 0.0).unwrap();
+        let omega = angular_velocity(rpm);
+        let depth = (1.8 * response(passages)).powi(2) * 2.0 * omega * omega;
+        let first = touch(&wall(damping, 1.0, -1.01), rpm);
+        let (found, deep) = first.back.unwrap();
+        assert_eq!((first.class, found), (GrazeClass::Jump, passages), "{damping} {rpm}");
+        assert!((deep - depth).abs() < 1e-9 * depth, "{deep} {depth}");
+    }
+}
+
+#[test]
+fn a_class_that_is_not_known_has_its_reason() {
+    let two = "law = \"harmonic\"\noffset = -1.01\namplitudes = [0.0, 1.0]\nphases_deg = [0.0, 0.0]";
+    let sharp = "law = \"rectified-sine\"\noffset = -0.01\namplitude = -1.0";
+    let dwell = |segments: &str| format!("law = \"program\"\nbase = -1.01\n{segments}");
+    let segment = |motion: &str, span: f64, rise: f64| {
+        format!("[[cam.segment]]\nmotion = \"{motion}\"\nspan_deg = {span:?}\nrise = {rise:?}\n")
+    };
+    let flat = [segment("harmonic", 90.0, 1.0), segment("dwell", 90.0, 0.0), segment("harmonic", 180.0, -1.0)].concat();
+    let uneven = [
+        segment("harmonic", 60.0, 1.0),
+        segment("harmonic", 60.0, -1.0),
+        segment("harmonic", 120.0, 1.0),
+        segment("harmonic", 120.0, -1.0),
+    ]
+    .concat();
+    let resonant = 60.0 * (1.0 - 0.0025_f64).sqrt() / PI;
+    let cases = [
+        (on_cam(0.1, 1.0, sharp), "offset", 20.0, Doubt::Sharp),
+        (on_cam(0.1, 1.0, &dwell(&flat)), "base", 20.0, Doubt::Flat),
+        (on_cam(0.1, 1.0, &dwell(&uneven)), "base", 20.0, Doubt::Places),
+        (wall(0.1, 1.0, -1.01), "offset", resonant, Doubt::Resonance),
+    ];
+    for (model, name, rpm, doubt) in cases {
+        let own = model.numbers().find(|(path, _)| path.ends_with(name)).unwrap().1;
+        let branch = follow(&model, rpm, &free(&model, rpm), name, [own, own + 0.02]);
+        let (point, first) = graze(&branch);
+        assert!((point.value - own - 0.01).abs() < 1e-12, "{name}: {}", point.value);
+        assert_eq!((first.class, first.doubt), (GrazeClass::Undecided, Some(doubt)));
+    }
+    // Two tops that are alike are a cam of one top that turns twice as fast.
+    let model = on_cam(3.0, 1.0, two);
+    for (lambda, class) in [(0.24, GrazeClass::PeriodAdding), (0.26, GrazeClass::PeriodAddingChaos)] {
+        let rpm = 0.5 * rpm_of(3.0, lambda);
+        let branch = follow(&model, rpm, &free(&model, rpm), "offset", [-1.02, -0.98]);
+        let (point, first) = graze(&branch);
+        assert_eq!(first.class, class);
+        assert!(matches!(point.special.unwrap().kind, Kind::Graze { after: 2, .. }));
+        assert!(branch.points.iter().any(|point| point.orbit.impacts().count() == 2), "{:?}", branch.ends);
+    }
+}
+
+/// What a follower comes to that rests at 0 while the wall comes up `far` beyond the graze.
+fn beyond(damping: f64, rpm: f64, far: f64) -> Ending {
+    let machine = machine(&wall(damping, 1.0, -1.0 + far), rpm);
+    let settling = Settling::unaided(&machine, 30, 1000);
+    // From the wall, as a follower at rest meets it.
+    let angle = TAU - (2.0 * far).sqrt();
+    let motion = machine.start_on_cam(angle, 0.8 * angular_velocity(rpm) * (2.0 * far).sqrt()).unwrap();
+    settling.ending(motion, 2000).unwrap()
+}
+
+/// How far it is from the wall's top at most, once it has been near it for so many revolutions.
+fn strays(damping: f64, rpm: f64, far: f64, revolutions: u64) -> f64 {
+    let machine = machine(&wall(damping, 1.0, -1.0 + far), rpm);
+    let mut motion = machine.start_on_cam(0.0, 0.0).unwrap();
+    machine.revolve(&mut motion, revolutions).unwrap();
+    let mut most = 0.0_f64;
+    for _ in 0..50 {
+        machine.revolve(&mut motion, 1).unwrap();
+        most = most.max(motion.state.position.abs()).max(motion.state.velocity.abs());
+    }
+    most
+}
+
+/// However near the graze is: a jump goes as far from any distance, and what stays nearby shrinks with its root.
+#[test]
+fn motions_stay_near_a_graze_or_jump_as_its_class_says() {
+    let far = [1e-4, 1e-6, 1e-8];
+    for rpm in [20.0, 16.0, 11.0] {
+        assert_eq!(touch(&wall(0.1, 1.0, -1.01), rpm).class, GrazeClass::Jump);
+        let strays = far.map(|far| strays(0.1, rpm, far, 300));
+        assert!(strays.iter().all(|most| *most > 0.05), "{rpm}: {strays:?}");
+    }
+    for lambda in [0.15, 0.5, 0.9] {
+        let rpm = rpm_of(3.0, lambda);
+        assert_ne!(touch(&wall(3.0, 1.0, -1.01), rpm).class, GrazeClass::Jump);
+        // An impact leaves no more than (1 + r) sqrt(2 a far) above the follower's own velocity.
+        let most = 1.8 * 2.0_f64.sqrt() * angular_velocity(rpm);
+        let part = far.map(|far| strays(3.0, rpm, far, 300) / far.sqrt() / most);
+        assert!(part.iter().all(|part| *part < 2.0), "{lambda}: {part:?}");
+    }
+}
+
+/// One impact in n revolutions is stable at the distances from 3/4 (z_n)^2 to (1 - lambda) (z_{n-1})^2 beyond the graze, z_n = (1 + r) sqrt(2 a)
+/// s(n T): below lambda = 1/4 always with the next, up to 2/3 with chaos between.
+#[test]
+fn the_orbits_beyond_a_graze_are_where_its_class_has_them() {
+    let size = |lambda: f64, n: i32| {
+        let (rpm, root) = (rpm_of(3.0, lambda), 5.0_f64.sqrt());
+        let time = f64::from(n) * 60.0 / rpm;
+        let response = ((-0.5 * (3.0 - root) * time).exp() - (-0.5 * (3.0 + root) * time).exp()) / root;
+        (1.8 * response * angular_velocity(rpm)).powi(2) * 2.0
+    };
+    let period = |ending: &Ending| match ending {
+        Ending::Orbit(orbit) if orbit.impacts().count() == 1 => Some(orbit.revolutions),
+        _ => None,
+    };
+    for n in [5, 6] {
+        let lambda = 0.15;
+        let [low, high] = [0.75 * size(lambda, n), (1.0 - lambda) * size(lambda, n - 1)];
+        for part in [0.05, 0.5, 0.9] {
+            let far = low * (high / low).powf(part);
+            let found = beyond(3.0, rpm_of(3.0, lambda), far);
+            assert!(
+                period(&found).is_some_and(|period| (n as u64..=n as u64 + 1).contains(&period)),
+                "{n} {part}: {found:?}"
+            );
+        }
+    }
+    for n in [7, 8] {
+        let lambda = 0.45;
+        let [low, high] = [0.75 * size(lambda, n), (1.0 - lambda) * size(lambda, n - 1)];
+        let found = beyond(3.0, rpm_of(3.0, lambda), (low * high).sqrt());
+        assert_eq!(period(&found), Some(n as u64), "{found:?}");
+        let above = (high * 0.75 * size(lambda, n - 1)).sqrt();
+        let found = beyond(3.0, rpm_of(3.0, lambda), above);
+        assert!(matches!(found, Ending::Chaotic(_)), "{found:?}");
+    }
+    for far in [1e-3, 3e-4, 1e-4] {
+        let found = beyond(3.0, rpm_of(3.0, 0.75), far);
+        assert!(matches!(found, Ending::Chaotic(_)), "{far}: {found:?}");
+    }
+}
+
+/// The graze is at one value at every speed, and its class changes where the eigenvalue or the resonance has it.
+#[test]
+fn the_curve_of_a_graze_of_a_follower_at_rest_is_straight() {
+    let found = |model: &Model, rpm: [f64; 2]| {
+        let parameter = Parameter::named(model, "offset").unwrap();
+        let following = Following { parameter, range: [-1.05, -0.95], longest_step: 0.1, most_points: 100 };
+        let wanted = Search { revolutions: 1, impacts: Some(0) };
+        let mut found = curves(model, rpm, &wanted, &[Bifurcation::Graze], &following, &Unwatched).unwrap().curves;
+        assert_eq!(found.len(), 1);
+        let curve = found.remove(0);
+        let is_there = |point: &corner_impact::border_collision::event_curve::EventPoint| {
+            (point.value + 1.0).abs() < 1e-15 && point.impacts == 0 && point.cam_angle == 0.0
+        };
+        assert!(curve.points.iter().all(is_there), "{:?}", curve.points);
+        assert_eq!([curve.points[0].rpm, curve.points[curve.points.len() - 1].rpm], rpm);
+        curve
+    };
+    let curve = found(&wall(3.0, 1.0, -1.02), [10.0, 80.0]);
+    let specials: Vec<(f64, Kind)> = curve.points.iter().filter_map(|it| Some((it.rpm, it.special?.kind))).collect();
+    let [(one, Kind::Class(Border::Eigenvalue(quarter))), (two, Kind::Class(Border::Eigenvalue(thirds)))] =
+        specials[..]
+    else {
+        panic!("{specials:?}")
+    };
+    assert_eq!([quarter, thirds], [0.25, 2.0 / 3.0]);
+    assert!((one - rpm_of(3.0, 0.25)).abs() < 1e-9 && (two - rpm_of(3.0, 2.0 / 3.0)).abs() < 1e-9, "{specials:?}");
+    let curve = found(&wall(0.1, 1.0, -1.02), [7.0, 130.0]);
+    let oscillation = (1.0 - 0.0025_f64).sqrt();
+    let angle = |rpm: f64| oscillation * 60.0 / rpm / PI;
+    let specials: Vec<(f64, u64)> = curve
+        .points
+        .iter()
+        .filter_map(|point| match point.special?.kind {
+            Kind::Class(Border::Resonance(passages)) => Some((angle(point.rpm), passages)),
+            _ => None,
+        })
+        .collect();
+    let halves = [(2.5, 2), (7.0 / 3.0, 3), (2.25, 4), (2.0, 1), (1.0, 1), (0.5, 2), (1.0 / 3.0, 3), (0.25, 4)];
+    assert_eq!(specials.len(), halves.len(), "{specials:?}");
+    for (found, wanted) in specials.iter().zip(halves) {
+        assert!((found.0 - wanted.0).abs() < 1e-12 && found.1 == wanted.1, "{specials:?}");
+    }
+}
