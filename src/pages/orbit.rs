@@ -25,6 +25,7 @@ impl Paged for Orbits {
         }
         page.extend(self.complete.iter().map(complete));
         page.extend(self.undecided.iter().map(undecided));
+        page.extend(words::hypotheses(&self.hypotheses).map(Block::paragraph));
         if self.measured.is_some() && !self.complete.is_empty() {
             page.push(Block::paragraph("What is proved is proved of the cam as it is drawn through the rows."));
         }
