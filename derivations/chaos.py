@@ -31,7 +31,7 @@ BITS = 64
 # Rounded speeds are within it of a speed that is none, as that of the corner impact; a range is wider.
 ONE_SPEED = decimal("0.03")
 HYPOTHESES = [
-    "the machine is the one whose numbers are the decimals of the model file",
+    "the machine is the one whose numbers are the decimals of the model file, in SI units",
     "0 < restitution < 1, or restitution = 1 with damping: the impact map has an inverse, and shrinks areas u dtheta du",
     "after every impact in N the follower leaves the cam; the strips lie in N, apart",
     "every contact is proved to be the first of its flight, and the follower comes to the cam at it with a velocity",
@@ -40,7 +40,10 @@ HYPOTHESES = [
 
 def machine_of(name):
     """The machine of models/NAME.toml; Refused where the theorem does not speak of it."""
-    machine = Machine(tomllib.loads((ROOT / "models" / f"{name}.toml").read_text(), parse_float=str))
+    document = tomllib.loads((ROOT / "models" / f"{name}.toml").read_text(), parse_float=str)
+    if "units" in document:
+        raise Refused("a model in other units than SI")
+    machine = Machine(document)
     follower = machine.follower
     if not (follower.restitution > 0 and (follower.restitution < 1 or follower.zeta > 0)):
         raise Refused("without a loss at impacts or in flight, or without restitution, nothing is said")
@@ -65,7 +68,7 @@ def theorem(machine, h_set, say):
     proved, entropy = all("refused" not in strip for strip in strips), below(h_set.entropy())
     told = ", ".join(map(str, symbols))
     how_many = "one motion and no other" if cones else "a motion"
-    say(proved, f"{how_many} for every sequence of {told}, endless both ways; entropy of a revolution at least {at_least(entropy)}")
+    say(proved, f"{how_many} through the strips in every sequence of {told}, endless both ways; entropy of a revolution at least {at_least(entropy)}")
     return {
         "symbols": symbols,
         "entropy_per_revolution": entropy,

@@ -18,6 +18,13 @@ pub enum Known {
 
 named!(Known);
 
+impl Known {
+    /// Proved where something is; else no more than what a search says.
+    pub fn proved_if(is_proved: bool) -> Self {
+        if is_proved { Self::Proved } else { Self::Sampled }
+    }
+}
+
 /// A list of orbits has all of so many revolutions and impacts, and how that is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Complete {

@@ -42,11 +42,6 @@ impl Model {
         }
         json!({ "follower": follower, "cam": cam })
     }
-
-    /// Whether the rows of its table, if it has one, are the decimals that are written, and not the doubles that they became.
-    pub(crate) fn has_exact_rows(&self) -> bool {
-        self.table().is_none_or(|table| !table.reading.written.is_empty())
-    }
 }
 
 /// A decimal in a unit, as it is inside.

@@ -261,7 +261,8 @@ fn certificate(of: &Certificate) -> Vec<Block> {
 /// What the proofs are about, with what is said of impacts besides.
 fn hypotheses(assumed: Option<Assumed>, besides: &str) -> Block {
     let mut sentence = format!(
-        "Hypotheses: the machine's numbers are the decimals of its model file; free flight follows the equation of motion, and impacts are \
+        "Hypotheses: the machine's numbers are the decimals of its model file, but for angles of a table in radians, which are the doubles \
+         nearest to them in degrees; free flight follows the equation of motion, and impacts are \
          instantaneous, by Newton's law{besides}."
     );
     if let Some(assumed) = assumed {

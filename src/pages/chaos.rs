@@ -22,7 +22,7 @@ impl Paged for Chaos {
         }
         let is_region_proved = self.trapping.as_ref().is_some_and(|trapping| !trapping.regions.is_empty());
         if !self.theorems.is_empty() || is_region_proved {
-            page.push(Block::paragraph(format!("Taken for granted: {}.", self.hypotheses.join("; "))));
+            page.extend(words::hypotheses(&self.hypotheses).map(Block::paragraph));
         }
         page.extend(
             self.theorems.iter().flat_map(|theorem| &theorem.refused).map(|why| Block::paragraph(refused(why))),
@@ -54,16 +54,15 @@ pub(crate) fn statement(found: &Chaos) -> String {
         (true, false) => " at every speed of this range but for those below",
     };
     let symbols = |theorem: &Theorem| -> Vec<u64> { theorem.set.strips.iter().map(|strip| strip.impacts).collect() };
-    // Rounded down, as a bound from below must be.
-    let entropy = |theorem: &Theorem| format!("{:.5}", (1e5 * theorem.set.entropy()).floor() / 1e5);
+    let entropy = |theorem: &Theorem| at_least(theorem.set.entropy(), 5);
     let cones = match told.iter().all(|theorem| theorem.set.cone_slope.is_some()) {
         true => "exactly one motion",
         false => "a motion",
     };
     let shift = match told {
         [_] => format!(
-            "For every sequence of the numbers {}, endless in both directions, there is {cones} that comes back to the h-set after so many \
-             impacts again and again.",
+            "For every sequence of the numbers {}, endless in both directions, there is {cones} that passes through the strips of these numbers \
+             in this order: from each strip it comes to the next one after as many impacts as the strip's number.",
             words::listed(&symbols(least))
         ),
         _ => format!(
@@ -95,11 +94,11 @@ fn trapped(found: &Trapped, rpm: f64) -> String {
     };
     let parted = found.parted.map_or_else(String::new, |growth| {
         format!(
-            " Some deviations of every motion in it grow at each impact, by a factor of at least {:.4}: no periodic orbit in it is stable, and \
-             the largest Lyapunov exponent of no motion is below {:.4} an impact.",
-            // Rounded down, as bounds from below must be.
-            (1e4 * growth).floor() / 1e4,
-            (1e4 * growth.ln()).floor() / 1e4
+            " Some deviations of every motion in it grow at each impact, by a factor of at least {}: no periodic orbit in it is stable, and \
+             the largest Lyapunov exponent of no motion is below {} an impact.",
+            at_least(growth, 4),
+            // The logarithm is off by less than an ulp.
+            at_least(growth.ln().next_down().next_down(), 4)
         )
     });
     let percent = 100.0 * part;
@@ -112,6 +111,14 @@ fn trapped(found: &Trapped, rpm: f64) -> String {
         words::range(outwards(velocities_m_s), Digits::UpTo(4)),
         if percent < 0.01 { Digits::Size } else { Digits::Significant(2) }.text(percent),
     )
+}
+
+/// Decimals of a number from 0 on, rounded down, as a bound from below must be.
+fn at_least(number: f64, places: usize) -> String {
+    // More places than a double has are exact, and what is left of them is below it.
+    let exact = format!("{number:.1074}");
+    let end = exact.find('.').map_or(exact.len(), |point| point + 1 + places);
+    exact.get(..end).unwrap_or(&exact).to_owned()
 }
 
 /// Ends to four places, such that nothing between them is left out.
@@ -152,7 +159,7 @@ pub(crate) fn strips(theorem: &Theorem) -> Table {
             strip.revolutions.to_string().into(),
             words::range(strip.x, Digits::Fixed(4)).into(),
             words::range(covered.image_y, Digits::Fixed(4)).into(),
-            covered.growth.map_or_else(|| "".into(), |growth| words![(growth, Digits::Fixed(1))]),
+            covered.growth.map_or_else(|| "".into(), |growth| at_least(growth, 1).into()),
             covered.boxes.to_string().into(),
         ]);
     }
@@ -206,4 +213,17 @@ fn open(open: &Open) -> Block {
     };
     let refused: Vec<String> = short.refused.iter().map(refused).collect();
     Block::paragraph(format!("Not proved at {speeds}: {tried}. {}", refused.join(" ")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bound_from_below_is_rounded_down() {
+        // The double nearest to 0.3 is below it.
+        assert_eq!(at_least(0.3, 5), "0.29999");
+        assert_eq!(at_least(7.58, 1), "7.5");
+        assert_eq!(at_least(2.0, 1), "2.0");
+    }
 }

@@ -44,6 +44,7 @@ impl Paged for Located {
         page.extend(meanings(&self.found));
         page.extend(rejected(self));
         page.extend([Block::Heading("What was looked at".into()), Block::paragraph(searched(self))]);
+        page.extend(words::hypotheses(&self.hypotheses).map(Block::paragraph));
         page
     }
 }

@@ -27,6 +27,7 @@ impl Paged for Orbits {
         page.extend(self.complete.iter().map(complete));
         page.extend(some_of(&self.undecided, "place", undecided));
         page.extend(how_known(&self.orbits));
+        page.extend(words::hypotheses(&self.hypotheses).map(Block::paragraph));
         if self.measured.is_some() && !self.complete.is_empty() {
             page.push(Block::paragraph("What is proved is proved of the cam as it is drawn through the rows."));
         }

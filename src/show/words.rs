@@ -403,3 +403,8 @@ pub(crate) fn reading(reading: &Reading) -> String {
     }
     words
 }
+
+/// The hypotheses of what a page proves, in one sentence; none where it proves nothing.
+pub fn hypotheses(all: &[&str]) -> Option<String> {
+    (!all.is_empty()).then(|| format!("Taken for granted: {}.", all.join("; ")))
+}

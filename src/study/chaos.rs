@@ -9,7 +9,7 @@ use crate::known::Known;
 use crate::model::Model;
 use crate::progress::Watch;
 use crate::study::trapping::{Trapping, trapping};
-use crate::study::{StudyError, machine};
+use crate::study::{StudyError, hypotheses, machine};
 
 /// What is proved of a model's chaos: the document of `chaos --json`.
 #[derive(Clone, Debug)]
@@ -32,12 +32,19 @@ document!(Chaos as it {
     schema: "corner-impact/chaos/1",
     model: it.model,
     rpm: it.rpm,
-    known: Known::Proved,
+    known: Known::proved_if(it.proves_something()),
     hypotheses: it.hypotheses,
     theorems: it.theorems,
     open: it.open,
     trapping if_any: it.trapping,
 });
+
+impl Chaos {
+    /// Whether there is a set of chaotic motions or a region that traps.
+    pub fn proves_something(&self) -> bool {
+        !self.theorems.is_empty() || self.trapping.as_ref().is_some_and(|trapping| !trapping.regions.is_empty())
+    }
+}
 
 /// A set of chaotic motions at every speed of a range.
 #[derive(Clone, Debug)]
@@ -79,14 +86,6 @@ document!(Open as it {
     strips: it.short.strips,
     refused: it.short.refused,
 });
-
-/// What holds of the machine that a theorem is about.
-fn hypotheses(cam: &Cam) -> Vec<&'static str> {
-    let doubles = "the machine is the one whose numbers are the doubles that those of the model file became";
-    let meets = "where one law of the lift ends the next goes on with the same lift and the same slope, as the model means it, but at corners \
-                 where the velocity jumps";
-    if cam.segments().len() > 1 { vec![doubles, meets] } else { vec![doubles] }
-}
 
 /// The widest and the narrowest range of speeds, rpm, that one h-set is looked for. A narrower one is like a speed: as much is proved
 /// there as can be.

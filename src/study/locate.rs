@@ -22,8 +22,8 @@ use crate::model::{Model, ModelError, Study};
 use crate::orbit::branch::{Event, GRID_RATIO};
 use crate::progress::{Pieces, Watch};
 use crate::simulate::Machine;
-use crate::study::ModelLabel;
 use crate::study::compared::{self, Log, Skipped};
+use crate::study::{ModelLabel, hypotheses};
 
 /// The corner impacts of a range of speeds: the document `corner-impact/locate/1`.
 #[derive(Clone, Debug)]
@@ -34,6 +34,8 @@ pub struct Located {
     pub found: Vec<LocatedImpact>,
     /// What was looked at for them, and refused.
     pub looked_at: FoundCornerImpacts,
+    /// What is taken for granted where it is proved that there are no others; none where nothing is.
+    pub hypotheses: Vec<&'static str>,
     /// The range, rpm.
     pub range: Study,
     /// Turns of the cam in one period of the orbits looked for.
@@ -53,6 +55,7 @@ document!(Located as it {
     corner_impacts: it.found,
     rejected: it.looked_at.rejected,
     complete: it.looked_at.complete,
+    hypotheses: it.hypotheses,
     undecided: it.looked_at.undecided,
     searched: Searched(&it.looked_at),
     measured if_any: it.measured,
@@ -212,7 +215,9 @@ pub fn locate(model: &Model, range: Study, revolutions: u64, watch: &dyn Watch) 
         found.par_iter_mut().for_each(|found| found.speed_error = speed_error(model, &cam, likely, &found.at));
     }
     let agrees = found.iter().all(|located| located.agrees);
+    let is_proved = looked_at.complete.iter().any(|complete| complete.known == Known::Proved);
     Ok(Located {
+        hypotheses: if is_proved { hypotheses(&cam) } else { Vec::new() },
         model: ModelLabel::of(model),
         found,
         looked_at,

@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
-use super::{StudyError, machine};
+use super::{StudyError, hypotheses, machine};
 use crate::cam::{Cam, apart};
 use crate::flight::State;
-use crate::known::Complete;
+use crate::known::{Complete, Known};
 use crate::measured::{Likely, Measured};
 use crate::model::Model;
 use crate::orbit::settle::near;
@@ -25,6 +25,8 @@ pub struct Orbits {
     pub section_angle_rad: f64,
     /// For which numbers of impacts the list is all there is.
     pub complete: Vec<Complete>,
+    /// What is taken for granted where orbits, or that there are no others, are proved; none where nothing is.
+    pub hypotheses: Vec<&'static str>,
     /// Where orbits of these numbers of impacts may be missing.
     pub undecided: Vec<Undecided>,
     /// Those that were found.
@@ -75,8 +77,21 @@ pub fn orbits(model: &Model, speed_rpm: f64, wanted: Wanted, watch: &dyn Watch) 
         None => Vec::new(),
     };
     let measured = likely.map(|likely| likely.measured);
+    let mut known = orbits.iter().map(|orbit| orbit.known).chain(complete.iter().map(|complete| complete.known));
+    let hypotheses = if known.any(|known| known == Known::Proved) { hypotheses(machine.cam()) } else { Vec::new() };
     let (schema, model) = ("corner-impact/orbit/1", model.name.clone());
-    Ok(Orbits { schema, model, speed_rpm, section_angle_rad: 0.0, complete, undecided, orbits, measured, errors })
+    Ok(Orbits {
+        schema,
+        model,
+        speed_rpm,
+        section_angle_rad: 0.0,
+        complete,
+        hypotheses,
+        undecided,
+        orbits,
+        measured,
+        errors,
+    })
 }
 
 /// How far an orbit of `machine` may be off: by where the same orbit is on the cams that are as likely.

@@ -490,3 +490,33 @@ fn what_is_refused_where_the_velocity_jumps_is_not_asked_for() {
     assert!(found.corner_impacts.is_empty() && found.agrees());
     assert_eq!(found.refused, []);
 }
+
+/// The preload, the units and digits beyond those of a double reach the proof as they are written.
+#[test]
+fn a_proof_is_of_the_numbers_that_are_written() {
+    let folder = tempfile::TempDir::new().unwrap();
+    let period = |changes: &[(&str, &str)], rpm: &str, set: &[&str]| {
+        let mut text = common::osorio_text(&[]);
+        for (old, new) in changes {
+            assert!(text.contains(old), "{old}");
+            text = text.replacen(old, new, 1);
+        }
+        let file = folder.path().join("model.toml");
+        std::fs::write(&file, text).unwrap();
+        let found = certified(&[&[file.to_str().unwrap(), "--rpm", rpm], set].concat());
+        found["corner_impacts"][0]["period_s"]["mid"].as_str().unwrap()[..32].to_owned()
+    };
+    let right = "0.089121999691593716256920481050";
+    let preload = ("rest_position = 0.3", "preload = 143.08");
+    assert_eq!(period(&[preload], "672:675", &[]), right);
+    // A pound is 0.45359237 kg.
+    let units = "[units]\nmass = \"lb\"\nforce = \"kN\"\nstiffness = \"N/mm\"\n\n[follower]";
+    let stiffness = ("stiffness = 1430.8", "stiffness = 1.4308");
+    let pounds = [("[follower]", units), stiffness, ("rest_position = 0.3", "preload = 0.14308")];
+    let kilograms = [("mass = 1.221", "mass = 0.55383628377")];
+    assert_eq!(period(&pounds, "998:1001", &[]), period(&kilograms, "998:1001", &[]));
+    let long = "1.22100000000000000000000123";
+    let in_file = period(&[("mass = 1.221", &format!("mass = {long}"))], "672:675", &[]);
+    assert_eq!(in_file, period(&[], "672:675", &["--set", &format!("mass={long}")]));
+    assert_ne!(in_file, right);
+}

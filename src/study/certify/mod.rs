@@ -54,7 +54,7 @@ document!(Certified as it {
     source: it.model.source,
     rpm: [it.range.rpm_min, it.range.rpm_max],
     bits: it.bits,
-    known: Known::Proved,
+    known: Known::proved_if(!it.corner_impacts.is_empty()),
     corner_impacts: it.corner_impacts,
     refused: it.refused,
     agrees: it.agrees(),
@@ -84,6 +84,7 @@ document!(Unproved as it {
     speed_rpm: it.speed_rpm,
     cam_angle_rad: it.cam_angle,
     why: it.why,
+    known: Known::Sampled,
     was_found: it.was_found,
 });
 
