@@ -80,6 +80,7 @@ fn a_spring_that_is_just_slack_at_the_lowest_lift_lets_go_at_the_top() {
 
 /// `speeds` has the speed of `design`, to the last bit, and ends there what stays on the cam.
 #[test]
+#[ignore = "slow"]
 fn speeds_has_the_separation_of_design() {
     let model = machine(SLACK, &program("cycloidal", 0.0));
     let Separation::At { rpm, error, .. } = separation(&model) else { panic!() };
@@ -190,6 +191,7 @@ fn a_damper_pulls_at_every_speed_from_its_closed_form_on() {
 
 /// Without a spring and without gravity the follower goes where the cam throws it; a cam that does not move throws nothing.
 #[test]
+#[ignore = "slow"]
 fn a_follower_that_nothing_presses_on_is_thrown_off_at_every_speed() {
     for damping in [0.0, 3.0] {
         let free = |cam: &str| {
