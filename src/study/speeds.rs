@@ -3,7 +3,10 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
+use crate::border_collision::Danger;
 use crate::cam::Cam;
+use crate::corner::CornerImpact;
+use crate::corner::candidates::on_branch;
 use crate::estimate::Estimate;
 use crate::known::Known;
 use crate::measured::{Likely, Measured};
@@ -17,8 +20,10 @@ use crate::study::attractors::{
     Attractors, AttractorsError, Cause, Change, Grid, Here, Part, Resolution, Row, Wandering, attractors,
     detachment_near,
 };
+use crate::study::compared;
 use crate::study::design::contact::Contact;
 use crate::study::machine;
+use crate::tolerance;
 
 /// What a machine does over a range of speeds: the document of `speeds --json`.
 #[derive(Clone, Debug)]
@@ -43,6 +48,8 @@ pub struct Speeds {
     pub attractors: Vec<Attractor>,
     /// Where there are several.
     pub coexistence: Vec<Coexistence>,
+    /// Corner impacts of its attractors at which there is danger, by rising speed.
+    pub dangers: Vec<PassedDanger>,
     /// Speeds at which nothing could be run.
     pub failed: Vec<Failed>,
 }
@@ -61,6 +68,7 @@ document!(Speeds as it {
     measured if_any: it.measured,
     attractors: it.attractors,
     coexistence: it.coexistence,
+    dangers: it.dangers,
     failed: it.failed,
 });
 
@@ -153,6 +161,26 @@ pub struct Coexistence {
     pub attractors: Vec<String>,
 }
 
+/// A corner impact that attractors pass, begin or end with, and at which there is danger.
+#[derive(Clone, Debug)]
+pub struct PassedDanger {
+    /// The attractors' names.
+    pub attractors: Vec<String>,
+    /// rpm.
+    pub speed_rpm: f64,
+    /// Where the corner is, rad.
+    pub cam_angle: f64,
+    /// By the local map of the corner impact.
+    pub danger: Danger,
+}
+
+document!(PassedDanger as it {
+    attractors: it.attractors,
+    speed_rpm: it.speed_rpm,
+    cam_angle_rad: it.cam_angle,
+    danger: it.danger,
+});
+
 /// A speed at which nothing could be run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Failed {
@@ -239,6 +267,8 @@ pub fn speeds(
             }
         });
     }
+    watch.at("corner impacts on the way", 0, 0);
+    let dangers = dangers(model, lowest.cam(), &rows, range);
     let first = |rpm: f64| {
         noisy?.error([rpm], |model, cam| detachment_near(model, cam, rpm).map(|rpm| [rpm])).map(|[error]| error)
     };
@@ -286,6 +316,7 @@ pub fn speeds(
                 attractors: over.rows.iter().map(|index| name(*index)).collect(),
             })
             .collect(),
+        dangers,
         failed: grid
             .iter()
             .filter_map(|found| found.as_ref().err())
@@ -293,6 +324,31 @@ pub fn speeds(
             .map(failed)
             .collect(),
     })
+}
+
+/// The dangers at corner impacts that attractors pass, begin or end with.
+fn dangers(model: &Model, cam: &Cam, rows: &[Row], range: [f64; 2]) -> Vec<PassedDanger> {
+    let mut places: Vec<(CornerImpact, Vec<String>)> = Vec::new();
+    for (index, row) in rows.iter().enumerate() {
+        let found = row.corner_impacts(range).filter_map(|point| on_branch(cam, point)?.confirmed(model, cam).ok());
+        for at in found {
+            let same = |other: &CornerImpact| {
+                other.corner.angle == at.corner.angle
+                    && (other.period - at.period).abs() <= tolerance::SAME_ORBIT.value * at.period
+            };
+            match places.iter_mut().find(|(other, _)| same(other)) {
+                Some((_, names)) => names.push(name(index)),
+                None => places.push((at, vec![name(index)])),
+            }
+        }
+    }
+    places.sort_by(|(one, _), (other, _)| other.period.total_cmp(&one.period));
+    let danger = |(at, mut attractors): (CornerImpact, Vec<String>)| {
+        let danger = compared::danger(model, cam, &at)?;
+        attractors.dedup();
+        Some(PassedDanger { attractors, speed_rpm: at.speed_rpm(), cam_angle: at.corner.angle, danger })
+    };
+    places.into_par_iter().filter_map(danger).collect()
 }
 
 /// How far a measured cam may have moved what an attractor begins or ends with, rpm: by the event's equations, or by runs where it is
