@@ -218,6 +218,8 @@ table! {
         attractors within that of their end are left undecided";
     /// When a region that grows is given up: the size of what it was made around over its own.
     LEAVING = 1e-2, "of its size: regions that close up have grown by less than half";
+    /// How closely the edge of a basin of the local map is bracketed.
+    BASIN_EDGE = 1e-4, "of its distance: the three digits that are shown, and one more";
     /// The difference between the local map and the real one up to which it counts as valid.
     LINEAR_WITHIN = 0.1, "of the displacement that the local map predicts: the tenth that its range is asked for at";
     /// The same for a prediction with terms of second order.

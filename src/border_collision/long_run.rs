@@ -87,6 +87,11 @@ impl LocalMap {
         scales
     }
 
+    /// The natural unit of each coordinate, 1 where x is never moved along it.
+    pub(crate) fn units(&self) -> Vector2<f64> {
+        self.scales().map(|scale| if scale > 0.0 { scale } else { 1.0 })
+    }
+
     /// Where the motion from `start` ends.
     pub fn end(&self, start: Vector2<f64>, mu: f64) -> End {
         let scales = self.scales();
@@ -96,7 +101,7 @@ impl LocalMap {
         };
         let escaped = |x: Vector2<f64>| !(size(x) * tolerance::ESCAPED.value < 1.0);
         let mut x = start;
-        let mut tangent = Tangent::new(scales);
+        let mut tangent = Tangent::new(self.units());
         let mut means = Vec::with_capacity(PARTS);
         let mut sides = Vec::with_capacity(PART);
         let mut visited = Vec::with_capacity(PART);
@@ -195,7 +200,6 @@ struct Tangent {
 
 impl Tangent {
     fn new(scales: Vector2<f64>) -> Self {
-        let scales = scales.map(|scale| if scale > 0.0 { scale } else { 1.0 });
         // Any direction has a part along the one that grows most.
         Self { scales, direction: Vector2::new(0.8, 0.6), growth: 0.0 }
     }

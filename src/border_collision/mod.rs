@@ -9,11 +9,14 @@
 //! | [`trapping`] | regions that it sends into themselves |
 //! | [`mod@robust_chaos`] | when chaos is a theorem |
 //! | [`long_run`], `outcome` | where its motions end, on either side of the corner impact |
+//! | [`directions`], [`danger`] | directions in which motions diverge at the corner impact; basins that shrink to nothing there, and attractors that meet |
 //! | [`validity`], [`passage`] | how far it holds; how the machine leaves the place where its orbit was |
 //! | [`mod@rounded`] | how far a fold moves where the corner is rounded |
 //! | `event_curve` | curves of corner impacts, folds, flips, grazes in two numbers of the model; what happens at a corner impact |
 
 pub mod conditions;
+pub mod danger;
+pub mod directions;
 pub(crate) mod event_curve;
 pub mod feigin;
 pub mod local_map;
@@ -28,6 +31,8 @@ pub mod validity;
 pub mod word;
 
 pub use conditions::{Condition, conditions};
+pub(crate) use danger::WithDanger;
+pub use danger::{Danger, DangerKind};
 pub(crate) use event_curve::EventCurve;
 pub use feigin::{Classification, classify, scenario};
 pub use local_map::LocalMap;

@@ -70,6 +70,11 @@ impl LocalOutcome {
 }
 
 impl LocalMap {
+    /// What the map does on either side of the corner impact, and at it.
+    pub fn outcomes(&self) -> [LocalOutcome; 3] {
+        [-1.0, 1.0, 0.0].map(|mu| self.outcome(mu))
+    }
+
     /// Simulates the map for `mu` from x = 0 and from circles around it, a tenth, one and ten times its size: its natural
     /// units, or how far its fixed points are where that is further.
     pub fn outcome(&self, mu: f64) -> LocalOutcome {
@@ -160,7 +165,7 @@ impl End {
     }
 
     /// Whether both are one kind of end, at one place as far as that can be told.
-    fn is_like(&self, other: &Self) -> bool {
+    pub(super) fn is_like(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Periodic(one), Self::Periodic(other)) => one.word == other.word,
             (Self::Chaotic(Chaos { exponent: one, .. }), Self::Chaotic(Chaos { exponent: other, .. })) => {

@@ -33,7 +33,7 @@ impl LocalMap {
     /// A region around the `visited` points of one motion, in their order and all at `mu`, that the map sends into its inside
     /// by [`tolerance::TRAPPED`]: so the motion stays in it for ever. `None` says nothing: there may be one that is not found.
     pub fn region(&self, visited: &[Vector2<f64>], mu: f64) -> Option<Region> {
-        let scaled = Scaled { map: self, mu, units: self.scales().map(|scale| if scale > 0.0 { scale } else { 1.0 }) };
+        let scaled = Scaled { map: self, mu, units: self.units() };
         (0..=LONGEST_MEMORY).find_map(|memory| scaled.region(visited, memory))
     }
 }

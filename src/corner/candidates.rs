@@ -54,6 +54,11 @@ pub fn candidates(
 
 /// The corner impact that a branch passes, if it is one of several impacts.
 fn candidate(cam: &Cam, point: &BranchPoint) -> Option<Candidate> {
+    on_branch(cam, point).filter(|candidate| candidate.cycle.impacts.len() > 1)
+}
+
+/// The corner impact that a branch passes, if its follower is not about to chatter.
+pub(crate) fn on_branch(cam: &Cam, point: &BranchPoint) -> Option<Candidate> {
     let special = point.special?;
     let (Kind::Corner { impact, segment, jump_order }, Course::Impacts(cycle)) = (special.kind, &point.orbit.course)
     else {
@@ -61,7 +66,7 @@ fn candidate(cam: &Cam, point: &BranchPoint) -> Option<Candidate> {
     };
     let chatters =
         cycle.impacts.len() > MOST_IMPACTS * cycle.revolutions as usize || cycle.nearest_other(impact) < NEAREST_OTHER;
-    if cycle.impacts.len() < 2 || chatters {
+    if chatters {
         return None;
     }
     let corner = *cam.corners().iter().find(|corner| corner.segment == segment)?;

@@ -248,7 +248,7 @@ fn certificate(of: &Certificate) -> Vec<Block> {
                 format!(
                     ": {}. Next to omega* the machine has the fixed point with the impact before the corner {}, and the one with the \
                      impact after it {}. {how_far}{others}",
-                    words::meaning(of.verdict, of.sides.minus.stable || of.sides.plus.stable),
+                    words::meaning(of.verdict, of.sides.minus.stable || of.sides.plus.stable, None),
                     near(&of.sides.minus),
                     near(&of.sides.plus),
                 ),

@@ -73,7 +73,7 @@ fn table(found: &[LocatedImpact]) -> Table {
             at.cycle.impacts.len().into(),
             (at.velocity_before, Digits::Significant(8)).into(),
             (at.velocity_after, Digits::Significant(8)).into(),
-            format!("{}{side}", impact.local.scenario()).into(),
+            words::verdict_with(&format!("{}{side}", impact.local.scenario()), impact.danger.as_ref()).into(),
             Words::from((if impact.agrees { Mark::Good } else { Mark::Bad }, verdict(impact))),
         ]);
     }
@@ -88,6 +88,7 @@ fn meanings(found: &[LocatedImpact]) -> Vec<Block> {
         let scenario = impact.local.scenario();
         match &impact.local {
             Happens::BorderCollision(Ok(Classification { minus, plus, .. })) => {
+                let scenario = words::verdict_with(&scenario, impact.danger.as_ref());
                 meanings.push(Block::paragraph(format!(
                     "{}: {scenario}. Fixed points: impacts before the corner at speeds {}, {}; after it {}, {}.",
                     index + 1,
@@ -96,6 +97,10 @@ fn meanings(found: &[LocatedImpact]) -> Vec<Block> {
                     plus.exists_for,
                     words::stability(plus.stability),
                 )));
+                let lines = impact.danger.iter().flat_map(|danger| {
+                    std::iter::once(words::danger(danger)).chain(words::returns(danger)).map(|line| words![line, "."])
+                });
+                meanings.extend(lines.map(|line| Block::Paragraph(4, line)));
             }
             other if !said.contains(&scenario) => {
                 meanings.push(Block::paragraph(format!("{scenario}: {}.", other.meaning())));

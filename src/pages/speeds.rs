@@ -26,6 +26,7 @@ impl Paged for Speeds {
             page.extend(rests(attractor).map(Block::paragraph));
         }
         page.extend(self.off_for_good().map(|off| Block::paragraph(off.words)));
+        page.extend(dangers(self));
         page.push(Block::paragraph(how(self)));
         page.extend(self.measured.iter().filter_map(cam));
         page.extend(self.failed.iter().map(|failed| {
@@ -144,6 +145,18 @@ pub(crate) fn rests(attractor: &Attractor) -> Option<String> {
             rests.revolutions,
             1.0 / rests.rate
         ),
+    })
+}
+
+/// The corner impacts at which there is danger.
+pub(crate) fn dangers(found: &Speeds) -> impl Iterator<Item = Block> {
+    found.dangers.iter().map(|it| {
+        let (speed, angle) = ((it.speed_rpm, Digits::Fixed(6)), (it.cam_angle.to_degrees(), Digits::Fixed(2)));
+        let attractors = it.attractors.join(", ");
+        let mut words = words!["At ", speed, " rpm ", attractors, " has a corner impact at ", angle, " deg: "];
+        let lines = std::iter::once(words::danger(&it.danger)).chain(words::returns(&it.danger));
+        words.push(words![Words::joined(lines, "; "), "."]);
+        Block::paragraph(words)
     })
 }
 

@@ -4,6 +4,7 @@
 
 use crate::agreement::Quantity;
 use crate::border_collision::conditions::Decides;
+use crate::border_collision::danger::{Danger, DangerKind, Divergence, LocalAttractor, Returns};
 use crate::border_collision::feigin::{Scenario, Speeds};
 use crate::border_collision::long_run::{Chaos, End};
 use crate::border_collision::validity::{Compared, Ends};
@@ -11,6 +12,7 @@ use crate::cam::Side;
 use crate::corner::map::RouteName;
 use crate::covering::Unproved;
 use crate::covering::prove::Relation;
+use crate::known::Known;
 use crate::measured::Measured;
 use crate::model::{Reading, Separator};
 use crate::orbit::Stability;
@@ -164,10 +166,16 @@ pub(crate) fn mark(verdict: Verdict) -> Mark {
     }
 }
 
-/// What a border collision does, where a fixed point of either side is stable or where none is.
-pub(crate) fn meaning(scenario: Scenario, has_stable: bool) -> &'static str {
+/// What a border collision does, where a fixed point of either side is stable or where none is, and which danger there is.
+pub(crate) fn meaning(scenario: Scenario, has_stable: bool, danger: Option<&Danger>) -> &'static str {
     match scenario {
-        Scenario::Persistence => "the fixed point crosses from one side to the other and lives on",
+        Scenario::Persistence if danger.is_some_and(|danger| danger.kind == DangerKind::Dangerous) => {
+            "the fixed point crosses from one side to the other, but at omega* not even the smallest disturbance of it returns"
+        }
+        Scenario::Persistence if danger.is_some() => {
+            "the fixed point crosses from one side to the other, and other attractors shrink to it at omega*"
+        }
+        Scenario::Persistence => "the fixed point crosses from one side to the other",
         Scenario::NonsmoothFold if has_stable => {
             "the two fixed points meet at omega* = 60/T* rpm and vanish: a motion that follows one of them has nowhere to go"
         }
@@ -179,6 +187,69 @@ pub(crate) fn meaning(scenario: Scenario, has_stable: bool) -> &'static str {
             "the fixed point crosses from one side to the other, and an orbit of period two is born"
         }
     }
+}
+
+/// A scenario with the kind of danger, if there is any.
+pub(crate) fn verdict_with(scenario: &str, danger: Option<&Danger>) -> String {
+    match danger.map(|danger| danger.kind) {
+        Some(DangerKind::Dangerous) => format!("{scenario}, dangerous"),
+        Some(DangerKind::MultipleAttractors) => format!("{scenario}, multiple attractors"),
+        None => scenario.into(),
+    }
+}
+
+/// What a danger is, in a sentence.
+pub(crate) fn danger(danger: &Danger) -> Words {
+    match &danger.divergence {
+        Some(Divergence { share, known, follows }) => {
+            let which = if *share == 1.0 && *known != Known::Sampled {
+                "every motion of the local map diverges there".into()
+            } else {
+                let least = if *known == Known::Sampled { "" } else { "at least " };
+                let percent = (1000.0 * share).floor() / 10.0;
+                format!("motions of the local map diverge there, from {least}{percent} % of the directions")
+            };
+            let follows = follows.as_ref().map_or_else(String::new, |(word, multiplier)| {
+                format!(", along the sequence {word} by a factor of {multiplier:.6} per period")
+            });
+            format!("dangerous: the basin shrinks to nothing at omega*, since {which} ({known}){follows}").into()
+        }
+        None => {
+            let at = |speeds| {
+                let names: Vec<String> = danger.at(speeds).map(local_attractor).collect();
+                (names.len() > 1).then(|| format!("{}: {}", self::speeds(Some(speeds)), names.join(", ")))
+            };
+            let sides: Vec<String> = [Speeds::Faster, Speeds::Slower].into_iter().filter_map(at).collect();
+            let known = danger.known;
+            format!(
+                "several attractors meet at omega* ({known}), {}; near omega* the smallest disturbance decides between them",
+                sides.join("; ")
+            )
+            .into()
+        }
+    }
+}
+
+/// An attractor of the local map.
+fn local_attractor(attractor: &LocalAttractor) -> String {
+    attractor.word().map_or_else(|| attractor.end.name().into(), ToString::to_string)
+}
+
+/// Which disturbances of the attractors of a local map return, a line for each.
+pub(crate) fn returns(danger: &Danger) -> Vec<Words> {
+    let line = |attractor: &LocalAttractor| {
+        let Returns { position, velocity, any } = attractor.returns?;
+        let size = |size: Option<f64>, unit: &str| match size {
+            Some(size) => words![(size, Digits::Power(3)), " ", unit],
+            None => "any size".into(),
+        };
+        let name = format!("{} {}", speeds(Some(attractor.speeds)), local_attractor(attractor));
+        Some(Words::prose(
+            "{} regains a disturbance of its position of {}, of its velocity of {}, of both of {}, for each rpm from omega* (sampled)",
+            [name.into(), size(position, "m"), size(velocity, "m/s"), size(any, "m")],
+        ))
+    };
+    danger.attractors.iter().filter_map(line).collect()
 }
 
 /// What must hold of a strip.

@@ -5,7 +5,7 @@ use std::fmt::Display;
 use serde::Serialize;
 
 use crate::agreement::{Agreement, Quantity, compare_routes, worse};
-use crate::border_collision::{Classification, Refusal, classify};
+use crate::border_collision::{Classification, Danger, LocalMap, Refusal, classify};
 use crate::cam::{Cam, Side};
 use crate::corner::map::{Line, RouteName, Uncertainty};
 use crate::corner::one_sided::SampleError;
@@ -87,6 +87,17 @@ pub(super) fn classified(map: &CornerMap, border: Line, sticking: Option<Side>) 
         Some(side) => Err(Refusal::Sticking { side }),
         None => Ok(classify(map, border)?),
     }
+}
+
+/// The danger at a corner impact where the acceleration jumps, if the follower flies off the cam next to it.
+pub(super) fn danger(model: &Model, cam: &Cam, at: &CornerImpact) -> Option<Danger> {
+    let (map, border) = (variational::route(model, cam, at).map, variational::border(model, cam, at));
+    classify(&map, border).ok()?;
+    let local = LocalMap::new(&map, border);
+    let danger = local.danger(&local.outcomes(), at.period)?;
+    // The simulation is asked only where there is something to say.
+    let (_, sticking) = routes(model, cam, at, &mut Log::default());
+    sticking.is_none().then_some(danger)
 }
 
 /// The estimate of the side that the impact is on, in the place of both.

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 
 use crate::agreement::Agreement;
-use crate::border_collision::{Classification, Refusal};
+use crate::border_collision::{Classification, Danger, LocalMap, Refusal, WithDanger};
 use crate::cam::{Cam, Side};
 use crate::corner::map::RouteName;
 use crate::corner::range::{FoundCornerImpacts, RangeError, find_corner_impacts};
@@ -94,6 +94,8 @@ pub struct LocatedImpact {
     pub map: CornerMap,
     /// What happens there.
     pub local: Happens,
+    /// The danger of a border collision, if there is any.
+    pub danger: Option<Danger>,
     /// The routes pairwise.
     pub comparisons: Vec<Agreement>,
     /// Routes that did not run.
@@ -120,7 +122,7 @@ document!(LocatedImpact as it {
     velocity_after_m_s: it.at.velocity_after,
     impact_angles_rad: it.at.cycle.impacts.iter().map(|impact| impact.cam_angle).collect::<Vec<_>>(),
     map: it.sides().map(|side| (side, it.map.of(side))).collect::<BTreeMap<_, _>>(),
-    classification: it.local,
+    classification: Told(&it.local, it.danger.as_ref()),
     agreement: it.comparisons,
     skipped: it.skipped,
     agrees: it.agrees,
@@ -180,13 +182,16 @@ impl Happens {
     }
 }
 
-impl Serialize for Happens {
+/// What happens, with the danger of a border collision: the document of both.
+struct Told<'a>(&'a Happens, Option<&'a Danger>);
+
+impl Serialize for Told<'_> {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
         struct Other(String, String);
         document!(Other as it { scenario: it.0, meaning: it.1 });
         match self {
-            Self::BorderCollision(Ok(kind)) => kind.serialize(to),
-            other => Other(other.scenario(), other.meaning()).serialize(to),
+            Self(Happens::BorderCollision(Ok(kind)), danger) => WithDanger { kind, danger: *danger }.serialize(to),
+            Self(other, _) => Other(other.scenario(), other.meaning()).serialize(to),
         }
     }
 }
@@ -237,7 +242,7 @@ fn speed_error(model: &Model, cam: &Cam, likely: &Likely, at: &CornerImpact) -> 
 }
 
 /// A corner impact with its map by each route that its corner has.
-fn located(model: &Model, cam: &Cam, at: &CornerImpact) -> LocatedImpact {
+pub(super) fn located(model: &Model, cam: &Cam, at: &CornerImpact) -> LocatedImpact {
     let mut log = Log::default();
     let (mut routes, sticking) = compared::routes(model, cam, at, &mut log);
     // The route that knows every kind of orbit comes first: its map is told.
@@ -249,6 +254,13 @@ fn located(model: &Model, cam: &Cam, at: &CornerImpact) -> LocatedImpact {
         2 => Happens::BorderCollision(compared::classified(&map, border, sticking)),
         _ => Happens::Smooth,
     };
+    let danger = match &local {
+        Happens::BorderCollision(Ok(_)) => {
+            let local = LocalMap::new(&map, border);
+            local.danger(&local.outcomes(), at.period)
+        }
+        _ => None,
+    };
     let agrees = log.agrees(&comparisons);
-    LocatedImpact { at: at.clone(), speed_error: None, map, local, comparisons, skipped: log.0, agrees }
+    LocatedImpact { at: at.clone(), speed_error: None, map, local, danger, comparisons, skipped: log.0, agrees }
 }

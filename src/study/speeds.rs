@@ -3,7 +3,10 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
+use crate::border_collision::Danger;
 use crate::cam::Cam;
+use crate::corner::CornerImpact;
+use crate::corner::candidates::on_branch;
 use crate::estimate::Estimate;
 use crate::known::Known;
 use crate::measured::{Likely, Measured};
@@ -16,9 +19,11 @@ use crate::simulate::{EventKind, Machine, SimulateError, angular_velocity};
 use crate::study::attractors::{
     Attractors, AttractorsError, Cause, Change, Grid, Here, Part, Resolution, Row, Wandering, attractors,
 };
+use crate::study::compared;
 use crate::study::design::contact::{Contact, Separation};
 use crate::study::design::known;
 use crate::study::machine;
+use crate::tolerance;
 
 /// What a machine does over a range of speeds: the document of `speeds --json`.
 #[derive(Clone, Debug)]
@@ -41,6 +46,8 @@ pub struct Speeds {
     pub attractors: Vec<Attractor>,
     /// Where there are several.
     pub coexistence: Vec<Coexistence>,
+    /// Corner impacts of its attractors at which there is danger, by rising speed.
+    pub dangers: Vec<PassedDanger>,
     /// Speeds at which starts leave the cam for good, by rising speed, and how many do.
     pub off: Vec<Off>,
     /// How many speeds of the range were run.
@@ -64,6 +71,7 @@ document!(Speeds as it {
     attractors: it.attractors,
     coexistence: it.coexistence,
     off_for_good if_any: it.off_for_good(),
+    dangers: it.dangers,
     failed: it.failed,
 });
 
@@ -175,6 +183,26 @@ pub struct Coexistence {
     /// Their names.
     pub attractors: Vec<String>,
 }
+
+/// A corner impact that attractors pass, begin or end with, and at which there is danger.
+#[derive(Clone, Debug)]
+pub struct PassedDanger {
+    /// The attractors' names.
+    pub attractors: Vec<String>,
+    /// rpm.
+    pub speed_rpm: f64,
+    /// Where the corner is, rad.
+    pub cam_angle: f64,
+    /// By the local map of the corner impact.
+    pub danger: Danger,
+}
+
+document!(PassedDanger as it {
+    attractors: it.attractors,
+    speed_rpm: it.speed_rpm,
+    cam_angle_rad: it.cam_angle,
+    danger: it.danger,
+});
 
 /// A speed at which nothing, or not every start, could be run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -294,6 +322,8 @@ pub fn speeds(
             }
         });
     }
+    watch.at("corner impacts on the way", 0, 0);
+    let dangers = dangers(model, lowest.cam(), &rows, range);
     let is_inside = |rpm: f64| range[0] <= rpm && rpm <= range[1];
     let attractor = |(index, row): (usize, &Row)| {
         let at = row.at.iter().filter_map(|(place, part)| {
@@ -348,8 +378,34 @@ pub fn speeds(
                 attractors: over.rows.iter().map(|index| name(*index)).collect(),
             })
             .collect(),
+        dangers,
         failed: grid.iter().filter_map(failed).collect(),
     })
+}
+
+/// The dangers at corner impacts that attractors pass, begin or end with.
+fn dangers(model: &Model, cam: &Cam, rows: &[Row], range: [f64; 2]) -> Vec<PassedDanger> {
+    let mut places: Vec<(CornerImpact, Vec<String>)> = Vec::new();
+    for (index, row) in rows.iter().enumerate() {
+        let found = row.corner_impacts(range).filter_map(|point| on_branch(cam, point)?.confirmed(model, cam).ok());
+        for at in found {
+            let same = |other: &CornerImpact| {
+                other.corner.angle == at.corner.angle
+                    && (other.period - at.period).abs() <= tolerance::SAME_ORBIT.value * at.period
+            };
+            match places.iter_mut().find(|(other, _)| same(other)) {
+                Some((_, names)) => names.push(name(index)),
+                None => places.push((at, vec![name(index)])),
+            }
+        }
+    }
+    places.sort_by(|(one, _), (other, _)| other.period.total_cmp(&one.period));
+    let danger = |(at, mut attractors): (CornerImpact, Vec<String>)| {
+        let danger = compared::danger(model, cam, &at)?;
+        attractors.dedup();
+        Some(PassedDanger { attractors, speed_rpm: at.speed_rpm(), cam_angle: at.corner.angle, danger })
+    };
+    places.into_par_iter().filter_map(danger).collect()
 }
 
 /// How far a measured cam may have moved what an attractor begins or ends with, rpm: by the event's equations, or by runs where it is

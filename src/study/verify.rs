@@ -12,8 +12,8 @@ use crate::agreement::{Agreement, NamedOrbit, Quantity, compare_orbits, fewest_s
 use crate::border_collision::feigin::{Scenario, Speeds};
 use crate::border_collision::validity::{self, Range};
 use crate::border_collision::{
-    Classification, Condition, Degenerate, LocalMap, LocalOutcome, NormalForm, Refusal, RoundedCorner, conditions,
-    normal_form, rounded,
+    Classification, Condition, Danger, Degenerate, LocalMap, LocalOutcome, NormalForm, Refusal, RoundedCorner,
+    WithDanger, conditions, normal_form, rounded,
 };
 use crate::cam::{Cam, Side};
 use crate::corner::external::{self, Outside, PROGRAMS, Program};
@@ -62,6 +62,8 @@ pub struct Verification {
     pub conditions: Vec<Condition>,
     /// The local map's own motions at dT = -1, 1 and 0; empty without a classification.
     pub outcomes: Vec<LocalOutcome>,
+    /// The danger at the corner impact that the classification does not show, if there is any.
+    pub danger: Option<Danger>,
     /// The map to second order; none without a classification.
     pub second_order: Option<Sides<CurvedMap>>,
     /// What rounding the corner does, where it is a nonsmooth fold.
@@ -88,7 +90,7 @@ document!(Verification as found {
     agreement: found.comparisons,
     eigenvalues: found.map.map(SideMap::eigenvalues),
     normal_form: found.normal_form.as_ref().ok(),
-    classification: found.classification.as_ref().ok(),
+    classification: found.classification.as_ref().ok().map(|kind| WithDanger { kind, danger: found.danger.as_ref() }),
     refusal: found.classification.as_ref().err().map(Refusal::to_string),
     conditions: found.conditions,
     local_map: found.outcomes,
@@ -351,17 +353,21 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
     log.refused("classification", &classification);
     watch.at("what the map does by itself", 0, 0);
     let local = LocalMap::new(&map, border);
-    let (mut outcomes, mut ranges) = (Vec::new(), Vec::new());
+    let (mut outcomes, mut danger, mut ranges) = (Vec::new(), None, Vec::new());
     let rounded_corner = classification.as_ref().ok().and_then(|kind| rounded(kind, &at));
     let curved = classification.is_ok().then(|| second_order(model, &cam, &at));
     if let Some(curved) = &curved {
-        outcomes.extend([-1.0, 1.0, 0.0].map(|mu| local.outcome(mu)));
+        outcomes.extend(local.outcomes());
+        danger = local.danger(&outcomes, at.period);
         let chaos =
             outcomes.iter_mut().filter_map(|outcome| Some((Speeds::of(outcome.mu)?, outcome.robust_chaos.as_mut()?)));
         for (speeds, chaos) in chaos {
             if let Some(certificate) = &certificate {
                 certificate.prove(chaos, speeds);
             }
+        }
+        if let (Some(certificate), Some(danger)) = (&certificate, &mut danger) {
+            certificate.prove_danger(danger, &local);
         }
         ranges = validity::ranges(model, &cam, &at, &local, curved);
     }
@@ -389,6 +395,7 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
         classification,
         conditions: conditions(&local),
         outcomes,
+        danger,
         second_order: curved,
         rounded_corner,
         ranges,

@@ -35,6 +35,7 @@ mod corner_orbits;
 mod corner_units;
 mod curves;
 mod cycles;
+mod danger;
 mod derived;
 mod design;
 mod design_loads;

@@ -4,7 +4,7 @@ mod map;
 
 use crate::agreement::{Agreement, Quantity, shared_decimals};
 use crate::border_collision::feigin::{Scenario, SideCounts};
-use crate::border_collision::{Classification, NormalForm, Refusal};
+use crate::border_collision::{Classification, Danger, NormalForm, Refusal};
 use crate::cam::Side;
 use crate::orbit::Stability;
 use crate::pages::local_map;
@@ -115,7 +115,7 @@ pub(crate) fn bifurcation(found: &Verification) -> Vec<Block> {
     ];
     entries.extend(found.normal_form.as_ref().ok().map(|form| ("normal form".into(), normal_form(form))));
     match &found.classification {
-        Ok(kind) => entries.extend(classification(kind)),
+        Ok(kind) => entries.extend(classification(kind, found.danger.as_ref())),
         Err(refusal) => entries.push(("verdict".into(), none(refusal))),
     }
     entries.extend(found.measured.as_ref().and_then(|open| left_open(found, open)));
@@ -174,7 +174,7 @@ fn rows(matrix: &nalgebra::Matrix2<f64>) -> Span {
     Span::Matrix(matrix.row_iter().map(|row| row.iter().copied().collect()).collect(), Digits::UpTo(9))
 }
 
-fn classification(kind: &Classification) -> Vec<(Words, Words)> {
+fn classification(kind: &Classification, danger: Option<&Danger>) -> Vec<(Words, Words)> {
     let Classification { scenario, minus, plus, .. } = kind;
     let counts = format!(
         "{} + {} real eigenvalues above 1, {} + {} below -1",
@@ -183,19 +183,27 @@ fn classification(kind: &Classification) -> Vec<(Words, Words)> {
     let born = kind.period_two_orbit && *scenario != Scenario::NonsmoothFlip;
     let born = if born { ", and an orbit of period two" } else { "" };
     let verdict = words![
-        scenario.to_string(),
+        words::verdict_with(&scenario.to_string(), danger),
         born,
         Span::Break,
-        words::meaning(kind.scenario, kind.minus.stable || kind.plus.stable)
+        words::meaning(kind.scenario, kind.minus.stable || kind.plus.stable, danger)
     ];
     let fate = |side: &SideCounts| {
         let article = if side.stability == Stability::Unstable { "an" } else { "a" };
         format!("{article} {} one at speeds {}", words::stability(side.stability), words::speeds(Some(side.exists_for)))
     };
     let fixed = words!["minus: ", fate(minus), Span::Break, "plus:  ", fate(plus)];
-    [("Feigin's counts", counts.into()), ("verdict", verdict), ("fixed points", fixed)]
-        .map(|(name, words)| (name.into(), about("feigin", words)))
-        .into()
+    let mut entries: Vec<(Words, Words)> =
+        [("Feigin's counts", counts.into()), ("verdict", verdict), ("fixed points", fixed)]
+            .map(|(name, words)| (name.into(), about("feigin", words)))
+            .into();
+    if let Some(danger) = danger {
+        let mut lines = vec![words::danger(danger)];
+        lines.extend(words::returns(danger));
+        let names = std::iter::once("danger").chain(std::iter::repeat(""));
+        entries.extend(names.zip(lines).map(|(name, words)| (name.into(), about("danger", words))));
+    }
+    entries
 }
 
 /// The fixed point of each side, and the rule that counts them.

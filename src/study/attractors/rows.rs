@@ -10,6 +10,7 @@ use super::here::Here;
 use super::stretch::Stretch;
 use crate::bracket::{Width, halve};
 use crate::model::Model;
+use crate::orbit::branch::BranchPoint;
 use crate::orbit::ending::{Ending, Kind};
 use crate::orbit::settle::close;
 use crate::orbit::{Course, PeriodicOrbit};
@@ -206,6 +207,12 @@ impl Row {
         let near = self.stretch.as_ref().and_then(|stretch| stretch.near(rpm));
         let known = near.and_then(|near| at_speed(&machine.at_speed(angular_velocity(rpm)), near));
         known.is_some_and(|known| known.is_same(orbit))
+    }
+
+    /// Its orbits with an impact at a corner where the acceleration jumps, within a range of speeds, rpm.
+    pub fn corner_impacts(&self, [low, high]: [f64; 2]) -> impl Iterator<Item = &BranchPoint> {
+        let all = self.stretch.iter().flat_map(Stretch::corner_impacts);
+        all.filter(move |point| low <= point.rpm && point.rpm <= high)
     }
 
     /// Follows the branch of an orbit to where it ceases to be stable.

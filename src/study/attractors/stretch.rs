@@ -137,6 +137,14 @@ impl Stretch {
         middle.map(|point| (point.rpm, &point.orbit))
     }
 
+    /// Its orbits with an impact at a corner where the acceleration jumps.
+    pub fn corner_impacts(&self) -> impl Iterator<Item = &BranchPoint> {
+        let is_corner = |point: &&BranchPoint| {
+            point.special.is_some_and(|special| matches!(special.kind, Kind::Corner { jump_order: 2, .. }))
+        };
+        self.points.iter().filter(is_corner)
+    }
+
     /// The lowest and the highest speed, rpm.
     pub fn range(&self) -> [f64; 2] {
         [self.points.first(), self.points.last()].map(|point| point.map_or(f64::NAN, |point| point.rpm))

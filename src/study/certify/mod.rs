@@ -13,8 +13,9 @@ use serde_json::{Value, json};
 
 use super::ModelLabel;
 use crate::ball::Ball;
-use crate::border_collision::RobustChaos;
+use crate::border_collision::directions::Homogeneous;
 use crate::border_collision::feigin::{Scenario, Speeds};
+use crate::border_collision::{Danger, LocalMap, RobustChaos};
 use crate::cam::{Cam, Side};
 use crate::corner::map::{Eigenvalue, Own, Sides};
 use crate::corner::range::{RangeError, Rejected, find_corner_impacts};
@@ -209,6 +210,16 @@ impl Certificate {
         if sides.iter().all(|side| side.fixed_point_exists_for == speeds) {
             chaos.prove(sides.map(|side| side.a.each_ref().map(|row| row.each_ref().map(Ball::interval))));
         }
+    }
+
+    /// Holds the danger at the corner impact against the proved matrices, border and fixed points, and takes note of what follows.
+    pub(crate) fn prove_danger(&self, danger: &mut Danger, local: &LocalMap) {
+        let sides = [&self.sides.minus, &self.sides.plus];
+        let matrices = sides.map(|side| side.a.each_ref().map(|row| row.each_ref().map(Ball::interval)));
+        let [e1, e2, _] = self.border.each_ref().map(Ball::interval);
+        let [minus, plus] = sides.map(|side| side.fixed_point_exists_for);
+        let is_attracting = minus != plus && sides.iter().all(|side| side.stable);
+        danger.prove(Homogeneous::new(matrices, [e1, e2], local.units()).diverging(true), is_attracting);
     }
 
     /// The fewest digits to which any of speed, state and map is proved; of what is 0 but for the ball's radius no digit is.

@@ -171,6 +171,7 @@ fn besides(found: &Verification) -> Vec<Value> {
         Value::Object(found.ranges.iter().flat_map(range).collect()),
         Value::Object(found.outcomes.iter().flat_map(local).collect()),
         json!({ "rounded_corner": { "fold_moves_rpm_per_degree": rounded } }),
+        json!({ "danger": found.danger.as_ref().map_or("none".into(), |danger| danger.kind.to_string()) }),
     ]
 }
 

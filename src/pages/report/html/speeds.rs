@@ -2,7 +2,7 @@
 
 use crate::pages::report::html::HtmlError;
 use crate::pages::report::html::plates::plate;
-use crate::pages::speeds::{cam, detachment, how, rests, table, together};
+use crate::pages::speeds::{cam, dangers, detachment, how, rests, table, together};
 use crate::report::Report;
 use crate::show::block::{self, Block, Section, Words, words};
 use crate::study::speeds::Speeds;
@@ -29,6 +29,7 @@ fn attractors(found: &Speeds) -> Vec<Block> {
     let about = words!["The follower leaves the cam for the first time at ", separation, ". ", together];
     let mut blocks = vec![Block::paragraph(about), Block::Table(table(found))];
     blocks.extend(found.attractors.iter().filter_map(rests).map(Block::paragraph));
+    blocks.extend(dangers(found));
     blocks.push(Block::paragraph(how(found)));
     blocks.extend(found.measured.iter().filter_map(cam));
     vec![Block::About("attractors".into(), blocks)]

@@ -7,7 +7,7 @@ use crate::published::Verdict;
 use crate::report::Report;
 use crate::show::block::{Block, Mark, Section, Words, about, words};
 use crate::show::digits::Digits;
-use crate::show::words::{quantity, route, slips, spoken};
+use crate::show::words::{self, quantity, route, slips, spoken};
 use crate::study::verify::Verification;
 
 /// Nothing where there was nothing to verify.
@@ -33,7 +33,12 @@ fn strong(text: &str) -> Words {
 
 fn findings(report: &Report, found: &Verification) -> Vec<Words> {
     let kind = match &found.classification {
-        Ok(kind) => words!["It is a ", strong(&spoken(&kind.scenario.to_string())), "."],
+        Ok(kind) => {
+            let verdict = words::verdict_with(&spoken(&kind.scenario.to_string()), found.danger.as_ref());
+            let danger =
+                found.danger.as_ref().map(|danger| words![" It is ", about("danger", words::danger(danger)), "."]);
+            words!["It is a ", strong(&verdict), ".", danger.unwrap_or_default()]
+        }
         Err(_) => "It has no classification.".into(),
     };
     let speed = about("speed_rpm", (found.at.speed_rpm(), Digits::Fixed(6)));

@@ -1,0 +1,271 @@
+//! Danger at a corner impact that Feigin's counts do not show: a basin that shrinks to nothing, or several attractors.
+//!
+//! *Dangerous* (Hassouneh, Abed and Nusse 2004; Ganguli and Banerjee 2005): the local map has an attractor on either side of the
+//! corner impact, such as a stable fixed point, and yet motions diverge at mu = 0. The map looks the same at every scale. So its
+//! basins at mu are those at mu = 1 or -1, |mu| times as large: whatever diverges at mu = 0 bounds them, and they shrink to nothing
+//! as mu goes to 0.
+//!
+//! *Multiple attractors* (Dutta, Nusse, Ott, Yorke and Yuan 1999): the local map has several attractors at one sign of mu. They and
+//! the borders between their basins shrink to one point as mu goes to 0. So the smallest disturbance there decides between them.
+
+use std::convert::Infallible;
+use std::f64::consts::TAU;
+
+use nalgebra::Vector2;
+use serde::Serialize;
+
+use super::feigin::{Classification, Speeds};
+use super::local_map::{LocalMap, PeriodicOrbit};
+use super::long_run::{End, Escape};
+use super::outcome::LocalOutcome;
+use super::word::Word;
+use crate::bracket::{Width, halve};
+use crate::known::Known;
+use crate::tolerance;
+
+/// A kind of danger.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DangerKind {
+    /// There are attractors on either side, and their basins shrink to nothing at omega*.
+    Dangerous,
+    /// There are several attractors on one side, which meet at omega*.
+    MultipleAttractors,
+}
+
+named!(DangerKind);
+
+/// A danger at a corner impact, as the local map has it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Danger {
+    /// Its kind; dangerous where it is both.
+    pub kind: DangerKind,
+    /// How the kind is known: as well as the weakest of what it rests on.
+    pub known: Known,
+    /// The motions that diverge at omega*; none where there are several attractors alone.
+    pub divergence: Option<Divergence>,
+    /// The attractors on either side.
+    pub attractors: Vec<LocalAttractor>,
+}
+
+document!(Danger as danger {
+    kind: danger.kind,
+    known: danger.known,
+    diverges: danger.divergence,
+    attractors: danger.attractors,
+});
+
+/// Motions of the local map that diverge at omega*.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Divergence {
+    /// The share of directions that they start in, in the map's natural units: at least so much where it is computed or proved, and
+    /// then 1 stands for the motions of every start but the corner impact itself.
+    pub share: f64,
+    /// Computed by intervals on the doubles of the map; proved where these hold the matrices of a certificate.
+    pub known: Known,
+    /// The word that one of them repeats, and by which factor it grows each time.
+    pub follows: Option<(Word, f64)>,
+}
+
+document!(Divergence as it {
+    share_of_directions: it.share,
+    known: it.known,
+    word: it.follows.as_ref().map(|(word, _)| word.to_string()),
+    multiplier: it.follows.as_ref().map(|(_, multiplier)| *multiplier),
+});
+
+/// An attractor of the local map.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LocalAttractor {
+    /// At which speeds.
+    pub speeds: Speeds,
+    /// How that it is one is known.
+    pub known: Known,
+    /// What it is.
+    pub end: End,
+    /// Which disturbances of it return; none of chaos, and none where the basin is not looked at.
+    pub returns: Option<Returns>,
+}
+
+document!(LocalAttractor as it {
+    speeds: it.speeds,
+    known: it.known,
+    end: it.end.name(),
+    word: it.word().map(Word::to_string),
+    returns: it.returns,
+});
+
+/// The disturbances of a periodic orbit that return to it: each that is smaller does, as far as was sampled. All are per distance of
+/// the speed from omega*, with which they grow; none where every disturbance that was tried returns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Returns {
+    /// Of the position on the section, m per rpm.
+    pub position: Option<f64>,
+    /// Of the velocity on the section, m/s per rpm.
+    pub velocity: Option<f64>,
+    /// Of both, in any of sixteen directions: their size `|(q, v/omega)|`, m per rpm.
+    pub any: Option<f64>,
+}
+
+document!(Returns as it {
+    known: Known::Sampled,
+    position_m_per_rpm: it.position,
+    velocity_m_s_per_rpm: it.velocity,
+    any_m_per_rpm: it.any,
+});
+
+/// A classification with the danger that it does not show: the document of both.
+#[derive(Serialize)]
+pub(crate) struct WithDanger<'a> {
+    #[serde(flatten)]
+    pub kind: &'a Classification,
+    pub danger: Option<&'a Danger>,
+}
+
+impl LocalAttractor {
+    /// The word of a periodic orbit.
+    pub fn word(&self) -> Option<&Word> {
+        match &self.end {
+            End::Periodic(orbit) => Some(&orbit.word),
+            _ => None,
+        }
+    }
+}
+
+impl Danger {
+    /// The attractors at these speeds.
+    pub fn at(&self, speeds: Speeds) -> impl Iterator<Item = &LocalAttractor> {
+        self.attractors.iter().filter(move |attractor| attractor.speeds == speeds)
+    }
+
+    /// Takes note of what is proved: the share of directions in which motions diverge, and that every attractor is one.
+    pub fn prove(&mut self, share: f64, is_attracting: bool) {
+        if let Some(divergence) = self.divergence.as_mut().filter(|_| share > 0.0) {
+            (divergence.share, divergence.known) = (share, Known::Proved);
+            if is_attracting && self.attractors.iter().all(|attractor| attractor.end.fixed_on().is_some()) {
+                self.attractors.iter_mut().for_each(|attractor| attractor.known = Known::Proved);
+                self.known = Known::Proved;
+            }
+        }
+    }
+}
+
+impl LocalMap {
+    /// The danger at a corner impact whose period is `period`, s, from what the local map does on either side of it and at it.
+    pub fn danger(&self, outcomes: &[LocalOutcome], period: f64) -> Option<Danger> {
+        let mut attractors: Vec<LocalAttractor> = outcomes.iter().flat_map(attractors).collect();
+        let count = |speeds| attractors.iter().filter(|attractor| attractor.speeds == speeds).count();
+        let [faster, slower] = [Speeds::Faster, Speeds::Slower].map(count);
+        let divergence = if faster > 0 && slower > 0 { self.divergence() } else { None };
+        let kind = match &divergence {
+            Some(_) => DangerKind::Dangerous,
+            None if faster > 1 || slower > 1 => DangerKind::MultipleAttractors,
+            None => return None,
+        };
+        let known = attractors.iter().map(|attractor| attractor.known);
+        let known = known.chain(divergence.as_ref().map(|it| it.known)).max().unwrap_or(Known::Sampled);
+        for attractor in &mut attractors {
+            if let End::Periodic(orbit) = &attractor.end {
+                attractor.returns = Some(self.returns(orbit, attractor.speeds, period));
+            }
+        }
+        Some(Danger { kind, known, divergence, attractors })
+    }
+
+    /// The motions that diverge at mu = 0, if any do.
+    fn divergence(&self) -> Option<Divergence> {
+        /// Directions that motions start in.
+        const SAMPLED: u32 = 64;
+        let scales = self.scales();
+        let end = |index: u32| {
+            // Off the axes, which can be invariant.
+            let angle = TAU * (f64::from(index) + 0.3) / f64::from(SAMPLED);
+            self.end(Vector2::new(angle.cos() * scales[0], angle.sin() * scales[1]), 0.0)
+        };
+        let escapes: Vec<Escape> = (0..SAMPLED)
+            .filter_map(|index| match end(index) {
+                End::Escapes(escape) => Some(escape),
+                _ => None,
+            })
+            .collect();
+        let follows = escapes.iter().find_map(|escape| match escape {
+            Escape::Follows { word, multiplier } => Some((word.clone(), *multiplier)),
+            Escape::Grown => None,
+        });
+        let (computed, sampled) =
+            (self.homogeneous().diverging(!escapes.is_empty()), escapes.len() as f64 / f64::from(SAMPLED));
+        let (share, known) = if computed > 0.0 { (computed, Known::Computed) } else { (sampled, Known::Sampled) };
+        (share > 0.0).then_some(Divergence { share, known, follows })
+    }
+
+    /// The disturbances of a stable orbit that return to it.
+    fn returns(&self, orbit: &PeriodicOrbit, speeds: Speeds, period: f64) -> Returns {
+        /// Directions of a disturbance.
+        const DIRECTIONS: u32 = 16;
+        let mu = if speeds == Speeds::Faster { -1.0 } else { 1.0 };
+        // |dT| = T^2/60 |d rpm|, and the local map scales with |dT|.
+        let per_rpm = period * period / 60.0;
+        let smallest = |directions: &[Vector2<f64>]| {
+            let each = orbit.points.iter().flat_map(|point| directions.iter().map(move |along| (point, along)));
+            each.filter_map(|(point, along)| self.first_lost(orbit, *point, *along, mu)).reduce(f64::min)
+        };
+        let axis = |along: Vector2<f64>| smallest(&[along, -along]).map(|size| size * per_rpm);
+        // An angular velocity makes a velocity of a length.
+        let omega = TAU / period;
+        let around = |index: u32| {
+            let angle = TAU * f64::from(index) / f64::from(DIRECTIONS);
+            Vector2::new(angle.cos(), angle.sin() * omega)
+        };
+        let around: Vec<_> = (0..DIRECTIONS).map(around).collect();
+        Returns {
+            position: axis(Vector2::x()),
+            velocity: axis(Vector2::y()),
+            any: smallest(&around).map(|size| size * per_rpm),
+        }
+    }
+
+    /// The smallest disturbance of a point of a stable orbit, in one direction, that does not return to the orbit.
+    fn first_lost(&self, orbit: &PeriodicOrbit, point: Vector2<f64>, along: Vector2<f64>, mu: f64) -> Option<f64> {
+        /// By how much each disturbance is larger than the one before.
+        const GROWTH: f64 = 1.25;
+        /// The smallest and the largest, in the map's natural units.
+        const TRIED: [f64; 2] = [1e-4, 1e3];
+        let unit = 1.0 / along.component_div(&self.units()).norm();
+        let word = orbit.word.least_rotation().0;
+        let is_lost = |size: f64| match self.end(point + along * size, mu) {
+            End::Periodic(reached) => reached.word.least_rotation().0 != word,
+            _ => true,
+        };
+        let (mut returned, mut size) = (0.0, TRIED[0] * unit);
+        while size < TRIED[1] * unit {
+            if is_lost(size) {
+                let Ok([inside, _]) = halve([returned, size], Width::Relative(tolerance::BASIN_EDGE.value), |size| {
+                    Ok::<_, Infallible>(is_lost(size))
+                });
+                return Some(inside);
+            }
+            returned = size;
+            size *= GROWTH;
+        }
+        None
+    }
+}
+
+/// The attractors of the local map at one sign of mu: the stable orbits that are listed, and what motions end on besides.
+fn attractors(outcome: &LocalOutcome) -> Vec<LocalAttractor> {
+    let Some(speeds) = Speeds::of(outcome.mu) else { return Vec::new() };
+    let attractor = |end, known| LocalAttractor { speeds, known, end, returns: None };
+    let stable = outcome.orbits.iter().filter(|orbit| orbit.stable());
+    let mut all: Vec<_> = stable.map(|orbit| attractor(End::Periodic(orbit.clone()), Known::Computed)).collect();
+    for fate in &outcome.fates {
+        let known = match &fate.end {
+            End::Periodic(_) => Known::Computed,
+            End::Chaotic(_) => Known::Sampled,
+            _ => continue,
+        };
+        if !all.iter().any(|other| other.end.is_like(&fate.end)) {
+            all.push(attractor(fate.end.clone(), known));
+        }
+    }
+    all
+}
