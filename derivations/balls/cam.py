@@ -96,6 +96,15 @@ class Cam:
                 return piece
         raise Undecided(f"it is not proved on which piece of the cam the angle {angle.str(8)} lies")
 
+    def sections(self, turns):
+        """The parts of so many turns of the cam, each without a jump of its velocity inside, as pieces whose laws go on past their ends."""
+        count = len(self.laws)
+        jumps = [index for index, smooth in enumerate(self.smooth) if smooth is not None and smooth < 2]
+        if not jumps:
+            return [Piece(arb(0), turns * self.turn, self)]
+        ends = [index + turn * count for turn in range(turns) for index in jumps] + [jumps[0] + turns * count]
+        return [Section(self, first, after).piece() for first, after in zip(ends, ends[1:])]
+
     def seen(self, angle):
         """(c, c', c'', c''') over the ball, the hull of all pieces that it may meet, each over its part; and whether c and c' are
         continuous over it for certain, so that Taylor's formula holds with the hull of c''."""
@@ -123,6 +132,29 @@ class Piece:
     def holds(self, angle):
         """Whether all of a ball is proved to lie between its ends."""
         return bool(angle > self.start and angle < self.end)
+
+
+class Section:
+    """The law of the pieces from one to the one before another, counted on through the revolutions: c and c' are continuous where these
+    meet, and the first and the last of them go on past their ends."""
+
+    def __init__(self, cam, first, after):
+        self.pieces = [cam._piece(index) for index in range(first, after)]
+
+    def piece(self):
+        """The section with its ends."""
+        return Piece(self.pieces[0][0], self.pieces[-1][1], self)
+
+    def derivatives(self, angle):
+        """(c, c', c'', c''') over the ball, the hull of all pieces that it may meet, each over its part."""
+        each = []
+        for index, (start, end, law, shift) in enumerate(self.pieces):
+            low = start if index > 0 else start.min(angle.lower())
+            high = end if index + 1 < len(self.pieces) else end.max(angle.upper())
+            part = overlap(angle, between(low, high))
+            if part is not None:
+                each.append(law.derivatives(part - shift))
+        return each[0] if len(each) == 1 else tuple(hull(order) for order in zip(*each))
 
 
 class Turned:

@@ -7,6 +7,9 @@ the times between the impacts, and what is left is that every flight ends on the
 
 Every pair of angles is excluded, or near a root that is proved to be alone, and of every root it is decided whether its flights are
 clear of the cam. Impacts of a pair that are nearer to one another than SHORT are excluded otherwise: see `_short`.
+
+The mean value form and Krawczyk's operator need a continuous c'. Where c' jumps, each choice of sections of the cam between its jumps is
+looked through by itself, with the laws of the sections continued past their ends, and a root counts where it lies on its sections.
 """
 
 from dataclasses import dataclass
@@ -22,8 +25,8 @@ from .roots import all_roots, closed_in
 SHORT = 1 / 64
 # Parts of a flight at which a box of orbits is looked at for being inside of the cam.
 LOOKS = (1 / 16, 1 / 4, 1 / 2, 3 / 4, 15 / 16)
-# A double above a whole turn, so that the box to look through holds one.
-CIRCLE = 2 * 3.1415926535897936
+# A double above a whole turn, so that the box to look through holds one, and how far that box goes beyond a section of the cam, rad.
+CIRCLE, EDGE = 2 * 3.1415926535897936, 2.0**-48
 # Parts of the whole circle that the short flights are not halved beyond.
 SMALLEST = 2.0**-24
 
@@ -49,25 +52,44 @@ class Orbits:
 
     def of(self, count):
         """(orbits, places that are undecided) of `count` impacts, 1 or 2."""
-        if count == 1:
-            box, undecided = [(0.0, CIRCLE)], []
-        else:
+        cam, orbits, undecided = self.machine.cam, [], [] if count == 1 else self._short()
+        for first in cam.sections(1):
+            for sections in [[first]] if count == 1 else [[first, second] for second in cam.sections(2)]:
+                some, rest = self._on(sections)
+                orbits, undecided = orbits + some, undecided + rest
+        return orbits, undecided
+
+    def _on(self, sections):
+        """(orbits, places that are undecided) whose impacts are on these parts of the cam, one after the other."""
+        laws, first, last = [section.law for section in sections], sections[0], sections[-1]
+        # The doubles about a range of angles, so that the box to look through holds it.
+        box, ranges = [(float(first.start) - EDGE, float(first.end) + EDGE)], [(first.start, first.end)]
+        if len(sections) > 1:
             # The shorter flight first: each pair once.
-            box, undecided = [(0.0, CIRCLE), (SHORT, CIRCLE / 2)], self._short()
-        found, rest = all_roots(self._laws, box, self._excluded)
-        undecided, orbits = undecided + rest, []
+            box, ranges = [*box, (SHORT, CIRCLE / 2)], [*ranges, (SHORT, self.turn / 2)]
+
+        def equations(unknowns):
+            """How far each flight ends from the cam."""
+            return [ends for *_, ends in self._thrown(self._flights(unknowns), laws)]
+
+        def excluded(balls):
+            angle = sum(balls[1:], balls[0])
+            return angle < last.start or angle > last.end or self._excluded(balls, laws)
+
+        found, undecided = all_roots(equations, box, excluded)
+        orbits = []
         # A box may hold a root that lies beyond the whole one: then it is there again a turn, or the other flight, on.
         kept = []
         for one in found:
-            root = closed_in(self._laws, one)
-            places = [_inside(value, ends) for value, ends in zip(root, [(0, self.turn), (SHORT, self.turn / 2)])]
+            root = closed_in(equations, one)
+            places = [_inside(value, ends) for value, ends in zip(root, ranges)] + [_inside(sum(root[1:], root[0]), (last.start, last.end))]
             if any(place is False for place in places) or any(_holds(before, root) for before in kept):
                 continue
             kept.append(one)
             try:
                 if None in places:
                     raise Undecided("a root is on the edge of what was looked through")
-                orbits.append(self._orbit(root))
+                orbits.append(self._orbit(root, laws))
             except Excluded:
                 continue
             except Refused:
@@ -81,13 +103,13 @@ class Orbits:
             return [(first, first.constant(self.turn))]
         return [(first, others[0]), (first + others[0], self.turn - others[0])]
 
-    def _thrown(self, flights):
+    def _thrown(self, flights, laws):
         """(lift, cam velocity, v+ of the flight that begins there, where that ends less the next lift) of each impact, duals.
 
         The impacts throw: v+ of the next is a - r s' v+ of this one, a = (1 + r) c' - r s f, so that once around v+ = all + part v+.
         """
-        follower, cam, speed, count = self.machine.follower, self.machine.cam, self.speed, len(flights)
-        lifts = [lift(cam, angle) for angle, _ in flights]
+        follower, speed, count = self.machine.follower, self.speed, len(flights)
+        lifts = [lift(law, angle) for law, (angle, _) in zip(laws, flights)]
         responses, forces = [response(follower, turn / speed) for _, turn in flights], [follower.force(c) for c, _ in lifts]
         thrown = []
         for k, ((_, s, s1), force) in enumerate(zip(responses, forces)):
@@ -104,15 +126,11 @@ class Orbits:
             found.append((c, slope * speed, leaves, c + s * leaves + p * force - lifts[(k + 1) % count][0]))
         return found
 
-    def _laws(self, unknowns):
-        """How far each flight ends from the cam."""
-        return [ends for *_, ends in self._thrown(self._flights(unknowns))]
-
-    def _excluded(self, balls):
+    def _excluded(self, balls, laws):
         """Whether every flight of a box leaves into the cam, comes from inside of it, or is inside of it on its way."""
         cam, follower, centre = self.machine.cam, self.machine.follower, [ball.mid() for ball in balls]
         flights = self._flights(Dual.varied(balls))
-        thrown, middle = self._thrown(flights), self._thrown(self._flights(Dual.varied(centre)))
+        thrown, middle = self._thrown(flights, laws), self._thrown(self._flights(Dual.varied(centre)), laws)
         for k, (c, cam_velocity, leaves, _) in enumerate(thrown):
             # By the mean value form: a difference of numbers that vary together.
             relative, at_centre = leaves - cam_velocity, middle[k][2] - middle[k][1]
@@ -134,12 +152,13 @@ class Orbits:
         Of a flight of time t <= SHORT/omega with |g''| <= G, g its gap, both its velocities relative to the cam are at most G t/2:
         the other flight leaves with 0 to r G t/2, takes T - t, and arrives with 0 to G t/(2 r). Most flights cannot.
         """
-        parts, undecided = [(0.0, CIRCLE)], []
+        cam, parts, undecided = self.machine.cam, [(0.0, CIRCLE)], []
         while parts:
             low, high = parts.pop()
             if self._no_short(between(low, high)):
                 continue
-            if high - low < SMALLEST:
+            # Between impacts on both sides of a jump of c' nothing is decided, however near they are.
+            if high - low < (SMALLEST if cam.is_smooth(between(low, high + SHORT)) else SHORT / 16):
                 undecided.append([between(low, high), between(0, SHORT)])
                 continue
             parts += [(low, (low + high) / 2), ((low + high) / 2, high)]
@@ -165,11 +184,11 @@ class Orbits:
             return True
         return any(other.gap(self.period * part) < 0 for part in LOOKS)
 
-    def _orbit(self, root):
+    def _orbit(self, root, laws):
         """The orbit of a root, its flights clear of the cam; Excluded where they are not."""
         flights = self._flights([Dual(value, []) for value in root])
         impacts, around = [], arb_mat([[1, 0], [0, 1]])
-        for (angle, turn), (_, cam_velocity, leaves, _) in zip(flights, self._thrown(flights)):
+        for (angle, turn), (_, cam_velocity, leaves, _) in zip(flights, self._thrown(flights, laws)):
             relative = leaves.value - cam_velocity.value
             if relative < 0:
                 raise Excluded("an impact sends the follower into the cam")

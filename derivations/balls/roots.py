@@ -84,14 +84,14 @@ def krawczyk(equations, balls):
     return image if all(one.is_finite() for one in image) else None
 
 
-def closed_in(equations, balls, times=60):
+def closed_in(equations, balls, times=200):
     """The root that a box holds alone, in balls as narrow as the precision allows."""
     for _ in range(times):
         image = krawczyk(equations, balls)
         both = [overlap(one, ball) for one, ball in zip(image, balls)] if image is not None else [None]
         if None in both:
             raise Undecided("a root is lost in rounding")
-        if not any(one.rad() < ball.rad() * 0.9 for one, ball in zip(both, balls)):
+        if not any(one.rad() < ball.rad() * 0.99 for one, ball in zip(both, balls)):
             return both
         balls = both
     return balls
