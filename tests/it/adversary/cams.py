@@ -147,6 +147,12 @@ def hermite(h, left, right):
 
 
 def table(law):
+    """Of rows next to one another the digits cancel: twice as many are carried."""
+    with mp.workdps(2 * mp.dps):
+        return spline(law)
+
+
+def spline(law):
     """A periodic spline: slopes, and of degree 5 curvatures, at the rows, such that the next derivatives do not jump."""
     rows = [(radians(angle), exact(lift)) for angle, lift in law["rows"]]
     count, quintic = len(rows), law["spline"] == "quintic"
@@ -175,14 +181,18 @@ def table(law):
         unit = list(zero)
         unit[column] = mpf(1)
         matrix[:, column] = [float(one - other) for one, other in zip(jumps(unit), right)]
+    # Rows and columns of one size, however near two rows of the table are.
+    of_rows = 1 / np.abs(matrix).max(axis=1)
+    of_columns = 1 / np.abs(matrix * of_rows[:, None]).max(axis=0)
+    scaled = matrix * of_rows[:, None] * of_columns
     unknowns, left = zero, right
-    for _ in range(20):
-        size = max(map(abs, left)) or mpf(1)
-        step = np.linalg.solve(matrix, [float(one / size) for one in left])
+    while max(map(abs, left)) > mpf(10) ** -52 * max(abs(lift) for _, lift in rows):
+        size = max(map(abs, left))
+        step = of_columns * np.linalg.solve(scaled, of_rows * [float(one / size) for one in left])
         unknowns = [one - size * mpf(float(off)) for one, off in zip(unknowns, step)]
-        left = jumps(unknowns)
-        if max(map(abs, left)) < mpf(10) ** -55 * max(abs(lift) for _, lift in rows):
-            break
+        before, left = left, jumps(unknowns)
+        if not max(map(abs, left)) < max(map(abs, before)) / 2:
+            raise ValueError("the spline is not found")
     pieces = [(rows[i][0] % TURN, rows[i][0], coefficients(i, unknowns)) for i in range(count)]
     pieces.sort(key=lambda piece: piece[0])
     found = [(start, Law(powers, start, numbers)) for start, _, numbers in pieces]
@@ -207,8 +217,8 @@ LAWS = {"arcs": arcs, "program": program, "polynomial": polynomial, "table": tab
 class Cam:
     def __init__(self, law):
         self.pieces = LAWS[law["law"]](law)
-        # Of polynomials the program takes out what typing leaves between them, of the order of a double's rounding.
-        self.is_exact = law["law"] != "polynomial"
+        # Where polynomials meet, and rises add up to 0, only to the rounding of what is typed, the program takes that out.
+        self.is_exact = law["law"] not in ("polynomial", "program")
         self.exact = [start for start, _ in self.pieces] + [TURN]
         self.seams = np.array([float(start) for start in self.exact])
         sample = self.at(np.linspace(0.0, math.tau, 2000, endpoint=False))[0]
