@@ -34,7 +34,7 @@ class Asked:
     """What the program tells of a model file, and what is wrong with it."""
 
     def __init__(self, program, file, machine, drop):
-        self.program, self.file, self.machine, self.drop = program, file, machine, drop
+        self.program, self.file, self.machine, self.drop = program, Path(file), machine, drop
         self.counts = {name: 0 for name in ("asked", "refused", "complete", "confirmed", "proved", "doubtful", "left_out")}
         self.wrong, self.refusals = [], []
 
