@@ -66,7 +66,10 @@ def stroke(library, angle, start, span, base, rise, coefficients, sine):
 
 
 def from_acceleration(pieces):
-    """A motion from 0 to 1 in a unit of time: pieces (duration, a) or (duration, a, rate, phase) of its acceleration, integrated."""
+    """A motion from 0 to 1 in a unit of time, its acceleration integrated: pieces (begin, powers of the time since then, a sine).
+
+    The acceleration is given as (duration, a), or as (duration, a, rate, phase) for a sin(rate x + phase).
+    """
     place, velocity, moment, found = mpf(0), mpf(0), mpf(0), []
     for duration, size, *wave in pieces:
         rate, phase = wave or (mpf(1), mp.pi / 2)
@@ -77,15 +80,15 @@ def from_acceleration(pieces):
             sine = [amplitude, rate, phase]
         else:
             coefficients, sine = [place, velocity, size / 2], [mpf(0), mpf(1), mpf(0)]
-        found.append((moment, duration, coefficients, sine))
+        found.append((moment, coefficients, sine))
         place, velocity = stroke(mp, duration, 0, mpf(1), 0, 1, coefficients, sine)
         moment += duration
-    return [(start, span, [c / place for c in coefficients], [sine[0] / place, *sine[1:]]) for start, span, coefficients, sine in found]
+    return [(start, [c / place for c in coefficients], [sine[0] / place, *sine[1:]]) for start, coefficients, sine in found]
 
 
 EIGHTH, NONE = mpf(1) / 8, [mpf(0), mpf(1), mpf(0)]
 MOTIONS = {
-    "dwell": [(mpf(0), mpf(1), [mpf(0)], NONE)],
+    "dwell": [(mpf(0), [mpf(0)], NONE)],
     "parabolic": from_acceleration([(mpf(1) / 2, mpf(1)), (mpf(1) / 2, mpf(-1))]),
     "harmonic": from_acceleration([(mpf(1), mpf(1), mp.pi, mp.pi / 2)]),
     "cycloidal": from_acceleration([(mpf(1), mpf(1), TURN, mpf(0))]),
@@ -96,8 +99,8 @@ MOTIONS = {
         [part for side in (1, -1) for part in (
             (EIGHTH, mpf(side), 4 * mp.pi, mpf(0)), (2 * EIGHTH, mpf(side)), (EIGHTH, mpf(side), 4 * mp.pi, mp.pi / 2))]
     ),
-    "poly345": [(mpf(0), mpf(1), [mpf(n) for n in (0, 0, 0, 10, -15, 6)], NONE)],
-    "poly4567": [(mpf(0), mpf(1), [mpf(n) for n in (0, 0, 0, 0, 35, -84, 70, -20)], NONE)],
+    "poly345": [(mpf(0), [mpf(n) for n in (0, 0, 0, 10, -15, 6)], NONE)],
+    "poly4567": [(mpf(0), [mpf(n) for n in (0, 0, 0, 0, 35, -84, 70, -20)], NONE)],
 }
 
 
@@ -120,10 +123,8 @@ def program(law):
     start, base, pieces = mpf(0), exact(law["base"]), []
     for part in law["segment"]:
         span, rise = radians(part["span_deg"]), exact(part["rise"])
-        for begins, length, coefficients, (size, rate, phase) in MOTIONS[part["motion"]]:
-            # Of the unit of time, each piece a part.
-            numbers = [c / length**0 for c in coefficients]
-            pieces.append((start + begins * span, Law(stroke, start + begins * span, span, base, rise, numbers, [size, rate, phase])))
+        for begins, coefficients, sine in MOTIONS[part["motion"]]:
+            pieces.append((start + begins * span, Law(stroke, start + begins * span, span, base, rise, coefficients, sine)))
         start, base = start + span, base + rise
     return pieces
 

@@ -75,7 +75,7 @@ class Machine:
         self._numbers = (tuple(map(float, self.whole)), float(self.r), float(self.omega)), numbers
 
     def law(self, lift, slope):
-        """What is 0 where an impact at this lift and slope throws the follower so that it comes back: twice over the same in numbers.
+        """What is 0 where an impact at this lift and slope throws the follower so that it comes back.
 
         (1 - a) c - e - b u = 0 of the flight, u (1 + r d) = (1 + r) omega c' - r (c c0 + f) of the impact; u is eliminated.
         """
