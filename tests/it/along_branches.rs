@@ -549,7 +549,7 @@ fn a_graze_just_before_an_impact_is_where_the_parabola_touches() {
     let branch = Branch::through(&model, 400.0, &behind.unwrap(), &number).unwrap();
     assert_eq!(branch.ends, [End::Range, End::Range]);
     let grazes = branch.points.iter().filter_map(|point| match point.special?.kind {
-        Kind::Graze { before: 1, after: 2, turned } => Some((point, turned)),
+        Kind::Graze { before: 1, after: 2, turned, .. } => Some((point, turned)),
         _ => None,
     });
     let [(graze, turned)] = grazes.collect::<Vec<_>>()[..] else { panic!("{:?}", branch.points) };

@@ -2,6 +2,7 @@
 //! tests wait for.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod adversary;
 mod along_branches;
 mod along_curves;
 mod answers;
