@@ -218,6 +218,9 @@ table! {
         attractors within that of their end are left undecided";
     /// When a region that grows is given up: the size of what it was made around over its own.
     LEAVING = 1e-2, "of its size: regions that close up have grown by less than half";
+    /// The least disturbance of an orbit of the local map that is tried.
+    LEAST_DISTURBANCE = 1e-4, "of the map's natural units: orbits of the local map are of the size of one of them, and a basin that is \
+        10,000 times as narrow is none for any machine";
     /// How closely the edge of a basin of the local map is bracketed.
     BASIN_EDGE = 1e-4, "of its distance: the three digits that are shown, and one more";
     /// The difference between the local map and the real one up to which it counts as valid.

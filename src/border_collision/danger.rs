@@ -228,16 +228,16 @@ impl LocalMap {
     fn first_lost(&self, orbit: &PeriodicOrbit, point: Vector2<f64>, along: Vector2<f64>, mu: f64) -> Option<f64> {
         /// By how much each disturbance is larger than the one before.
         const GROWTH: f64 = 1.25;
-        /// The smallest and the largest, in the map's natural units.
-        const TRIED: [f64; 2] = [1e-4, 1e3];
+        /// The largest that is tried, in the map's natural units.
+        const MOST: f64 = 1e3;
         let unit = 1.0 / along.component_div(&self.units()).norm();
         let word = orbit.word.least_rotation().0;
         let is_lost = |size: f64| match self.end(point + along * size, mu) {
             End::Periodic(reached) => reached.word.least_rotation().0 != word,
             _ => true,
         };
-        let (mut returned, mut size) = (0.0, TRIED[0] * unit);
-        while size < TRIED[1] * unit {
+        let (mut returned, mut size) = (0.0, tolerance::LEAST_DISTURBANCE.value * unit);
+        while size < MOST * unit {
             if is_lost(size) {
                 let Ok([inside, _]) = halve([returned, size], Width::Relative(tolerance::BASIN_EDGE.value), |size| {
                     Ok::<_, Infallible>(is_lost(size))

@@ -31,6 +31,7 @@ pub enum Run {
 
 /// What follows a release.
 #[derive(Clone, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "there is one for each release, and none is kept in bulk")]
 pub enum Fate {
     /// The same release again, in the end.
     Recurs(Resting),

@@ -170,7 +170,7 @@ pub(crate) fn mark(verdict: Verdict) -> Mark {
 pub(crate) fn meaning(scenario: Scenario, has_stable: bool, danger: Option<&Danger>) -> &'static str {
     match scenario {
         Scenario::Persistence if danger.is_some_and(|danger| danger.kind == DangerKind::Dangerous) => {
-            "the fixed point crosses from one side to the other, but at omega* not even the smallest disturbance of it returns"
+            "the fixed point crosses from one side to the other, but its basin shrinks to nothing at omega*"
         }
         Scenario::Persistence if danger.is_some() => {
             "the fixed point crosses from one side to the other, and other attractors shrink to it at omega*"

@@ -79,11 +79,14 @@ fn what_diverges_at_the_corner_impact_is_dangerous() {
         // The bound depends on the coordinates, and is not as close in oblique ones.
         for (map, least) in [(map, 0.98), (turned(&map), 0.5)] {
             let found = danger(&map).unwrap();
-            assert_eq!((found.kind, found.known), (DangerKind::Dangerous, Known::Computed), "{l} {r}: {found:?}");
+            assert_eq!(found.kind, DangerKind::Dangerous, "{l} {r}: {found:?}");
             let divergence = found.divergence.as_ref().unwrap();
+            // In oblique coordinates no sector may be left that is certain: then the directions are sampled.
+            let is_plain = least > 0.9;
+            assert!(!is_plain || found.known == Known::Computed, "{l} {r}: {found:?}");
             // Along isolated rays motions may shrink.
-            assert!(divergence.share > least && divergence.share < 1.0, "{l} {r}: {divergence:?}");
-            assert_eq!(divergence.known, Known::Computed);
+            let is_all = divergence.share == 1.0 && divergence.known == Known::Sampled;
+            assert!(is_all || divergence.share > least && divergence.share < 1.0, "{l} {r}: {divergence:?}");
             for speeds in [Speeds::Faster, Speeds::Slower] {
                 assert!(found.at(speeds).any(|attractor| attractor.end.fixed_on().is_some()), "{l} {r}: {found:?}");
             }
@@ -304,7 +307,9 @@ fn every_command_tells_of_the_danger() {
     assert_eq!(other.kind, found.kind);
     assert_relative_eq!(edge(other), edge(&found), max_relative = 1e-3);
     let document = serde_json::to_value(&located).unwrap();
-    assert_eq!(document["corner_impacts"][0]["classification"]["danger"]["kind"], "dangerous");
+    let at_60 = |it: &&serde_json::Value| (it["speed_rpm"].as_f64().unwrap() - 60.0).abs() < 1e-6;
+    let it = document["corner_impacts"].as_array().unwrap().iter().find(at_60).unwrap();
+    assert_eq!(it["classification"]["danger"]["kind"], "dangerous");
     assert!(page(&located).contains("persistence, dangerous"));
 
     let resolution = Resolution { step: Step::for_speeds([59.98, 60.02], 4), starts: 8, two_impacts: false };

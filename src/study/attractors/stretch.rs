@@ -4,7 +4,7 @@ use super::change::{Cause, Change};
 use crate::model::Model;
 use crate::orbit::branch::{self, Branch, BranchPoint, End, Following, Kind};
 use crate::orbit::fate::{Run, Settling};
-use crate::orbit::{Family, OrbitError, Parameter, PeriodicOrbit};
+use crate::orbit::{Family, OrbitError, Parameter, PeriodicOrbit, Stability};
 use crate::simulate::{Machine, SimulateError, angular_velocity};
 
 /// A part of a branch on which the orbits are stable and have the same numbers of revolutions and impacts.
@@ -90,7 +90,7 @@ impl Stretch {
             let range = [(1.0 - BEYOND.0) * point.rpm, (1.0 + BEYOND.0) * point.rpm];
             Some(branch::doubled(&family, &following(range), &[alone]))
         };
-        points.filter_map(at).flatten().filter(|(_, orbit)| orbit.is_stable()).collect()
+        points.filter_map(at).flatten().filter(|(_, orbit)| !is_unstable(orbit)).collect()
     }
 
     /// Those that runs from the ends come to right beyond.
@@ -151,6 +151,11 @@ impl Stretch {
     }
 }
 
+/// Whether an orbit is certainly unstable: next to a flip or a fold, stable ones are neutral within their error.
+fn is_unstable(orbit: &PeriodicOrbit) -> bool {
+    orbit.judgement.stability == Stability::Unstable
+}
+
 /// Takes the points for as long as orbits are of one kind, and returns why that is over.
 fn walk<'a>(
     middle: &[BranchPoint],
@@ -175,7 +180,7 @@ fn walk<'a>(
             pending = Some(point);
             continue;
         }
-        if !point.orbit.is_stable() || numbers(&point.orbit) != kind {
+        if is_unstable(&point.orbit) || numbers(&point.orbit) != kind {
             let [low, high] = [last.min(point.rpm), last.max(point.rpm)];
             let change = pending.map(Change::of_point);
             taken.extend(pending.cloned());
