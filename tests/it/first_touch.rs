@@ -152,7 +152,7 @@ fn the_class_of_a_graze_goes_by_the_eigenvalue() {
     }
     // One that oscillates: the first n with s(n T) < 0 by trial, and the depth at which the root gives back what it is given.
     for (damping, rpm) in [(0.1, 20.0), (0.1, 16.0), (0.0, 8.0), (0.5, 50.0), (1.0, 7.0), (0.1, 200.0)] {
-        let oscillation = (1.0 - 0.25 * damping * damping as f64).sqrt();
+        let oscillation = f64::sqrt(1.0 - 0.25 * damping * damping);
         let time = 60.0 / rpm;
         let response =
             |n: u64| (-0.5 * damping * n as f64 * time).exp() * (oscillation * n as f64 * time).sin() / oscillation;

@@ -253,7 +253,7 @@ fn sprung(case: &Case) -> Model {
             let preload = [0.0, 1e-6, 1.0][(kind % 4) as usize] * case.stroke * case.model.follower.stiffness;
             format!("preload = {preload:?}\n")
         }
-        Some(("gravity", _)) if kind / 4 % 2 == 0 => "gravity = 0.0\n".into(),
+        Some(("gravity", _)) if (kind / 4).is_multiple_of(2) => "gravity = 0.0\n".into(),
         _ => format!("{line}\n"),
     };
     random::model(&case.text.lines().map(line).collect::<String>(), case.table.as_deref())
