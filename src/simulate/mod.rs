@@ -202,7 +202,7 @@ impl Machine {
     /// Advances `motion` until the cam reaches `goal`, or until the observer breaks right after an event.
     ///
     /// An event in the last instant is left to the run that goes on from there; a stick is shown with the impact that led to
-    /// it. Where a run is stopped changes no bit of what comes after: see [`Stopped`].
+    /// it. Where a run is stopped changes no bit of what comes after.
     pub fn advance(
         &self,
         motion: &mut Motion,
