@@ -81,7 +81,7 @@ pub struct LocalAttractor {
     pub speeds: Speeds,
     /// How that it is one is known.
     pub known: Known,
-    /// What it is.
+    /// The motion.
     pub end: End,
     /// Which disturbances of it return; none of chaos, and none where the basin is not looked at.
     pub returns: Option<Returns>,
@@ -99,11 +99,11 @@ document!(LocalAttractor as it {
 /// the speed from omega*, with which they grow; none where every disturbance that was tried returns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Returns {
-    /// Of the position on the section, m per rpm.
+    /// Largest disturbance of the position on the section, m per rpm.
     pub position: Option<f64>,
-    /// Of the velocity on the section, m/s per rpm.
+    /// Largest disturbance of the velocity on the section, m/s per rpm.
     pub velocity: Option<f64>,
-    /// Of both, in any of sixteen directions: their size `|(q, v/omega)|`, m per rpm.
+    /// Largest disturbance of both, the least of sixteen directions: its size `|(q, v/omega)|`, m per rpm.
     pub any: Option<f64>,
 }
 

@@ -7,7 +7,7 @@ use crate::orbit::branch::{Branch, BranchPoint, End, GrazeClass, Kind, Special};
 use crate::orbit::{Eigenvalue, eigenvalues};
 use crate::tolerance;
 
-/// What happens at a corner impact, by the eigenvalues of its map alone, or beyond the graze of an orbit without impacts.
+/// Scenario of a corner impact, by the eigenvalues of its map alone, or class of the graze of an orbit without impacts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Happening {

@@ -71,7 +71,7 @@ pub struct SideCounts {
     pub below_minus_one: usize,
     /// Whether both eigenvalues lie inside the unit circle.
     pub stable: bool,
-    /// What becomes of small deviations from the side's fixed point.
+    /// Stability of the side's fixed point.
     pub stability: Stability,
     /// `(I - A)^{-1} B`, the fixed point for dT = 1 s: m, m/s.
     pub fixed_point: Vector2<f64>,
