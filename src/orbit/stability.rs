@@ -121,11 +121,11 @@ fn middle(rows: &Rows) -> Matrix2<f64> {
 
 /// tr M of a product of factors, and its error to first order.
 ///
-/// With P the product of the factors before one of them, F, and R that of those after it, an error dF and the rounding of F P change
-/// the trace by
+/// With P the product of the factors before one of them, F, and R that of those after it, an error dF changes the trace by
+/// tr(R dF P) = tr(P R dF), and an error E of the product F P, whose rounding makes at most 2 u |F| |P|, by tr(R E):
 ///
 /// ```text
-/// tr(R dF P)        at most        tr(|R| (|dF| + 2 u |F|) |P|)
+/// tr(|P R| |dF|)        2 u tr(|R| |F| |P|)        at most
 /// ```
 fn trace(factors: &[Rows]) -> (f64, f64) {
     let mut after = vec![Matrix2::<f64>::identity()];
@@ -137,9 +137,8 @@ fn trace(factors: &[Rows]) -> (f64, f64) {
     for (factor, after) in factors.iter().zip(after.iter().rev()) {
         let centre = middle(factor);
         let radius = Matrix2::from_fn(|row, column| 0.5 * factor[row][column].width());
-        let off = radius + centre.abs() * (2.0 * tolerance::ULP.value);
-        let moved = after.abs() * off * before.abs();
-        error += moved.trace();
+        let rounding = after.abs() * centre.abs() * before.abs() * (2.0 * tolerance::ULP.value);
+        error += ((before * after).abs() * radius).trace() + rounding.trace();
         before = centre * before;
     }
     (before.trace(), error)
