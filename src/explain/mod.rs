@@ -14,6 +14,7 @@ use crate::model::{Model, ModelError, Units, nearest};
 use crate::paper::checks::{self, Check};
 use crate::paper::{Claim, Context, LedgerError, ledger, proofs};
 use crate::report::quantities::{Quantity, quantities};
+use crate::study::certify::Certificate;
 use crate::study::compare::{self, Values};
 use crate::study::compared::Skipped;
 use crate::study::verify::{External, Verification};
@@ -47,6 +48,9 @@ pub struct Explanation {
     pub skipped: Vec<Skipped>,
     /// How it is known.
     pub known: Known,
+    /// What the proof of its value takes for granted.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub hypotheses: Vec<String>,
     /// Of a statement of the paper: what its check found.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub evidence: Option<String>,
@@ -74,6 +78,7 @@ impl Explanation {
             routes: BTreeMap::new(),
             skipped: Vec::new(),
             known,
+            hypotheses: Vec::new(),
             evidence: None,
             code: None,
             derivation: None,
@@ -371,6 +376,7 @@ impl Links {
         let mut routes = each("/routes", link.routes.as_ref());
         routes.extend(each("/orbits", link.orbits.as_ref()));
         let is_proved = routes.contains_key("certificate");
+        let certificate = findings.found.and_then(|found| found.certificate.as_ref()).filter(|_| is_proved);
         let ways = [
             RouteName::Certificate,
             RouteName::ClosedForm,
@@ -391,6 +397,7 @@ impl Links {
             inputs,
             value: own.or_else(|| at(link.value.as_deref()?)).cloned().or_else(|| of_input(&link.name)),
             known: if is_proved { Known::Proved } else { link.known },
+            hypotheses: certificate.map(Certificate::hypotheses).unwrap_or_default(),
             routes,
             skipped,
             code: code(&link.code),

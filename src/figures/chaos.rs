@@ -5,6 +5,7 @@ use crate::covering::{HSet, known};
 use crate::draw::layout::widened;
 use crate::draw::{Axis, BREAK, Beside, Colour, Data, Density, Figure, Panel, Series, Stroke, Word, extent};
 use crate::figures::{Entry, drawn};
+use crate::show::words::hypotheses;
 use crate::study::chaos::{Portrait, portrait};
 
 /// The figure of the report: what is kept of this model beyond the corner impact, proved again.
@@ -24,9 +25,12 @@ pub(crate) const CHAOTIC_SET: Entry = Entry {
         prove(&subject.machine(rpm), &set).map_err(|why| refused(why.impacts))?;
         let portrait = portrait(&subject.model, &set).map_err(|error| error.to_string())?;
         let caption = format!(
-            "Impacts of a long run, and a parallelogram N of impacts. Each strip is carried along N and beyond both its ends, as the              line of its colour, by the number of impacts that stands at it. So every sequence of these numbers is followed by a motion,              which is proved: a set of chaotic motions exists, with a topological entropy of at least {:.5} a revolution.",
+            "Impacts of a long run, and a parallelogram N of impacts: each strip is carried along N and beyond both its ends, as the \
+             line of its colour, by the number of impacts that stands at it. So every sequence of these numbers is followed by a motion, \
+             which is proved: a set of chaotic motions exists, with a topological entropy of at least {:.5} a revolution. {}",
             // Rounded down, as a bound from below must be.
-            (1e5 * set.entropy()).floor() / 1e5
+            (1e5 * set.entropy()).floor() / 1e5,
+            hypotheses(&crate::study::hypotheses(subject.machine(rpm).cam())).unwrap_or_default()
         );
         drawn(chaos_figure(title, &set, &portrait), caption)
     },

@@ -7,8 +7,8 @@ use crate::show::block::{Block, Column, Mark, Span, Table, Words, words};
 use crate::show::digits::Digits;
 use crate::show::{Paged, words};
 use crate::study::certify::{
-    Assumed, Certificate, Certified, OrbitKind, ProvedCounts, ProvedEigenvalue, ProvedOrbits, ProvedRelease,
-    ProvedResting, ProvedSide, ProvedStart, Round, Unproved,
+    Certificate, Certified, OrbitKind, ProvedCounts, ProvedEigenvalue, ProvedOrbits, ProvedRelease, ProvedResting,
+    ProvedSide, ProvedStart, Round, Unproved,
 };
 
 impl Paged for Certified {
@@ -27,6 +27,7 @@ impl Paged for Certified {
             )),
         ];
         self.corner_impacts.iter().for_each(|one| page.extend(certificate(one)));
+        page.extend(words::hypotheses(&self.hypotheses()).map(Block::paragraph));
         page.extend(refused(&self.refused));
         page
     }
@@ -65,7 +66,7 @@ impl Paged for ProvedOrbits {
                 words!["not decided about impacts at ", Words::joined(angles, " and ")]
             }));
         }
-        page.push(hypotheses(self.assumed, ""));
+        page.extend(words::hypotheses(&self.hypotheses()).map(Block::paragraph));
         page
     }
 }
@@ -106,7 +107,7 @@ impl Paged for ProvedCounts {
             [] => "There are no others at any speed of the range, which is proved. Each digit of an event is, but for one unit of the last.".into(),
             _ => words!["The number is not decided from ", Words::joined(undecided, ", from "), "."],
         }));
-        page.push(hypotheses(self.assumed, ""));
+        page.extend(words::hypotheses(&self.hypotheses()).map(Block::paragraph));
         page
     }
 }
@@ -121,7 +122,7 @@ impl Paged for ProvedResting {
                 true => "The cam presses against the follower nowhere: no motion rests on it.",
                 false => "The cam presses against the follower everywhere: one that rests on it stays on it.",
             }));
-            page.push(hypotheses(self.assumed, ""));
+            page.extend(words::hypotheses(&self.hypotheses()).map(Block::paragraph));
             return page;
         }
         let pressed = self.pressed_rad.iter().map(|[low, high]| words![degrees(*low), " to ", degrees(*high)]);
@@ -167,7 +168,7 @@ impl Paged for ProvedResting {
                 "."
             ],
         }));
-        page.push(hypotheses(self.assumed, ", and those that follow each other without end put the follower to rest"));
+        page.extend(words::hypotheses(&self.hypotheses()).map(Block::paragraph));
         page
     }
 }
@@ -254,26 +255,7 @@ fn certificate(of: &Certificate) -> Vec<Block> {
                 ),
             ],
         ),
-        hypotheses(of.assumed, ""),
     ]
-}
-
-/// What the proofs are about, with what is said of impacts besides.
-fn hypotheses(assumed: Option<Assumed>, besides: &str) -> Block {
-    let mut sentence = format!(
-        "Hypotheses: the machine's numbers are the decimals of its model file, but for angles of a table in radians, which are the doubles \
-         nearest to them in degrees; free flight follows the equation of motion, and impacts are \
-         instantaneous, by Newton's law{besides}."
-    );
-    if let Some(assumed) = assumed {
-        sentence += &format!(
-            " The pieces of the cam miss each other by up to {} m and {} m/rad where they meet, as they are typed: what is proved is \
-             about the cam that is left when that is taken out.",
-            Digits::Size.text(assumed.lift_m),
-            Digits::Size.text(assumed.slope_m_rad),
-        );
-    }
-    Block::paragraph(sentence)
 }
 
 fn side_entries(mark: &str, side: &ProvedSide) -> Vec<(Words, Words)> {

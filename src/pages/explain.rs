@@ -50,6 +50,9 @@ pub(crate) fn explained(it: &Explanation) -> Vec<Block> {
         say("not run", words![routes, " (`verify` says why)"]);
     }
     say("known", words![(Mark::Strong, it.known.to_string().as_str())]);
+    if !it.hypotheses.is_empty() {
+        say("assumes", it.hypotheses.join("; ").into());
+    }
     for (name, words) in ["code", "proof", "tests"].into_iter().zip(behind(it)) {
         if !words.is_empty() {
             say(name, words);

@@ -2,6 +2,8 @@
 //!
 //! The names of values in JSON and in tables are what the values serialize as, and a value is written by that name.
 
+use std::borrow::Borrow;
+
 use crate::agreement::Quantity;
 use crate::border_collision::conditions::Decides;
 use crate::border_collision::danger::{Danger, DangerKind, Divergence, LocalAttractor, Returns};
@@ -476,6 +478,6 @@ pub(crate) fn reading(reading: &Reading) -> String {
 }
 
 /// The hypotheses of what a page proves, in one sentence; none where it proves nothing.
-pub fn hypotheses(all: &[&str]) -> Option<String> {
+pub fn hypotheses(all: &[impl Borrow<str>]) -> Option<String> {
     (!all.is_empty()).then(|| format!("Taken for granted: {}.", all.join("; ")))
 }

@@ -616,3 +616,38 @@ enum Step {
     /// The observer wants no more.
     Broken,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Model;
+
+    /// A fault in the search for a contact would put the follower below the cam. None is known that does, so it is put there.
+    #[test]
+    fn a_follower_below_the_cam_is_an_error_with_its_state_and_speed() {
+        let model = Model::built_in().unwrap();
+        let cam = Cam::new(&model).unwrap();
+        let machine = Machine::new(cam, &model.follower, angular_velocity(700.0));
+        let mut motion = machine.start_on_cam(1.0, 5.0).unwrap();
+        let (lift, size) = (motion.state.position, machine.terrain.size);
+        let most = tolerance::PASSED_THROUGH.value * (lift.abs() + size);
+        for (depth, passes) in [(0.5 * most, false), (1.5 * most, true), (1e-3, true)] {
+            (motion.state.position, motion.gap) = (lift - depth, None);
+            let told = machine.above_cam(&motion, || machine.gap(&motion));
+            let Err(SimulateError::PassedThrough { depth: found, cam_angle, position, velocity, rpm, .. }) = told
+            else {
+                assert!(!passes && told.is_ok(), "{depth:e} m: {told:?}");
+                continue;
+            };
+            assert!(passes && (found - depth).abs() < 0.1 * most, "{depth:e} m: {found:e}");
+            assert_eq!((cam_angle, position, velocity), (1.0, lift - depth, motion.state.velocity));
+            assert!((rpm - 700.0).abs() < 1e-9);
+        }
+        // Where a state is shown, and where one segment ends.
+        (motion.state, motion.gap) = (State { position: lift - 1e-3, velocity: 0.0 }, Some(-1e-3));
+        let shown = machine.show_at(&mut motion.clone(), Goal { revolution: 0, cam_angle: 1.0 }, 0.0, &mut Unobserved);
+        assert!(matches!(shown, Err(SimulateError::PassedThrough { .. })), "{shown:?}");
+        let entered = machine.enter_next(&mut motion);
+        assert!(matches!(entered, Err(SimulateError::PassedThrough { .. })), "{entered:?}");
+    }
+}

@@ -108,7 +108,7 @@ fn inside(model: &Model, rpm: f64, following: &Following) -> Result<f64, StudyEr
 }
 
 /// Hypotheses of what is proved by intervals of doubles: what is taken for granted of the machine.
-fn hypotheses(cam: &Cam) -> Vec<&'static str> {
+pub(crate) fn hypotheses(cam: &Cam) -> Vec<&'static str> {
     let doubles = "the machine is the one whose numbers are the doubles that those of the model file became";
     let meets = "where one law of the lift ends the next goes on with the same lift and the same slope, as the model means it, but at corners \
                  where the velocity jumps";

@@ -84,6 +84,7 @@ document!(Verification as found {
     corner_impact: Whole(&found.at),
     other_corner_impacts: found.others.iter().map(Place).collect::<Vec<_>>(),
     certificate if_any: found.certificate,
+    hypotheses if_any: found.certificate.as_ref().map(Certificate::hypotheses),
     uncertainty if_any: found.measured,
     routes: found.routes.iter().map(|route| (route.name, route)).collect::<BTreeMap<_, _>>(),
     orbits: found.orbits.iter().map(|(name, x, period)| (*name, Orbit(x, *period))).collect::<BTreeMap<_, _>>(),

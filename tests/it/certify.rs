@@ -5,7 +5,7 @@ use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use crate::common::{self, corner_impact, text};
+use crate::common::{self, corner_impact, in_one_line, text};
 use corner_impact::corner::range::find_corner_impacts;
 use corner_impact::model::{Model, Study};
 use corner_impact::progress::Unwatched;
@@ -342,11 +342,30 @@ fn a_cam_that_is_typed_is_certified_as_it_is_joined_and_says_so() {
         let of = |model: &'static str| [vec![model], arguments.clone()].concat();
         assert_eq!(&certified(&of("models/laws/polynomial.toml"))["assumed"], assumed, "{arguments:?}");
         let page = text(corner_impact([vec!["certify"], of("models/laws/polynomial.toml")].concat()).stdout);
-        assert!(page.contains("as they are typed"), "{page}");
+        assert!(in_one_line(&page).contains("as they are typed"), "{page}");
         assert!(certified(&of("models/osorio-2008.toml"))["assumed"].is_null(), "{arguments:?}");
     }
     let page = corner_impact(["certify", "models/laws/polynomial.toml", "--rpm", "443:444"]);
-    assert!(text(page.stdout).contains("The pieces of the cam miss"));
+    assert!(in_one_line(&text(page.stdout)).contains("its pieces miss each other, as they are typed"));
+}
+
+/// Every document with a proof has what that takes for granted; so have `verify`, which repeats one, and `explain`, of a number of it.
+#[test]
+#[ignore = "slow"]
+fn hypotheses_stand_beside_what_is_proved() {
+    let decimals = "the machine's numbers are the decimals of its model file";
+    let begins = |found: &Value| found["hypotheses"][0].as_str().is_some_and(|first| first.starts_with(decimals));
+    for arguments in [vec!["--rpm", "660:690"], vec!["--orbits", "--rpm", "670"], vec!["--resting", "--rpm", "670"]] {
+        let found = certified(&[vec!["models/osorio-2008.toml"], arguments.clone()].concat());
+        assert!(begins(&found), "{arguments:?}: {}", found["hypotheses"]);
+    }
+    let nothing = certified(&["models/osorio-2008.toml", "--rpm", "690:700"]);
+    assert_eq!(nothing["hypotheses"], json!([]));
+    let of = |arguments: &[&str]| serde_json::from_slice::<Value>(&corner_impact(arguments).stdout).unwrap();
+    assert!(begins(&of(&["verify", "--json"])) && begins(&of(&["explain", "T*", "--json"])));
+    assert!(of(&["verify", "--json", "--no-external"])["hypotheses"].is_null());
+    let page = text(corner_impact(["verify"]).stdout);
+    assert!(in_one_line(&page).contains(&format!("Taken for granted: {decimals}")), "{page}");
 }
 
 /// The list is found by another program than `orbit`'s, and neither may have an orbit that the other lacks.

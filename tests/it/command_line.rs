@@ -358,7 +358,7 @@ fn from_any_folder() {
     }
     let (code, page, said) = run("verify");
     assert_eq!(code, Some(1));
-    let page = page.split_whitespace().collect::<Vec<_>>().join(" ");
+    let page = crate::common::in_one_line(&page);
     for words in [&said, &page] {
         for part in ["symbolic", "scipy", "/nonexistent/python", "make verify", "--no-external"] {
             assert!(words.contains(part), "{part} in {words}");

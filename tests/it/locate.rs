@@ -244,7 +244,7 @@ fn the_page_says_what_was_looked_at() {
     let page = String::from_utf8(output.stdout).unwrap();
     assert!(page.contains("673.234445004") && page.contains("nonsmooth-fold") && page.contains("agree"), "{page}");
     assert!(page.contains("634.331399 rpm") && page.contains("would come out of the cam"), "{page}");
-    let words = page.split_whitespace().collect::<Vec<_>>().join(" ");
+    let words = crate::common::in_one_line(&page);
     assert!(words.contains("Orbits of one impact: all, which is proved."), "{page}");
     assert!(
         words.contains("each 2 % faster than the one before")
@@ -268,7 +268,7 @@ fn what_one_way_of_looking_misses_the_other_finds() {
     assert_eq!((recaptured[&4].branches, recaptured[&4].shots, recaptured[&4].both), (1, 1, 1), "{recaptured:?}");
     assert_eq!((recaptured[&5].branches, recaptured[&5].shots, recaptured[&5].both), (0, 1, 0), "{recaptured:?}");
     let page = corner_impact::show::Paged::text(&found).unwrap();
-    let words = page.split_whitespace().collect::<Vec<_>>().join(" ");
+    let words = crate::common::in_one_line(&page);
     assert!(words.contains("By shots alone: 2."), "{page}");
 }
 

@@ -573,7 +573,7 @@ fn a_measured_corner_impact() {
         std::fs::write(file.path(), model.text()).unwrap();
         let words = ["verify", file.path().to_str().unwrap(), "--no-external"];
         let page = crate::common::text(crate::common::program(words).output().unwrap().stdout);
-        let page = page.split_whitespace().collect::<Vec<_>>().join(" ");
+        let page = crate::common::in_one_line(&page);
         assert_eq!(
             page.contains("not known: of 18 cams that are as likely (lift rounded to 0.0001 m) "),
             is_open,
@@ -726,12 +726,9 @@ fn an_answer_without_an_error_says_how_well_its_cam_is_known() {
         assert_eq!(told.matches(rounded).count(), usize::from(is_without), "{command}: {told}");
     }
     let page = crate::common::text(run("design valve.toml --rpm 3000:3400 --speeds 3 --limit impact-speed=100").stdout);
-    assert!(
-        page.split_whitespace().collect::<Vec<_>>().join(" ").contains("what it leaves open is the ± above"),
-        "{page}"
-    );
+    assert!(crate::common::in_one_line(&page).contains("what it leaves open is the ± above"), "{page}");
     let page = crate::common::text(run("orbit valve.toml --rpm 8000").stdout);
-    let ends = page.split_whitespace().collect::<Vec<_>>().join(" ");
+    let ends = crate::common::in_one_line(&page);
     assert!(ends.contains("± 0.0") && ends.contains("of a multiplier") && ends.contains("lift rounded to 0.001 mm."));
     assert!(page.contains("     multipliers   1.776   0.003"), "{page}");
     // It loses its stability within what the cam leaves open of where this speed is.
@@ -1270,7 +1267,7 @@ fn a_noise_that_is_unknown_is_said_to_be() {
         design(&model, &Asked { rpm: Some([10.0, 10.0]), ..Asked::default() }, &Unwatched).unwrap().text().unwrap();
     let as_drawn = corner_impact::show::notes::as_drawn(&model).unwrap().unwrap();
     for page in [sheet, design, as_drawn] {
-        let page = page.split_whitespace().collect::<Vec<_>>().join(" ");
+        let page = crate::common::in_one_line(&page);
         assert!(page.contains("How far the rows are from a smooth motion is unknown"), "{page}");
     }
 }

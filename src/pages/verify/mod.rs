@@ -89,6 +89,7 @@ pub(crate) fn orbit(found: &Verification) -> Vec<Block> {
         );
         entries.push(("proved".into(), words.into()));
     }
+    let taken = found.certificate.as_ref().and_then(|certificate| words::hypotheses(&certificate.hypotheses()));
     let close = Words::prose(
         "_T^∗_ lies between {} and {} s; one simulated revolution ends within {} of where it started, in parts of the orbit's \
          size.",
@@ -99,7 +100,10 @@ pub(crate) fn orbit(found: &Verification) -> Vec<Block> {
         ],
     );
     let title = Block::Heading("The orbit, solved for from the model".into());
-    vec![title, Block::Entries(9, entries), Block::Full(vec![Block::Note(close)])]
+    let mut page = vec![title, Block::Entries(9, entries)];
+    page.extend(taken.map(Block::paragraph));
+    page.push(Block::Full(vec![Block::Note(close)]));
+    page
 }
 
 /// Eigenvalues, normal form and verdict, and what that rests on.

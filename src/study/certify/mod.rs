@@ -58,10 +58,30 @@ document!(Certified as it {
     known: Known::proved_if(!it.corner_impacts.is_empty()),
     corner_impacts: it.corner_impacts,
     refused: it.refused,
+    hypotheses: it.hypotheses(),
     agrees: it.agrees(),
 });
 
+/// What the script's proofs take for granted, with what they take out of the cam.
+fn hypotheses(assumed: Option<Assumed>) -> Vec<String> {
+    let numbers = "the machine's numbers are the decimals of its model file, but for angles of a table in radians, which are the doubles \
+                   nearest to them in degrees";
+    let mechanics = "free flight follows the equation of motion, and impacts are instantaneous, by Newton's law";
+    let cam = assumed.map(|Assumed { lift_m, slope_m_rad }| {
+        format!(
+            "the cam is the one that is left when the steps of up to {lift_m:.1e} m and {slope_m_rad:.1e} m/rad by which its pieces miss \
+             each other, as they are typed, are taken out"
+        )
+    });
+    [numbers, mechanics].map(str::to_owned).into_iter().chain(cam).collect()
+}
+
 impl Certified {
+    /// What the proofs take for granted; nothing where nothing is proved.
+    pub fn hypotheses(&self) -> Vec<String> {
+        self.corner_impacts.first().map(Certificate::hypotheses).unwrap_or_default()
+    }
+
     /// Whether every corner impact that was found where the cam's acceleration jumps is proved.
     pub fn agrees(&self) -> bool {
         !self.refused.iter().any(|refused| refused.was_found)
@@ -183,6 +203,11 @@ pub struct Assumed {
 }
 
 impl Certificate {
+    /// What its proof takes for granted.
+    pub fn hypotheses(&self) -> Vec<String> {
+        hypotheses(self.assumed)
+    }
+
     /// The middles of the map's balls.
     pub fn map(&self) -> CornerMap {
         self.sides.map(|side| SideMap {

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
-use super::{Assumed, CertifyError, ask};
+use super::{Assumed, CertifyError, ask, hypotheses};
 use crate::ball::Ball;
 use crate::known::Known;
 use crate::model::Model;
@@ -36,7 +36,15 @@ document!(ProvedOrbits as it {
     complete: it.complete,
     undecided: it.undecided,
     assumed: it.assumed,
+    hypotheses: it.hypotheses(),
 });
+
+impl ProvedOrbits {
+    /// What the proofs take for granted.
+    pub fn hypotheses(&self) -> Vec<String> {
+        hypotheses(self.assumed)
+    }
+}
 
 /// Where it is not decided whether there is an orbit, or whether it is one of the machine.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -116,7 +124,15 @@ document!(ProvedCounts as it {
     undecided: it.undecided,
     events: it.events,
     assumed: it.assumed,
+    hypotheses: it.hypotheses(),
 });
+
+impl ProvedCounts {
+    /// What the proofs take for granted.
+    pub fn hypotheses(&self) -> Vec<String> {
+        hypotheses(self.assumed)
+    }
+}
 
 /// The number of orbits at every speed between two; at an event, whose ball says where it is, the nearest doubles.
 #[derive(Clone, Debug, Deserialize, Serialize)]

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
-use super::{Assumed, CertifyError, ask};
+use super::{Assumed, CertifyError, ask, hypotheses};
 use crate::ball::Ball;
 use crate::known::Known;
 use crate::model::Model;
@@ -38,6 +38,7 @@ document!(ProvedResting as it {
     looked_at: it.looked_at,
     periodic: it.periodic,
     assumed: it.assumed,
+    hypotheses: it.hypotheses(),
 });
 
 /// A place where the cam lets go of the follower.
@@ -72,6 +73,13 @@ pub struct Round {
 }
 
 impl ProvedResting {
+    /// What the proofs take for granted.
+    pub fn hypotheses(&self) -> Vec<String> {
+        let mut all = hypotheses(self.assumed);
+        all.push("impacts that follow each other without end put the follower to rest".into());
+        all
+    }
+
     /// Whether every motion that rests is proved to be periodic some time later.
     pub fn all_repeat(&self) -> bool {
         self.releases.iter().all(|release| release.next.is_some())

@@ -64,6 +64,11 @@ pub fn text(bytes: Vec<u8>) -> String {
     String::from_utf8(bytes).unwrap()
 }
 
+/// A page as it was before it was cut into lines.
+pub fn in_one_line(page: &str) -> String {
+    page.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
 /// How long the slowest machine may take over what has an end. Whether work is fast is no question of a test; what never
 /// ends must still fail.
 pub const PATIENCE: Duration = Duration::from_secs(600);

@@ -8,7 +8,7 @@ use crate::pages::speeds::{measured_speed, together};
 use crate::report::Report;
 use crate::show::block::{Block, Mark, Section, Span, Words, about, words};
 use crate::show::digits::Digits;
-use crate::show::words::accuracy;
+use crate::show::words::{accuracy, hypotheses};
 use crate::study::design::contact::Separation;
 
 pub(crate) fn section(report: &Report) -> Result<Section, HtmlError> {
@@ -108,6 +108,8 @@ fn several(ranges: Vec<Words>) -> Words {
 
 fn proved(report: &Report) -> Words {
     let certified = report.verification.as_ref().ok().filter(|found| found.certificate.is_some());
+    let certificate = certified.and_then(|found| found.certificate.as_ref());
+    let taken = certificate.and_then(|certificate| hypotheses(&certificate.hypotheses()));
     let corner = certified.map(|found| {
         words!["that the corner impact at ", (found.at.speed_rpm(), Digits::Fixed(6)), " rpm exists, and its local map"]
     });
@@ -121,7 +123,8 @@ fn proved(report: &Report) -> Words {
         false => words![
             "It is proved ",
             Words::joined(all, ", and "),
-            "; what is said of other speeds comes from runs at some of them."
+            "; what is said of other speeds comes from runs at some of them. ",
+            taken.as_deref().unwrap_or_default()
         ],
     };
     headed("What is proved.", "speed_rpm", sentence)
