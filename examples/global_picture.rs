@@ -4,15 +4,15 @@
 
 use corner_impact::border_collision::{LocalMap, passage};
 use corner_impact::cam::Cam;
-use corner_impact::diagram::{Speeds, exponent};
+use corner_impact::diagram::{Record, Speeds};
 use corner_impact::model::{Model, OSORIO_2008};
-use corner_impact::orbit::ending::Ending;
-use corner_impact::orbit::fate::Settling;
+use corner_impact::orbit::long_run::{Budget, LongRun};
 use corner_impact::orbit::{Course, Search, search};
 use corner_impact::section::StroboscopicMap;
 use corner_impact::simulate::{Machine, angular_velocity};
 use corner_impact::study::basins::boundary::approach;
 use corner_impact::study::basins::{Curve, Extent, Reversed, Saddle};
+use corner_impact::study::survey::long_run;
 use corner_impact::study::verify::{External, Verification, verify};
 
 type Done = Result<(), Box<dyn std::error::Error>>;
@@ -45,8 +45,10 @@ fn exponents(model: &Model, findings: &Verification) -> Done {
         let _ = machine.advance(&mut motion, goal, &mut |_: &corner_impact::simulate::Event| {
             std::ops::ControlFlow::Continue(())
         })?;
-        let found = exponent(&machine, motion, 20, 250)?;
-        println!("{rpm} {:.4} {:.4} {} {}", found.growth.value, found.growth.error, found.blocks, found.rests);
+        let mut record = Record::over(250);
+        record.take(&machine, &mut motion, 20 * 250)?;
+        let growth = record.growth();
+        println!("{rpm} {:.4} {:.4} {} {}", growth.value, growth.error, record.revolutions, record.rests());
     }
     Ok(())
 }
@@ -57,8 +59,9 @@ fn endings(model: &Model, findings: &Verification) -> Done {
     let (mut orbits, mut resting) = (0, 0);
     for rpm in (0..speeds.count).map(|index| speeds.value(index)) {
         let machine = map(model, findings, rpm)?.machine;
-        match Settling::new(&machine, 64)?.ending(machine.start_on_cam(0.0, 0.0)?, 3000)? {
-            Ending::Orbit(orbit) => {
+        let budget = Budget { transient: 3000, longest: 64, patience: 0, ..Budget::SURVEY };
+        match long_run(&machine, machine.start_on_cam(0.0, 0.0)?, budget)?.ending {
+            LongRun::Orbit(orbit) => {
                 orbits += 1;
                 let [first, second] = orbit.multipliers().map(|multiplier| multiplier.modulus());
                 let impacts = orbit.impacts().count();
@@ -67,8 +70,8 @@ fn endings(model: &Model, findings: &Verification) -> Done {
                     orbit.revolutions
                 );
             }
-            Ending::Resting(_) => resting += 1,
-            Ending::Stays | Ending::Chaotic(_) | Ending::Undecided(_) => {}
+            LongRun::Sticking(_) => resting += 1,
+            LongRun::PermanentContact | LongRun::Chaotic(_) | LongRun::Undecided(_) => {}
         }
     }
     println!("of {} speeds: {orbits} on an orbit, {resting} on one with rests", speeds.count);

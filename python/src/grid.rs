@@ -8,21 +8,22 @@ use corner_impact::model::Units;
 use corner_impact::orbit::Parameter;
 use corner_impact::progress::Unwatched;
 use corner_impact::study::chart::store::{SIDES, Store, VARIABLES, attributes, blocks_of};
-use corner_impact::study::chart::{Axis, Chart, Lengths};
+use corner_impact::study::chart::{Axis, Chart};
 use numpy::{IntoPyArray, PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
 use crate::error::OrRaise;
 use crate::model::Model;
-use crate::values::{count, document, numbers, refused, start, thread_count};
+use crate::values::{budget, count, document, numbers, refused, start, thread_count};
 use crate::work::shared;
 
 /// A grid over two numbers of a model: what one run comes to at each of its points.
 ///
 /// `axes` is a dict of two: a name as for `Model.with_number`, or `rpm`, and its values, in any order; the first runs along the rows of
 /// arrays (down), the second along their columns. `rpm` says the speed where neither is it. Each run starts as for `Model.simulate`, is to
-/// settle within `transient` revolutions, and else is told by `record` more, as `corner-impact chart` does.
+/// settle within `transient` revolutions on a motion of up to `longest`, and else is followed for `patience` and told by `record` more, as
+/// `corner-impact chart` does.
 ///
 /// >>> from corner_impact import Chart, Model
 /// >>> chart = Chart(Model.paper(), {"restitution": [0.7, 0.8], "rpm": [660.0, 700.0, 720.0]})
@@ -46,8 +47,8 @@ type Named<'py> = (Py<Model>, Bound<'py, PyDict>);
 #[pymethods]
 impl Grid {
     #[new]
-    #[pyo3(signature = (model, axes, *, rpm=None, transient=300, record=100, cam_angle=0.0, relative_velocity=None, position=None,
-        velocity=None))]
+    #[pyo3(signature = (model, axes, *, rpm=None, transient=300, record=100, longest=32, patience=0, cam_angle=0.0,
+        relative_velocity=None, position=None, velocity=None))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn new(
         model: Bound<'_, Model>,
@@ -55,6 +56,8 @@ impl Grid {
         rpm: Option<f64>,
         #[pyo3(from_py_with = count)] transient: u64,
         #[pyo3(from_py_with = count)] record: u64,
+        #[pyo3(from_py_with = count)] longest: u64,
+        #[pyo3(from_py_with = count)] patience: u64,
         cam_angle: f64,
         relative_velocity: Option<f64>,
         position: Option<f64>,
@@ -71,7 +74,8 @@ impl Grid {
             return refused("axes are two: a name and its values each".into());
         };
         let at: Start = start(cam_angle, relative_velocity, position, velocity)?;
-        let chart = Chart::new(of, rpm, [x, y], at, Lengths { transient, record }).or_raise()?;
+        let budget = budget(transient, record, longest, patience)?;
+        let chart = Chart::new(of, rpm, [x, y], at, budget).or_raise()?;
         Ok(Self { chart, model: model.unbind(), rpm, place: (cam_angle, relative_velocity, position, velocity) })
     }
 
@@ -100,13 +104,25 @@ impl Grid {
     /// Revolutions within which a run is to settle.
     #[getter]
     fn transient(&self) -> u64 {
-        self.chart.lengths.transient
+        self.chart.budget.transient
     }
 
     /// Revolutions that are looked at where it does not.
     #[getter]
     fn record(&self) -> u64 {
-        self.chart.lengths.record
+        self.chart.budget.record
+    }
+
+    /// The longest period looked for, revolutions.
+    #[getter]
+    fn longest(&self) -> u64 {
+        self.chart.budget.longest
+    }
+
+    /// Revolutions for which a run that settles on nothing is followed before its growth is looked at.
+    #[getter]
+    fn patience(&self) -> u64 {
+        self.chart.budget.patience
     }
 
     /// The speed of all points, rpm; None where it varies.
@@ -192,6 +208,8 @@ impl Grid {
         rest.set_item("rpm", self.rpm)?;
         rest.set_item("transient", self.transient())?;
         rest.set_item("record", self.record())?;
+        rest.set_item("longest", self.longest())?;
+        rest.set_item("patience", self.patience())?;
         rest.set_item("cam_angle", cam_angle)?;
         rest.set_item("relative_velocity", relative_velocity)?;
         rest.set_item("position", position)?;

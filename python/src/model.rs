@@ -1,14 +1,16 @@
 //! A model, and all that is asked of one.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use corner_impact::cam::{Cam, within_a_turn};
-use corner_impact::diagram::{Following, Section, Starts, Sweep, SweepError};
+use corner_impact::diagram::{Following, Growth, Section, Starts, Sweep, SweepError};
 use corner_impact::draw::{Look, svg};
 use corner_impact::figures::cam_figure;
 use corner_impact::flight::State;
 use corner_impact::model;
 use corner_impact::orbit::Search;
+use corner_impact::orbit::long_run::Budget;
 use corner_impact::progress::Unwatched;
 use corner_impact::section::{StroboscopicMap, next_impact};
 use corner_impact::show::notes;
@@ -16,13 +18,13 @@ use corner_impact::simulate::{Machine, angular_velocity};
 use corner_impact::study::StudyError;
 use corner_impact::study::attractors::{Resolution, Step};
 use corner_impact::study::certify::{certify, proved_counts, proved_orbits};
-use corner_impact::study::chart::growth;
 use corner_impact::study::compare::compare;
 use corner_impact::study::design::{Asked, design};
 use corner_impact::study::locate::locate;
 use corner_impact::study::orbit::{Wanted, orbits};
 use corner_impact::study::simulate::{self, Sight, Simulation, Until};
 use corner_impact::study::speeds::{speeds, usual_range};
+use corner_impact::study::survey::{Sample, growth};
 use corner_impact::study::verify::{External, verify};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::{PyUserWarning, PyValueError};
@@ -32,7 +34,9 @@ use rayon::prelude::*;
 
 use crate::arrays::{Events, Rows, columns};
 use crate::error::OrRaise;
-use crate::values::{self, count, document, in_units, item, numbers, pairs, refused, start, thread_count, within};
+use crate::values::{
+    self, budget, count, document, in_units, item, numbers, pairs, refused, start, thread_count, within,
+};
 use crate::work::{alone, shared, spread};
 
 /// A follower and its cam. What a model is does not change: another number makes another model.
@@ -231,7 +235,7 @@ impl Model {
             machine.revolve(&mut first, transient)?;
             let mut events = Events::new(start.cam_angle, machine.angular_velocity());
             let until = Until::Revolutions(revolutions);
-            let wanted = simulate::Wanted { until, events: true, strobe: None, drawn: 0, lyapunov: false };
+            let wanted = simulate::Wanted { until, events: true, strobe: None, drawn: 0, long_run: None };
             let simulation = Simulation::of(&self.model.name, rpm, machine, first);
             let run = simulation.run(wanted, &Unwatched, |sight| {
                 if let Sight::Events(seen) = sight {
@@ -286,6 +290,11 @@ impl Model {
             Some("down") => Following::Down,
             Some(other) => return refused(format!("follow = {other:?} must be None, \"up\" or \"down\"")),
         };
+        let budget = Budget {
+            transient,
+            record: if lyapunov { within("record", record, [1, u64::MAX])? } else { record },
+            ..Budget::CHART
+        };
         let sweep = Sweep {
             machine: self.at(speeds.low)?,
             speeds,
@@ -294,7 +303,7 @@ impl Model {
             transient,
             record,
             section,
-            growth: lyapunov.then_some(growth),
+            growth: lyapunov.then(|| -> Growth { Arc::new(move |machine, motion| growth(machine, motion, budget)) }),
         };
         let run = || {
             let mut rows = Rows::default();
@@ -446,8 +455,11 @@ impl Model {
 
     /// The attractors over a range of speeds, (lowest, highest) rpm, or over the one that `corner-impact speeds` takes: at `speeds`
     /// speeds or more, or from one to the next at most `step` rpm, with `starts` starts at each, and on the stable orbits of two
-    /// impacts in one revolution with `two_impacts`: the document of `corner-impact speeds --json`.
-    #[pyo3(signature = (rpm=None, *, speeds=300, step=None, starts=64, two_impacts=false))]
+    /// impacts in one revolution with `two_impacts`: the document of `corner-impact speeds --json`. With `states`, (position, velocity) each at
+    /// `cam_angle`, those are the starts. `transient`, `record`, `longest` and `patience` are the options of that command.
+    #[pyo3(signature = (rpm=None, *, speeds=300, step=None, starts=64, two_impacts=false, states=None, cam_angle=0.0, transient=200,
+        record=1600, longest=32, patience=100_000))]
+    #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn speeds<'py>(
         &self,
         py: Python<'py>,
@@ -456,6 +468,12 @@ impl Model {
         step: Option<f64>,
         #[pyo3(from_py_with = count)] starts: u64,
         two_impacts: bool,
+        states: Option<Vec<[f64; 2]>>,
+        cam_angle: f64,
+        #[pyo3(from_py_with = count)] transient: u64,
+        #[pyo3(from_py_with = count)] record: u64,
+        #[pyo3(from_py_with = count)] longest: u64,
+        #[pyo3(from_py_with = count)] patience: u64,
     ) -> PyResult<Bound<'py, PyDict>> {
         let rpm = rpm.map_or_else(|| usual_range(&self.model).or_raise(), values::speed_range)?;
         let step = match step {
@@ -464,10 +482,18 @@ impl Model {
             Some(step) => return refused(format!("step = {step} must be a finite number above 0")),
         };
         let starts = within("starts", starts, [1, 1_000_000])? as usize;
-        let resolution = Resolution { step, starts, two_impacts };
+        let sample = match states {
+            None => Sample::Spread(starts),
+            Some(states) => {
+                let start = |[position, velocity]: [f64; 2]| start(cam_angle, None, Some(position), Some(velocity));
+                Sample::Given(states.into_iter().map(start).collect::<PyResult<_>>()?)
+            }
+        };
+        let budget = budget(transient, record, longest, patience)?;
+        let resolution = Resolution { step, sample, budget, two_impacts };
         document(
             py,
-            &spread(py, || self::speeds(&self.model, rpm, resolution, &Unwatched))?.or_raise()?,
+            &spread(py, || self::speeds(&self.model, rpm, &resolution, &Unwatched))?.or_raise()?,
             &self.model.units,
         )
     }

@@ -4,6 +4,8 @@ use corner_impact::cam::within_a_turn;
 use corner_impact::diagram::{Placed, Speeds, Start};
 use corner_impact::flight::State;
 use corner_impact::model::Units;
+use corner_impact::orbit::Search;
+use corner_impact::orbit::long_run::Budget;
 use corner_impact::show::json;
 use numpy::{AllowTypeChange, PyArrayLike1};
 use pyo3::exceptions::PyValueError;
@@ -65,6 +67,16 @@ pub(crate) fn speeds((low, high, count): (f64, f64, usize)) -> PyResult<Speeds> 
         1..=Speeds::MOST => Ok(Speeds { low, high, count }),
         _ => refused(format!("rpm: {count} speeds must be 1 to {}", Speeds::MOST)),
     }
+}
+
+/// For how long runs are followed.
+pub(crate) fn budget(transient: u64, record: u64, longest: u64, patience: u64) -> PyResult<Budget> {
+    Ok(Budget {
+        transient,
+        record: within("record", record, [1, u64::MAX])?,
+        longest: within("longest", longest, [1, Search::MOST_REVOLUTIONS])?,
+        patience: within("patience", patience, [0, Budget::MOST])?,
+    })
 }
 
 /// Where a run starts: on the cam, leaving it at a relative velocity, or somewhere with a position and a velocity.

@@ -3,15 +3,15 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
-use super::start::{angle, cam_angle, range, rpm};
+use super::start::{BudgetArguments, angle, cam_angle, range, rpm, state};
 use super::threads::threads;
 use super::{CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::watched};
 use crate::figures::basins_figure;
+use crate::flight::State;
 use crate::foreign;
-use crate::orbit::Search;
+use crate::orbit::long_run::Budget;
 use crate::show::csv;
-use crate::study::attractors::Patience;
-use crate::study::basins::{Border, Grid, Section, Summary};
+use crate::study::basins::{Grid, Section, SectionStarts, States, Summary};
 
 /// Runs a grid of starts at one speed and says what each ends on, as a table or a picture.
 #[derive(clap::Args)]
@@ -27,8 +27,8 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "RPM", value_parser = rpm, allow_hyphen_values = true)]
     rpm: f64,
     /// Cells along the positions and along the velocities.
-    #[arg(long, value_name = "NxM", value_parser = cells)]
-    grid: [usize; 2],
+    #[arg(long, value_name = "NxM", value_parser = cells, required_unless_present = "state")]
+    grid: Option<Cells>,
     /// The section: the cam angle at which the starts are, rad or as 90deg.
     #[arg(long, value_name = "RAD", value_parser = angle, default_value_t = 0.0, allow_hyphen_values = true)]
     strobe: f64,
@@ -38,12 +38,14 @@ pub(super) struct Arguments {
     /// Velocities [default: three times the range of those orbits and of the cam].
     #[arg(long, value_name = "LO:HI", value_parser = range, allow_hyphen_values = true)]
     velocity: Option<[f64; 2]>,
-    /// Revolutions within which a start must have settled on an orbit, or else ends on none.
-    #[arg(long, value_name = "N", default_value_t = Patience::default().revolutions, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
-    revolutions: u64,
-    /// The longest period of an orbit, revolutions.
-    #[arg(long, value_name = "N", default_value_t = Patience::default().longest, value_parser = clap::value_parser!(u64).range(1..=Search::MOST_REVOLUTIONS))]
-    longest: u64,
+    /// Position and velocity of a start on the section, in place of a grid (may be repeated).
+    #[arg(long, value_name = "Q,V", value_parser = state, allow_hyphen_values = true, conflicts_with_all = ["grid", "position", "velocity"])]
+    state: Vec<State>,
+    #[command(flatten)]
+    budget: BudgetArguments,
+    /// As --transient.
+    #[arg(long, value_name = "N", hide = true, conflicts_with = "transient", value_parser = clap::value_parser!(u64).range(1..=Budget::MOST))]
+    revolutions: Option<u64>,
     /// Threads [default: RAYON_NUM_THREADS, or one for each core].
     #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
     threads: Option<u16>,
@@ -57,8 +59,12 @@ pub(super) struct Arguments {
     summary: bool,
 }
 
+/// How many along the positions and along the velocities.
+#[derive(Clone, Copy)]
+struct Cells([usize; 2]);
+
 /// `NxM`.
-fn cells(text: &str) -> Result<[usize; 2], String> {
+fn cells(text: &str) -> Result<Cells, String> {
     let count = |part: &str| {
         part.trim().parse::<usize>().map_err(|_| format!("\"{}\" is not a number of cells", foreign::value(part)))
     };
@@ -67,7 +73,7 @@ fn cells(text: &str) -> Result<[usize; 2], String> {
     };
     let (columns, rows) = (count(columns)?, count(rows)?);
     match columns.checked_mul(rows) {
-        Some(1..=Grid::MOST) => Ok([columns, rows]),
+        Some(1..=Grid::MOST) => Ok(Cells([columns, rows])),
         _ => Err(format!("must be 1 to {} cells", Grid::MOST)),
     }
 }
@@ -76,17 +82,27 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let to_standard = picture::out_is_standard(arguments.out.as_ref(), arguments.summary)?;
     let model = arguments.model.read_as_drawn(session)?;
     let section = Section::new(&model, arguments.rpm, cam_angle("--strobe", arguments.strobe, session))?;
-    let grid = section.grid(arguments.grid, arguments.position, arguments.velocity)?;
-    let patience = Patience { revolutions: arguments.revolutions, longest: arguments.longest };
+    let grid =
+        arguments.grid.map(|Cells(cells)| section.grid(cells, arguments.position, arguments.velocity)).transpose()?;
+    let budget = arguments.budget.budget(Budget::SURVEY)?;
+    let budget = Budget { transient: arguments.revolutions.unwrap_or(budget.transient), ..budget };
     let (clock, threads) = (Instant::now(), arguments.threads.map(usize::from));
-    let basins = watched("", |watch| grid.basins_watched(&section.map.machine, patience, threads, watch))?;
+    let begun = match grid {
+        Some(grid) => SectionStarts::Grid(grid),
+        None => SectionStarts::Given(States { cam_angle: section.map.cam_angle, states: arguments.state.clone() }),
+    };
+    if grid.is_none() && arguments.out.as_deref().is_some_and(|path| picture::kind(path).is_some()) {
+        return Err(CommandError::Words("a picture is of a grid: --grid NxM says how fine".into()));
+    }
+    let basins = watched("", |watch| begun.basins(&section.map.machine, budget, threads, watch))?;
     let wall_s = clock.elapsed().as_secs_f64();
     if let Some(path) = &arguments.out {
         let table = || csv::basins(&basins);
         let picture = || {
-            let Border { stable, saddles, curves } = &section.border(&basins);
             let title = format!("{} at {} rpm: what each start ends on", model.name, arguments.rpm);
-            Ok(basins_figure(&title, &basins, stable, saddles, curves))
+            // Refused above where there is none.
+            let grid = grid.ok_or_else(|| CommandError::Words("a picture is of a grid".into()))?;
+            Ok(basins_figure(&title, &grid, &basins, &section.border(&grid, &basins)))
         };
         Target::create(path, &mut *session.out, arguments.picture.look()?)?.fill(&model.units, table, picture)?;
     }

@@ -5,16 +5,17 @@ use std::path::{Path, PathBuf};
 use clap::ValueEnum;
 
 use super::curve::{LONGEST_STEP, MOST_POINTS};
-use super::start::{StartArguments, axis, count, rpm};
+use super::start::{BudgetArguments, StartArguments, axis, rpm};
 use super::threads::threads;
 use super::{CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::watched};
 use crate::diagram::Speeds;
 use crate::figures::{Coloured, chart_figure};
 use crate::orbit::branch::{Bifurcation, Following};
+use crate::orbit::long_run::Budget;
 use crate::orbit::{Parameter, Search};
 use crate::show::csv;
 use crate::study::chart::store::{SIDES, Shard, Store, status};
-use crate::study::chart::{Axis, Chart, Lengths};
+use crate::study::chart::{Axis, Chart};
 use crate::study::curve::curves;
 
 /// Charts over two numbers what a run comes to: its period, its growth, how hard it hits.
@@ -38,13 +39,8 @@ pub(super) struct Arguments {
     /// Speed of the cam, rpm, where neither --x nor --y is it.
     #[arg(long, value_name = "RPM", value_parser = rpm, allow_hyphen_values = true)]
     rpm: Option<f64>,
-    /// Revolutions within which a run is to settle.
-    #[arg(long, value_name = "N", default_value_t = Lengths::default().transient, value_parser = count, allow_hyphen_values = true)]
-    transient: u64,
-    /// Revolutions after that over which growth is taken of a run that has settled on no orbit; up to 8 times as many where they
-    /// tell nothing.
-    #[arg(long, value_name = "N", default_value_t = Lengths::default().record, value_parser = count, allow_hyphen_values = true)]
-    record: u64,
+    #[command(flatten)]
+    budget: BudgetArguments,
     #[command(flatten)]
     start: StartArguments,
     /// What the colours of a picture tell; a table and a store have all of it.
@@ -139,8 +135,8 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         }
     }
     arguments.start.doubt(session);
-    let lengths = Lengths { transient: arguments.transient, record: arguments.record };
-    let chart = Chart::new(&model, arguments.rpm, [x, y], arguments.start.start(), lengths)?;
+    let budget = arguments.budget.budget(Budget::CHART)?;
+    let chart = Chart::new(&model, arguments.rpm, [x, y], arguments.start.start()?, budget)?;
     let drawn = arguments.out.as_deref().is_some_and(|path| picture::kind(path).is_some());
     if arguments.with_curves && !drawn {
         return Err(CommandError::Words("--with-curves is for a picture: --out must end in .svg, .png or .pdf".into()));

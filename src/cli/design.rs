@@ -4,10 +4,11 @@ use std::path::PathBuf;
 
 use super::diagram::load;
 use super::picture::{Canvas, PictureArguments, picture};
-use super::start::{axis, positive, rpm_or_range};
+use super::start::{BudgetArguments, StartArguments, axis, positive, rpm_or_range};
 use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::diagram::Speeds;
 use crate::figures::design_figure;
+use crate::orbit::long_run::Budget;
 use crate::study::design::loads::Load;
 use crate::study::design::needs::{Lever, Need, in_si};
 use crate::study::design::{Asked, design};
@@ -42,6 +43,10 @@ pub(super) struct Arguments {
     /// What is needed against one of preload, stiffness, damping and mass, in the units of the model.
     #[arg(long, value_name = "NAME=LO:HI:N", value_parser = against, requires = "need", allow_hyphen_values = true)]
     against: Option<(Lever, Speeds)>,
+    #[command(flatten)]
+    start: StartArguments,
+    #[command(flatten)]
+    budget: BudgetArguments,
     /// Print one JSON document instead of the page.
     #[arg(long)]
     json: bool,
@@ -77,6 +82,7 @@ fn against(text: &str) -> Result<(Lever, Speeds), String> {
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let model = arguments.model.read(session)?;
     let canvas = arguments.out.as_ref().map(|path| Canvas::create(path, arguments.picture.look()?)).transpose()?;
+    arguments.start.doubt(session);
     let asked = Asked {
         rpm: arguments.rpm,
         speeds: arguments.speeds,
@@ -90,6 +96,8 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
             .against
             .as_ref()
             .map(|(lever, values)| (*lever, [values.low, values.high], values.count as u32)),
+        starts: arguments.start.given(),
+        budget: Some(arguments.budget.budget(Budget::DESIGN)?),
     };
     let found = watched("", |watch| design(&model, &asked, watch))?;
     if let Some(canvas) = canvas {

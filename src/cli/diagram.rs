@@ -2,23 +2,25 @@
 
 use std::io::Write;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use clap::ValueEnum;
 
-use super::start::{StartArguments, angle, cam_angle, count, speeds};
+use super::start::{BudgetArguments, StartArguments, angle, cam_angle, speeds};
 use super::threads::threads;
 use super::{
     CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::Progress, progress::watched,
 };
 use crate::cam::Cam;
-use crate::diagram::{Counted, Following, Places, Section, Speeds, Starts, Sweep};
+use crate::diagram::{Counted, Following, Growth, Places, Section, Speeds, Starts, Sweep};
 use crate::figures::{corner_marks, impact_diagram, loads_diagram, strobe_diagram};
 use crate::model::Model;
+use crate::orbit::long_run::Budget;
 use crate::show::csv;
 use crate::simulate::{Machine, angular_velocity};
-use crate::study::chart::{Lengths, growth};
 use crate::study::design::loads::Load;
 use crate::study::diagram::{self as swept, Shown, Swept, on_attractors};
+use crate::study::survey::growth;
 
 /// Sweeps over speeds: what the motion settles on, as a table or a picture.
 #[derive(clap::Args)]
@@ -33,12 +35,8 @@ pub(super) struct Arguments {
     /// Lowest speed, highest speed, and how many.
     #[arg(long, value_name = "LO:HI:N", value_parser = speeds, allow_hyphen_values = true)]
     rpm: Speeds,
-    /// Revolutions at each speed before anything is recorded.
-    #[arg(long, value_name = "N", default_value_t = 300, value_parser = count, allow_hyphen_values = true)]
-    transient: u64,
-    /// Revolutions that are recorded.
-    #[arg(long, value_name = "N", default_value_t = 100, value_parser = count, allow_hyphen_values = true)]
-    record: u64,
+    #[command(flatten)]
+    budget: BudgetArguments,
     /// Record what happens at the cam, or the state at one cam angle.
     #[arg(long, value_enum, default_value = "impact")]
     section: SectionName,
@@ -48,8 +46,8 @@ pub(super) struct Arguments {
     /// Start every speed alike, or go on from the next lower (up) or next higher speed (down).
     #[arg(long = "start", value_enum, default_value = "fixed")]
     following: FollowingName,
-    /// Record, at each speed, what happens on each attractor that 64 starts come to there, as `speeds` finds them.
-    #[arg(long, conflicts_with_all = ["following", "start_angle", "state", "relative_velocity"])]
+    /// Record, at each speed, what happens on each attractor that 64 starts come to there, or those of --state, as `speeds` finds them.
+    #[arg(long, conflicts_with = "following")]
     attractors: bool,
     #[command(flatten)]
     start: StartArguments,
@@ -78,6 +76,9 @@ pub(super) struct Arguments {
     summary: bool,
 }
 
+/// Starts of the sample, as many as `speeds` runs.
+const SAMPLED: usize = 64;
+
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum SectionName {
     Impact,
@@ -100,25 +101,32 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     arguments.start.doubt(session);
     let cam = Cam::new(&model)?;
     let corners = corner_marks(&cam);
+    let sample = arguments.start.sample(SAMPLED);
+    let budget = match arguments.lyapunov {
+        true => arguments.budget.budget(Budget::CHART)?,
+        false => arguments.budget.lengths(Budget::CHART),
+    };
     let sweep = Sweep {
         machine: Machine::new(cam, &model.follower, angular_velocity(arguments.rpm.low)),
         speeds: arguments.rpm,
         starts: match arguments.attractors {
-            true => Starts::Found(on_attractors),
-            false => Starts::One(arguments.start.start()),
+            true => Starts::Found(Arc::new(move |machine| on_attractors(machine, &sample))),
+            false => Starts::One(arguments.start.start()?),
         },
         following: match arguments.following {
             FollowingName::Fixed => Following::Nothing,
             FollowingName::Up => Following::Up,
             FollowingName::Down => Following::Down,
         },
-        transient: arguments.transient,
-        record: arguments.record,
+        transient: budget.transient,
+        record: budget.record,
         section: match arguments.section {
             SectionName::Impact => Section::Impacts,
             SectionName::Strobe => Section::Strobe(cam_angle("--strobe", arguments.strobe.unwrap_or(0.0), session)),
         },
-        growth: arguments.lyapunov.then_some(growth),
+        growth: arguments
+            .lyapunov
+            .then(|| -> Growth { Arc::new(move |machine, motion| growth(machine, motion, budget)) }),
     };
     if let Some(load) = arguments.show {
         return loads(arguments, &model, &sweep, load, session);
@@ -181,9 +189,9 @@ fn loads(
 ) -> Result<Exit, CommandError> {
     let Some(path) = arguments.out.as_deref() else { return Ok(Exit::BadInput) };
     let target = Target::create(path, &mut *session.out, arguments.picture.look()?)?;
-    let lengths = Lengths { transient: arguments.transient, record: arguments.record };
-    let (start, threads) = (arguments.start.start(), arguments.threads.map(usize::from));
-    let found = watched("", |watch| swept::loads(model, sweep, start, lengths, threads, watch))?;
+    let (start, threads) = (arguments.start.start()?, arguments.threads.map(usize::from));
+    let budget = arguments.budget.lengths(Budget::CHART);
+    let found = watched("", |watch| swept::loads(model, sweep, start, budget, threads, watch))?;
     let table = || csv::loads(&found);
     let title = format!("{}: {} against cam speed", model.name, load.to_string().replace('-', " "));
     target.fill(&model.units, table, || Ok(loads_diagram(&title, &found, load, &model.units)))?;
@@ -200,9 +208,9 @@ fn one_row(arguments: &Arguments, sweep: &Sweep, session: &mut Session<'_>) -> R
     else {
         return Err(CommandError::Words("--one-row is a table: --out must end in .csv or be -".into()));
     };
-    let lengths = Lengths { transient: arguments.transient, record: arguments.record };
-    let (start, threads) = (arguments.start.start(), arguments.threads.map(usize::from));
-    let points = watched("", |watch| swept::one_row(&sweep.machine, &sweep.speeds, start, lengths, threads, watch))?;
+    let (start, threads) = (arguments.start.start()?, arguments.threads.map(usize::from));
+    let budget = arguments.budget.budget(Budget::CHART)?;
+    let points = watched("", |watch| swept::one_row(&sweep.machine, &sweep.speeds, start, budget, threads, watch))?;
     file.write_all(csv::told(&csv::one_row(&sweep.speeds, &points), &session.units).as_bytes())?;
     super::commit(vec![file])?;
     Ok(Exit::Agrees)

@@ -6,10 +6,11 @@ use std::path::{Path, PathBuf};
 use clap::ArgGroup;
 
 use super::picture::{self, Canvas, PictureArguments, is_standard, picture as drawn_only, picture_or_table};
-use super::start::{StartArguments, angle, cam_angle, count, rpm};
+use super::start::{BudgetArguments, StartArguments, angle, cam_angle, count, rpm};
 use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::figures::{self, phase_plane as phase_plane_figure, time_trace, with_force};
 use crate::file::{self, Output};
+use crate::orbit::long_run::Budget;
 use crate::show::csv;
 use crate::study::simulate::{Sight, Simulation, Until, Wanted};
 
@@ -48,10 +49,13 @@ pub(super) struct Arguments {
     /// Print the summary as one JSON document.
     #[arg(long)]
     summary: bool,
-    /// Add the growth of a small deviation per revolution to the summary, a natural logarithm, with its standard error over
-    /// twenty blocks of revolutions: -inf (null in JSON) where the follower came to stick to the cam, be it once.
-    #[arg(long, conflicts_with = "impacts")]
+    /// Add to the summary what the run comes to in the long run, and how fast a small deviation grows there per revolution: a natural logarithm,
+    /// of a motion that repeats by its multipliers, -inf (null in JSON) where the follower comes to rest on the cam, else a mean with its
+    /// standard error. However short the run is: --transient, --record, --longest and --patience say for how long it is followed for that.
+    #[arg(long)]
     lyapunov: bool,
+    #[command(flatten)]
+    budget: BudgetArguments,
     /// Draw follower, cam, gap and contact force over the last revolutions (.svg, .png or .pdf), or write them as CSV (.csv).
     #[arg(long, value_name = "FILE", value_parser = picture_or_table, conflicts_with = "impacts", group = "picture")]
     trace: Option<PathBuf>,
@@ -91,7 +95,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     }
     let model = arguments.model.read_as_drawn(session)?;
     arguments.start.doubt(session);
-    let simulation = Simulation::new(&model, arguments.rpm, arguments.start.start())?;
+    let simulation = Simulation::new(&model, arguments.rpm, arguments.start.start()?)?;
     let (machine, first) = (&simulation.machine, &simulation.first);
     let shown = trace.is_some() || phase_plane.is_some();
     let drawn = if shown { arguments.drawn.unwrap_or(DRAWN) } else { 0 };
@@ -100,7 +104,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         events: events.is_some(),
         strobe: arguments.strobe.map(|angle| cam_angle("--strobe", angle, session)),
         drawn,
-        lyapunov: arguments.lyapunov,
+        long_run: arguments.lyapunov.then(|| arguments.budget.budget(Budget::SURVEY)).transpose()?,
     };
 
     let look = arguments.picture.look()?;

@@ -3,12 +3,13 @@
 use std::path::PathBuf;
 
 use super::picture::{PictureArguments, Target, is_standard, picture_or_table};
-use super::start::{positive, rpm_range};
+use super::start::{BudgetArguments, StartArguments, positive, rpm_range};
 use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::cam::Cam;
 use crate::draw::Look;
 use crate::draw::layout::WIDTH;
 use crate::figures::{corner_marks, speeds_figure};
+use crate::orbit::long_run::Budget;
 use crate::show::csv;
 use crate::study::attractors::{Resolution, Step};
 use crate::study::speeds::{speeds, usual_range};
@@ -34,10 +35,15 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "RPM", value_parser = positive, allow_hyphen_values = true, conflicts_with = "speeds")]
     step: Option<f64>,
     /// Starts that are run at each speed.
-    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1_000_000),
+        conflicts_with_all = ["state", "relative_velocity"])]
     starts: u32,
+    #[command(flatten)]
+    start: StartArguments,
+    #[command(flatten)]
+    budget: BudgetArguments,
     /// Begin at each speed on the stable orbits of two impacts in one revolution, too: a search by intervals finds all of them but next to a fold, a graze or a corner, in up to some seconds a speed.
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["state", "relative_velocity"])]
     two_impacts: bool,
     /// Print one JSON document instead of the page.
     #[arg(long)]
@@ -54,9 +60,11 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let corners = corner_marks(&Cam::new(&model)?);
     let rpm = arguments.rpm.map_or_else(|| usual_range(&model), Ok)?;
     let step = arguments.step.map_or_else(|| Step::for_speeds(rpm, arguments.speeds), Step::at_most);
-    let Arguments { starts, two_impacts, .. } = *arguments;
-    let resolution = Resolution { step, starts: starts as usize, two_impacts };
-    let found = watched("", |watch| speeds(&model, rpm, resolution, watch))?;
+    arguments.start.doubt(session);
+    let (sample, budget) =
+        (arguments.start.sample(arguments.starts as usize), arguments.budget.budget(Budget::SURVEY)?);
+    let resolution = Resolution { step, sample, budget, two_impacts: arguments.two_impacts };
+    let found = watched("", |watch| speeds(&model, rpm, &resolution, watch))?;
     if let Some(path) = &arguments.out {
         let table = || csv::speeds(&found);
         let look = arguments.picture.look()?;

@@ -2,21 +2,25 @@
 
 use std::f64::consts::TAU;
 
+use super::CommandError;
 use super::session::Session;
 use crate::cam::within_a_turn;
 use crate::diagram::{Placed, Speeds, Start};
 use crate::flight::State;
 use crate::foreign;
+use crate::orbit::Search;
+use crate::orbit::long_run::Budget;
+use crate::study::survey::Sample;
 
-/// Where the run starts.
+/// Where the run starts, or the runs of a survey.
 #[derive(clap::Args)]
 pub(super) struct StartArguments {
     /// Cam angle at the start, rad or as 90deg.
     #[arg(long, value_name = "RAD", default_value_t = 0.0, value_parser = angle, allow_hyphen_values = true)]
     pub(super) start_angle: f64,
-    /// Position and velocity at the start, in the model's units.
+    /// Position and velocity at the start, in the model's units; of a survey in place of its sample of starts (may be repeated).
     #[arg(long, value_name = "Q,V", value_parser = state, allow_hyphen_values = true, conflicts_with = "relative_velocity")]
-    state: Option<State>,
+    state: Vec<State>,
     /// Start on the cam and leave it at this velocity, m/s, 0 or more [default: 0].
     #[arg(long, value_name = "U", value_parser = not_negative, allow_hyphen_values = true)]
     relative_velocity: Option<f64>,
@@ -28,9 +32,74 @@ impl StartArguments {
         cam_angle("--start-angle", self.start_angle, session);
     }
 
-    pub(super) fn start(&self) -> Start {
-        let follower = self.state.map_or(Placed::OnCam(self.relative_velocity.unwrap_or(0.0)), Placed::At);
-        Start { cam_angle: within_a_turn(self.start_angle), follower }
+    /// The one start of a run.
+    pub(super) fn start(&self) -> Result<Start, CommandError> {
+        match self.given().as_deref() {
+            None => Ok(self.on_cam(0.0)),
+            Some([start]) => Ok(*start),
+            Some(all) => {
+                let words = format!("--state is given {} times, and one run has one start", all.len());
+                Err(CommandError::Words(words))
+            }
+        }
+    }
+
+    /// The starts that are named, if any are.
+    pub(super) fn given(&self) -> Option<Vec<Start>> {
+        let at = |state: &State| Start { follower: Placed::At(*state), ..self.on_cam(0.0) };
+        let states: Vec<Start> = self.state.iter().map(at).collect();
+        self.relative_velocity
+            .map(|velocity| vec![self.on_cam(velocity)])
+            .or(Some(states).filter(|all| !all.is_empty()))
+    }
+
+    /// Those, or so many of a sample.
+    pub(super) fn sample(&self, spread: usize) -> Sample {
+        self.given().map_or(Sample::Spread(spread), Sample::Given)
+    }
+
+    fn on_cam(&self, relative_velocity: f64) -> Start {
+        Start { cam_angle: within_a_turn(self.start_angle), follower: Placed::OnCam(relative_velocity) }
+    }
+}
+
+/// For how long runs are followed before it is said what they come to.
+#[derive(clap::Args)]
+pub(super) struct BudgetArguments {
+    /// Revolutions within which a run is to settle [default: 200, in a chart or a diagram 300].
+    #[arg(long, value_name = "N", value_parser = count, allow_hyphen_values = true)]
+    transient: Option<u64>,
+    /// Revolutions after that over which growth is taken of a run that has settled on no orbit; up to 8 times as many where they
+    /// tell nothing [default: 1600, in design 200, in a chart or a diagram 100].
+    #[arg(long, value_name = "N", value_parser = count, allow_hyphen_values = true)]
+    record: Option<u64>,
+    /// The longest period of an orbit, revolutions [default: 32].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=Search::MOST_REVOLUTIONS))]
+    longest: Option<u64>,
+    /// Revolutions for which runs that settle on nothing are followed before that is called chaos, all together: the longer, the rarer the
+    /// rests that are seen [default: 100000, in design, a chart or a diagram 0].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(0..=Budget::MOST))]
+    patience: Option<u64>,
+}
+
+impl BudgetArguments {
+    /// With what a command has where nothing is said.
+    pub(super) fn budget(&self, usual: Budget) -> Result<Budget, CommandError> {
+        let budget = self.lengths(usual);
+        match budget.record {
+            0 => Err(CommandError::Words("--record 0: in no revolution nothing grows".into())),
+            _ => Ok(budget),
+        }
+    }
+
+    /// The same where nothing is said of what runs come to.
+    pub(super) fn lengths(&self, usual: Budget) -> Budget {
+        Budget {
+            transient: self.transient.unwrap_or(usual.transient),
+            record: self.record.unwrap_or(usual.record),
+            longest: self.longest.unwrap_or(usual.longest),
+            patience: self.patience.unwrap_or(usual.patience),
+        }
     }
 }
 

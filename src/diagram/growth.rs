@@ -1,4 +1,4 @@
-//! Lyapunov exponents, from the variational flow.
+//! Growth of small deviations, from the variational flow: Lyapunov exponents in the limit.
 
 use std::ops::ControlFlow;
 
@@ -15,63 +15,21 @@ use crate::simulate::{Event, EventKind, Machine, Met, Motion, Observer, Simulate
 /// deviation then, and what follows repeats what followed the stick before. Until such a stick a chaotic motion has the
 /// number that it would have without. A start on the cam counts from its release on; in no revolution nothing grows.
 pub fn growth(machine: &Machine, mut motion: Motion, revolutions: u64) -> Result<f64, SimulateError> {
-    let mut sum = 0.0;
-    stretches(machine, &mut motion, revolutions, &mut Met::default(), |stretch| sum += stretch)?;
+    let (mut sum, mut direction) = (0.0, ANY);
+    let met = &mut Met::default();
+    stretches(machine, &mut motion, revolutions, (met, &mut direction), |stretch| sum += stretch)?;
     Ok(sum / revolutions.max(1) as f64)
 }
 
-/// The [`growth`] over `revolutions`, and its standard error over as many `blocks` of them: none where the follower sticks, or
-/// where there are fewer revolutions than blocks.
-pub fn growth_and_error(
-    machine: &Machine,
-    mut motion: Motion,
-    revolutions: u64,
-    blocks: u32,
-) -> Result<(f64, Option<f64>), SimulateError> {
-    let per_block = revolutions / u64::from(blocks.max(1));
-    let (mut sum, mut means) = (0.0, Means::over(per_block));
-    stretches(machine, &mut motion, revolutions, &mut Met::default(), |stretch| {
-        sum += stretch;
-        means.take(stretch);
-    })?;
-    let mean = sum / revolutions.max(1) as f64;
-    let full = per_block > 0 && mean.is_finite();
-    // What is left over is less than a block for each of them: it counts for the mean alone.
-    means.of_blocks.truncate(blocks as usize);
-    Ok((mean, full.then(|| Estimate::of_parts(&means.of_blocks).error)))
-}
-
-/// A Lyapunov exponent and how well it is known.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Exponent {
-    /// Per revolution, a natural logarithm; neither it nor its error is a number where there are fewer than two blocks.
-    pub growth: Estimate,
-    /// Blocks that it is the mean of.
-    pub blocks: usize,
-    /// Whether the follower came to rest on the cam, after those blocks: what follows can only repeat, and a deviation of it
-    /// is none.
-    pub rests: bool,
-}
-
-/// The growth over `blocks` of `revolutions` each, one after the other, or as many as are over before the follower sticks to
-/// the cam.
-///
-/// Blocks are taken for independent: a chaotic motion has forgotten, after some dozen revolutions, what it was.
-pub fn exponent(
-    machine: &Machine,
-    mut motion: Motion,
-    blocks: u32,
-    revolutions: u64,
-) -> Result<Exponent, SimulateError> {
-    let mut record = Record::over(revolutions);
-    record.take(machine, &mut motion, u64::from(blocks) * revolutions)?;
-    Ok(Exponent { growth: record.growth(), blocks: record.means.of_blocks.len(), rests: record.rests() })
-}
+/// A deviation to begin with, its angle in rad and its velocity over the angle in m/rad: any has a part along what grows most.
+const ANY: Vector2<f64> = Vector2::new(0.6, 0.8);
 
 /// What is seen of a run that does not repeat, for as long as it is looked at.
 #[derive(Clone, Debug)]
 pub struct Record {
     means: Means,
+    /// That of the deviation.
+    direction: Vector2<f64>,
     /// The impacts, of whole revolutions.
     pub met: Met,
     /// How many revolutions.
@@ -81,13 +39,14 @@ pub struct Record {
 impl Record {
     /// Nothing yet, of which the growth will be taken in blocks of so many revolutions.
     pub fn over(per_block: u64) -> Self {
-        Self { means: Means::over(per_block), met: Met::default(), revolutions: 0 }
+        Self { means: Means::over(per_block), direction: ANY, met: Met::default(), revolutions: 0 }
     }
 
-    /// Goes on for so many revolutions, or to where the follower comes to stick.
+    /// Goes on for so many revolutions, or to where the follower comes to stick: from `motion`, which is where it was left.
     pub fn take(&mut self, machine: &Machine, motion: &mut Motion, revolutions: u64) -> Result<(), SimulateError> {
         let begun = motion.revolution;
-        stretches(machine, motion, revolutions, &mut self.met, |stretch| self.means.take(stretch))?;
+        let seen = (&mut self.met, &mut self.direction);
+        stretches(machine, motion, revolutions, seen, |stretch| self.means.take(stretch))?;
         self.revolutions += motion.revolution - begun;
         Ok(())
     }
@@ -105,6 +64,14 @@ impl Record {
             (here.max(most), here)
         };
         self.means.of_blocks.iter().fold((0.0, 0.0), grown).0
+    }
+
+    /// What a deviation grows by over the first half of the blocks that are over, and over the second, a natural logarithm.
+    pub fn halves(&self) -> [f64; 2] {
+        let blocks = &self.means.of_blocks;
+        let grown = |blocks: &[f64]| self.means.per_block as f64 * blocks.iter().sum::<f64>();
+        let (first, second) = blocks.split_at(blocks.len() / 2);
+        [grown(first), grown(second)]
     }
 
     /// Whether it ended where the follower came to stick.
@@ -156,7 +123,7 @@ fn stretches(
     machine: &Machine,
     motion: &mut Motion,
     revolutions: u64,
-    met: &mut Met,
+    (met, direction): (&mut Met, &mut Vector2<f64>),
     mut keep: impl FnMut(f64),
 ) -> Result<(), SimulateError> {
     let omega = machine.angular_velocity();
@@ -172,8 +139,6 @@ fn stretches(
         }
     }
     let mut variation = Variation::new(machine, motion);
-    // Any direction has a part along the one that grows most; velocity counts over the angle, in m/rad.
-    let mut direction = Vector2::new(0.6, 0.8);
     for _ in 0..revolutions {
         let goal = motion.after(1);
         let _ = machine.advance(motion, goal, &mut Counting(&mut variation, met))?;
@@ -187,7 +152,7 @@ fn stretches(
         if stretch == 0.0 {
             return Ok(());
         }
-        direction = carried / stretch;
+        *direction = carried / stretch;
         variation.reset(Matrix2::identity());
     }
     Ok(())

@@ -9,13 +9,14 @@ mod pipeline;
 mod places;
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use crate::cam::apart;
 use crate::estimate::Estimate;
 use crate::flight::State;
 use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError, Unobserved};
 use crate::tolerance;
-pub use growth::{Exponent, Record, exponent, growth, growth_and_error};
+pub use growth::{Record, growth};
 pub use pipeline::{Block, Counted, Tally, threads};
 pub use places::Places;
 
@@ -67,13 +68,16 @@ impl Start {
     }
 }
 
+/// The motions of a machine that are looked at, each found before.
+pub type Find = Arc<dyn Fn(&Machine) -> Result<Vec<Motion>, SimulateError> + Send + Sync>;
+
 /// Where the runs of a speed begin.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone)]
 pub enum Starts {
     /// One run, from one start at every speed.
     One(Start),
     /// A run from each motion that is found for the speed.
-    Found(fn(&Machine) -> Result<Vec<Motion>, SimulateError>),
+    Found(Find),
 }
 
 impl Starts {
@@ -112,11 +116,11 @@ impl Speeds {
     }
 }
 
-/// How fast a small deviation grows in a revolution, a natural logarithm, of a motion that is looked at for so many.
-pub type Growth = fn(&Machine, Motion, u64) -> Result<Estimate, SimulateError>;
+/// How fast a small deviation of what a motion comes to grows in a revolution, a natural logarithm.
+pub type Growth = Arc<dyn Fn(&Machine, Motion) -> Result<Estimate, SimulateError> + Send + Sync>;
 
 /// A sweep over speeds.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Sweep {
     /// The machine at the lowest speed: each has one of its own, over the same cam.
     pub machine: Machine,
@@ -132,7 +136,7 @@ pub struct Sweep {
     pub record: u64,
     /// What of them.
     pub section: Section,
-    /// How the growth of a small deviation a revolution is found, of the motion where a record of so many begins, if it is.
+    /// How the growth of a small deviation a revolution is found, if it is.
     pub growth: Option<Growth>,
 }
 
@@ -207,8 +211,8 @@ impl Sweep {
         which: Option<usize>,
         mut keep: impl FnMut(Row) -> ControlFlow<()>,
     ) -> Result<(Motion, ControlFlow<()>), SimulateError> {
+        let growth = self.growth.as_ref().map(|growth| growth(machine, motion)).transpose()?;
         machine.revolve(&mut motion, self.transient)?;
-        let growth = self.growth.map(|growth| growth(machine, motion, self.record)).transpose()?;
         let row = |revolution, seen| Row { rpm, revolution, motion: which, seen, growth };
         let goal = motion.after(self.record);
         let flow = match self.section {

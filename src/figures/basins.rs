@@ -4,7 +4,7 @@ use crate::draw::{Axis, BREAK, Colour, Data, Density, Figure, Marker, Panel, Ser
 use crate::figures::position;
 use crate::flight::State;
 use crate::show::words;
-use crate::study::basins::{Basins, Curve};
+use crate::study::basins::{Basins, Border, Grid};
 
 /// Colours of the parts and how much of them, in order, so that each is a grey of its own; further ones share the last.
 const COLOURS: [(Colour, f64); 5] =
@@ -12,8 +12,8 @@ const COLOURS: [(Colour, f64); 5] =
 
 /// Position across, velocity up, a colour for each ending; where stable orbits and saddles cross the section, and the stable
 /// manifolds of these.
-pub fn basins_figure(title: &str, basins: &Basins, stable: &[State], saddles: &[State], curves: &[Curve]) -> Figure {
-    let grid = &basins.grid;
+pub fn basins_figure(title: &str, grid: &Grid, basins: &Basins, border: &Border) -> Figure {
+    let Border { stable, saddles, curves } = border;
     let (x, y) = (grid.positions, grid.velocities);
     let mut areas = vec![Density::new(x, y); basins.parts.len().min(COLOURS.len())];
     let [columns, rows] = Density::new(x, y).cells();

@@ -8,9 +8,10 @@ use crate::draw::ticks::{Spacing, Tick, Ticks, ticks};
 use crate::draw::{Axis, Colour, Data, Density, Figure, Panel, Series};
 use crate::model::Units;
 use crate::orbit::Parameter;
-use crate::orbit::ending::Kind;
+use crate::orbit::long_run::Kind;
 use crate::show::words;
-use crate::study::chart::{self, Charted, Point};
+use crate::study::chart::{self, Charted};
+use crate::study::survey::Point;
 
 /// What the colours of a chart tell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -5,7 +5,7 @@ use crate::draw::{Axis, BREAK, Beside, Colour, Data, Density, Figure, Marker, Pa
 use crate::figures::SPEED;
 use crate::figures::cam::CornerMark;
 use crate::figures::impacts::{WHOLE_CAM, impact_angles};
-use crate::orbit::ending::Kind;
+use crate::orbit::long_run::Kind;
 use crate::show::words;
 use crate::study::speeds::{Attractor, Speeds};
 

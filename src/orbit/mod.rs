@@ -9,9 +9,9 @@
 //! | `departure` | whether a cycle is an orbit of the cam as it is, by simulation |
 //! | `complete` | all orbits of one impact, or of two in one revolution, by enclosures |
 //! | [`mod@search`] | orbits of one machine: those, and others from many starts |
-//! | [`settle`] | the orbit near a guess or near a run |
-//! | [`ending`] | what a run can end on: an orbit, rest again and again, chaos |
-//! | [`fate`] | what runs come to, and what follows when the cam lets go of a follower |
+//! | [`near`] | the orbit near a guess or near a run |
+//! | [`long_run`] | what a run comes to: an orbit, rest again and again, chaos; and for how long it is followed |
+//! | [`runs`] | the runs of one machine: where they settle, and what follows when the cam lets go of a follower |
 //! | `family` | machines that differ in a speed or a number of the model |
 //! | `curve` | pseudo-arclength steps along the solutions of one equation fewer than unknowns |
 //! | [`branch`] | branches of orbits through corners, folds, flips and grazes, with those points located |
@@ -22,13 +22,13 @@ pub(crate) mod complete;
 pub(crate) mod curve;
 pub(crate) mod cycle;
 pub(crate) mod departure;
-pub mod ending;
 pub(crate) mod family;
-pub mod fate;
+pub mod long_run;
 mod multipliers;
 mod naming;
+pub mod near;
+pub mod runs;
 pub mod search;
-pub mod settle;
 pub mod stability;
 pub(crate) mod sticking;
 
@@ -37,7 +37,7 @@ use nalgebra::Matrix2;
 use crate::cam::apart;
 use crate::flight::State;
 use crate::known::Known;
-use crate::simulate::{Event, EventKind, Machine, SimulateError};
+use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError};
 use crate::tolerance;
 pub use complete::Undecided;
 pub(crate) use cycle::{Cycle, Impact, NotClosed};
@@ -152,6 +152,22 @@ impl PeriodicOrbit {
     /// Whether small deviations die out: neither of an unstable orbit nor of a neutral one.
     pub fn is_stable(&self) -> bool {
         self.judgement.stability == Stability::Stable
+    }
+
+    /// A motion of `machine` that is on it, from where the cam passes angle 0: what rounding leaves of its impacts may put it below the cam there,
+    /// so that it comes from one of them.
+    pub fn motion(&self, machine: &Machine) -> Result<Motion, SimulateError> {
+        let Some(impact) = self.impacts().last() else { return machine.start(0.0, self.state) };
+        let mut motion = machine.start_on_cam(impact.cam_angle, impact.velocity_after - impact.cam_velocity)?;
+        machine.turn_to(&mut motion, 0.0)?;
+        motion.revolution = 0;
+        Ok(motion)
+    }
+
+    /// The growth of a small deviation a revolution, by the largest multiplier, a natural logarithm.
+    pub fn growth(&self) -> f64 {
+        let modulus = self.multipliers().iter().fold(0.0_f64, |largest, one| largest.max(one.modulus()));
+        modulus.ln() / self.revolutions as f64
     }
 
     /// Whether two orbits are the same motion.

@@ -7,7 +7,7 @@
 use std::f64::consts::TAU;
 
 use super::complete::{Solved, Standing, Undecided, joined, of_one_impact, of_two_impacts};
-use super::settle::{MOST_IMPACTS, close, free, near_run, period};
+use super::near::{MOST_IMPACTS, close, free, near_run, period};
 use super::{Course, Cycle, Judgement, PeriodicOrbit};
 use crate::flight::State;
 use crate::interval::Interval;

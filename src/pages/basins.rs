@@ -8,12 +8,14 @@ use crate::study::basins::Summary;
 impl Paged for Summary {
     fn blocks(&self) -> Vec<Block> {
         let Self { model, rpm, basins, wall_s, .. } = self;
-        let angle = basins.grid.cam_angle.to_degrees();
+        let angle = basins.begun.cam_angle().to_degrees();
         let mut lines = vec![format!("{model} at {rpm} rpm, {} starts at {angle:.4} deg", basins.starts)];
         for part in &basins.parts {
-            let (share, error, ending) = (part.share.value, part.share.error, words::ending(&part.ending));
+            let (share, error, ending) =
+                (part.share.value, part.share.error, words::followed(&part.ending, part.followed));
             lines.push(format!("  {share:.4} ± {error:.4}  {ending} ({})", part.starts));
         }
+        lines.extend(words::transient_chaos(&basins.wandering).map(|words| format!("  {words}")));
         lines.extend(basins.failure.iter().map(|why| format!("  failed ({}): {why}", basins.failed)));
         lines.push(format!("  {wall_s:.3} s"));
         lines.into_iter().map(|line| Block::Line(line.into())).collect()

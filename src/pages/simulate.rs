@@ -4,7 +4,7 @@ use crate::show::block::{Block, Span, Words, words as sentence};
 use crate::show::digits::Digits;
 use crate::show::{Paged, words};
 use crate::study::diagram::Swept;
-use crate::study::simulate::{End, Run};
+use crate::study::simulate::{End, Lyapunov, Run};
 
 impl Paged for Run {
     fn blocks(&self) -> Vec<Block> {
@@ -24,10 +24,13 @@ impl Paged for Run {
                 place
             ],
         ];
-        if let Some(exponent) = self.lyapunov_per_revolution {
-            let stuck = exponent == f64::NEG_INFINITY;
-            let why = if stuck { ": it stuck to the cam, where every deviation is lost" } else { "" };
-            let error = self.lyapunov_standard_error.map_or(String::new(), |error| format!(" ± {error:.4}"));
+        if let Some(Lyapunov { lyapunov_per_revolution: exponent, lyapunov_standard_error, ending, followed, .. }) =
+            &self.long_run
+        {
+            let rests = *exponent == f64::NEG_INFINITY;
+            let why = if rests { ": it rests on the cam, where every deviation is lost" } else { "" };
+            let error = lyapunov_standard_error.map_or(String::new(), |error| format!(" ± {error:.4}"));
+            lines.push(format!("  in the long run {}", words::followed(ending, *followed)).into());
             lines.push(format!("  Lyapunov exponent {exponent:.4}{error} per revolution{why}").into());
         }
         lines.push(format!("  {wall_s:.3} s{}", per_turn(*wall_s, *revolutions)).into());

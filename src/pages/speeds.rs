@@ -1,12 +1,14 @@
 //! The page of `speeds`: the short answer first, then every attractor with where it begins and ends.
 
 use crate::measured::Measured;
+use crate::orbit::long_run::Budget;
 use crate::show::Paged;
 use crate::show::block::{Block, Column, Mark, Table, Words, words};
 use crate::show::digits::{Digits, with_error};
 use crate::show::words;
 use crate::study::attractors::Change;
 use crate::study::speeds::{Attractor, Speeds};
+use crate::study::survey::Sample;
 
 impl Paged for Speeds {
     fn blocks(&self) -> Vec<Block> {
@@ -102,15 +104,27 @@ pub(crate) fn measured_speed(rpm: f64, digits: Digits, error: Option<f64>, cam: 
 pub(crate) fn how(found: &Speeds) -> String {
     const LOCATED: &str = " A speed with six decimals was located by the equations of what happens there; others are known from runs \
                            alone, to the digits shown.";
+    let located = if Measured::noisy(&found.measured).is_some() { "" } else { LOCATED };
+    let Budget { transient, patience, .. } = found.budget;
+    let followed = format!(
+        " Runs that settle on nothing within {transient} revolutions are followed for {patience} more, all of a speed together, before \
+         that is called chaos: a rest that is rarer than that is not seen."
+    );
+    let step = found.step;
+    if let Sample::Given(starts) = &found.sample {
+        let starts = words::many(starts.len() as u64, "start");
+        return format!(
+            "Sampled: {starts} that {} given, at each of the speeds {step} rpm apart.{followed}{located}",
+            if starts == "1 start" { "is" } else { "are" }
+        );
+    }
     let listed = if found.two_impacts { ", and of two in one that a search by intervals finds" } else { "" };
     format!(
-        "Sampled: {} starts at each of the speeds {} rpm apart, on the cam at any angle and up to the velocity that impacts keep \
+        "Sampled: {} starts at each of the speeds {step} rpm apart, on the cam at any angle and up to the velocity that impacts keep \
          up; rest on the cam wherever that lets go; and the stable orbits of one impact in up to three revolutions{listed}. Another \
-         attractor with a basin of less than {:.1} % of the starts may be missed at a speed, and what is there between two speeds only.{}",
-        found.starts,
-        found.step,
+         attractor with a basin of less than {:.1} % of the starts may be missed at a speed, and what is there between two speeds only.{followed}{located}",
+        found.sample.count(),
         100.0 * found.missed(),
-        if Measured::noisy(&found.measured).is_some() { "" } else { LOCATED }
     )
 }
 

@@ -224,8 +224,8 @@ impl Report {
         };
         let range = rpm.map_or_else(|| usual_range(model), Ok)?;
         let (count, starts) = if is_paper { PAPERS_SPEEDS } else { SPEEDS };
-        let resolution = Resolution { step: Step::for_speeds(range, count), starts, two_impacts: false };
-        let speeds = speeds(model, range, resolution, &part(HELD, SURVEYED)).map_err(|error| error.to_string());
+        let resolution = Resolution::new(Step::for_speeds(range, count), starts);
+        let speeds = speeds(model, range, &resolution, &part(HELD, SURVEYED)).map_err(|error| error.to_string());
         let overview = speeds.as_ref().ok().map(|found| overview(model, &cam, found));
         let attractors = speeds.as_ref().ok().map(|found| attractors(model, &cam, found));
         let asked = Asked { rpm: Some(range), speeds: LOADED, ..Asked::default() };

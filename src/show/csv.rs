@@ -12,14 +12,15 @@ use crate::flight::State;
 use crate::model::Units;
 use crate::orbit::Eigenvalue;
 use crate::orbit::branch::{Branch, Kind};
-use crate::orbit::ending::Ending;
+use crate::orbit::long_run::LongRun;
 use crate::section::Sample;
 use crate::show::digits::Digits;
 use crate::simulate::{Event, Machine, Motion};
 use crate::study::basins::Basins;
-use crate::study::chart::{Chart, Charted, Point, class};
+use crate::study::chart::{Chart, Charted, class};
 use crate::study::design::loads::Loads;
 use crate::study::speeds::{At, Attractor, Speeds as Surveyed};
+use crate::study::survey::Point;
 
 /// A table in the units of a model.
 pub(crate) fn told<'a>(table: &'a str, units: &Units) -> Cow<'a, str> {
@@ -95,7 +96,7 @@ pub(crate) fn diagram(sweep: &Sweep) -> String {
         Section::Impacts => "cam_angle_rad,event,position_m,velocity_before_m_s,velocity_after_m_s",
         Section::Strobe(_) => "position_m,velocity_m_s",
     };
-    let growth = sweep.growth.map_or("", |_| ",lyapunov_per_revolution,lyapunov_error");
+    let growth = sweep.growth.as_ref().map_or("", |_| ",lyapunov_per_revolution,lyapunov_error");
     let motion = if matches!(sweep.starts, Starts::Found(_)) { ",attractor" } else { "" };
     format!("rpm,revolution,{seen}{growth}{motion}\n")
 }
@@ -147,30 +148,32 @@ fn multipliers([one, two]: [Eigenvalue; 2]) -> String {
 
 /// A line for each start, row by row; `ending` is empty where the start is below the cam.
 pub(crate) fn basins(basins: &Basins) -> String {
-    let mut lines = String::from("position_m,velocity_m_s,ending,part,revolutions,impacts\n");
+    let mut lines = String::from("position_m,velocity_m_s,ending,part,revolutions,impacts,followed\n");
     for (index, part) in basins.cells.iter().enumerate() {
-        let State { position, velocity } = basins.grid.start(index);
+        let State { position, velocity } = basins.begun.state(index);
         let ending = part.map(|part| &basins.parts[part].ending);
-        let (name, part) = (cell(ending.map(Ending::kind)), cell(*part));
-        let period = ending.and_then(Ending::period);
+        let (name, part) = (cell(ending.map(LongRun::kind)), cell(*part));
+        let period = ending.and_then(LongRun::period);
         let (turns, impacts) = (cell(period.map(|period| period.0)), cell(period.map(|period| period.1)));
-        let _ = writeln!(lines, "{position},{velocity},{name},{part},{turns},{impacts}");
+        let followed = cell(basins.followed.get(index).copied().flatten());
+        let _ = writeln!(lines, "{position},{velocity},{name},{part},{turns},{impacts},{followed}");
     }
     lines
 }
 
 /// The columns of what a run comes to; no cell is empty, so that numerical programs read all but the class.
-const POINT: &str = "class,revolutions,impacts,growth_rate,growth_error,impact_speed_m_s,impacts_per_revolution\n";
+const POINT: &str =
+    "class,revolutions,impacts,growth_rate,growth_error,impact_speed_m_s,impacts_per_revolution,followed\n";
 
 /// A line of those.
 fn point(lines: &mut String, point: &Result<Point, String>) {
     let class = class(point.as_ref().ok().map(|point| point.kind));
     let _ = match point {
-        Ok(Point { revolutions, impacts, impact_rate, growth, impact_speed, .. }) => {
+        Ok(Point { revolutions, impacts, impact_rate, growth, impact_speed, followed, .. }) => {
             let Estimate { value, error, .. } = growth;
-            writeln!(lines, "{class},{revolutions},{impacts},{value},{error},{impact_speed},{impact_rate}")
+            writeln!(lines, "{class},{revolutions},{impacts},{value},{error},{impact_speed},{impact_rate},{followed}")
         }
-        Err(_) => writeln!(lines, "{class},0,0,NaN,NaN,NaN,NaN"),
+        Err(_) => writeln!(lines, "{class},0,0,NaN,NaN,NaN,NaN,0"),
     };
 }
 
@@ -209,8 +212,9 @@ pub(crate) fn loads(sweep: &[Vec<Loads>]) -> String {
 
 /// What each attractor is at each speed of the grid.
 pub(crate) fn speeds(found: &Surveyed) -> String {
-    let mut lines =
-        String::from("rpm,attractor,kind,revolutions,impacts,growth_rate,growth_error,share,share_error,coexisting\n");
+    let mut lines = String::from(
+        "rpm,attractor,kind,revolutions,impacts,growth_rate,growth_error,share,share_error,coexisting,followed\n",
+    );
     let mut all: Vec<(&Attractor, &At)> =
         found.attractors.iter().flat_map(|attractor| attractor.at.iter().map(move |at| (attractor, at))).collect();
     all.sort_by(|(_, one), (_, two)| one.rpm.total_cmp(&two.rpm));
@@ -218,11 +222,13 @@ pub(crate) fn speeds(found: &Surveyed) -> String {
         let coexisting = all.iter().filter(|(_, other)| other.rpm == at.rpm).count();
         let (period, growth) = (at.ending.period(), at.ending.growth());
         let (turns, impacts) = (cell(period.map(|period| period.0)), cell(period.map(|period| period.1)));
-        let (rate, error) = (cell(growth.map(|growth| growth.value)), cell(growth.map(|growth| growth.error)));
+        let (rate, error, followed) = (growth.value, growth.error, at.followed);
         let (rpm, id, kind, share, share_error) =
             (at.rpm, &attractor.id, at.ending.kind(), at.share.value, at.share.error);
-        let _ =
-            writeln!(lines, "{rpm},{id},{kind},{turns},{impacts},{rate},{error},{share},{share_error},{coexisting}");
+        let _ = writeln!(
+            lines,
+            "{rpm},{id},{kind},{turns},{impacts},{rate},{error},{share},{share_error},{coexisting},{followed}"
+        );
     }
     lines
 }

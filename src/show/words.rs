@@ -19,12 +19,13 @@ use crate::measured::Measured;
 use crate::model::{Reading, Separator};
 use crate::orbit::Stability;
 use crate::orbit::branch::{self, Bifurcation, Doubt, FirstTouch, GrazeClass};
-use crate::orbit::ending::{Ending, Kind};
+use crate::orbit::long_run::{Kind, LongRun};
 use crate::published::Verdict;
 use crate::show::block::{Mark, Symbol, Words, words};
 use crate::show::digits::Digits;
 use crate::study::attractors::{Cause, Change};
 use crate::study::speeds::Attractor;
+use crate::study::survey::Wandering;
 
 /// A route's name.
 pub(crate) fn route(name: RouteName) -> String {
@@ -382,9 +383,31 @@ fn motion(kind: Kind, revolutions: Option<u64>, impacts: Option<u64>) -> String 
 }
 
 /// What starts end on, in a legend.
-pub(crate) fn ending(ending: &Ending) -> String {
+pub(crate) fn ending(ending: &LongRun) -> String {
     let period = ending.period();
     motion(ending.kind(), period.map(|(revolutions, _)| revolutions), period.map(|(_, impacts)| impacts))
+}
+
+/// The same with what it takes to believe it: chaos with the revolutions in which its runs did not rest, and what is undecided with those in
+/// which it was not decided.
+pub(crate) fn followed(ending: &LongRun, revolutions: u64) -> String {
+    let words = self::ending(ending);
+    match ending {
+        LongRun::Chaotic(_) => format!("{words} (no rest in {revolutions} revolutions)"),
+        LongRun::Undecided(_) => format!("{words} after {revolutions} revolutions"),
+        LongRun::Sticking(orbit) if orbit.is_long() => {
+            format!("{words} (transient chaos: once in {:.0} revolutions)", orbit.between_rests())
+        }
+        _ => words,
+    }
+}
+
+/// What runs that wandered were on, where some of them have left it.
+pub(crate) fn transient_chaos(wandering: &Wandering) -> Option<String> {
+    let Wandering { revolutions, left, .. } = *wandering;
+    (left > 0).then(|| {
+        format!("transient chaos: {left} of the runs that wandered left it for good in {revolutions} revolutions, so that all do sooner or later")
+    })
 }
 
 /// An attractor over a range of speeds.

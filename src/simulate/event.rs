@@ -103,6 +103,11 @@ pub struct Met {
 }
 
 impl Met {
+    /// Of both.
+    pub fn with(self, other: Self) -> Self {
+        Self { impacts: self.impacts + other.impacts, impact_speed: self.impact_speed.max(other.impact_speed) }
+    }
+
     /// Takes note of an event.
     pub fn take(&mut self, event: &Event) {
         if event.kind == EventKind::Impact {

@@ -9,19 +9,17 @@ use serde::Serialize;
 use crate::diagram::{Block, Following, Places, Section, Speeds, Start, Sweep, SweepError, Tally};
 use crate::draw::{Cloud, Density};
 use crate::model::Model;
+use crate::orbit::long_run::Budget;
 use crate::progress::{Pieces, Watch};
 use crate::simulate::{Machine, Motion, SimulateError, angular_velocity};
 use crate::study::attractors::Here;
-use crate::study::chart::{Lengths, Point};
 use crate::study::design::loads::Loads;
+use crate::study::survey::{Point, Sample};
 
 /// A motion on each of the attractors of `machine` that are found at its speed alone.
-pub fn on_attractors(machine: &Machine) -> Result<Vec<Motion>, SimulateError> {
-    /// Starts of the sample, as many as `speeds` runs.
-    const SAMPLED: usize = 64;
+pub fn on_attractors(machine: &Machine, sample: &Sample) -> Result<Vec<Motion>, SimulateError> {
     let rpm = machine.angular_velocity() * 60.0 / TAU;
-    let mut motions: Vec<Motion> =
-        Here::new(machine, rpm, SAMPLED)?.parts.into_iter().map(|part| part.motion).collect();
+    let mut motions: Vec<Motion> = Here::new(machine, rpm, sample)?.parts.into_iter().map(|part| part.motion).collect();
     motions.iter_mut().for_each(|motion| motion.revolution = 0);
     Ok(motions)
 }
@@ -31,14 +29,14 @@ pub fn one_row(
     machine: &Machine,
     speeds: &Speeds,
     start: Start,
-    lengths: Lengths,
+    budget: Budget,
     threads: Option<usize>,
     watch: &dyn Watch,
 ) -> Result<Vec<Result<Point, String>>, SweepError> {
     let pieces = Pieces::new(watch, "", speeds.count);
     let one = |index: usize| {
         let machine = machine.at_speed(angular_velocity(speeds.value(index)));
-        let run = start.motion(&machine).and_then(|motion| Point::of(&machine, motion, lengths));
+        let run = start.motion(&machine).and_then(|motion| Point::of(&machine, motion, budget));
         run.map_err(|error| error.to_string())
     };
     let each = |index: usize| pieces.each(|| one(index));
@@ -50,7 +48,7 @@ pub fn loads(
     model: &Model,
     sweep: &Sweep,
     start: Start,
-    lengths: Lengths,
+    budget: Budget,
     threads: Option<usize>,
     watch: &dyn Watch,
 ) -> Result<Vec<Vec<Loads>>, SweepError> {
@@ -59,8 +57,8 @@ pub fn loads(
     let of_speed = |rpm: f64| -> Result<Vec<Loads>, SimulateError> {
         let machine = machine.at_speed(angular_velocity(rpm));
         let mut motion = start.motion(&machine)?;
-        machine.revolve(&mut motion, lengths.transient)?;
-        let found = Loads::recorded(model, &machine, motion, lengths.record)?;
+        machine.revolve(&mut motion, budget.transient)?;
+        let found = Loads::recorded(model, &machine, motion, budget.record)?;
         // As it was asked for, and not as the angular velocity has it.
         Ok(found.into_iter().map(|loads| Loads { rpm, ..loads }).collect())
     };

@@ -16,6 +16,7 @@ pub mod locate;
 pub mod orbit;
 pub mod simulate;
 pub mod speeds;
+pub mod survey;
 pub mod trapping;
 pub mod verify;
 

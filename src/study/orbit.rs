@@ -8,7 +8,7 @@ use crate::flight::State;
 use crate::known::{Complete, Known};
 use crate::measured::{Likely, Measured};
 use crate::model::Model;
-use crate::orbit::settle::near;
+use crate::orbit::near::near;
 use crate::orbit::{PeriodicOrbit, Search, Searched, Undecided, search_all};
 use crate::progress::Watch;
 use crate::simulate::{Event, Machine};

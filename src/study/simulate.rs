@@ -7,10 +7,13 @@ use std::time::{Duration, Instant};
 use serde::Serialize;
 
 use super::{StudyError, machine};
-use crate::diagram::{Start, growth_and_error};
+use crate::diagram::Start;
+use crate::known::Known;
 use crate::model::Model;
+use crate::orbit::long_run::{Budget, Kind, LongRun};
 use crate::progress::Watch;
 use crate::simulate::{Event, EventKind, Goal, Machine, Motion};
+use crate::study::survey::{Part, long_run};
 
 /// A machine at a speed, and the motion that begins there.
 #[derive(Clone, Debug)]
@@ -43,8 +46,8 @@ pub struct Wanted {
     pub strobe: Option<f64>,
     /// How many of its last revolutions are drawn.
     pub drawn: u64,
-    /// Whether it is told how fast a small deviation grows.
-    pub lyapunov: bool,
+    /// For how long it is followed to tell what it comes to in the long run and how fast a small deviation grows, if that is asked for.
+    pub long_run: Option<Budget>,
 }
 
 /// What a run shows on its way.
@@ -75,18 +78,46 @@ pub struct Run {
     /// Where it ended.
     #[serde(rename = "final")]
     pub end: End,
-    /// Growth of a small deviation per revolution, as a natural logarithm, if asked for; minus infinity, which JSON has as
-    /// null, where the follower came to stick to the cam.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub lyapunov_per_revolution: Option<f64>,
-    /// Its standard error, where there is one: that of the mean of twenty blocks, taken for independent.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub lyapunov_standard_error: Option<f64>,
+    /// What the run comes to in the long run, if asked for.
+    #[serde(skip_serializing_if = "Option::is_none", flatten)]
+    pub long_run: Option<Lyapunov>,
     /// Seconds that the simulation took, without reading, writing and drawing.
     pub wall_s: f64,
     /// Where the revolutions that are drawn begin.
     #[serde(skip)]
     pub before_drawn: Motion,
+}
+
+/// What a run comes to in the long run, and how fast a small deviation grows there.
+#[derive(Clone, Debug, Serialize)]
+pub struct Lyapunov {
+    /// Growth of a small deviation per revolution, as a natural logarithm; minus infinity, which JSON has as null, where the follower comes to
+    /// rest on the cam.
+    pub lyapunov_per_revolution: f64,
+    /// Its standard error; none where it is by multipliers.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lyapunov_standard_error: Option<f64>,
+    /// The kind of motion.
+    pub kind: Kind,
+    /// What it is.
+    #[serde(skip)]
+    pub ending: LongRun,
+    /// Revolutions that the run was followed for until that was told.
+    pub followed: u64,
+    /// Those that it might have been.
+    pub budget: Budget,
+    /// How all this is known.
+    pub known: Known,
+}
+
+impl Lyapunov {
+    fn of(part: Part, budget: Budget) -> Self {
+        let (followed, ending) = (part.followed(), part.ending);
+        let (growth, kind) = (ending.growth(), ending.kind());
+        let lyapunov_standard_error = ending.of_growth().map(|_| growth.error).filter(|error| error.is_finite());
+        let (lyapunov_per_revolution, known) = (growth.value, Known::Sampled);
+        Self { lyapunov_per_revolution, lyapunov_standard_error, kind, ending, followed, budget, known }
+    }
 }
 
 /// The end of a run.
@@ -109,8 +140,6 @@ const STRIDE: u64 = 4096;
 const LOOKED: u32 = 1024;
 /// Parts of a revolution that progress is told in.
 const PARTS: f64 = 1000.0;
-/// Blocks of revolutions whose exponents tell the error of their mean.
-const BLOCKS: u32 = 20;
 /// Revolutions without an impact after which none is waited for.
 const PATIENCE: u64 = 100_000;
 
@@ -195,13 +224,11 @@ impl Simulation {
                 break;
             }
         }
-        let grown = if wanted.lyapunov {
-            watch.at("how fast a small deviation grows", 0, 0);
-            // A run of its own: it begins where the follower leaves the cam, and stops after each revolution.
-            Some(growth_and_error(machine, *first, revolutions, BLOCKS).map_err(StudyError::from)?)
-        } else {
-            None
+        let follow = |budget: Budget| -> Result<Lyapunov, StudyError> {
+            watch.at("what it comes to in the long run", 0, 0);
+            Ok(Lyapunov::of(long_run(machine, *first, budget)?, budget))
         };
+        let long_run = wanted.long_run.map(follow).transpose()?;
         Ok(Run {
             schema: "corner-impact/simulate/1",
             model: self.model.clone(),
@@ -216,8 +243,7 @@ impl Simulation {
                 velocity_m_s: motion.state.velocity,
                 contact: motion.contact,
             },
-            lyapunov_per_revolution: grown.map(|(mean, _)| mean),
-            lyapunov_standard_error: grown.and_then(|(_, error)| error),
+            long_run,
             wall_s: wall.as_secs_f64(),
             before_drawn,
         })

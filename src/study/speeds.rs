@@ -13,16 +13,15 @@ use crate::measured::{Likely, Measured};
 use crate::model::{Model, ModelError};
 use crate::orbit::branch::Event;
 use crate::orbit::cycle::own_speed;
-use crate::orbit::ending::{Ending, Kind};
+use crate::orbit::long_run::{Budget, Kind, LongRun};
 use crate::progress::Watch;
 use crate::simulate::{EventKind, Machine, SimulateError, angular_velocity};
-use crate::study::attractors::{
-    Attractors, AttractorsError, Cause, Change, Grid, Here, Part, Resolution, Row, Wandering, attractors,
-};
+use crate::study::attractors::{Attractors, AttractorsError, Cause, Change, Grid, Here, Resolution, Row, attractors};
 use crate::study::compared;
 use crate::study::design::contact::{Contact, Separation};
 use crate::study::design::known;
 use crate::study::machine;
+use crate::study::survey::{Part, Sample, Wandering};
 use crate::tolerance;
 
 /// What a machine does over a range of speeds: the document of `speeds --json`.
@@ -34,8 +33,10 @@ pub struct Speeds {
     pub rpm: [f64; 2],
     /// From one speed to the next, rpm.
     pub step: f64,
-    /// Starts of the sample at each speed.
-    pub starts: usize,
+    /// The starts at each speed.
+    pub sample: Sample,
+    /// For how long runs were followed.
+    pub budget: Budget,
     /// Whether runs began on the stable orbits of two impacts in one revolution, too.
     pub two_impacts: bool,
     /// Where the follower first leaves the cam above the lowest speed, by the force between them; its error has what a measured cam leaves open.
@@ -62,7 +63,9 @@ document!(Speeds as it {
     rpm: it.rpm,
     known: Known::Sampled,
     step_rpm: it.step,
-    starts: it.starts,
+    starts: it.sample.count(),
+    given if_any: matches!(it.sample, Sample::Given(_)).then_some(true),
+    budget: it.budget,
     two_impacts: it.two_impacts,
     missed_below_share: it.missed(),
     detachment_rpm: it.detachment().map(|[rpm, _]| rpm),
@@ -138,7 +141,9 @@ pub struct At {
     /// large side.
     pub share: Estimate,
     /// What it is.
-    pub ending: Ending,
+    pub ending: LongRun,
+    /// Revolutions that its runs were followed for, all together.
+    pub followed: u64,
     /// What runs did that neither rested nor came to an orbit soon.
     pub wandering: Wandering,
     /// Cam angles of its impacts, rad.
@@ -156,8 +161,9 @@ document!(At as it {
     impacts: it.ending.period().map(|(_, impacts)| impacts),
     revolutions_between_rests if_any: it.ending.between_rests(),
     impact_speed_m_s if_any: it.impact_speed,
-    growth if_any: it.ending.growth().map(|growth| growth.value),
-    growth_error if_any: it.ending.growth().map(|growth| growth.error),
+    growth: it.ending.growth().value,
+    growth_error: it.ending.growth().error,
+    followed: it.followed,
 });
 
 /// How often chaos rests on the cam, from runs that had wandered for long.
@@ -223,7 +229,7 @@ impl Speeds {
     /// The share of the starts' rectangle that a basin has which one of the starts of a speed hits with 95 %, if they were drawn by
     /// chance.
     pub fn missed(&self) -> f64 {
-        (HIT / self.starts as f64).min(1.0)
+        (HIT / self.sample.count() as f64).min(1.0)
     }
 
     /// Which starts leave the cam for good, if any do.
@@ -269,7 +275,7 @@ impl Attractor {
     pub fn rests(&self) -> Option<Rests> {
         /// Revolutions: what the runs of one speed are given.
         const TOLD: u64 = 100_000;
-        let is_wandering = |at: &&At| matches!(at.ending, Ending::Chaotic(_)) || at.ending.is_long();
+        let is_wandering = |at: &&At| matches!(at.ending, LongRun::Chaotic(_)) || at.ending.is_long();
         let all = self.at.iter().filter(is_wandering).fold(Wandering::default(), |all, at| all.with(at.wandering));
         let (rests, revolutions) = (all.rested, all.revolutions);
         let per = |count: f64| count / revolutions as f64;
@@ -305,7 +311,7 @@ fn two_digits(rpm: f64, towards: fn(f64) -> f64) -> f64 {
 pub fn speeds(
     model: &Model,
     range: [f64; 2],
-    resolution: Resolution,
+    resolution: &Resolution,
     watch: &dyn Watch,
 ) -> Result<Speeds, AttractorsError> {
     let Attractors { grid, mut rows, coexistence, separation, .. } = attractors(model, range, resolution, watch)?;
@@ -316,7 +322,8 @@ pub fn speeds(
     let separation = known(separation, noisy);
     if let Some(likely) = noisy {
         rows.par_iter_mut().for_each(|row| {
-            let errors = [0, 1].map(|side| error(&lowest, (likely, separation), row, side, &grid));
+            let errors =
+                [0, 1].map(|side| error((&lowest, &resolution.sample), (likely, separation), row, side, &grid));
             for (change, error) in row.ends.iter_mut().zip(errors) {
                 change.iter_mut().for_each(|change| change.error = error);
             }
@@ -363,7 +370,8 @@ pub fn speeds(
         model: model.name.clone(),
         rpm: range,
         step: resolution.step.rpm(),
-        starts: resolution.starts,
+        sample: resolution.sample.clone(),
+        budget: resolution.budget,
         two_impacts: resolution.two_impacts,
         separation,
         off,
@@ -411,7 +419,7 @@ fn dangers(model: &Model, cam: &Cam, rows: &[Row], range: [f64; 2]) -> Vec<Passe
 /// How far a measured cam may have moved what an attractor begins or ends with, rpm: by the event's equations, or by runs where it is
 /// known by runs.
 fn error(
-    machine: &Machine,
+    (machine, sample): (&Machine, &Sample),
     (likely, separation): (&Likely, Separation),
     row: &Row,
     side: usize,
@@ -431,8 +439,9 @@ fn error(
             _ => None,
         },
         (_, Some(event)) => by_equations(&|model, cam| event.moved(model, cam)),
-        (Cause::Runs, None) => likely
-            .error_by_runs(rpm, |model, cam| row.moved(&Machine::new(cam.clone(), &model.follower, speed), grid, side)),
+        (Cause::Runs, None) => likely.error_by_runs(rpm, |model, cam| {
+            row.moved(&Machine::new(cam.clone(), &model.follower, speed), grid, sample, side)
+        }),
         _ => None,
     }
 }
@@ -446,8 +455,8 @@ impl At {
         let impact_speed = impacts.iter().map(|[_, speed]| *speed).reduce(f64::max);
         let impact_angles = impacts.into_iter().map(|[angle, _]| angle).collect();
         let share = Estimate::share(here.count(part), here.sampled);
-        let (rpm, ending, wandering) = (here.rpm, part.ending.clone(), here.wandering);
-        Self { rpm, share, ending, wandering, impact_angles, impact_speed }
+        let (rpm, ending, followed, wandering) = (here.rpm, part.ending.clone(), part.followed(), here.wandering);
+        Self { rpm, share, ending, followed, wandering, impact_angles, impact_speed }
     }
 }
 
@@ -458,7 +467,7 @@ fn impacts(machine: &Machine, part: &Part) -> Result<Vec<[f64; 2]>, SimulateErro
     const SHOWN: u64 = 120;
     /// Impacts of them: before a rest there are any number.
     const MOST: usize = 600;
-    if let Ending::Orbit(orbit) = &part.ending {
+    if let LongRun::Orbit(orbit) = &part.ending {
         let of =
             |impact: &crate::simulate::Event| [impact.cam_angle, (impact.velocity_before - impact.cam_velocity).abs()];
         return Ok(orbit.impacts().map(of).collect());

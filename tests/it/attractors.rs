@@ -11,14 +11,15 @@ use crate::common;
 use crate::random::check;
 use corner_impact::estimate::{ErrorIs, Estimate};
 use corner_impact::model::Model;
-use corner_impact::orbit::ending::{Ending, Kind, Resting};
-use corner_impact::orbit::fate::{Fate, Run, Settling};
+use corner_impact::orbit::long_run::{Budget, Kind, LongRun, Recorded, StickingOrbit};
+use corner_impact::orbit::runs::{AfterRelease, LongRuns, RunOutcome};
 use corner_impact::orbit::{Course, PeriodicOrbit, Search, search};
 use corner_impact::progress::Unwatched;
-use corner_impact::simulate::{Event, EventKind, Machine, Motion, SimulateError, angular_velocity};
-use corner_impact::study::attractors::{AttractorsError, Cause, Change, Here, Resolution, Starts, Step};
-use corner_impact::study::basins::Grid;
+use corner_impact::simulate::{Event, EventKind, Machine, Met, Motion, SimulateError, angular_velocity};
+use corner_impact::study::attractors::{AttractorsError, Cause, Change, Here, Resolution, Step};
+use corner_impact::study::basins::{Grid, SectionStarts};
 use corner_impact::study::speeds::{At, Attractor, Speeds, speeds, usual_range};
+use corner_impact::study::survey::{Sample, Starts};
 
 /// A ball on a table that goes up and down by a millimetre.
 pub fn ball() -> Model {
@@ -27,9 +28,15 @@ pub fn ball() -> Model {
     Model::parse("ball.toml", text).unwrap()
 }
 
+/// What a motion comes to that settles on nothing, of so much growth with so much error, as much in the first half of its record as in the second.
+pub fn by_growth(value: f64, error: f64) -> LongRun {
+    let growth = Estimate { value, error, error_is: ErrorIs::Standard };
+    let met = Met { impacts: 100, impact_speed: 1.0 };
+    LongRun::by_growth(Recorded { growth, halves: [50.0 * value; 2], met, revolutions: 100, runs: 1 })
+}
+
 fn found(model: &Model, range: [f64; 2], step: f64, starts: usize) -> Speeds {
-    let found =
-        speeds(model, range, Resolution { step: Step::at_most(step), starts, two_impacts: false }, &Unwatched).unwrap();
+    let found = speeds(model, range, &Resolution::new(Step::at_most(step), starts), &Unwatched).unwrap();
     for attractor in &found.attractors {
         let ends = [(attractor.rpm[0], &attractor.birth), (attractor.rpm[1], &attractor.death)];
         // What ends inside of the range does so for a reason.
@@ -151,7 +158,7 @@ fn one_long_motion_is_one() {
         assert!(found.coexistence.is_empty(), "{rpm}: {:?}", found.coexistence);
         let machine = machine(&model, rpm);
         let grid = Grid { cam_angle: 0.0, positions: [0.4, 4.0], velocities: [-60.0, 60.0], cells: [20, 20] };
-        let basins = grid.basins(&machine, Default::default(), None).unwrap();
+        let basins = SectionStarts::Grid(grid).basins(&machine, Budget::SURVEY, None, &Unwatched).unwrap();
         assert_eq!(basins.parts.len(), 1, "{rpm}: {:?}", basins.parts);
     }
 }
@@ -163,7 +170,7 @@ fn one_long_motion_is_one() {
 fn what_is_left_by_chance_is_no_attractor_and_what_outlasts_rests_is() {
     let model = common::osorio();
     let kinds = |rpm: f64| {
-        let here = Here::new(&machine(&model, rpm), rpm, 64).unwrap();
+        let here = Here::new(&machine(&model, rpm), rpm, &Sample::Spread(64)).unwrap();
         here.parts.iter().map(|part| (part.ending.kind(), part.ending.is_long(), here.count(part))).collect::<Vec<_>>()
     };
     let [(Kind::Resting, true, most), (Kind::Chaotic, _, few)] = kinds(478.0)[..] else { panic!("{:?}", kinds(478.0)) };
@@ -176,9 +183,9 @@ fn what_is_left_by_chance_is_no_attractor_and_what_outlasts_rests_is() {
 /// From rest alone, where the follower is let go and comes to wander: what is kept of that is chaos, and not how it began.
 #[test]
 fn what_wanders_from_a_rest_is_told_from_where_it_has_forgotten_that() {
-    let here = Here::new(&machine(&common::osorio(), 380.0), 380.0, 0).unwrap();
+    let here = Here::new(&machine(&common::osorio(), 380.0), 380.0, &Sample::Spread(0)).unwrap();
     let [part] = &here.parts[..] else { panic!("{here:?}") };
-    assert!(matches!(part.ending, Ending::Chaotic(_)) && part.motion.revolution > 50, "{part:?}");
+    assert!(matches!(part.ending, LongRun::Chaotic(_)) && part.motion.revolution > 50, "{part:?}");
 }
 
 /// A release is followed by the same motion each time, however long that is and whatever came before.
@@ -187,10 +194,10 @@ fn a_motion_that_rests_repeats_from_its_release_on() {
     let model = common::osorio();
     for (rpm, long) in [(150.0, false), (236.0, false), (324.0, false), (300.0, true), (600.0, true)] {
         let machine = machine(&model, rpm);
-        let settling = Settling::new(&machine, 8).unwrap();
+        let settling = LongRuns::new(&machine, Budget { longest: 8, ..Budget::SURVEY }).unwrap();
         let mut motion = machine.start_on_cam(0.0, 0.0).unwrap();
-        let Run::Released(release) = settling.run(&mut motion, 10_000).unwrap() else { panic!("{rpm}") };
-        let Fate::Recurs(rests) = settling.fate(release).unwrap() else { panic!("{rpm}") };
+        let RunOutcome::Released(release) = settling.run(&mut motion, 10_000).unwrap() else { panic!("{rpm}") };
+        let AfterRelease::Recurs(rests) = settling.after_release(release, |_| None).unwrap().0 else { panic!("{rpm}") };
         assert_eq!(rests.is_long(), long, "{rpm}: {rests:?}");
         // The event loop by itself, with neither: so many revolutions and impacts from one release to the same one.
         let mut motion = settling.released(rests.releases[0]).unwrap();
@@ -208,7 +215,7 @@ fn a_motion_that_rests_repeats_from_its_release_on() {
         if !long {
             assert_eq!((motion.revolution - begun.revolution, impacts), (rests.revolutions, rests.impacts), "{rpm}");
         }
-        assert_eq!(Ending::Resting(rests).kind(), Kind::Resting);
+        assert_eq!(LongRun::Sticking(rests).kind(), Kind::Resting);
     }
 }
 
@@ -217,10 +224,10 @@ fn a_motion_that_rests_repeats_from_its_release_on() {
 fn a_run_arrives_where_its_distance_shrinks() {
     let model = common::osorio();
     let machine = machine(&model, 700.0);
-    let settling = Settling::new(&machine, 8).unwrap();
+    let settling = LongRuns::new(&machine, Budget { longest: 8, ..Budget::SURVEY }).unwrap();
     let orbit = settling.known().next().unwrap().clone();
     let mut on_it = machine.start(0.0, orbit.state).unwrap();
-    assert!(matches!(settling.run(&mut on_it, 100).unwrap(), Run::Arrives(found) if found == orbit));
+    assert!(matches!(settling.run(&mut on_it, 100).unwrap(), RunOutcome::Arrives(found) if found == orbit));
     let saddle =
         corner_impact::orbit::search(&machine, &corner_impact::orbit::Search { revolutions: 1, impacts: Some(1) })
             .unwrap()
@@ -229,7 +236,7 @@ fn a_run_arrives_where_its_distance_shrinks() {
             .unwrap();
     // On the saddle to the last bit a run stays for a while.
     let mut passing = machine.start(0.0, saddle.state).unwrap();
-    assert_eq!(settling.run(&mut passing, 8).unwrap(), Run::Wanders);
+    assert_eq!(settling.run(&mut passing, 8).unwrap(), RunOutcome::Wanders);
 }
 
 /// Of the paper's cam at 356 rpm an orbit of two impacts in one revolution draws one start of eight. A single start, alike at all speeds nearby,
@@ -238,8 +245,8 @@ fn a_run_arrives_where_its_distance_shrinks() {
 fn runs_begin_on_all_orbits_of_two_impacts_where_that_is_asked_for() {
     let paper = common::osorio();
     let at = |two_impacts: bool| {
-        let resolution = Resolution { step: Step::at_most(0.01), starts: 1, two_impacts };
-        speeds(&paper, [356.0, 356.01], resolution, &Unwatched).unwrap()
+        let resolution = Resolution { two_impacts, ..Resolution::new(Step::at_most(0.01), 1) };
+        speeds(&paper, [356.0, 356.01], &resolution, &Unwatched).unwrap()
     };
     let (without, with) = (at(false), at(true));
     assert!(periodic(&without, (1, 2)).is_none() && without.coexistence.is_empty(), "{without:?}");
@@ -256,8 +263,8 @@ fn speeds_of_a_grid_are_the_same_for_every_range() {
     assert_eq!(Step::at_most(0.001).rpm(), 0.001);
     assert_eq!(Step::at_most(19.9).rpm(), 10.0);
     let refused = |range, step| {
-        let resolution = Resolution { step: Step::at_most(step), starts: 1, two_impacts: false };
-        speeds(&common::osorio(), range, resolution, &Unwatched).unwrap_err()
+        let resolution = Resolution::new(Step::at_most(step), 1);
+        speeds(&common::osorio(), range, &resolution, &Unwatched).unwrap_err()
     };
     assert!(matches!(refused([0.0, 700.0], 1.0), AttractorsError::NoRange { .. }));
     assert!(matches!(refused([700.0, 700.0], 1.0), AttractorsError::NoRange { .. }));
@@ -279,7 +286,7 @@ fn parts_agree(model: &Model, whole: &Speeds, step: f64, parts: u32) {
     let [low, high] = whole.rpm;
     let ends: Vec<f64> = (0..=parts).map(|part| low + (high - low) * f64::from(part) / f64::from(parts)).collect();
     let each: Vec<Speeds> =
-        ends.windows(2).map(|range| found(model, [range[0], range[1]], step, whole.starts)).collect();
+        ends.windows(2).map(|range| found(model, [range[0], range[1]], step, whole.sample.count())).collect();
     let (joined, all) = (sorted_events(&each), sorted_events(std::slice::from_ref(whole)));
     assert_eq!(joined.len(), all.len(), "{} in {parts}: {joined:?} {all:?}", model.name);
     for (one, two) in joined.iter().zip(&all) {
@@ -303,7 +310,7 @@ fn parts_agree(model: &Model, whole: &Speeds, step: f64, parts: u32) {
 
 /// At half the step there are the located events of the whole step, and where that knows an end by runs, an end within its bracket.
 fn resolutions_agree(model: &Model, coarse: &Speeds, step: f64) {
-    let fine = found(model, coarse.rpm, 0.5 * step, coarse.starts);
+    let fine = found(model, coarse.rpm, 0.5 * step, coarse.sample.count());
     let changes = |found: &Speeds| -> Vec<Change> {
         found.attractors.iter().flat_map(|attractor| [&attractor.birth, &attractor.death]).flatten().cloned().collect()
     };
@@ -383,7 +390,7 @@ fn orbits_between_two_speeds_are_found() {
 }
 
 /// Whether a run that has settled, at cam angle 0, is on the motion that is listed: told by where it goes and what it meets in one period.
-fn is_on(machine: &Machine, mut motion: Motion, ending: &Ending) -> bool {
+fn is_on(machine: &Machine, mut motion: Motion, ending: &LongRun) -> bool {
     let size = machine.cam().top().abs().max(motion.state.position.abs()) * 1e-4;
     let mut events = Vec::new();
     let mut goes_on = |motion: &mut Motion, revolutions: u64| {
@@ -396,7 +403,7 @@ fn is_on(machine: &Machine, mut motion: Motion, ending: &Ending) -> bool {
     };
     let before = motion.state;
     match ending {
-        Ending::Orbit(orbit) => {
+        LongRun::Orbit(orbit) => {
             let Some(events) = goes_on(&mut motion, orbit.revolutions) else { return false };
             let fast = (motion.state.velocity - before.velocity) / machine.angular_velocity();
             let impacts = events.iter().filter(|event| event.kind == EventKind::Impact).count();
@@ -404,15 +411,15 @@ fn is_on(machine: &Machine, mut motion: Motion, ending: &Ending) -> bool {
             // What swings above the cam for ever, or drifts there, repeats nothing and meets nothing.
             impacts == orbit.impacts().count() && (apart < size || impacts == 0)
         }
-        Ending::Stays => motion.contact && goes_on(&mut motion, 1).is_some_and(|events| events.is_empty()),
-        Ending::Resting(resting) => {
+        LongRun::PermanentContact => motion.contact && goes_on(&mut motion, 1).is_some_and(|events| events.is_empty()),
+        LongRun::Sticking(resting) => {
             let Some(events) = goes_on(&mut motion, 20 * resting.between_rests().ceil() as u64) else { return false };
             let releases = events.iter().filter(|event| event.kind == EventKind::Release);
             let mut near =
                 releases.map(|event| resting.releases.iter().any(|angle| (event.cam_angle - angle).abs() < 1e-3));
             resting.is_long() || near.next_back() == Some(true)
         }
-        Ending::Chaotic(_) | Ending::Undecided(_) => true,
+        LongRun::Chaotic(_) | LongRun::Undecided(_) => true,
     }
 }
 
@@ -431,8 +438,7 @@ fn plain_runs_end_on_what_is_listed() {
         }
         let step = Step::at_most(0.2 * case.rpm);
         let range = [0.8 * case.rpm, 1.2 * case.rpm];
-        let Ok(found) = speeds(&case.model, range, Resolution { step, starts: 32, two_impacts: false }, &Unwatched)
-        else {
+        let Ok(found) = speeds(&case.model, range, &Resolution::new(step, 32), &Unwatched) else {
             return Ok(());
         };
         let listed = found.attractors.iter().flat_map(|attractor| &attractor.at);
@@ -473,38 +479,51 @@ fn plain_runs_end_on_what_is_listed() {
 fn endings_are_told_apart() {
     let rests = |releases: &[f64], growth: f64| {
         let releases = releases.to_vec();
-        Resting { releases, revolutions: 7, impacts: 5, impact_speed: 1.0, growth }
+        StickingOrbit { releases, revolutions: 7, impacts: 5, impact_speed: 1.0, growth }
     };
     let [short, long] = [1.0, 60.0];
     assert!(!rests(&[1.0], 22.0).is_long() && rests(&[1.0], 23.0).is_long());
     assert_eq!(rests(&[1.0, 2.0], short).between_rests(), 3.5);
-    let one = Ending::Resting(rests(&[1.0, 2.0], short));
-    let same = Ending::Resting(rests(&[2.0], short));
-    let other = Ending::Resting(rests(&[3.0], short));
-    let [seldom, as_seldom] = [4.0, 5.0].map(|release| Ending::Resting(rests(&[release], long)));
-    let estimate = |value: f64, error: f64| Estimate { value, error, error_is: ErrorIs::Standard };
-    let [chaotic, undecided] = [Ending::by_growth(estimate(1.0, 0.1)), Ending::by_growth(estimate(0.01, 0.1))];
+    let one = LongRun::Sticking(rests(&[1.0, 2.0], short));
+    let same = LongRun::Sticking(rests(&[2.0], short));
+    let other = LongRun::Sticking(rests(&[3.0], short));
+    let [seldom, as_seldom] = [4.0, 5.0].map(|release| LongRun::Sticking(rests(&[release], long)));
+    let [chaotic, undecided] = [by_growth(1.0, 0.1), by_growth(0.01, 0.1)];
     assert_eq!([chaotic.kind(), undecided.kind()], [Kind::Chaotic, Kind::Undecided]);
     let model = common::osorio();
     let [orbits, others] = [700.0, 710.0].map(|rpm| {
         let machine = machine(&model, rpm);
         search(&machine, &Search { revolutions: 1, impacts: Some(1) }).unwrap()
     });
-    let orbit = |orbit: &PeriodicOrbit| Ending::Orbit(orbit.clone());
-    let are = |one: &Ending, two: &Ending| one.is_same(two) && two.is_same(one);
+    let orbit = |orbit: &PeriodicOrbit| LongRun::Orbit(orbit.clone());
+    let are = |one: &LongRun, two: &LongRun| one.is_same(two) && two.is_same(one);
     assert!(
-        are(&one, &same) && are(&seldom, &as_seldom) && are(&seldom, &chaotic) && are(&Ending::Stays, &Ending::Stays)
+        are(&one, &same)
+            && are(&seldom, &as_seldom)
+            && are(&seldom, &chaotic)
+            && are(&LongRun::PermanentContact, &LongRun::PermanentContact)
     );
     assert!(are(&orbit(&orbits[0]), &orbit(&orbits[0])) && are(&undecided, &undecided));
-    let apart =
-        [&one, &other, &seldom, &undecided, &Ending::Stays, &orbit(&orbits[0]), &orbit(&orbits[1]), &orbit(&others[0])];
+    let apart = [
+        &one,
+        &other,
+        &seldom,
+        &undecided,
+        &LongRun::PermanentContact,
+        &orbit(&orbits[0]),
+        &orbit(&orbits[1]),
+        &orbit(&others[0]),
+    ];
     for (index, one) in apart.iter().enumerate() {
         assert!(apart[..index].iter().all(|two| !one.is_same(two) && !two.is_same(one)), "{one:?}");
     }
     assert!(!one.is_same(&chaotic) && !chaotic.is_same(&one) && !undecided.is_same(&chaotic));
     assert_eq!([one.between_rests(), chaotic.between_rests()], [Some(3.5), None]);
-    assert_eq!([chaotic.growth(), undecided.growth()], [Some(estimate(1.0, 0.1)), Some(estimate(0.01, 0.1))]);
-    assert_eq!([one.growth(), Ending::Stays.growth()], [None, None]);
+    assert_eq!([&chaotic, &undecided].map(|it| (it.growth().value, it.growth().error)), [(1.0, 0.1), (0.01, 0.1)]);
+    assert_eq!([&one, &LongRun::PermanentContact].map(|it| it.growth().value), [f64::NEG_INFINITY; 2]);
+    // A stable orbit's is that of its multipliers: r a revolution of one impact.
+    let settled = LongRun::Orbit(orbits.iter().find(|orbit| orbit.is_stable()).unwrap().clone());
+    assert_relative_eq!(settled.growth().value, 0.5 * 0.64_f64.ln(), max_relative = 1e-3);
     // Followers that rest all the time, or for a while, and one that never meets the cam.
     let stuck = |rpm: f64| {
         let machine = machine(&model, rpm);
@@ -520,7 +539,7 @@ fn endings_are_told_apart() {
         assert!(apart[..index].iter().all(|two| !one.is_same(two) && !two.is_same(one)), "{one:?}");
     }
     assert_eq!([one.is_long(), seldom.is_long(), chaotic.is_long()], [false, true, false]);
-    assert_eq!([one.period(), seldom.period(), Ending::Stays.period()], [Some((7, 5)), None, Some((1, 0))]);
+    assert_eq!([one.period(), seldom.period(), LongRun::PermanentContact.period()], [Some((7, 5)), None, Some((1, 0))]);
 }
 
 /// From below where the follower leaves the cam, 0.8 of that speed, to twice it; where it never does, from half to twice the speed at
@@ -562,7 +581,7 @@ fn a_range_of_speeds_is_chosen_by_the_machine() {
 
 /// What twenty-four starts, and rest on the cam, come to at a speed.
 fn from_starts(model: &Model, rpm: f64) -> Here {
-    Here::new(&machine(model, rpm), rpm, 24).unwrap()
+    Here::new(&machine(model, rpm), rpm, &Sample::Spread(24)).unwrap()
 }
 
 /// In a hundred thousand revolutions runs bounced on for long before they came to rest: a start that was not seen to rest was only not waited for.
@@ -571,7 +590,7 @@ fn chaos_that_is_seen_to_rest_is_no_other_motion_than_what_rests() {
     for rpm in [655.0, 665.2, 668.1] {
         let here = from_starts(&common::osorio(), rpm);
         assert!(here.wandering.rested > 0 && here.wandering.revolutions >= 100_000, "{rpm}: {:?}", here.wandering);
-        let wild: Vec<&Ending> =
+        let wild: Vec<&LongRun> =
             here.parts.iter().map(|part| &part.ending).filter(|it| it.period().is_none()).collect();
         assert!(matches!(wild[..], [it] if it.is_long()), "{rpm}: {wild:?}");
     }

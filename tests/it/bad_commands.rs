@@ -133,7 +133,6 @@ fn arguments_that_exclude_or_need_each_other() {
         ("--impacts 5 --revolutions 5", ["--revolutions <N>", "--impacts <N>"]),
         ("--impacts 5 --trace x.svg", ["--trace <FILE>", "--impacts <N>"]),
         ("--impacts 5 --phase-plane x.svg", ["--phase-plane <FILE>", "--impacts <N>"]),
-        ("--impacts 5 --lyapunov", ["--lyapunov", "--impacts <N>"]),
         ("--state 1,0 --relative-velocity 1", ["--state <Q,V>", "--relative-velocity <U>"]),
         ("--strobe 1", ["--strobe-out <FILE>", "not provided"]),
         ("--strobe-out x.csv", ["--strobe <RAD>", "not provided"]),

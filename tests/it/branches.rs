@@ -9,13 +9,13 @@ use crate::properties::depth;
 use corner_impact::cam::Cam;
 use corner_impact::model::Model;
 use corner_impact::orbit::branch::{Branch, BranchPoint, End, Following, Kind};
-use corner_impact::orbit::ending::Ending;
-use corner_impact::orbit::fate::Settling;
+use corner_impact::orbit::long_run::{Budget, LongRun};
 use corner_impact::orbit::{Course, Eigenvalue, Parameter, PeriodicOrbit, Search, eigenvalues, search};
 use corner_impact::progress::Unwatched;
 use corner_impact::section::StroboscopicMap;
 use corner_impact::simulate::{Event, EventKind, Machine, angular_velocity};
 use corner_impact::study::continuation::branches;
+use corner_impact::study::survey::long_run;
 
 fn machine(model: &Model, rpm: f64) -> Machine {
     Machine::new(Cam::new(model).unwrap(), &model.follower, angular_velocity(rpm))
@@ -385,8 +385,8 @@ fn the_bracket_of_a_special_point_holds_it_from_wherever_it_is_reached() {
 fn settled_orbit(model: &Model, rpm: f64, revolutions: u64) -> PeriodicOrbit {
     let machine = machine(model, rpm);
     let start = machine.start_on_cam(0.0, 0.0).unwrap();
-    let settling = Settling::new(&machine, revolutions).unwrap();
-    let Ending::Orbit(orbit) = settling.ending(start, 3000).unwrap() else { panic!("{rpm}") };
+    let budget = Budget { transient: 3000, record: 1600, longest: revolutions, patience: 0 };
+    let LongRun::Orbit(orbit) = long_run(&machine, start, budget).unwrap().ending else { panic!("{rpm}") };
     assert_eq!(orbit.revolutions, revolutions);
     orbit
 }

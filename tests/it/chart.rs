@@ -8,7 +8,8 @@ use serde_json::Value;
 use crate::common;
 
 const MODEL: &str = "models/osorio-2008.toml";
-const COLUMNS: &str = "x,y,class,revolutions,impacts,growth_rate,growth_error,impact_speed_m_s,impacts_per_revolution";
+const COLUMNS: &str =
+    "x,y,class,revolutions,impacts,growth_rate,growth_error,impact_speed_m_s,impacts_per_revolution,followed";
 
 fn prints(arguments: &[&str]) -> String {
     let output = common::corner_impact(arguments);

@@ -6,11 +6,12 @@ use corner_impact::diagram::{Placed, Speeds, Start};
 use corner_impact::flight::State;
 use corner_impact::model::Model;
 use corner_impact::orbit::Parameter;
-use corner_impact::orbit::ending::Kind;
+use corner_impact::orbit::long_run::{Budget, Kind};
 use corner_impact::progress::Unwatched;
 use corner_impact::study::chaos::chaos;
 use corner_impact::study::chart::store::{CLASSES, Shard, Store, StoreError, VARIABLES, blocks_of, status};
-use corner_impact::study::chart::{Axis, Blocks, Chart, ChartError, Lengths, Point};
+use corner_impact::study::chart::{Axis, Blocks, Chart, ChartError};
+use corner_impact::study::survey::Point;
 use serde_json::{Value, json};
 
 use crate::common;
@@ -24,7 +25,7 @@ fn axis(model: &Model, name: &str, low: f64, high: f64, count: usize) -> Axis {
 
 pub fn chart(model: &Model, record: u64) -> Chart {
     let axes = [axis(model, "rpm", 100.0, 180.0, 5), axis(model, "restitution", 0.1, 0.7, 4)];
-    Chart::new(model, None, axes, START, Lengths { transient: 20, record }).unwrap()
+    Chart::new(model, None, axes, START, Budget { transient: 20, record, ..Budget::CHART }).unwrap()
 }
 
 /// In blocks of two columns and three rows, of which the last are not whole: what a block lacks is what no point has.
@@ -111,7 +112,8 @@ fn a_store_that_cannot_be_read_is_not_begun_anew() {
 fn the_times_of_blocks_are_added_up() {
     let paper = common::osorio();
     let axes = [axis(&paper, "rpm", 670.0, 671.0, 4), axis(&paper, "restitution", 0.8, 0.801, 2)];
-    let chart = Chart::new(&paper, None, axes, START, Lengths { transient: 60_000, record: 10 }).unwrap();
+    let chart =
+        Chart::new(&paper, None, axes, START, Budget { transient: 60_000, record: 10, ..Budget::CHART }).unwrap();
     let folder = tempfile::TempDir::new().unwrap();
     let store = Store::open(folder.path(), &chart, [2, 2]).unwrap();
     let [processor, clock] = store.fill(Shard::ALL, Some(1), &Unwatched).unwrap().times;
@@ -132,7 +134,7 @@ fn another_chart_is_told_by_what_is_another() {
     says(&own, [3, 2], "its number of rows and columns of a block is [3,2], and not [2,3]");
     says(&chart(&paper, 9), [2, 3], "its record is 8, and not 9");
     let mut longer = own.clone();
-    longer.lengths.transient = 21;
+    longer.budget.transient = 21;
     says(&longer, [2, 3], "its transient is 20, and not 21");
     let mut elsewhere = own.clone();
     elsewhere.start = Start { cam_angle: 1.0, follower: Placed::At(State { position: 2.0, velocity: 3.0 }) };
@@ -177,8 +179,8 @@ fn another_chart_is_told_by_what_is_another() {
 #[test]
 fn charts_that_cannot_be_are_refused_and_speeds_that_cannot_are_points() {
     let paper = common::osorio();
-    let lengths = Lengths { transient: 20, record: 8 };
-    let new = |rpm, axes: [Axis; 2]| Chart::new(&paper, rpm, axes, START, lengths);
+    let budget = Budget { transient: 20, record: 8, ..Budget::CHART };
+    let new = |rpm, axes: [Axis; 2]| Chart::new(&paper, rpm, axes, START, budget);
     let (speed, mass) = (axis(&paper, "rpm", 100.0, 180.0, 3), axis(&paper, "mass", 1.0, 2.0, 2));
     let damping = axis(&paper, "damping", 0.0, 1.0, 2);
     let told = |found: Result<Chart, ChartError>| found.map(|_| ()).unwrap_err();
@@ -215,7 +217,7 @@ fn what_flies_off_for_good_is_not_chaotic() {
     let away = Model::parse("away.toml", text).unwrap();
     let machine = machine(&away, 100.0);
     let start = Start { cam_angle: 1.0, follower: Placed::OnCam(0.1) };
-    let found = Point::of(&machine, start.motion(&machine).unwrap(), Lengths::default()).unwrap();
+    let found = Point::of(&machine, start.motion(&machine).unwrap(), Budget::CHART).unwrap();
     assert_eq!((found.kind, found.impacts, found.impact_rate, found.impact_speed), (Kind::Undecided, 0, 0.0, 0.0));
     // Of one cam of one law nothing is taken for granted but its numbers; of one of several that they meet.
     let hypotheses = |model: &Model, rpm: f64| chaos(model, [rpm; 2], false, &Unwatched).unwrap().hypotheses.len();
@@ -227,7 +229,7 @@ fn what_flies_off_for_good_is_not_chaotic() {
 #[test]
 fn what_repeats_after_several_revolutions_is_told_for_one() {
     let machine = machine(&common::osorio().with_number("follower.restitution", 0.3).unwrap(), 558.6440677966102);
-    let found = Point::of(&machine, START.motion(&machine).unwrap(), Lengths::default()).unwrap();
+    let found = Point::of(&machine, START.motion(&machine).unwrap(), Budget::CHART).unwrap();
     assert_eq!((found.kind, found.revolutions, found.impacts), (Kind::Periodic, 7, 15));
     assert_eq!(found.impact_rate, 15.0 / 7.0);
     let mut motion = START.motion(&machine).unwrap();
@@ -275,7 +277,7 @@ fn a_store_is_described_alike_as_a_whole_and_by_its_arrays() {
 fn seconds_of_threads_are_those_of_processors() {
     let paper = common::osorio();
     let axes = [axis(&paper, "rpm", 600.0, 700.0, 10), axis(&paper, "restitution", 0.1, 0.7, 64)];
-    let chart = Chart::new(&paper, None, axes, START, Lengths { transient: 50, record: 50 }).unwrap();
+    let chart = Chart::new(&paper, None, axes, START, Budget { transient: 50, record: 50, ..Budget::CHART }).unwrap();
     let processors = std::thread::available_parallelism().unwrap().get();
     let [processor, clock] = chart.run(Some(8 * processors), &Unwatched).unwrap().times;
     assert!(processor > 0.0 && processor < 1.2 * processors as f64 * clock, "{processor} {clock}");

@@ -298,7 +298,7 @@ fn pictures_are_pictures() {
 /// At 183 rpm the follower sticks in every revolution, at 700 rpm never.
 #[test]
 fn an_exponent_of_a_follower_that_sticks_is_minus_infinity() {
-    let why = "it stuck to the cam";
+    let why = "it rests on the cam";
     let simulate = |rpm| ["simulate", MODEL, "--rpm", rpm, "--lyapunov"];
     let page = prints(&simulate("183"));
     assert!(page.contains("Lyapunov exponent -inf per revolution") && page.contains(why), "{page}");
@@ -306,8 +306,9 @@ fn an_exponent_of_a_follower_that_sticks_is_minus_infinity() {
     let page = prints(&simulate("700"));
     assert!(page.contains("Lyapunov exponent -0.") && !page.contains(why), "{page}");
     // Of chaos the mean has an error, which falls with the root of the revolutions, more or less.
-    let error = |revolutions| {
-        let chaos = ["simulate", MODEL, "--rpm", "672", "--lyapunov", "--summary", "--revolutions", revolutions];
+    let error = |record| {
+        let chaos =
+            ["simulate", MODEL, "--rpm", "672", "--lyapunov", "--summary", "--patience", "0", "--record", record];
         document(&chaos)["lyapunov_standard_error"].as_f64().unwrap()
     };
     let (short, long) = (error("1000"), error("16000"));

@@ -312,8 +312,8 @@ fn every_command_tells_of_the_danger() {
     assert_eq!(it["classification"]["danger"]["kind"], "dangerous");
     assert!(page(&located).contains("persistence, dangerous"));
 
-    let resolution = Resolution { step: Step::for_speeds([59.98, 60.02], 4), starts: 8, two_impacts: false };
-    let surveyed = speeds(&model, [59.98, 60.02], resolution, &Unwatched).unwrap();
+    let resolution = Resolution::new(Step::for_speeds([59.98, 60.02], 4), 8);
+    let surveyed = speeds(&model, [59.98, 60.02], &resolution, &Unwatched).unwrap();
     let [event] = surveyed.dangers.as_slice() else { panic!("{:?}", surveyed.dangers) };
     assert_relative_eq!(event.speed_rpm, 60.0, max_relative = 1e-9);
     assert_eq!((event.danger.kind, event.attractors.len()), (DangerKind::Dangerous, 1));

@@ -7,12 +7,12 @@ use corner_impact::model::Model;
 use corner_impact::orbit::branch::{
     Bifurcation, Border, Branch, BranchPoint, Doubt, End, FirstTouch, Following, GrazeClass, Kind,
 };
-use corner_impact::orbit::ending::Ending;
-use corner_impact::orbit::fate::Settling;
+use corner_impact::orbit::long_run::{Budget, LongRun};
 use corner_impact::orbit::{Course, Parameter, PeriodicOrbit, Search, search};
 use corner_impact::progress::Unwatched;
 use corner_impact::simulate::{Machine, angular_velocity};
 use corner_impact::study::curve::curves;
+use corner_impact::study::survey::long_run;
 
 /// An oscillator of mass 1 at 0, and a wall that is moved harmonically by 1 about an offset.
 fn wall(damping: f64, stiffness: f64, offset: f64) -> Model {
@@ -209,13 +209,13 @@ fn a_class_that_is_not_known_has_its_reason() {
 }
 
 /// What a follower comes to that rests at 0 while the wall comes up `far` beyond the graze.
-fn beyond(damping: f64, rpm: f64, far: f64) -> Ending {
+fn beyond(damping: f64, rpm: f64, far: f64) -> LongRun {
     let machine = machine(&wall(damping, 1.0, -1.0 + far), rpm);
-    let settling = Settling::unaided(&machine, 30, 1000);
+    let budget = Budget { transient: 2000, record: 1600, longest: 30, patience: 0 };
     // From the wall, as a follower at rest meets it.
     let angle = TAU - (2.0 * far).sqrt();
     let motion = machine.start_on_cam(angle, 0.8 * angular_velocity(rpm) * (2.0 * far).sqrt()).unwrap();
-    settling.ending(motion, 2000).unwrap()
+    long_run(&machine, motion, budget).unwrap().ending
 }
 
 /// How far it is from the wall's top at most, once it has been near it for so many revolutions.
@@ -260,8 +260,8 @@ fn the_orbits_beyond_a_graze_are_where_its_class_has_them() {
         let response = ((-0.5 * (3.0 - root) * time).exp() - (-0.5 * (3.0 + root) * time).exp()) / root;
         (1.8 * response * angular_velocity(rpm)).powi(2) * 2.0
     };
-    let period = |ending: &Ending| match ending {
-        Ending::Orbit(orbit) if orbit.impacts().count() == 1 => Some(orbit.revolutions),
+    let period = |ending: &LongRun| match ending {
+        LongRun::Orbit(orbit) if orbit.impacts().count() == 1 => Some(orbit.revolutions),
         _ => None,
     };
     for n in [5, 6] {
@@ -283,11 +283,11 @@ fn the_orbits_beyond_a_graze_are_where_its_class_has_them() {
         assert_eq!(period(&found), Some(n as u64), "{found:?}");
         let above = (high * 0.75 * size(lambda, n - 1)).sqrt();
         let found = beyond(3.0, rpm_of(3.0, lambda), above);
-        assert!(found.growth().is_some_and(|growth| growth.value > 3.0 * growth.error), "{found:?}");
+        assert!(found.of_growth().is_some_and(|it| it.growth.value > 3.0 * it.growth.error), "{found:?}");
     }
     for far in [1e-3, 3e-4, 1e-4] {
         let found = beyond(3.0, rpm_of(3.0, 0.75), far);
-        assert!(found.growth().is_some_and(|growth| growth.value > 3.0 * growth.error), "{far}: {found:?}");
+        assert!(found.of_growth().is_some_and(|it| it.growth.value > 3.0 * it.growth.error), "{far}: {found:?}");
     }
 }
 

@@ -5,19 +5,21 @@ use crate::common;
 use corner_impact::border_collision::{LocalMap, passage};
 use corner_impact::corner::variational::border as border_of_the_map;
 use corner_impact::corner::{range, variational};
-use corner_impact::diagram::{exponent, growth};
+use corner_impact::diagram::{Record, growth};
 use corner_impact::flight::State;
 use corner_impact::model::{Model, Study};
-use corner_impact::orbit::ending::Ending;
-use corner_impact::orbit::fate::Settling;
+use corner_impact::orbit::long_run::{Budget, LongRun};
 use corner_impact::orbit::{Course, Search, search};
 use corner_impact::progress::Unwatched;
 use corner_impact::section::StroboscopicMap;
-use corner_impact::simulate::{Machine, angular_velocity};
-use corner_impact::study::attractors::Patience;
+use corner_impact::simulate::{Machine, Motion, angular_velocity};
 use corner_impact::study::basins::boundary::{approach, border};
-use corner_impact::study::basins::{Curve, Extent, Grid, Reversed, Saddle};
+use corner_impact::study::basins::{Curve, Extent, Grid, Reversed, Saddle, SectionStarts};
+use corner_impact::study::survey::long_run;
 use corner_impact::study::verify::{External, verify};
+
+/// A budget within which runs are told that are not waited for.
+const SOON: Budget = Budget { patience: 0, ..Budget::SURVEY };
 
 /// Half a revolution from P.
 pub const SECTION: f64 = 5.762717154756;
@@ -80,7 +82,7 @@ fn the_border_of_the_basins_is_the_saddles_stable_manifold() {
     let mut distances = Vec::new();
     for velocity in [-30.0, -24.0, -18.0, -12.0, -6.0, 0.0, 4.0] {
         let line = [0.6, 6.0].map(|position| State { position, velocity });
-        let found = border(&map, line, Patience::default()).unwrap().unwrap();
+        let found = border(&map, line, SOON).unwrap().unwrap();
         distances.push(curves.iter().map(|curve| curve.distance(found)).fold(f64::INFINITY, f64::min));
     }
     let farthest = distances.iter().copied().fold(0.0, f64::max);
@@ -151,7 +153,7 @@ fn what_leaves_a_saddle_is_as_far_as_it_has_grown() {
 fn the_border_is_on_the_line_between_two_starts() {
     let map = map(&common::osorio(), 678.0);
     let line = [(0.6, -24.0), (6.0, 4.0)].map(|(position, velocity)| State { position, velocity });
-    let found = border(&map, line, Patience::default()).unwrap().unwrap();
+    let found = border(&map, line, SOON).unwrap().unwrap();
     let share = (found.position - 0.6) / 5.4;
     assert!(share > 0.0 && share < 1.0, "{found:?}");
     approx::assert_abs_diff_eq!(found.velocity, -24.0 + 28.0 * share, epsilon = 1e-9);
@@ -182,11 +184,11 @@ fn the_chaotic_motion_is_lost_where_the_manifolds_touch() {
 fn basins_do_not_depend_on_threads() {
     let map = map(&common::osorio(), 678.0);
     let grid = Grid { cam_angle: SECTION, positions: [0.0, 6.0], velocities: [-60.0, 60.0], cells: [16, 9] };
-    let one = grid.basins(&map.machine, Patience::default(), Some(1)).unwrap();
-    assert_eq!(one, grid.basins(&map.machine, Patience::default(), Some(3)).unwrap());
-    let Ending::Orbit(orbit) = &one.parts[0].ending else { panic!("{:?}", one.parts) };
+    let one = SectionStarts::Grid(grid).basins(&map.machine, Budget::SURVEY, Some(1), &Unwatched).unwrap();
+    assert_eq!(one, SectionStarts::Grid(grid).basins(&map.machine, Budget::SURVEY, Some(3), &Unwatched).unwrap());
+    let LongRun::Orbit(orbit) = &one.parts[0].ending else { panic!("{:?}", one.parts) };
     assert!(orbit.is_stable() && orbit.impacts().count() == 1 && orbit.revolutions == 1);
-    assert!(matches!(one.parts[1].ending, Ending::Chaotic(_)), "{:?}", one.parts[1]);
+    assert!(matches!(one.parts[1].ending, LongRun::Chaotic(_)), "{:?}", one.parts[1]);
     let share = one.parts[0].share;
     assert!((share.value - 0.6).abs() < 0.1, "{share:?}");
     let starts = one.starts as f64;
@@ -195,10 +197,9 @@ fn basins_do_not_depend_on_threads() {
     // The first column, at 0.19 m, is below the cam.
     assert!(one.cells.iter().filter(|cell| cell.is_none()).count() == 9, "{:?}", one.cells);
     assert_eq!(one.starts, 15 * 9);
-    let settling = Settling::new(&map.machine, Patience::default().longest).unwrap();
     for cell in [20, 77, 140] {
         let motion = map.machine.start(SECTION, grid.start(cell));
-        let part = motion.ok().map(|motion| settling.ending(motion, Patience::default().revolutions).unwrap());
+        let part = motion.ok().map(|motion| long_run(&map.machine, motion, SOON).unwrap().ending);
         let found = one.cells[cell].map(|part| &one.parts[part].ending);
         assert!(found.zip(part.as_ref()).is_some_and(|(one, two)| one.is_same(two)), "{cell}");
     }
@@ -264,20 +265,30 @@ fn the_motion_leaves_where_the_acceleration_jumps_upwards() {
 fn exponents_have_errors() {
     let map = map(&common::osorio(), 672.0);
     let start = map.machine.start_on_cam(0.0, 0.0).unwrap();
-    let few = exponent(&map.machine, start, 10, 200).unwrap();
-    assert!(
-        (few.growth.value - growth(&map.machine, start, 2000).unwrap()).abs() < 1e-12 && few.blocks == 10 && !few.rests
-    );
-    let many = exponent(&map.machine, start, 160, 200).unwrap();
+    let taken = |machine: &Machine, mut motion: Motion, blocks: u64| {
+        let mut record = Record::over(200);
+        // In parts, each from where the one before was left.
+        for _ in 0..2 {
+            record.take(machine, &mut motion, 100 * blocks).unwrap();
+        }
+        assert!(!record.rests());
+        record
+    };
+    let few = taken(&map.machine, start, 10);
+    let [first, second] = few.halves();
+    let few = few.growth();
+    assert!((few.value - growth(&map.machine, start, 2000).unwrap()).abs() < 1e-12, "{few:?}");
+    assert!((first + second - 2000.0 * few.value).abs() < 1e-9 && first != second, "{first} {second}");
+    let many = taken(&map.machine, start, 160).growth();
     println!("{few:?} {many:?}");
-    let sixteenth = many.growth.error / few.growth.error;
+    let sixteenth = many.error / few.error;
     assert!((0.1..0.6).contains(&sixteenth), "{few:?} {many:?}");
-    assert!((many.growth.value - few.growth.value).abs() < 4.0 * few.growth.error, "{few:?} {many:?}");
+    assert!((many.value - few.value).abs() < 4.0 * few.error, "{few:?} {many:?}");
     // On the periodic orbit every block is ln r.
     let periodic = self::map(&common::osorio(), 680.0);
     let orbit = periodic.machine.start(SECTION, State { position: 4.2629536, velocity: 2.3242428 }).unwrap();
-    let exact = exponent(&periodic.machine, orbit, 10, 200).unwrap();
-    assert!((exact.growth.value - 0.8f64.ln()).abs() < 1e-2 && exact.growth.error < 1e-2, "{exact:?}");
+    let exact = taken(&periodic.machine, orbit, 10).growth();
+    assert!((exact.value - 0.8f64.ln()).abs() < 1e-2 && exact.error < 1e-2, "{exact:?}");
 }
 
 #[test]
@@ -290,11 +301,11 @@ fn the_command_keeps_its_columns_and_fields() {
     assert_eq!(table.status.code(), Some(0), "{}", String::from_utf8_lossy(&table.stderr));
     let table = String::from_utf8(table.stdout).unwrap();
     let lines: Vec<&str> = table.lines().collect();
-    assert_eq!(lines[0], "position_m,velocity_m_s,ending,part,revolutions,impacts");
+    assert_eq!(lines[0], "position_m,velocity_m_s,ending,part,revolutions,impacts,followed");
     assert_eq!(lines.len(), 13);
     assert!(lines[1].starts_with("1.0125,-40,chaotic,1,,"), "{table}");
     assert!(lines[2].starts_with("2.4375,-40,"), "{table}");
-    assert_eq!(lines[8], "5.2875,0,periodic,0,1,1");
+    assert!(lines[8].starts_with("5.2875,0,periodic,0,1,1,"), "{table}");
     let summary = run(&["--grid", "4x3", "--position", "0.3:6", "--velocity=-60:60", "--summary"]);
     let summary: serde_json::Value = serde_json::from_slice(&summary.stdout).unwrap();
     assert_eq!(summary["schema"], "corner-impact/basins/1");

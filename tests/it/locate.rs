@@ -155,7 +155,7 @@ fn only_a_corner_of_acceleration_has_two_matrices() {
 /// Feigin's fold, against orbits: at a nonsmooth fold of a two-impact orbit both fixed points are on one side of the speed.
 #[test]
 fn orbits_exist_where_the_classification_says() {
-    use corner_impact::orbit::settle::close;
+    use corner_impact::orbit::near::close;
     use corner_impact::simulate::{Machine, angular_velocity};
     let model = common::osorio();
     let found = surveyed(&model, 730.0, 740.0, 1);

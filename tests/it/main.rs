@@ -62,6 +62,7 @@ mod measured;
 mod memory;
 mod mirrored;
 mod model_file;
+mod one_rule;
 mod orbit_closed_forms;
 mod orbit_commands;
 mod orbit_numbers;

@@ -595,8 +595,8 @@ fn a_measured_corner_impact() {
     let looked_at = &located.looked_at;
     assert!(looked_at.corners.iter().all(|corner| corner.jump_order < 5) && looked_at.left_out > 50, "{looked_at:?}");
     // The events of the paper's machine, to within what is said.
-    let resolution = Resolution { step: Step::at_most(20.0), starts: 8, two_impacts: false };
-    let survey = speeds(&model, [665.0, 755.0], resolution, &Unwatched).unwrap();
+    let resolution = Resolution::new(Step::at_most(20.0), 8);
+    let survey = speeds(&model, [665.0, 755.0], &resolution, &Unwatched).unwrap();
     let ends: Vec<&Change> = survey.attractors.iter().flat_map(|one| one.birth.iter().chain(&one.death)).collect();
     for (name, rpm) in [("corner-impact", 673.234_445), ("flip", 739.319_780)] {
         let event = ends.iter().find(|end| end.cause.name() == name).unwrap();
@@ -609,7 +609,7 @@ fn a_measured_corner_impact() {
         let ends = survey.attractors.iter().flat_map(|one| one.death.iter().chain(&one.birth));
         ends.filter(|end| end.cause == Cause::Runs).cloned().collect()
     };
-    let exact = by_runs(&speeds(&paper, [665.0, 755.0], resolution, &Unwatched).unwrap());
+    let exact = by_runs(&speeds(&paper, [665.0, 755.0], &resolution, &Unwatched).unwrap());
     let measured = by_runs(&survey);
     assert_eq!((exact.len(), measured.len()), (2, 2));
     for (end, exact) in measured.iter().zip(&exact) {
@@ -842,8 +842,8 @@ fn a_new_measured_machine() {
         page.split_whitespace().filter_map(|word| word.split_once('.')).map(|(_, decimals)| decimals.len()).max();
     assert!(decimals < Some(4) && !page.contains("six decimals"), "{page}");
     let model = Model::read(&folder.path().join("valve.toml")).unwrap();
-    let resolution = Resolution { step: Step::for_speeds([2700.0, 3000.0], 2), starts: 2, two_impacts: false };
-    let mut found = corner_impact::study::speeds::speeds(&model, [2700.0, 3000.0], resolution, &Unwatched).unwrap();
+    let resolution = Resolution::new(Step::for_speeds([2700.0, 3000.0], 2), 2);
+    let mut found = corner_impact::study::speeds::speeds(&model, [2700.0, 3000.0], &resolution, &Unwatched).unwrap();
     found.attractors[0].death.as_mut().unwrap().error = None;
     let page = found.text().unwrap();
     assert!(page.contains("2915 ± ?  stays") && page.contains("2915 ± 13"), "{page}");
@@ -1094,8 +1094,8 @@ fn where_a_dwell_is_found_to_end_is_no_corner() {
 /// The flip of the paper's machine.
 #[test]
 fn a_flip_of_a_measured_cam_is_known_to_within_what_is_said() {
-    let resolution = Resolution { step: Step::at_most(0.05), starts: 2, two_impacts: false };
-    let survey = speeds(&the_papers_cam(0.0, 1, &json!({})), [739.2, 739.36], resolution, &Unwatched).unwrap();
+    let resolution = Resolution::new(Step::at_most(0.05), 2);
+    let survey = speeds(&the_papers_cam(0.0, 1, &json!({})), [739.2, 739.36], &resolution, &Unwatched).unwrap();
     let ends: Vec<&Change> = survey.attractors.iter().flat_map(|one| one.birth.iter().chain(&one.death)).collect();
     let flip = ends.iter().find(|end| end.cause.name() == "flip").unwrap();
     let error = flip.error.unwrap();
@@ -1135,7 +1135,7 @@ fn a_fold_on_a_measured_cam_is_as_far_off_as_is_said() {
     let through = json!({ "law": "table", "spline": "quintic", "rows": rows });
     let through = Model::of_document("ball", &json!({ "follower": follower_of_a_ball(), "cam": through })).unwrap();
     for model in [ball_on_rows(2.5), ball_on_rows(0.0), through] {
-        let found = speeds(&model, [555.0, 560.0], resolution(5.0, 2), &Unwatched).unwrap();
+        let found = speeds(&model, [555.0, 560.0], &resolution(5.0, 2), &Unwatched).unwrap();
         let birth = found.attractors.iter().find(|it| it.impacts == Some(1)).unwrap().birth.as_ref().unwrap();
         let error = birth.error.unwrap();
         assert_eq!(birth.cause, Cause::Fold);
@@ -1150,7 +1150,7 @@ fn an_end_by_runs_on_a_measured_cam_is_as_far_off_as_is_said() {
     let end = (9.81 * PI.hypot(1.0) / 0.001).sqrt() * 60.0 / TAU;
     for turned_deg in [0.0, 2.5] {
         let plastic = ball_on_rows(turned_deg).with_number("follower.restitution", 0.0).unwrap();
-        let found = speeds(&plastic, [1600.0, 1800.0], resolution(100.0, 1), &Unwatched).unwrap();
+        let found = speeds(&plastic, [1600.0, 1800.0], &resolution(100.0, 1), &Unwatched).unwrap();
         let death = found.attractors[0].death.as_ref().unwrap();
         let error = death.error.unwrap();
         assert_eq!(death.cause, Cause::Runs);
@@ -1164,7 +1164,7 @@ fn an_end_by_runs_on_a_measured_cam_is_as_far_off_as_is_said() {
 #[ignore = "slow"]
 fn an_orbit_whose_end_runs_tell_is_listed_once() {
     let model = ball_on_rows(0.0).with_number("follower.restitution", 0.1).unwrap();
-    let found = speeds(&model, [1480.0, 1520.0], resolution(20.0, 1), &Unwatched).unwrap();
+    let found = speeds(&model, [1480.0, 1520.0], &resolution(20.0, 1), &Unwatched).unwrap();
     let mut listed = Vec::new();
     for row in &found.attractors {
         let by_runs = [&row.birth, &row.death].map(|end| end.as_ref().is_some_and(|end| end.cause == Cause::Runs));

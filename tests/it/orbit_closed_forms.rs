@@ -9,7 +9,7 @@ use corner_impact::cam::Cam;
 use corner_impact::flight::State;
 use corner_impact::model::Model;
 use corner_impact::orbit::branch::{Branch, BranchPoint, End, Following, Kind};
-use corner_impact::orbit::{Eigenvalue, Parameter, PeriodicOrbit, Search, Stability, search, settle};
+use corner_impact::orbit::{Eigenvalue, Parameter, PeriodicOrbit, Search, Stability, near, search};
 use corner_impact::simulate::{Machine, angular_velocity};
 use serde_json::Value;
 
@@ -218,7 +218,7 @@ fn an_orbit_of_many_revolutions_may_have_as_many_impacts() {
     let since = time - first / omega;
     let position = amplitude * cosine + after * since - 0.5 * gravity * since * since;
     let state = State { position, velocity: after - gravity * since };
-    let orbit = settle::near(&machine, 0.0, state, every as u64).unwrap().expect("an orbit");
+    let orbit = near::near(&machine, 0.0, state, every as u64).unwrap().expect("an orbit");
     assert_eq!((orbit.revolutions, orbit.impacts().count()), (17, 65));
     assert!(orbit.is_stable() && orbit.events.len() == 65, "{orbit:?}");
     for (index, impact) in orbit.impacts().enumerate() {

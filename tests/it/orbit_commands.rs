@@ -282,8 +282,13 @@ fn speeds_gives_the_short_answer() {
     let (page, _) = done(&["speeds", MODEL, "--rpm", "100:130", "--step", "10", "--starts", "4"]);
     assert!(page.contains("leaves the cam first at  114.979327 rpm"), "{page}");
     let (table, _) = done(&["speeds", MODEL, "--rpm", "100:130", "--step", "10", "--starts", "4", "--out", "-"]);
-    assert!(table.starts_with("rpm,attractor,kind,revolutions,impacts,growth_rate,growth_error,share,"), "{table}");
-    assert!(table.lines().any(|line| line.starts_with("110,A1,stays,1,0,,,1,0.186")), "{table}");
+    assert!(
+        table.starts_with(
+            "rpm,attractor,kind,revolutions,impacts,growth_rate,growth_error,share,share_error,coexisting,followed\n"
+        ),
+        "{table}"
+    );
+    assert!(table.lines().any(|line| line.starts_with("110,A1,stays,1,0,-inf,0,1,0.186")), "{table}");
 }
 
 /// A flip and the corner impact after it, 0.06 rpm apart, between two speeds that are run.

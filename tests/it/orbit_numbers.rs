@@ -6,12 +6,13 @@ use std::path::Path;
 use corner_impact::cam::Cam;
 use corner_impact::model::Model;
 use corner_impact::orbit::branch::{Branch, BranchPoint, End, Following, Kind};
-use corner_impact::orbit::ending::Ending;
-use corner_impact::orbit::fate::Settling;
+use corner_impact::orbit::long_run::{Budget, LongRun};
+use corner_impact::orbit::runs::LongRuns;
 use corner_impact::orbit::{Course, Parameter, PeriodicOrbit, Search, search, search_all};
 use corner_impact::progress::Unwatched;
 use corner_impact::simulate::{EventKind, Machine, angular_velocity};
 use corner_impact::study::continuation::branches;
+use corner_impact::study::survey::long_run;
 
 use crate::common;
 use crate::random::{Case, cases_of_every_law, drawn};
@@ -366,14 +367,14 @@ fn orbits_of_any_machine() {
     is_as_it_was("orbits-any", &told);
 }
 
-pub fn ending(ending: &Ending) -> String {
+pub fn ending(ending: &LongRun) -> String {
     match ending {
-        Ending::Stays => "stays".into(),
-        Ending::Orbit(it) => orbit(it),
+        LongRun::PermanentContact => "stays".into(),
+        LongRun::Orbit(it) => orbit(it),
         // The last digits of a sine decide what follows of these.
-        Ending::Chaotic(_) | Ending::Undecided(_) => "does not repeat".into(),
-        Ending::Resting(it) if it.growth > 8.0 => format!("rests after long, {}", it.is_long()),
-        Ending::Resting(it) => {
+        LongRun::Chaotic(_) | LongRun::Undecided(_) => "does not repeat".into(),
+        LongRun::Sticking(it) if it.growth > 8.0 => format!("rests after long, {}", it.is_long()),
+        LongRun::Sticking(it) => {
             let releases: Vec<String> = it.releases.iter().map(|release| angle(*release)).collect();
             let [speed, growth] = [it.impact_speed, it.growth].map(|number| digits(number, 5));
             let [impacts, revolutions] = [it.impacts, it.revolutions];
@@ -386,9 +387,9 @@ pub fn ending(ending: &Ending) -> String {
 fn what_runs_of_any_machine_come_to() {
     let mut told = String::new();
     for (index, case) in machines(60, &[2, 13, 29, 35]) {
-        let settling = Settling::new(&case.machine, 4).unwrap();
-        let ended = case.motion().and_then(|motion| settling.ending(motion, 400));
-        told += &format!("{index}, {} known: ", settling.known().count());
+        let budget = Budget { transient: 400, record: 1600, longest: 4, patience: 0 };
+        let ended = case.motion().and_then(|motion| long_run(&case.machine, motion, budget).map(|part| part.ending));
+        told += &format!("{index}, {} known: ", LongRuns::new(&case.machine, budget).unwrap().known().count());
         told += &ended.map_or_else(|error| error.to_string(), |it| ending(&it));
         told += "\n";
     }

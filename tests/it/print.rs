@@ -298,8 +298,8 @@ fn a_font_of_a_file_is_taken_or_refused() {
 #[test]
 fn attractors_are_told_apart_by_shapes() {
     let model = common::osorio();
-    let resolution = Resolution { step: Step::for_speeds([738.8, 739.4], 12), starts: 8, two_impacts: false };
-    let found = speeds(&model, [738.8, 739.4], resolution, &Unwatched).unwrap();
+    let resolution = Resolution::new(Step::for_speeds([738.8, 739.4], 12), 8);
+    let found = speeds(&model, [738.8, 739.4], &resolution, &Unwatched).unwrap();
     let figure = speeds_figure(&found, &[], WIDTH);
     let shapes = |panel: &Panel| {
         let of = |series: &Series| match &series.data {
@@ -319,8 +319,8 @@ fn attractors_are_told_apart_by_shapes() {
 #[test]
 fn names_of_attractors_have_room() {
     let model = common::osorio();
-    let resolution = Resolution { step: Step::for_speeds([700.0, 701.0], 2), starts: 4, two_impacts: false };
-    let mut found = speeds(&model, [700.0, 701.0], resolution, &Unwatched).unwrap();
+    let resolution = Resolution::new(Step::for_speeds([700.0, 701.0], 2), 4);
+    let mut found = speeds(&model, [700.0, 701.0], &resolution, &Unwatched).unwrap();
     let one = found.attractors[0].clone();
     let over = |from: f64, to: f64, index: usize| Attractor { id: format!("A{index}"), rpm: [from, to], ..one.clone() };
     let words = |found: &Speeds, across: f64| {

@@ -225,6 +225,9 @@ fn balls(count: u32) -> impl Iterator<Item = (Machine, Motion)> {
 }
 
 /// With restitution 1 and no damping a ball on a plate that stands still keeps its energy: to 1e-9 after a million impacts.
+///
+/// A hop that is a ten-millionth as high as the plate is known to fewer digits: its height is a difference of two positions. There four
+/// times as much is allowed, which a hop of 67 nm over a plate at 0.7 m needs half of.
 fn keeps_its_energy(machine: &Machine, mut motion: Motion, impacts: u32) {
     let begun = motion.state.velocity;
     let (mut met, mut last) = (0, f64::NAN);
@@ -236,7 +239,10 @@ fn keeps_its_energy(machine: &Machine, mut motion: Motion, impacts: u32) {
     });
     assert!(flow.unwrap().is_break());
     let gained = (last / begun).powi(2) - 1.0;
-    assert!(gained.abs() <= 1e-15 * f64::from(impacts), "{gained} of the energy after {met} impacts: {machine:?}");
+    let (pressing, position) = (-machine.flight().force(motion.state.position), motion.state.position);
+    let is_low = begun * begun < 2.0 * pressing * 1e-7 * position.abs();
+    let most = if is_low { 4e-15 } else { 1e-15 };
+    assert!(gained.abs() <= most * f64::from(impacts), "{gained} of the energy after {met} impacts: {machine:?}");
 }
 
 #[test]

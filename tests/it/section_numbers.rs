@@ -3,19 +3,23 @@
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use corner_impact::flight::State;
 use corner_impact::model::Model;
+use corner_impact::orbit::long_run::Budget;
 use corner_impact::orbit::{Course, Search, search};
+use corner_impact::progress::Unwatched;
 use corner_impact::section::StroboscopicMap;
 use corner_impact::simulate::{EventKind, angular_velocity};
 use corner_impact::study::StudyError;
-use corner_impact::study::attractors::Patience;
 use corner_impact::study::basins::boundary::{approach, border};
-use corner_impact::study::basins::{Curve, Extent, Grid, Reversed, Saddle, Section};
+use corner_impact::study::basins::{Curve, Extent, Grid, Reversed, Saddle, Section, SectionStarts};
 use serde_json::{Value, json};
 
 use crate::attractors::ball;
 use crate::common;
 use crate::global::{SECTION as STROBE, saddle};
 use crate::orbit_numbers::machine;
+
+/// A budget within which runs are told that are not waited for.
+const SOON: Budget = Budget { patience: 0, ..Budget::SURVEY };
 
 fn map(model: &Model, rpm: f64, cam_angle: f64) -> StroboscopicMap {
     StroboscopicMap { machine: machine(model, rpm), cam_angle }
@@ -155,7 +159,7 @@ fn a_grid_of_starts_counts_its_cells() {
     let paper = common::osorio();
     let machine = machine(&paper, 678.0);
     let lift = machine.cam().lift(STROBE).value;
-    let found = grid.basins(&machine, Patience::default(), Some(1)).unwrap();
+    let found = SectionStarts::Grid(grid).basins(&machine, Budget::SURVEY, Some(1), &Unwatched).unwrap();
     for (cell, part) in found.cells.iter().enumerate() {
         assert_eq!(part.is_none(), grid.start(cell).position < lift, "{cell}");
     }
@@ -169,8 +173,8 @@ fn a_grid_of_starts_counts_its_cells() {
     let map = map(&paper, 678.0, STROBE);
     let line = |from: f64, to: f64| [from, to].map(|position| State { position, velocity: 0.0 });
     // On one side of the saddle alone there is none.
-    assert_eq!(border(&map, line(0.6, 0.6), Patience::default()).unwrap(), None);
-    let across = border(&map, line(0.6, 6.0), Patience::default()).unwrap().unwrap();
+    assert_eq!(border(&map, line(0.6, 0.6), SOON).unwrap(), None);
+    let across = border(&map, line(0.6, 6.0), SOON).unwrap().unwrap();
     assert!(across.position > 0.6 && across.position < 6.0, "{across:?}");
 }
 
@@ -310,8 +314,8 @@ fn what_parts_the_basins_is_told_with_the_orbits() {
     // One start, next to the stable orbit; the curves are followed as far as that picture is wide, twice.
     let around = |middle: f64, reach: f64| Some([middle - reach, middle + reach]);
     let grid = section.grid([1, 1], around(stable.position, 1e-3), around(stable.velocity, 1e-2)).unwrap();
-    let basins = grid.basins(&section.map.machine, Patience::default(), Some(1)).unwrap();
-    let found = section.border(&basins);
+    let basins = SectionStarts::Grid(grid).basins(&section.map.machine, Budget::SURVEY, Some(1), &Unwatched).unwrap();
+    let found = section.border(&grid, &basins);
     let [told] = found.stable[..] else { panic!("{found:?}") };
     assert_abs_diff_eq!(told.position, stable.position, epsilon = 1e-9);
     assert_abs_diff_eq!(told.velocity, stable.velocity, epsilon = 1e-7);
@@ -398,8 +402,8 @@ fn curves_are_as_fine_and_as_long_as_the_picture_is_high() {
     let height = 0.001;
     let positions = [saddle.position - 0.5 * height, saddle.position + 0.5 * height];
     let grid = Grid { positions, ..section.grid([1, 1], None, None).unwrap() };
-    let basins = grid.basins(&section.map.machine, Patience::default(), Some(1)).unwrap();
-    let found = section.border(&basins);
+    let basins = SectionStarts::Grid(grid).basins(&section.map.machine, Budget::SURVEY, Some(1), &Unwatched).unwrap();
+    let found = section.border(&grid, &basins);
     assert_eq!(found.curves.len(), 2);
     let all = found.curves.iter().flat_map(Curve::points);
     let farthest = all.map(|it| apart(it, saddle, omega)).fold(0.0, f64::max);

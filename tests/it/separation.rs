@@ -51,8 +51,8 @@ fn stays(model: &Model, rpm: f64) -> bool {
 }
 
 fn over(model: &Model, range: [f64; 2], step: f64) -> Speeds {
-    let resolution = Resolution { step: Step::at_most(step), starts: 2, two_impacts: false };
-    speeds(model, range, resolution, &Unwatched).unwrap()
+    let resolution = Resolution::new(Step::at_most(step), 2);
+    speeds(model, range, &resolution, &Unwatched).unwrap()
 }
 
 /// `k a (1 + cos 2 theta) = 4 m a w^2 cos 2 theta` first where the cosine is 1: `w^2 = k/(2 m)`.

@@ -7,11 +7,12 @@ use corner_impact::cam::apart;
 use corner_impact::flight::State;
 use corner_impact::model::Model;
 use corner_impact::orbit::branch::{Branch, BranchPoint, Following, Kind};
-use corner_impact::orbit::ending::Ending;
-use corner_impact::orbit::fate::{Fate, Run, Settling};
+use corner_impact::orbit::long_run::{Budget, LongRun};
+use corner_impact::orbit::runs::{AfterRelease, LongRuns, RunOutcome};
 use corner_impact::orbit::{Course, Parameter, PeriodicOrbit, Search, search, search_all};
 use corner_impact::progress::Unwatched;
 use corner_impact::simulate::{Machine, Motion};
+use corner_impact::study::survey::long_run;
 
 use crate::common;
 use crate::orbit_numbers::{ending, is_as_it_was, machine, orbit};
@@ -121,14 +122,14 @@ fn runs_of_a_machine_of_any_size_come_to_the_same_after_as_many_revolutions() {
     for (rpm, revolutions) in [(700.0, 60), (442.0, 60), (736.0, 120), (760.0, 120)] {
         let told = [0, -12, 12].map(|power| {
             let machine = machine(&enlarged(power), rpm);
-            let unaided = Settling::unaided(&machine, 4, 1000);
-            [unaided, Settling::new(&machine, 4).unwrap()].map(|settling| {
+            let unaided = LongRuns::unaided(&machine, Budget { transient: 1000, record: 0, longest: 4, patience: 0 });
+            [unaided, LongRuns::new(&machine, Budget { longest: 4, ..Budget::SURVEY }).unwrap()].map(|settling| {
                 let mut motion = machine.start_on_cam(1.0, 2.0_f64.powi(power)).unwrap();
                 let run = settling.run(&mut motion, revolutions).unwrap();
                 let come_to = match run {
-                    Run::Arrives(orbit) => orbit.impacts().map(|impact| impact.cam_angle).collect(),
-                    Run::Released(angle) => vec![-angle],
-                    Run::Stays | Run::Wanders => Vec::new(),
+                    RunOutcome::Arrives(orbit) => orbit.impacts().map(|impact| impact.cam_angle).collect(),
+                    RunOutcome::Released(angle) => vec![-angle],
+                    RunOutcome::PermanentContact | RunOutcome::Wanders => Vec::new(),
                 };
                 (come_to, motion.revolution)
             })
@@ -145,7 +146,7 @@ fn an_orbit_is_known_once_and_only_if_runs_come_to_it_without_rest() {
         let orbits = of_one_revolution(&machine);
         let stable = orbits.iter().filter(|orbit| orbit.is_stable()).count();
         assert_eq!(stable, 1, "{orbits:?}");
-        let mut settling = Settling::unaided(&machine, 4, 1000);
+        let mut settling = LongRuns::unaided(&machine, Budget { transient: 1000, record: 0, longest: 4, patience: 0 });
         for orbit in orbits.iter().chain(&orbits) {
             settling.know(orbit).unwrap();
         }
@@ -190,12 +191,12 @@ fn no_branch_begins_at_a_speed_that_no_cam_turns_at() {
 }
 
 /// What a run comes to, and after how many revolutions that is told.
-fn told(settling: &Settling, mut motion: Motion, revolutions: u64) -> String {
+fn told(settling: &LongRuns, mut motion: Motion, revolutions: u64) -> String {
     let come_to = match settling.run(&mut motion, revolutions).unwrap() {
-        Run::Arrives(it) => orbit(&it),
-        Run::Stays => "stays".into(),
-        Run::Released(angle) => format!("released at {angle:.5}"),
-        Run::Wanders => "none of these".into(),
+        RunOutcome::Arrives(it) => orbit(&it),
+        RunOutcome::PermanentContact => "stays".into(),
+        RunOutcome::Released(angle) => format!("released at {angle:.5}"),
+        RunOutcome::Wanders => "none of these".into(),
     };
     // When it is told may be a threshold that rounding decides.
     let sooner = motion.revolution < revolutions;
@@ -211,20 +212,28 @@ fn what_runs_come_to_is_told_as_soon_as_it_is_certain() {
     for index in [63, 95, 100, 108, 115, 116, 119] {
         let case = &drawn[index];
         let motion = case.motion().unwrap();
-        let unaided = Settling::unaided(&case.machine, 4, 2000);
+        let unaided = LongRuns::unaided(&case.machine, Budget { transient: 2000, record: 0, longest: 4, patience: 0 });
         all += &format!("{index}\n");
-        for settling in [&Settling::new(&case.machine, 4).unwrap(), &unaided] {
+        for settling in [&LongRuns::new(&case.machine, Budget { longest: 4, ..Budget::SURVEY }).unwrap(), &unaided] {
             all += &format!("  {} known\n", settling.known().count());
             all.extend([60, 400].map(|revolutions| told(settling, motion, revolutions)));
         }
         for revolutions in [3, 400] {
-            let ended = unaided.ending(motion, revolutions).unwrap();
+            let ended = long_run(
+                &case.machine,
+                motion,
+                Budget { transient: revolutions, record: 1600, longest: 4, patience: 0 },
+            )
+            .unwrap()
+            .ending;
             all += &format!("  {revolutions} revolutions, and what follows: {}\n", ending(&ended));
         }
-        all += &match unaided.fate(case.angle).unwrap() {
-            Fate::Recurs(it) => format!("  let go, it rests again: {}\n", ending(&Ending::Resting(it))),
-            Fate::Arrives(it, motion) => format!("  let go, in revolution {}: {}\n", motion.revolution, orbit(&it)),
-            Fate::Wanders { .. } => "  let go, it comes to nothing\n".into(),
+        all += &match unaided.after_release(case.angle, |_| None).unwrap().0 {
+            AfterRelease::Recurs(it) => format!("  let go, it rests again: {}\n", ending(&LongRun::Sticking(it))),
+            AfterRelease::Arrives(it, motion) => {
+                format!("  let go, in revolution {}: {}\n", motion.revolution, orbit(&it))
+            }
+            AfterRelease::Wanders { .. } => "  let go, it comes to nothing\n".into(),
         };
     }
     is_as_it_was("runs-told", &all);
@@ -240,7 +249,7 @@ fn a_run_that_leaves_an_unstable_orbit_is_not_said_to_come_to_a_stable_one_nearb
         let near = |orbit: &&PeriodicOrbit| (orbit.events[0].cam_angle.to_degrees() - 131.75).abs() < 1.0;
         let (stable, unstable): (Vec<_>, Vec<_>) = orbits.iter().filter(near).partition(|orbit| orbit.is_stable());
         let ([stable], [unstable]) = (&stable[..], &unstable[..]) else { panic!("{orbits:?}") };
-        let settling = Settling::new(&machine, 1).unwrap();
+        let settling = LongRuns::new(&machine, Budget { longest: 1, ..Budget::SURVEY }).unwrap();
         assert!(settling.known().any(|known| known.is_same(stable)));
         let apart = (unstable.state.position - stable.state.position).abs();
         assert!((1e-6..1e-3).contains(&(apart / size)), "{apart} m");
@@ -253,7 +262,7 @@ fn a_run_that_leaves_an_unstable_orbit_is_not_said_to_come_to_a_stable_one_nearb
         };
         for part in [-0.5, -0.1, -0.01, 0.01, 1.0 - 1e-3] {
             let run = settling.run(&mut start(part), 8).unwrap();
-            let comes = matches!(&run, Run::Arrives(orbit) if orbit.is_same(stable));
+            let comes = matches!(&run, RunOutcome::Arrives(orbit) if orbit.is_same(stable));
             assert_eq!(comes, part > 0.9, "{part}: {run:?}");
         }
     }
@@ -267,11 +276,11 @@ fn a_follower_floats_once_it_is_above_the_top_for_good() {
     let model = model(follower, cam);
     for (rpm, position, revolution) in [(100.0, 0.155, 3), (150.0, 0.14, 13), (150.0, 0.167, 6), (400.0, 0.143, 33)] {
         let machine = machine(&model, rpm);
-        let settling = Settling::unaided(&machine, 100, 1000);
+        let settling = LongRuns::unaided(&machine, Budget { transient: 1000, record: 0, longest: 100, patience: 0 });
         let start = machine.start(0.0, State { position, velocity: 0.0 }).unwrap();
         let (mut motion, mut earlier) = (start, start);
         let run = settling.run(&mut motion, 100).unwrap();
-        assert!(matches!(&run, Run::Arrives(orbit) if orbit.course == Course::Free), "{rpm} rpm: {run:?}");
+        assert!(matches!(&run, RunOutcome::Arrives(orbit) if orbit.course == Course::Free), "{rpm} rpm: {run:?}");
         assert_eq!(motion.revolution, revolution, "{rpm} rpm from {position}");
         machine.revolve(&mut earlier, revolution - 1).unwrap();
         let [before, now] = [earlier, motion].map(|motion| motion.state.position);
@@ -286,10 +295,14 @@ fn a_run_comes_to_no_orbit_that_is_longer_than_what_is_looked_for() {
     let machine = machine(&crate::orbit_numbers::model("nonsmooth-flip"), 881.773);
     let mut settled = machine.start_on_cam(1.0, 0.1).unwrap();
     machine.revolve(&mut settled, 20_000).unwrap();
-    let run = |longest: u64| Settling::unaided(&machine, longest, 1000).run(&mut settled.clone(), 400).unwrap();
-    let Run::Arrives(orbit) = run(8) else { panic!("{:?}", run(8)) };
+    let run = |longest: u64| {
+        LongRuns::unaided(&machine, Budget { transient: 1000, record: 0, longest: longest, patience: 0 })
+            .run(&mut settled.clone(), 400)
+            .unwrap()
+    };
+    let RunOutcome::Arrives(orbit) = run(8) else { panic!("{:?}", run(8)) };
     assert_eq!(orbit.revolutions, 8);
     for longest in [5, 6, 7] {
-        assert_eq!(run(longest), Run::Wanders, "{longest}");
+        assert_eq!(run(longest), RunOutcome::Wanders, "{longest}");
     }
 }

@@ -3,13 +3,14 @@
 use approx::assert_relative_eq;
 use corner_impact::estimate::{ErrorIs, Estimate};
 use corner_impact::model::Model;
-use corner_impact::orbit::ending::{Ending, Kind, Resting};
+use corner_impact::orbit::long_run::{Kind, LongRun, StickingOrbit};
 use corner_impact::progress::Unwatched;
 use corner_impact::study::attractors::rows::rows;
-use corner_impact::study::attractors::{Attractors, AttractorsError, Cause, Change, Here, Wandering, attractors};
+use corner_impact::study::attractors::{Attractors, AttractorsError, Cause, Change, Here, attractors};
 use corner_impact::study::speeds::{At, Attractor, Speeds, speeds};
+use corner_impact::study::survey::{Sample, Wandering};
 
-use crate::attractors::ball;
+use crate::attractors::{ball, by_growth};
 use crate::common;
 use crate::orbit_numbers::{machine, model};
 use crate::study_numbers::resolution;
@@ -34,7 +35,8 @@ fn rests_of_chaos_are_counted_where_runs_were_long_enough() {
     let wanders = |revolutions: u64, rested: u64| At {
         rpm: 1.0,
         share: growth,
-        ending: Ending::Chaotic(growth),
+        ending: by_growth(1.0, 0.1),
+        followed: revolutions,
         wandering: Wandering { revolutions, left: 0, rested },
         impact_angles: Vec::new(),
         impact_speed: None,
@@ -47,8 +49,8 @@ fn rests_of_chaos_are_counted_where_runs_were_long_enough() {
     assert_relative_eq!(found.rate, -(0.05_f64.ln()) * 1e-5, max_relative = 1e-12);
     // What rests often is not chaos that rests.
     let rests = |growth: f64| {
-        let resting = Resting { releases: vec![1.0], revolutions: 7, impacts: 5, impact_speed: 1.0, growth };
-        At { ending: Ending::Resting(resting), ..wanders(100_000, 1) }
+        let resting = StickingOrbit { releases: vec![1.0], revolutions: 7, impacts: 5, impact_speed: 1.0, growth };
+        At { ending: LongRun::Sticking(resting), ..wanders(100_000, 1) }
     };
     assert_eq!(attractor(vec![rests(1.0)]).rests(), None);
     assert_eq!(attractor(vec![rests(60.0), wanders(1, 0)]).rests().unwrap().revolutions, 100_001);
@@ -61,7 +63,8 @@ fn the_hardest_impact_and_the_smallest_basin_are_told() {
         found.attractors.iter().flat_map(|it| &it.at).filter_map(|at| Some([at.impact_speed?, at.rpm])).collect();
     let [speed, rpm] = found.hardest().unwrap();
     assert!(fastest.contains(&[speed, rpm]) && fastest.iter().all(|it| it[0] <= speed));
-    let missed = |starts: usize| Speeds { starts, attractors: Vec::new(), ..found.clone() }.missed();
+    let missed =
+        |starts: usize| Speeds { sample: Sample::Spread(starts), attractors: Vec::new(), ..found.clone() }.missed();
     // exp(-3 %) of 100 starts.
     assert_relative_eq!((-missed(100) * 100.0).exp(), 0.05, max_relative = 1e-12);
     assert_eq!([missed(1), missed(2)], [1.0, 1.0]);
@@ -101,7 +104,7 @@ fn where_the_cam_is_left_is_told_within_the_range() {
     let text = "[follower]\nmass = 2.0\nrestitution = 0.5\ndamping = 3.0\nstiffness = 800.0\ngravity = 9.81\nrest_position = 0.25\n\
                 [cam]\nlaw = \"harmonic\"\noffset = 0.1\namplitudes = [0.02]\nphases_deg = [0.0]\n";
     let held = Model::parse("held.toml", text).unwrap();
-    assert_eq!(speeds(&held, [50.0, 150.0], resolution(50.0, 1), &Unwatched).unwrap().detachment(), None);
+    assert_eq!(speeds(&held, [50.0, 150.0], &resolution(50.0, 1), &Unwatched).unwrap().detachment(), None);
 }
 
 /// A motion that rests at most of the speeds of a grid, and is chaotic at some, is one that rests.
@@ -141,7 +144,7 @@ fn two_orbits_of_one_kind_are_not_mixed_up() {
     for row in &found.rows {
         assert_eq!((row.period(), row.rpm), (Some((1, 1)), found.range));
         let angle = |index: &usize| match &found.grid[*index].as_ref().unwrap().parts[row.at[index]].ending {
-            Ending::Orbit(orbit) => orbit.impacts().next().unwrap().cam_angle,
+            LongRun::Orbit(orbit) => orbit.impacts().next().unwrap().cam_angle,
             other => panic!("{other:?}"),
         };
         let angles: Vec<f64> = row.at.keys().map(angle).collect();
@@ -160,11 +163,12 @@ fn motions(grid: &[f64], power: i32, unseen: Option<usize>) -> Motions {
     let (ball, scale) = (ball(), 2.0_f64.powi(power));
     let ball = ball.with_number("follower.gravity", ball.follower.gravity * scale * scale).unwrap();
     let machine = machine(&ball, grid[0] * scale);
-    let mut grid: Vec<_> = grid.iter().map(|rpm| Ok(Here::new(&machine, *rpm * scale, 2).unwrap())).collect();
+    let mut grid: Vec<_> =
+        grid.iter().map(|rpm| Ok(Here::new(&machine, *rpm * scale, &Sample::Spread(2)).unwrap())).collect();
     if let Some(Ok(here)) = unseen.and_then(|index| grid.get_mut(index)) {
-        here.parts.retain(|part| !matches!(part.ending, Ending::Orbit(_)));
+        here.parts.retain(|part| !matches!(part.ending, LongRun::Orbit(_)));
     }
-    let rows = rows(&ball, &machine, &mut grid);
+    let rows = rows(&ball, &machine, &mut grid, &Sample::Spread(2));
     let cause = |end: &Option<Change>| end.as_ref().map(|end| end.cause);
     rows.iter().map(|row| (row.period(), row.rpm.map(|rpm| rpm / scale), row.ends.each_ref().map(cause))).collect()
 }
@@ -209,7 +213,7 @@ fn an_orbit_that_runs_miss_at_one_speed_is_one() {
 fn a_picture_has_as_many_impacts_as_there_are_or_as_there_is_room_for() {
     for (restitution, rpm, shown) in [(0.0, 1300.0, 120), (0.3, 1100.0, 600)] {
         let ball = ball().with_number("follower.restitution", restitution).unwrap();
-        let found = speeds(&ball, [rpm, rpm + 1.0], resolution(1.0, 2), &Unwatched).unwrap();
+        let found = speeds(&ball, [rpm, rpm + 1.0], &resolution(1.0, 2), &Unwatched).unwrap();
         let [one] = &found.attractors[..] else { panic!("{found:?}") };
         for at in &one.at {
             let impacts = at.ending.period().unwrap().1;

@@ -11,15 +11,16 @@ use corner_impact::diagram::{Placed, Places, Section as Shows, Speeds, Start, St
 use corner_impact::flight::State;
 use corner_impact::model::{Model, Study};
 use corner_impact::orbit::branch::Following;
+use corner_impact::orbit::long_run::Budget;
 use corner_impact::orbit::{Parameter, Search};
 use corner_impact::progress::Unwatched;
 use corner_impact::simulate::EventKind;
 use corner_impact::study::StudyError;
-use corner_impact::study::chart::{Lengths, Point};
 use corner_impact::study::continuation::branches;
 use corner_impact::study::diagram::{Shown, loads, on_attractors, one_row};
 use corner_impact::study::locate::{Happens, locate};
 use corner_impact::study::simulate::{Sight, Simulation, Until, Wanted};
+use corner_impact::study::survey::{Point, Sample};
 use corner_impact::study::verify::{External, verify};
 use serde_json::{Value, json};
 
@@ -33,7 +34,7 @@ fn a_run_shows_what_is_asked_for() {
     let paper = common::osorio();
     let start = Start { cam_angle: 1.0, follower: Placed::OnCam(2.0) };
     let simulation = Simulation::new(&paper, 700.0, start).unwrap();
-    let wanted = Wanted { until: Until::Revolutions(5), events: true, strobe: Some(2.0), drawn: 2, lyapunov: false };
+    let wanted = Wanted { until: Until::Revolutions(5), events: true, strobe: Some(2.0), drawn: 2, long_run: None };
     let (mut events, mut states) = (Vec::new(), Vec::new());
     let run = |wanted: Wanted, see: &mut dyn FnMut(Sight<'_>)| {
         simulation.run(wanted, &Unwatched, |sight| -> Result<(), StudyError> {
@@ -87,7 +88,7 @@ fn the_next_impact_is_waited_for_from_the_last_one_on() {
     let free = Model::parse("free.toml", free).unwrap();
     // A metre at a millimetre a second is 11,667 revolutions.
     let start = Start { cam_angle: 0.0, follower: Placed::At(State { position: 1.0, velocity: -0.001 }) };
-    let wanted = Wanted { until: Until::Impacts(5), events: false, strobe: None, drawn: 0, lyapunov: false };
+    let wanted = Wanted { until: Until::Impacts(5), events: false, strobe: None, drawn: 0, long_run: None };
     let simulation = Simulation::new(&free, 700.0, start).unwrap();
     let found = simulation.run(wanted, &Unwatched, |_| -> Result<(), StudyError> { Ok(()) }).unwrap_err();
     let StudyError::NoImpact { waited, impacts, revolution, .. } = found else { panic!("{found}") };
@@ -132,20 +133,20 @@ fn a_picture_of_a_sweep_shows_its_places() {
 #[test]
 fn a_sweep_is_a_run_at_each_speed() {
     let paper = common::osorio();
-    let lengths = Lengths { transient: 20, record: 3 };
+    let budget = Budget { transient: 20, record: 3, ..Budget::CHART };
     let speeds = Speeds { low: 690.0, high: 710.0, count: 3 };
-    let row = one_row(&machine(&paper, 690.0), &speeds, START, lengths, Some(1), &Unwatched).unwrap();
+    let row = one_row(&machine(&paper, 690.0), &speeds, START, budget, Some(1), &Unwatched).unwrap();
     let sweep = sweep(&paper, 690.0, 710.0, 3, Shows::Impacts);
-    let bears = loads(&paper, &sweep, START, lengths, Some(1), &Unwatched).unwrap();
+    let bears = loads(&paper, &sweep, START, budget, Some(1), &Unwatched).unwrap();
     assert_eq!([row.len(), bears.len()], [3, 3]);
     for ((rpm, point), bears) in [690.0, 700.0, 710.0].into_iter().zip(&row).zip(&bears) {
         let machine = machine(&paper, rpm);
-        let expected = Point::of(&machine, START.motion(&machine).unwrap(), lengths).unwrap();
+        let expected = Point::of(&machine, START.motion(&machine).unwrap(), budget).unwrap();
         assert_eq!(point.as_ref().unwrap(), &expected);
         assert_eq!(bears.len(), 3);
         assert!(bears.iter().all(|it| it.rpm == rpm && it.impact_speed > 0.0));
     }
-    let motions = on_attractors(&machine(&paper, 678.0)).unwrap();
+    let motions = on_attractors(&machine(&paper, 678.0), &Sample::Spread(64)).unwrap();
     assert!(motions.len() == 2 && motions.iter().all(|motion| motion.revolution == 0), "{motions:?}");
 }
 

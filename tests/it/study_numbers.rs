@@ -8,22 +8,21 @@ use approx::{assert_abs_diff_eq, assert_relative_eq};
 use corner_impact::flight::State;
 use corner_impact::model::Model;
 use corner_impact::orbit::branch::{Branch, Following, Kind as Event};
-use corner_impact::orbit::ending::{Ending, Kind};
+use corner_impact::orbit::long_run::{Kind, LongRun};
 use corner_impact::orbit::{Parameter, Search, search};
 use corner_impact::progress::Unwatched;
 use corner_impact::simulate::angular_velocity;
-use corner_impact::study::attractors::{
-    Attractors, Cause, Change, Here, Part, Resolution, Starts, Step, Wandering, attractors, detachment,
-};
+use corner_impact::study::attractors::{Attractors, Cause, Change, Here, Resolution, Step, attractors, detachment};
 use corner_impact::study::speeds::{At, speeds};
+use corner_impact::study::survey::{Part, Starts, Wandering};
 
 use crate::attractors::ball;
 use crate::common;
 use crate::design_numbers::rpm;
 use crate::orbit_numbers::{ending, is_as_it_was, machine, model};
 
-pub fn resolution(step: f64, starts: usize) -> Resolution {
-    Resolution { step: Step::at_most(step), starts, two_impacts: false }
+pub fn resolution(step: f64, starts: usize) -> &'static Resolution {
+    Box::leak(Box::new(Resolution::new(Step::at_most(step), starts)))
 }
 
 /// Where an attractor begins or ends: what was solved to nine digits, what runs tell to a bracket.
@@ -61,9 +60,9 @@ fn at(it: &At, starts: usize) -> String {
     told
 }
 
-fn told(model: &Model, range: [f64; 2], resolution: Resolution) -> String {
-    let found = speeds(model, range, resolution, &Unwatched).unwrap();
-    let mut told = format!("{} {range:?} by {} from {}\n", found.model, found.step, found.starts);
+fn told(model: &Model, range: [f64; 2], resolution: &Resolution) -> String {
+    let found = speeds(model, range, &resolution, &Unwatched).unwrap();
+    let mut told = format!("{} {range:?} by {} from {}\n", found.model, found.step, found.sample.count());
     assert!(found.failed.is_empty() && found.rpm == range);
     for it in &found.attractors {
         let [low, high] = it.rpm;
@@ -71,7 +70,7 @@ fn told(model: &Model, range: [f64; 2], resolution: Resolution) -> String {
         let (birth, death) = (end(it.birth.as_ref()), end(it.death.as_ref()));
         let name = format!("  {} {} {} {low:.6} to {high:.6}", it.id, it.kind, numbers.join(" "));
         writeln!(told, "{name}: from {birth} to {death}").unwrap();
-        told.extend(it.at.iter().map(|it| at(it, found.starts)));
+        told.extend(it.at.iter().map(|it| at(it, found.sample.count())));
     }
     for it in &found.coexistence {
         writeln!(told, "  {:.6} to {:.6}: {}", it.from_rpm, it.to_rpm, it.attractors.join(" ")).unwrap();
@@ -281,7 +280,8 @@ fn what_only_its_own_orbit_begins_on_is_not_reached() {
     for (starts, reached, count) in
         [(vec![], true, 0), (vec![6], false, 0), (vec![5, 6], true, 0), (vec![4], true, 0), (vec![3, 4], true, 1)]
     {
-        let part = Part { ending: Ending::Stays, starts: starts.clone(), motion };
+        let part =
+            Part { ending: LongRun::PermanentContact, starts: starts.clone(), followed: vec![1; starts.len()], motion };
         assert_eq!((here.is_reached(&part), here.count(&part)), (reached, count), "{starts:?}");
     }
     let one = Wandering { revolutions: 1, left: 2, rested: 3 };
@@ -342,7 +342,7 @@ fn an_end_by_runs_moves_with_the_machine() {
     let row = &found.rows[row];
     let side = usize::from(row.ends[0].is_none());
     let end = row.ends[side].as_ref().unwrap();
-    let moved = |of: &Model| row.moved(&machine(of, 421.0), &found.grid, side);
+    let moved = |of: &Model| row.moved(&machine(of, 421.0), &found.grid, &resolution(0.5, 3).sample, side);
     let width = end.bracket[1] - end.bracket[0];
     assert_abs_diff_eq!(moved(&text(1000.0)).unwrap(), end.rpm, epsilon = 2.0 * width);
     for stiffness in [999.9, 1000.5] {
@@ -358,8 +358,8 @@ fn an_end_by_runs_moves_with_the_machine() {
 /// What counts is how many speeds there are, and not how many times as fast the last is as the first.
 #[test]
 fn a_range_may_begin_at_next_to_nothing() {
-    let resolution = Resolution { step: Step::at_most(0.02), starts: 1, two_impacts: false };
-    let found = attractors(&ball(), [1e-5, 1.0], resolution, &Unwatched).unwrap();
+    let resolution = Resolution::new(Step::at_most(0.02), 1);
+    let found = attractors(&ball(), [1e-5, 1.0], &resolution, &Unwatched).unwrap();
     let [row] = &found.rows[..] else { panic!("{:?}", found.rows) };
     assert_eq!((row.rpm, row.ends.each_ref().map(Option::is_some)), ([1e-5, 1.0], [false, false]));
 }

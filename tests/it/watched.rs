@@ -76,7 +76,7 @@ fn a_run_tells_how_far_it_has_turned() {
         (told.of(""), shown)
     };
     let wanted =
-        Wanted { until: Until::Revolutions(2), events: false, strobe: Some(1.0 + 1.5), drawn: 0, lyapunov: false };
+        Wanted { until: Until::Revolutions(2), events: false, strobe: Some(1.0 + 1.5), drawn: 0, long_run: None };
     // 1.5 rad are 238.7 thousandths of a turn.
     assert_eq!(told(wanted).0, [238, 1238, 2000].map(|done| [done, 2000]));
     let (told, shown) = told(Wanted { until: Until::Impacts(5000), events: true, strobe: None, ..wanted });

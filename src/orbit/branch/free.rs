@@ -16,7 +16,7 @@ use crate::cam::{Least, within_a_turn};
 use crate::flight::State;
 use crate::model::Model;
 use crate::orbit::cycle::lift_size;
-use crate::orbit::settle::at_rest;
+use crate::orbit::near::at_rest;
 use crate::orbit::{Cycle, Family, FamilyError, Impact, OrbitError, Parameter, PeriodicOrbit};
 use crate::simulate::{Machine, angular_velocity};
 use crate::tolerance;

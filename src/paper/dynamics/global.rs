@@ -7,12 +7,12 @@ use crate::border_collision::{LocalMap, passage};
 use crate::bracket::secants;
 use crate::diagram::growth;
 use crate::flight::State;
+use crate::orbit::long_run::Budget;
 use crate::orbit::{Course, Search, search};
 use crate::paper::context::{Context, Decision, decide};
 use crate::published::Verdict;
 use crate::section::StroboscopicMap;
 use crate::simulate::{SimulateError, angular_velocity};
-use crate::study::attractors::Patience;
 use crate::study::basins::boundary::{approach, border};
 use crate::study::basins::{Curve, Extent, Reversed, Saddle};
 use crate::tolerance;
@@ -122,7 +122,7 @@ fn borders(context: &Context<'_>, rpm: f64) -> Result<(usize, f64), SimulateErro
     let (mut found, mut farthest) = (0, 0.0_f64);
     for velocity in VELOCITIES {
         let line = [0.6, 6.0].map(|position| State { position, velocity });
-        if let Some(state) = border(&map, line, Patience::default())? {
+        if let Some(state) = border(&map, line, Budget { patience: 0, ..Budget::SURVEY })? {
             (found, farthest) = (found + 1, farthest.max(curve.distance(state)));
         }
     }

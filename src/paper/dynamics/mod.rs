@@ -12,9 +12,9 @@ use std::ops::ControlFlow;
 
 use super::context::Context;
 use crate::orbit::PeriodicOrbit;
-use crate::orbit::ending::Ending;
-use crate::orbit::fate::Settling;
+use crate::orbit::long_run::{Budget, LongRun};
 use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError, angular_velocity};
+use crate::study::survey::long_run;
 use crate::tolerance;
 pub(super) use {chattering::*, global::*, transition::*};
 
@@ -36,8 +36,9 @@ fn corners(context: &Context<'_>) -> [f64; 6] {
 /// The motion of one impact a revolution, in one state, that `motion` comes to within `transient` revolutions, or so many after a
 /// rest.
 fn one_impact(machine: &Machine, motion: Motion, transient: u64) -> Result<Option<PeriodicOrbit>, SimulateError> {
-    Ok(match Settling::unaided(machine, 1, transient).ending(motion, transient)? {
-        Ending::Orbit(orbit) if orbit.impacts().count() == 1 => Some(orbit),
+    let budget = Budget { transient, record: 1, longest: 1, patience: 0 };
+    Ok(match long_run(machine, motion, budget)?.ending {
+        LongRun::Orbit(orbit) if orbit.impacts().count() == 1 => Some(orbit),
         _ => None,
     })
 }

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use super::{corners, listed, machine, one_impact};
 use crate::covering::prove::prove;
 use crate::covering::{HSet, known};
-use crate::diagram::{exponent, growth};
+use crate::diagram::{Record, growth};
 use crate::orbit::branch::{Branch, BranchPoint, Following, Kind};
 use crate::orbit::{Parameter, Search, search};
 use crate::paper::context::{Context, Decision, decide};
@@ -124,8 +124,10 @@ pub(in crate::paper) fn chaos_below(context: &Context<'_>) -> Decision {
     // A chaotic mean moves in its second digit with the machine's sine: the evidence says what it is compared with.
     let threshold = tolerance::CHAOTIC_GROWTH.value;
     let chaotic = machine(context, 670.0);
-    let below = exponent(&chaotic, from_x_star(context, &chaotic)?, BLOCKS.0, BLOCKS.1)?;
-    let is_chaotic = below.growth.value > threshold && below.growth.value > SIGNIFICANT * below.growth.error;
+    let mut below = Record::over(BLOCKS.1);
+    below.take(&chaotic, &mut from_x_star(context, &chaotic)?, u64::from(BLOCKS.0) * BLOCKS.1)?;
+    let below = below.growth();
+    let is_chaotic = below.value > threshold && below.value > SIGNIFICANT * below.error;
     let periodic = machine(context, 680.0);
     let above = growth(&periodic, from_x_star(context, &periodic)?, 4000)?;
     // Covering alone: that there is a motion for each sequence, and not that there is but one.

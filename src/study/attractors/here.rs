@@ -1,12 +1,12 @@
 //! The attractors at one speed.
 
-use super::ensemble::{Ensemble, Failed, Part, Patience, Wandering};
-use super::starts::Starts;
+use super::{Resolution, Step};
 use crate::cam::within_a_turn;
-use crate::orbit::ending::Ending;
-use crate::orbit::fate::{Run, Settling};
+use crate::orbit::long_run::{Budget, LongRun, Recorded};
+use crate::orbit::runs::{LongRuns, RunOutcome};
 use crate::progress::Unwatched;
 use crate::simulate::{Machine, Motion, SimulateError, angular_velocity};
+use crate::study::survey::{Ensemble, Failed, Part, Sample, Starts, Wandering, attractors_of};
 
 /// What a machine does in the long run at one speed.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,43 +28,56 @@ pub struct Here {
 }
 
 impl Here {
-    /// At `rpm`, from `sampled` starts of [`Starts`], from rest on the cam at each of its releases, and with the stable orbits
-    /// that a search finds.
-    pub fn new(machine: &Machine, rpm: f64, sampled: usize) -> Result<Self, SimulateError> {
-        Self::seeded(machine, rpm, sampled, false)
+    /// At `rpm`, from the starts of a sample, with the budget of a survey.
+    pub fn new(machine: &Machine, rpm: f64, sample: &Sample) -> Result<Self, SimulateError> {
+        let step = Step::at_most(rpm);
+        Self::seeded(
+            machine,
+            rpm,
+            &Resolution { step, sample: sample.clone(), budget: Budget::SURVEY, two_impacts: false },
+        )
     }
 
-    /// The same, on all of two impacts in one revolution, too, if `two_impacts`.
-    pub(super) fn seeded(
-        machine: &Machine,
-        rpm: f64,
-        sampled: usize,
-        two_impacts: bool,
-    ) -> Result<Self, SimulateError> {
+    /// At `rpm`: from the starts that are given, or from a sample of [`Starts`], from rest on the cam at each of its releases, and with the
+    /// stable orbits that a search finds.
+    pub(super) fn seeded(machine: &Machine, rpm: f64, resolution: &Resolution) -> Result<Self, SimulateError> {
         let machine = machine.at_speed(angular_velocity(rpm));
-        let patience = Patience::default();
-        let mut settling = Settling::new(&machine, patience.longest)?;
-        if two_impacts {
-            settling.know_two_impacts()?;
+        let Resolution { sample, budget, two_impacts, .. } = resolution;
+        let count = match sample {
+            Sample::Given(starts) => {
+                let runs = LongRuns::unaided(&machine, *budget);
+                let start = |index: usize| starts[index].motion(&machine).map(Some);
+                let found = attractors_of(&runs, starts.len(), start, &Unwatched).map_err(|(_, error)| error)?;
+                return Ok(Self::of(rpm, found, starts.len(), 0));
+            }
+            Sample::Spread(count) => *count,
+        };
+        let mut runs = LongRuns::new(&machine, *budget)?;
+        if *two_impacts {
+            runs.know_two_impacts()?;
         }
-        let known: Vec<Motion> =
-            settling.known().map(|orbit| machine.start(0.0, orbit.state)).collect::<Result<_, _>>()?;
+        let known: Vec<Motion> = runs.known().map(|orbit| orbit.motion(&machine)).collect::<Result<_, _>>()?;
         let rests = machine.rests()?;
         let starts = Starts::of(&machine);
         let start = |index: usize| {
-            if index < sampled {
+            if index < count {
                 return starts.motion(&machine, index).map(Some);
             }
-            let rest = index - sampled;
+            let rest = index - count;
             let Some([from, to]) = rests.get(rest) else { return Ok(known.get(rest - rests.len()).copied()) };
             let angle = within_a_turn(from.midpoint(*to));
             machine.start_on_cam(angle, 0.0).map(|motion| motion.contact.then_some(motion))
         };
-        let count = sampled + rests.len() + known.len();
-        let Ensemble { parts, off_for_good, wandering, failed } =
-            Ensemble::of(&settling, patience, count, start, &Unwatched).map_err(|(_, error)| error)?;
+        let all = count + rests.len() + known.len();
+        let found = attractors_of(&runs, all, start, &Unwatched).map_err(|(_, error)| error)?;
+        Ok(Self::of(rpm, found, count, rests.len()))
+    }
+
+    /// What so many starts of a sample, and others, come to.
+    fn of(rpm: f64, found: Ensemble, sampled: usize, rests: usize) -> Self {
+        let Ensemble { parts, off_for_good, wandering, failed } = found;
         let off_for_good = off_for_good.into_iter().filter(|start| *start < sampled).count();
-        Ok(Self { rpm, parts, sampled, off_for_good, rests: rests.len(), wandering, failed })
+        Self { rpm, parts, sampled, off_for_good, rests, wandering, failed }
     }
 
     /// Whether a run has come to a part, from the sample, from rest on the cam or from a neighbouring speed, and not only one
@@ -102,21 +115,26 @@ impl Here {
         let machine = machine.at_speed(angular_velocity(self.rpm));
         // At another speed the cam may have come to where the follower is.
         let Ok(mut motion) = machine.resume(motion) else { return Ok(None) };
-        let mut settling = Settling::new(&machine, Patience::default().longest)?;
+        let mut runs = LongRuns::new(&machine, Budget::SURVEY)?;
         for part in &self.parts {
-            if let Ending::Orbit(orbit) = &part.ending {
-                settling.know(orbit)?;
+            if let LongRun::Orbit(orbit) = &part.ending {
+                runs.know(orbit)?;
             }
         }
-        let ending = match settling.run(&mut motion, WAITED)? {
-            Run::Arrives(orbit) => Ending::Orbit(orbit),
-            Run::Stays => Ending::Stays,
-            Run::Released(release) => settling.after(&settling.fate(release)?)?,
-            Run::Wanders => settling.by_growth(motion)?,
+        let begun = motion.revolution;
+        let (ending, more) = match runs.run(&mut motion, WAITED)? {
+            RunOutcome::Arrives(orbit) => (LongRun::Orbit(orbit), 0),
+            RunOutcome::PermanentContact => (LongRun::PermanentContact, 0),
+            RunOutcome::Released(release) => {
+                let (after, followed) = runs.after_release(release, |_| None)?;
+                (runs.ending_after(&after)?, followed)
+            }
+            RunOutcome::Wanders => (runs.by_growth(motion, 1)?, 0),
         };
+        let followed = motion.revolution - begun + more + ending.of_growth().map_or(0, Recorded::each);
         // What wanders where others have left is on its way, too.
         let is_on_its_way =
-            matches!(ending, Ending::Undecided(_)) || (self.wandering.left > 0 && ending.period().is_none());
-        Ok((!is_on_its_way).then_some(Part { ending, starts: Vec::new(), motion }))
+            matches!(ending, LongRun::Undecided(_)) || (self.wandering.left > 0 && ending.period().is_none());
+        Ok((!is_on_its_way).then_some(Part { ending, starts: Vec::new(), followed: vec![followed], motion }))
     }
 }

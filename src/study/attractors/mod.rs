@@ -7,8 +7,6 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | `starts` | a sample of starts that stands for all |
-//! | [`ensemble`] | what many starts of one machine end on |
 //! | [`here`] | the attractors at one speed |
 //! | `stretch` | how far a periodic orbit is stable, by the branch that it is on |
 //! | [`change`] | where an attractor begins or ends, and why |
@@ -16,28 +14,26 @@
 
 pub mod change;
 mod detachment;
-pub mod ensemble;
 pub mod here;
 pub mod rows;
-mod starts;
 mod stretch;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::model::{Model, ModelError};
+use crate::orbit::long_run::Budget;
 use crate::progress::Watch;
 use crate::simulate::{Machine, SimulateError};
 use crate::stop;
 use crate::study::design::contact::{Contact, Separation};
 use crate::study::machine;
+use crate::study::survey::{Part, Sample};
 pub use change::{Cause, Change};
 pub use detachment::detachment;
 
-pub use ensemble::{Ensemble, Part, Patience, Wandering};
 pub use here::Here;
 use rayon::prelude::*;
 pub use rows::{Grid, Row};
-pub use starts::Starts;
 
 /// A grid of speeds that no range has a say in: whole multiples of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,15 +89,24 @@ impl Step {
 }
 
 /// How closely a range is looked at.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Resolution {
     /// From one speed to the next.
     pub step: Step,
-    /// How many starts of the sample are run at each.
-    pub starts: usize,
+    /// The starts that are run at each.
+    pub sample: Sample,
+    /// For how long.
+    pub budget: Budget,
     /// Whether runs begin on the stable orbits of two impacts in one revolution, too: a search at each speed that takes up to
     /// seconds, and finds all of them but next to a fold, a graze or a corner.
     pub two_impacts: bool,
+}
+
+impl Resolution {
+    /// So many starts of a sample at each speed, with the budget of a survey.
+    pub fn new(step: Step, starts: usize) -> Self {
+        Self { step, sample: Sample::Spread(starts), budget: Budget::SURVEY, two_impacts: false }
+    }
 }
 
 /// Two or more attractors at the same speeds.
@@ -155,7 +160,7 @@ const MOST_SPEEDS: f64 = 200_000.0;
 pub fn attractors(
     model: &Model,
     range: [f64; 2],
-    resolution: Resolution,
+    resolution: &Resolution,
     watch: &dyn Watch,
 ) -> Result<Attractors, AttractorsError> {
     let [low, high] = range;
@@ -180,7 +185,7 @@ pub fn attractors(
         // Work that is to end does not begin at each of the speeds that are left.
         stop::ask();
         watch.at("what runs end on", done.fetch_add(1, Ordering::Relaxed), total);
-        Here::seeded(&machine, *rpm, resolution.starts, resolution.two_impacts).map_err(|error| (*rpm, error))
+        Here::seeded(&machine, *rpm, resolution).map_err(|error| (*rpm, error))
     };
     let mut grid: Vec<_> = speeds.par_iter().map(at).collect();
     if let Some(Err((rpm, error))) = grid.first()
@@ -189,9 +194,12 @@ pub fn attractors(
         return Err(AttractorsError::Simulate { rpm: *rpm, error: *error });
     }
     watch.at("what neighbouring speeds end on", 0, 0);
-    exchange(&machine, &mut grid);
+    // Starts that are given are all that is asked about.
+    if let Sample::Spread(_) = resolution.sample {
+        exchange(&machine, &mut grid);
+    }
     watch.at("where each begins and ends", 0, 0);
-    let mut rows = rows::rows(model, &machine, &mut grid);
+    let mut rows = rows::rows(model, &machine, &mut grid, &resolution.sample);
     let separation = Contact::new(machine.cam(), model.follower).separation_above(low);
     if let Separation::At { rpm, error, .. } = separation {
         rows.iter_mut().for_each(|row| row.detaches(rpm, error));

@@ -5,16 +5,16 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 
 use super::change::{Cause, Change};
-use super::ensemble::Part;
 use super::here::Here;
 use super::stretch::Stretch;
 use crate::bracket::{Width, halve};
 use crate::model::Model;
 use crate::orbit::branch::BranchPoint;
-use crate::orbit::ending::{Ending, Kind};
-use crate::orbit::settle::close;
+use crate::orbit::long_run::{Kind, LongRun};
+use crate::orbit::near::close;
 use crate::orbit::{Course, PeriodicOrbit};
 use crate::simulate::{Machine, Motion, SimulateError, angular_velocity};
+use crate::study::survey::{Part, Sample};
 
 /// What holds a motion together from one speed to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,13 +32,13 @@ enum Class {
 }
 
 impl Class {
-    fn of(ending: &Ending) -> Self {
+    fn of(ending: &LongRun) -> Self {
         match ending {
-            Ending::Stays => Self::Stays,
-            Ending::Orbit(orbit) => Self::Orbit(orbit.revolutions, orbit.impacts().count() as u64),
-            Ending::Resting(resting) if resting.revolutions == 1 => Self::Rests,
-            Ending::Resting(_) | Ending::Chaotic(_) => Self::Irregular,
-            Ending::Undecided(_) => Self::Undecided,
+            LongRun::PermanentContact => Self::Stays,
+            LongRun::Orbit(orbit) => Self::Orbit(orbit.revolutions, orbit.impacts().count() as u64),
+            LongRun::Sticking(resting) if resting.revolutions == 1 => Self::Rests,
+            LongRun::Sticking(_) | LongRun::Chaotic(_) => Self::Irregular,
+            LongRun::Undecided(_) => Self::Undecided,
         }
     }
 }
@@ -60,14 +60,14 @@ pub struct Row {
 pub type Grid = [Result<Here, (f64, SimulateError)>];
 
 /// Matches what was found over a grid of speeds.
-pub fn rows(model: &Model, machine: &Machine, grid: &mut Grid) -> Vec<Row> {
+pub fn rows(model: &Model, machine: &Machine, grid: &mut Grid, sample: &Sample) -> Vec<Row> {
     let mut rows = linked(machine, grid);
     let step = step(grid);
     rows.par_iter_mut().for_each(|row| row.follow(model, grid, step));
     let mut rows = joined(machine, rows);
     beyond(model, machine, &mut rows, step);
     let mut rows = joined(machine, rows);
-    rows.par_iter_mut().for_each(|row| row.narrow(machine, grid));
+    rows.par_iter_mut().for_each(|row| row.narrow(machine, grid, sample));
     rows.sort_by(|one, two| one.rpm[0].total_cmp(&two.rpm[0]).then(one.rpm[1].total_cmp(&two.rpm[1])));
     rows
 }
@@ -123,9 +123,9 @@ fn linked(machine: &Machine, grid: &Grid) -> Vec<Row> {
 }
 
 /// Whether Newton's method leads from an orbit of one speed to that of the next; of other motions there is one of a class.
-fn is_next(machine: &Machine, before: &Ending, now: &Ending) -> bool {
+fn is_next(machine: &Machine, before: &LongRun, now: &LongRun) -> bool {
     match (before, now) {
-        (Ending::Orbit(before), Ending::Orbit(now)) => {
+        (LongRun::Orbit(before), LongRun::Orbit(now)) => {
             at_speed(machine, before).is_some_and(|orbit| orbit.is_same(now))
         }
         _ => true,
@@ -157,7 +157,7 @@ fn beyond(model: &Model, machine: &Machine, rows: &mut Vec<Row>, step: f64) {
                 if holds(rows, &seen) || found.iter().any(|(_, row)| holds(std::slice::from_ref(row), &seen)) {
                     continue;
                 }
-                let class = Class::of(&Ending::Orbit(seen.1.clone()));
+                let class = Class::of(&LongRun::Orbit(seen.1.clone()));
                 let mut row = Row { class, at: BTreeMap::new(), ends: [None, None], rpm: [rpm; 2], stretch: None };
                 if let Ok(stretch) = Stretch::all(model, rpm, &seen.1, row.rpm, step) {
                     row.take(stretch);
@@ -197,7 +197,7 @@ fn joined(machine: &Machine, rows: Vec<Row>) -> Vec<Row> {
 }
 
 impl Row {
-    fn ending<'a>(&self, grid: &'a Grid, index: usize) -> Option<&'a Ending> {
+    fn ending<'a>(&self, grid: &'a Grid, index: usize) -> Option<&'a LongRun> {
         let here = grid.get(index)?.as_ref().ok()?;
         Some(&here.parts.get(*self.at.get(&index)?)?.ending)
     }
@@ -219,7 +219,7 @@ impl Row {
     fn follow(&mut self, model: &Model, grid: &Grid, step: f64) {
         let middle = self.at.keys().nth(self.at.len() / 2).copied();
         if let Some(index) = middle
-            && let Some(Ending::Orbit(orbit)) = self.ending(grid, index)
+            && let Some(LongRun::Orbit(orbit)) = self.ending(grid, index)
             && let Ok(stretch) = Stretch::all(model, speed(&grid[index]), orbit, self.rpm, step)
         {
             self.take(stretch);
@@ -232,7 +232,7 @@ impl Row {
     }
 
     /// Narrows down where a motion that is no orbit begins and ends, between two speeds of the grid.
-    fn narrow(&mut self, machine: &Machine, grid: &Grid) {
+    fn narrow(&mut self, machine: &Machine, grid: &Grid, sample: &Sample) {
         if self.stretch.is_some() {
             return;
         }
@@ -241,7 +241,7 @@ impl Row {
         };
         let changed = |(side, index): (usize, usize)| {
             let next = if side == 0 { index.checked_sub(1) } else { Some(index + 1) };
-            Some(self.ended(machine, grid, index, speed(grid.get(next?)?)))
+            Some(self.ended((machine, sample), grid, index, speed(grid.get(next?)?)))
         };
         let (lower, upper) = rayon::join(|| changed((0, first)), || changed((1, last)));
         for ((end, own), change) in self.ends.iter_mut().zip(&mut self.rpm).zip([lower, upper]) {
@@ -253,11 +253,11 @@ impl Row {
     }
 
     /// Between the speed of an index, at which it is there, and `gone`, rpm.
-    fn ended(&self, machine: &Machine, grid: &Grid, index: usize, gone: f64) -> Change {
+    fn ended(&self, (machine, sample): (&Machine, &Sample), grid: &Grid, index: usize, gone: f64) -> Change {
         /// Halvings of a step of the grid.
         const HALVINGS: u32 = 8;
         let ends = [speed(&grid[index]), gone];
-        let found = self.wanted(grid, index).map(|(wanted, part)| {
+        let found = self.wanted(grid, index, sample).map(|(wanted, part)| {
             let mut motion = Some(part.motion);
             halve(ends, Width::Halvings(HALVINGS), |rpm| Ok(!wanted.is_there(machine, rpm, &mut motion)?))
         });
@@ -266,7 +266,7 @@ impl Row {
 
     /// The speed, rpm, at which an end that is known by runs is on another machine, whose cam differs by little; none where it is not
     /// found near by.
-    pub fn moved(&self, other: &Machine, grid: &Grid, side: usize) -> Option<f64> {
+    pub fn moved(&self, other: &Machine, grid: &Grid, sample: &Sample, side: usize) -> Option<f64> {
         /// The first step, in brackets of the end: as narrow a bracket takes long, and steps are doubled.
         const FIRST: f64 = 16.0;
         /// How often.
@@ -275,7 +275,7 @@ impl Row {
         const HALVINGS: u32 = 3;
         let change = self.ends[side].as_ref().filter(|_| self.class != Class::Undecided)?;
         let index = if side == 0 { self.at.keys().next() } else { self.at.keys().last() };
-        let (wanted, _) = self.wanted(grid, *index?)?;
+        let (wanted, _) = self.wanted(grid, *index?, sample)?;
         let mut motion = None;
         let mut is_there = |rpm: f64| wanted.is_there(other, rpm, &mut motion);
         let was_there = is_there(change.rpm).ok()?;
@@ -295,11 +295,15 @@ impl Row {
     }
 
     /// What it is at a speed of the grid, to be looked for elsewhere.
-    fn wanted<'a>(&self, grid: &'a Grid, index: usize) -> Option<(Wanted, &'a Part)> {
+    fn wanted<'a>(&self, grid: &'a Grid, index: usize, sample: &Sample) -> Option<(Wanted, &'a Part)> {
         let here = grid.get(index)?.as_ref().ok()?;
         let part = here.parts.get(*self.at.get(&index)?)?;
         let of_class = here.parts.iter().filter(|part| Class::of(&part.ending) == self.class);
-        Some((Wanted { class: self.class, kind: part.ending.kind(), both: of_class.count() > 1 }, part))
+        let sample = match sample {
+            Sample::Spread(_) => Sample::Spread(STARTS),
+            Sample::Given(_) => sample.clone(),
+        };
+        Some((Wanted { class: self.class, kind: part.ending.kind(), both: of_class.count() > 1, sample }, part))
     }
 
     /// Turns of the cam and impacts of one period, where that is the same all along.
@@ -357,21 +361,26 @@ struct Wanted {
     /// Whether there are several of the class, of which another kind is another motion: one that is long may be chaotic at one speed and
     /// be seen to rest at the next.
     both: bool,
+    /// Where runs begin at each speed that is tried.
+    sample: Sample,
 }
+
+/// How many of a sample.
+const STARTS: usize = 12;
 
 impl Wanted {
     /// Whether one of a few starts ends on it, or the `motion` of another speed goes on as one; that is put in its place then.
     fn is_there(&self, machine: &Machine, rpm: f64, motion: &mut Option<Motion>) -> Result<bool, SimulateError> {
-        /// Starts at each speed.
-        const STARTS: usize = 12;
-        let here = Here::new(machine, rpm, STARTS)?;
+        let here = Here::new(machine, rpm, &self.sample)?;
         let of_class = |part: &Part| Class::of(&part.ending) == self.class;
         let alike = |part: &&Part| of_class(part) && part.ending.kind() == self.kind;
         let goes_on = |part: &Part| if self.both { alike(&part) } else { of_class(part) };
         let there = match (here.parts.iter().find(alike), *motion) {
             (Some(part), _) => Some(part.motion),
-            (None, Some(before)) => here.come_to(machine, &before)?.filter(goes_on).map(|part| part.motion),
-            (None, None) => here.parts.iter().find(|part| goes_on(part)).map(|part| part.motion),
+            (None, Some(before)) if matches!(self.sample, Sample::Spread(_)) => {
+                here.come_to(machine, &before)?.filter(goes_on).map(|part| part.motion)
+            }
+            (None, _) => here.parts.iter().find(|part| goes_on(part)).map(|part| part.motion),
         };
         *motion = there.or(*motion);
         Ok(there.is_some())
@@ -383,6 +392,6 @@ fn sorted([one, two]: [f64; 2]) -> [f64; 2] {
 }
 
 /// Whether runs have come to a motion of the same class as `ending`.
-pub(super) fn has_reached(here: &Here, ending: &Ending) -> bool {
+pub(super) fn has_reached(here: &Here, ending: &LongRun) -> bool {
     here.parts.iter().any(|part| Class::of(&part.ending) == Class::of(ending) && here.is_reached(part))
 }

@@ -3,7 +3,8 @@
 use super::change::{Cause, Change};
 use crate::model::Model;
 use crate::orbit::branch::{self, Branch, BranchPoint, End, Following, Kind};
-use crate::orbit::fate::{Run, Settling};
+use crate::orbit::long_run::Budget;
+use crate::orbit::runs::{LongRuns, RunOutcome};
 use crate::orbit::{Family, OrbitError, Parameter, PeriodicOrbit, Stability};
 use crate::simulate::{Machine, SimulateError, angular_velocity};
 
@@ -107,13 +108,13 @@ impl Stretch {
         let settled = |(onward, point, far): (f64, &BranchPoint, f64)| -> Result<_, SimulateError> {
             let rpm = point.rpm + onward * far * step;
             let machine = machine.at_speed(angular_velocity(rpm));
-            let settling = Settling::new(&machine, LONGEST)?;
+            let settling = LongRuns::new(&machine, Budget { longest: LONGEST, ..Budget::SURVEY })?;
             let impact = point.orbit.impacts().next();
             // From the cam, which at another speed is where it was at this one.
             let Some(impact) = impact else { return Ok(None) };
             let mut motion = machine.start_on_cam(impact.cam_angle, impact.velocity_after - impact.cam_velocity)?;
             Ok(match settling.run(&mut motion, WAITED)? {
-                Run::Arrives(orbit) => Some((rpm, orbit)),
+                RunOutcome::Arrives(orbit) => Some((rpm, orbit)),
                 _ => None,
             })
         };

@@ -3,37 +3,36 @@
 use super::{Curve, Saddle};
 use crate::bracket::{Width, halve};
 use crate::flight::State;
-use crate::orbit::ending::Ending;
-use crate::orbit::fate::Settling;
+use crate::orbit::long_run::{Budget, LongRun};
+use crate::orbit::runs::LongRuns;
+use crate::progress::Unwatched;
 use crate::section::StroboscopicMap;
 use crate::simulate::SimulateError;
-use crate::study::attractors::Patience;
+use crate::study::survey::attractors_of;
 use crate::tolerance;
 
 /// Where, between two starts on the section, runs change what they end on: the middle of a bracket that is halved down to
 /// the width of a rounding; `None` where both ends end alike.
 ///
 /// Of several such places one is found.
-pub fn border(
-    map: &StroboscopicMap,
-    [from, to]: [State; 2],
-    patience: Patience,
-) -> Result<Option<State>, SimulateError> {
+pub fn border(map: &StroboscopicMap, [from, to]: [State; 2], budget: Budget) -> Result<Option<State>, SimulateError> {
     let at = |share: f64| State {
         position: from.position + share * (to.position - from.position),
         velocity: from.velocity + share * (to.velocity - from.velocity),
     };
-    let settling = Settling::new(&map.machine, patience.longest)?;
-    let end = |share: f64| -> Result<Ending, SimulateError> {
-        settling.ending(map.machine.start(map.cam_angle, at(share))?, patience.revolutions)
+    let runs = LongRuns::new(&map.machine, budget)?;
+    let end = |share: f64| -> Result<LongRun, SimulateError> {
+        let start = |_| map.machine.start(map.cam_angle, at(share)).map(Some);
+        let mut found = attractors_of(&runs, 1, start, &Unwatched).map_err(|(_, error)| error)?;
+        Ok(found.parts.swap_remove(0).ending)
     };
     let (first, last) = (end(0.0)?, end(1.0)?);
     if first.is_same(&last) {
         return Ok(None);
     }
     // A chaotic run may come to rest by chance: an orbit, where one end has it, tells the two sides apart.
-    let is_orbit = matches!(last, Ending::Orbit(_));
-    let ends_low = |ending: &Ending| if is_orbit { !ending.is_same(&last) } else { ending.is_same(&first) };
+    let is_orbit = matches!(last, LongRun::Orbit(_));
+    let ends_low = |ending: &LongRun| if is_orbit { !ending.is_same(&last) } else { ending.is_same(&first) };
     let width = Width::Absolute(tolerance::BORDER_BRACKET.value);
     let [low, high] = halve([0.0, 1.0], width, |share| Ok(!ends_low(&end(share)?)))?;
     Ok(Some(at(0.5 * (low + high))))

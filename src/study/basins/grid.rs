@@ -1,15 +1,15 @@
-//! A grid of starts on a section, and the motion that each ends on.
+//! Starts on a section, those of a grid or given ones, and the motion that each ends on.
 
 use serde::Serialize;
 
 use crate::diagram::SweepError;
 use crate::estimate::Estimate;
 use crate::flight::State;
-use crate::orbit::ending::Ending;
-use crate::orbit::fate::Settling;
-use crate::progress::{Unwatched, Watch};
+use crate::orbit::long_run::{Budget, LongRun};
+use crate::orbit::runs::LongRuns;
+use crate::progress::Watch;
 use crate::simulate::{Machine, SimulateError};
-use crate::study::attractors::{Ensemble, Patience, Wandering};
+use crate::study::survey::{Ensemble, Wandering, attractors_of};
 
 /// Starts on the section at one cam angle: the middles of cells, evenly spaced in position and velocity.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -42,34 +42,76 @@ impl Grid {
             velocity: middle(self.velocities, cell / columns, rows),
         }
     }
+}
 
-    /// What every start ends on, on `threads` threads (all there are for `None`): the same for every number of them.
-    pub fn basins(&self, machine: &Machine, patience: Patience, threads: Option<usize>) -> Result<Basins, GridError> {
-        self.basins_watched(machine, patience, threads, &Unwatched)
+/// Starts on a section.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum SectionStarts {
+    /// Those of a grid.
+    Grid(Grid),
+    /// These.
+    Given(States),
+}
+
+/// States on the section at one cam angle.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct States {
+    /// The section, rad, in `[0, 2 pi)`.
+    #[serde(rename = "cam_angle_rad")]
+    pub cam_angle: f64,
+    /// The states.
+    #[serde(skip)]
+    pub states: Vec<State>,
+}
+
+impl SectionStarts {
+    /// How many.
+    pub fn count(&self) -> usize {
+        match self {
+            Self::Grid(grid) => grid.cells.iter().product(),
+            Self::Given(given) => given.states.len(),
+        }
     }
 
-    /// The same, told to `watch` start by start.
-    pub fn basins_watched(
-        &self,
+    /// The section, rad, in `[0, 2 pi)`.
+    pub fn cam_angle(&self) -> f64 {
+        match self {
+            Self::Grid(Grid { cam_angle, .. }) | Self::Given(States { cam_angle, .. }) => *cam_angle,
+        }
+    }
+
+    /// One of them.
+    pub fn state(&self, index: usize) -> State {
+        match self {
+            Self::Grid(grid) => grid.start(index),
+            Self::Given(given) => given.states[index],
+        }
+    }
+
+    /// What every start ends on, on `threads` threads (all there are for `None`): the same for every number of them; told to `watch` start by
+    /// start. Those of a grid may be below the cam.
+    pub fn basins(
+        self,
         machine: &Machine,
-        patience: Patience,
+        budget: Budget,
         threads: Option<usize>,
         watch: &dyn Watch,
     ) -> Result<Basins, GridError> {
         let pool = crate::diagram::threads(threads)?;
-        let start = |cell: usize| match machine.start(self.cam_angle, self.start(cell)) {
+        let failed = |(index, error): (usize, SimulateError)| GridError::Simulate { state: self.state(index), error };
+        let start = |index: usize| match machine.start(self.cam_angle(), self.state(index)) {
             Ok(motion) => Ok(Some(motion)),
-            Err(SimulateError::BelowCam { .. }) => Ok(None),
+            Err(SimulateError::BelowCam { .. }) if matches!(self, Self::Grid(_)) => Ok(None),
             Err(error) => Err(error),
         };
-        let settling = Settling::new(machine, patience.longest).map_err(|error| self.failed(0, error))?;
-        let run = || Ensemble::of(&settling, patience, self.cells.iter().product(), start, watch);
-        let found = pool.install(run).map_err(|(cell, error)| self.failed(cell, error))?;
-        Ok(Basins::new(*self, found))
-    }
-
-    fn failed(&self, cell: usize, error: SimulateError) -> GridError {
-        GridError::Simulate { state: self.start(cell), error }
+        // A search for orbits takes as long as thousands of revolutions.
+        let runs = match self {
+            Self::Grid(_) => LongRuns::new(machine, budget).map_err(|error| failed((0, error)))?,
+            Self::Given(_) => LongRuns::unaided(machine, budget),
+        };
+        let found = pool.install(|| attractors_of(&runs, self.count(), start, watch)).map_err(failed)?;
+        Ok(Basins::new(self, budget, found))
     }
 }
 
@@ -94,8 +136,9 @@ document!(Basin as part {
     ending: part.ending.kind(),
     revolutions if_any: part.ending.period().map(|(revolutions, _)| revolutions),
     impacts if_any: part.ending.period().map(|(_, impacts)| impacts),
-    growth if_any: part.ending.growth().map(|growth| growth.value),
-    growth_error if_any: part.ending.growth().map(|growth| growth.error),
+    growth: part.ending.growth().value,
+    growth_error: part.ending.growth().error,
+    followed: part.followed,
     starts: part.starts,
     share: part.share.value,
     share_standard_error: part.share.error,
@@ -105,7 +148,9 @@ document!(Basin as part {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Basin {
     /// How they end.
-    pub ending: Ending,
+    pub ending: LongRun,
+    /// Revolutions that their runs were followed for, all together.
+    pub followed: u64,
     /// How many.
     pub starts: usize,
     /// Their share of the starts above the cam. Those of a grid are spread better than by chance, so that its error errs on the
@@ -118,7 +163,9 @@ pub struct Basin {
 pub struct Basins {
     /// The starts.
     #[serde(flatten)]
-    pub grid: Grid,
+    pub begun: SectionStarts,
+    /// For how long runs were followed.
+    pub budget: Budget,
     /// How many of them are above the cam.
     pub starts: usize,
     /// The endings found, that of most starts first.
@@ -134,21 +181,35 @@ pub struct Basins {
     /// For each cell the index of its part; nothing where the start is below the cam.
     #[serde(skip)]
     pub cells: Vec<Option<usize>>,
+    /// For each the revolutions that its run was followed for.
+    #[serde(skip)]
+    pub followed: Vec<Option<u64>>,
 }
 
 impl Basins {
-    fn new(grid: Grid, mut found: Ensemble) -> Self {
+    fn new(begun: SectionStarts, budget: Budget, mut found: Ensemble) -> Self {
         // Stable: among parts of one size the first found comes first.
         found.parts.sort_by_key(|part| std::cmp::Reverse(part.starts.len()));
-        let mut cells = vec![None; grid.cells.iter().product()];
+        let (mut cells, mut followed) = (vec![None; begun.count()], vec![None; begun.count()]);
         let starts = found.parts.iter().map(|part| part.starts.len()).sum::<usize>();
         let mut parts = Vec::with_capacity(found.parts.len());
         for (index, part) in found.parts.into_iter().enumerate() {
             part.starts.iter().for_each(|cell| cells[*cell] = Some(index));
+            part.starts.iter().zip(&part.followed).for_each(|(cell, turns)| followed[*cell] = Some(*turns));
             let share = Estimate::share(part.starts.len(), starts);
-            parts.push(Basin { ending: part.ending, starts: part.starts.len(), share });
+            parts.push(Basin { followed: part.followed(), ending: part.ending, starts: part.starts.len(), share });
         }
         let failure = found.failed.first().map(|(_, error)| error.to_string());
-        Self { grid, starts, parts, wandering: found.wandering, failed: found.failed.len(), failure, cells }
+        Self {
+            begun,
+            budget,
+            starts,
+            parts,
+            wandering: found.wandering,
+            failed: found.failed.len(),
+            failure,
+            cells,
+            followed,
+        }
     }
 }

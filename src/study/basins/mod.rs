@@ -12,6 +12,6 @@ pub mod grid;
 pub mod manifold;
 mod section;
 
-pub use grid::{Basin, Basins, Grid, GridError};
+pub use grid::{Basin, Basins, Grid, GridError, SectionStarts, States};
 pub use manifold::{Curve, Extent, Reversed, Saddle};
 pub use section::{Border, Section, Summary};

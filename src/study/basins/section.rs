@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::{Basins, Curve, Extent, Grid, Reversed, Saddle};
 use crate::flight::State;
 use crate::model::{Follower, Model};
-use crate::orbit::ending::Ending;
+use crate::orbit::long_run::LongRun;
 use crate::orbit::{Course, PeriodicOrbit, Search, search};
 use crate::section::StroboscopicMap;
 use crate::study::{StudyError, machine};
@@ -98,19 +98,19 @@ impl Section {
     }
 
     /// What parts the basins, as finely as a picture of the grid shows it.
-    pub fn border(&self, basins: &Basins) -> Border {
+    pub fn border(&self, grid: &Grid, basins: &Basins) -> Border {
         let cycles = self.orbits.iter().filter_map(|orbit| match &orbit.course {
             Course::Impacts(cycle) => Some(cycle),
             _ => None,
         });
         let saddles: Vec<Saddle> =
             cycles.filter_map(|cycle| Saddle::new(&self.map.machine, cycle, self.map.cam_angle)).collect();
-        let [low, high] = basins.grid.positions;
+        let [low, high] = grid.positions;
         let (extent, reversed) = (Extent::of(high - low), Reversed::new(&self.follower, &self.map));
         let halves = saddles.iter().flat_map(|saddle| [(saddle, 1.0), (saddle, -1.0)]);
         let curve = |(saddle, sign)| reversed.as_ref().map(|reversed| Curve::stable(reversed, saddle, sign, &extent));
         let stable = basins.parts.iter().filter_map(|part| match &part.ending {
-            Ending::Orbit(orbit) => self.crossing(orbit),
+            LongRun::Orbit(orbit) => self.crossing(orbit),
             _ => None,
         });
         Border {

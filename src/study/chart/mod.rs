@@ -3,7 +3,6 @@
 //! Each point is a run of its own from one start, so that it is the same to the last bit in whatever order, parts or threads
 //! the points are run.
 
-mod point;
 pub mod store;
 
 use std::ops::Range;
@@ -15,12 +14,13 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::diagram::{Speeds, Start, SweepError};
+use crate::known::Known;
 use crate::model::Model;
-use crate::orbit::ending::Kind;
+use crate::orbit::long_run::{Budget, Kind};
 use crate::orbit::{Family, FamilyError, Parameter};
 use crate::progress::Watch;
 use crate::simulate::{Machine, angular_velocity};
-pub use point::{Lengths, Point, RECORDS, growth};
+use crate::study::survey::Point;
 
 /// Values of a number.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,7 +57,7 @@ pub struct Chart {
     /// Where every run starts.
     pub start: Start,
     /// For how long each goes on.
-    pub lengths: Lengths,
+    pub budget: Budget,
 }
 
 /// Points in order; the reason where one has no motion.
@@ -91,7 +91,7 @@ document!(Filled as it {
     schema: "corner-impact/chart/1",
     model: it.chart.model.name,
     points: it.points,
-    revolutions: it.points as u64 * (it.chart.lengths.transient + it.chart.lengths.record),
+    revolutions: it.points as u64 * (it.chart.budget.transient + it.chart.budget.record),
     blocks: it.blocks,
     cpu_s: it.times[0],
     wall_s: it.times[1],
@@ -118,10 +118,14 @@ document!(Charted as it {
     x: AxisDocument::of(&it.chart.x),
     y: AxisDocument::of(&it.chart.y),
     rpm if_any: it.chart.speed(),
-    transient: it.chart.lengths.transient,
-    record: it.chart.lengths.record,
+    transient: it.chart.budget.transient,
+    record: it.chart.budget.record,
+    longest: it.chart.budget.longest,
+    patience: it.chart.budget.patience,
+    known: Known::Sampled,
     points: it.points.len(),
-    revolutions: it.points.len() as u64 * (it.chart.lengths.transient + it.chart.lengths.record),
+    revolutions: it.points.len() as u64 * (it.chart.budget.transient + it.chart.budget.record),
+    followed: it.followed(),
     classes: it.counts().into_iter().map(|(kind, points)| Class { class: class(kind), points }).collect::<Vec<_>>(),
     cpu_s: it.times[0],
     wall_s: it.times[1],
@@ -189,7 +193,7 @@ impl Chart {
         rpm: Option<f64>,
         [x, y]: [Axis; 2],
         start: Start,
-        lengths: Lengths,
+        budget: Budget,
     ) -> Result<Self, ChartError> {
         if x.parameter == y.parameter {
             return Err(ChartError::OneNumber(x.parameter.name().into()));
@@ -206,7 +210,7 @@ impl Chart {
             (Some(_), Some(_)) => return Err(ChartError::TwoSpeeds),
             (None, None) => return Err(ChartError::NoSpeed),
         };
-        let chart = Self { model: model.clone(), rpm, x, y, start, lengths };
+        let chart = Self { model: model.clone(), rpm, x, y, start, budget };
         // What is wrong with the model itself is told at once, and not at every point.
         chart.family()?;
         Ok(chart)
@@ -288,7 +292,7 @@ impl Chart {
     }
 
     fn point(&self, machine: &Machine) -> Result<Point, String> {
-        let run = self.start.motion(machine).and_then(|motion| Point::of(machine, motion, self.lengths));
+        let run = self.start.motion(machine).and_then(|motion| Point::of(machine, motion, self.budget));
         run.map_err(|error| error.to_string())
     }
 }
@@ -301,6 +305,11 @@ impl Charted {
             self.points.iter().filter(|point| point.as_ref().ok().map(|it| it.kind) == kind).count()
         };
         kinds.into_iter().chain([None]).map(|kind| (kind, number(kind))).filter(|(_, number)| *number > 0).collect()
+    }
+
+    /// Revolutions that the runs were followed for, all together.
+    pub fn followed(&self) -> u64 {
+        self.points.iter().flatten().map(|point| point.followed).sum()
     }
 
     /// Why the first point that failed did.

@@ -9,13 +9,14 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
-use super::{Axis, Blocks, Chart, ChartError, Filled, Point, class};
+use super::{Axis, Blocks, Chart, ChartError, Filled, class};
 use crate::diagram::{Placed, Start};
 use crate::file::{self, FileError, Output};
 use crate::flight::State;
 use crate::model::Units;
-use crate::orbit::ending::Kind;
+use crate::orbit::long_run::Kind;
 use crate::progress::{Unwatched, Watch};
+use crate::study::survey::Point;
 
 /// A store of a chart, in a folder.
 #[derive(Clone, Copy, Debug)]
@@ -90,7 +91,7 @@ pub struct Variable {
 }
 
 /// Those of each point, where it is none not a number, or -1; the class comes last, as a block without it is not done.
-pub const VARIABLES: [Variable; 7] = [
+pub const VARIABLES: [Variable; 8] = [
     Variable {
         name: "revolutions",
         whole: Some(4),
@@ -132,6 +133,13 @@ pub const VARIABLES: [Variable; 7] = [
         units: "m s-1",
         long_name: "speed of the fastest impact, of follower and cam against each other",
         value: |it| it.impact_speed,
+    },
+    Variable {
+        name: "followed",
+        whole: Some(4),
+        units: "1",
+        long_name: "revolutions that the run was followed for",
+        value: |it| it.followed as f64,
     },
     Variable {
         name: "class",
@@ -363,8 +371,10 @@ pub fn attributes(chart: &Chart) -> Value {
         "model_toml": chart.model.text(),
         "rpm": chart.speed(),
         "start": start(&chart.start),
-        "transient": chart.lengths.transient,
-        "record": chart.lengths.record,
+        "transient": chart.budget.transient,
+        "record": chart.budget.record,
+        "longest": chart.budget.longest,
+        "patience": chart.budget.patience,
         "corner_impact_version": env!("CARGO_PKG_VERSION"),
     })
 }

@@ -4,11 +4,14 @@ use std::f64::consts::TAU;
 
 use serde::Serialize;
 
+use crate::diagram::{Placed, Start};
 use crate::model::{Model, Units};
-use crate::orbit::fate::{Run, Settling};
+use crate::orbit::long_run::{Budget, LongRun};
+use crate::orbit::runs::LongRuns;
+use crate::progress::Unwatched;
 use crate::section::trace;
 use crate::simulate::{EventKind, Machine, Motion, SimulateError};
-use crate::study::attractors::Patience;
+use crate::study::survey::{Part, attractors_of};
 
 /// What a load is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -88,8 +91,7 @@ document!(Loads as it {
 });
 
 impl Loads {
-    /// Revolutions before anything is recorded at most, where the motion comes to repeat or to rest earlier; and after a rest.
-    pub const TRANSIENT: u64 = 200;
+    /// Revolutions after a rest before anything is recorded: what follows a rest has forgotten the start, but may rest elsewhere for some time.
     const AFTER_A_REST: u64 = 20;
     /// Revolutions that are recorded.
     pub const RECORD: u64 = 8;
@@ -108,23 +110,40 @@ impl Loads {
         }
     }
 
-    /// Of what several starts come to.
-    pub fn at(model: &Model, machine: &Machine) -> Result<Self, SimulateError> {
+    /// Of what several starts come to, the usual ones if none are given; and what that is.
+    pub fn among(
+        model: &Model,
+        machine: &Machine,
+        given: Option<&[Start]>,
+        budget: Budget,
+    ) -> Result<(Self, Vec<Part>), SimulateError> {
+        let usual = |start: u32| {
+            let cam_angle = TAU * f64::from(start) / f64::from(Self::STARTS);
+            let fast = machine.angular_velocity() * machine.cam().lift(cam_angle).slope.abs();
+            Start { cam_angle, follower: Placed::OnCam(if start == 0 { 0.0 } else { fast }) }
+        };
+        let starts: Vec<Start> = given.map_or_else(|| (0..Self::STARTS).map(usual).collect(), <[_]>::to_vec);
+        let runs = LongRuns::unaided(machine, budget);
+        let start = |index: usize| starts[index].motion(machine).map(Some);
+        let found = attractors_of(&runs, starts.len(), start, &Unwatched).map_err(|(_, error)| error)?;
         let mut worst = Self::NONE;
-        for start in 0..Self::STARTS {
-            let angle = TAU * f64::from(start) / f64::from(Self::STARTS);
-            let fast = machine.angular_velocity() * machine.cam().lift(angle).slope.abs();
-            let mut motion = machine.start_on_cam(angle, if start == 0 { 0.0 } else { fast })?;
-            let settling = Settling::unaided(machine, Patience::default().longest, 0);
-            if let Run::Released(_) = settling.run(&mut motion, Self::TRANSIENT)? {
-                // What follows a rest has forgotten the start, but may rest elsewhere for some time.
+        for part in &found.parts {
+            let mut motion = part.motion;
+            if let LongRun::Sticking(_) = part.ending {
                 machine.revolve(&mut motion, Self::AFTER_A_REST)?;
             }
-            for loads in Self::recorded(model, machine, motion, Self::RECORD)? {
+            // As many as one period has, and of what never repeats as many as each of its runs would have.
+            let repeats = part.ending.period().map_or(Self::RECORD * part.starts.len() as u64, |(turns, _)| turns);
+            for loads in Self::recorded(model, machine, motion, repeats.clamp(Self::RECORD, budget.longest))? {
                 worst = worst.or_more(&loads);
             }
         }
-        Ok(Self { rpm: machine.angular_velocity() / TAU * 60.0, ..worst })
+        Ok((Self { rpm: machine.angular_velocity() / TAU * 60.0, ..worst }, found.parts))
+    }
+
+    /// Of what the usual starts come to, whatever that is.
+    pub fn at(model: &Model, machine: &Machine) -> Result<Self, SimulateError> {
+        Ok(Self::among(model, machine, None, Budget { record: 0, ..Budget::DESIGN })?.0)
     }
 
     const NONE: Self =

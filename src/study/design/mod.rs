@@ -13,11 +13,14 @@ use serde::Serialize;
 use super::{ModelLabel, StudyError, machine};
 use crate::bracket::{Width, halve};
 use crate::cam::{Cam, Least};
+use crate::diagram::Start;
 use crate::known::Known;
 use crate::measured::{Likely, Measured};
 use crate::model::{CORNER_ROUNDING, Model, Units};
+use crate::orbit::long_run::Budget;
 use crate::progress::{Pieces, Watch};
 use crate::simulate::{Machine, angular_velocity};
+use crate::study::survey::Part;
 use crate::tolerance;
 use contact::{Contact, Separation};
 use loads::{Load, Loads};
@@ -40,6 +43,10 @@ pub struct Design {
     pub round: Vec<[f64; 2]>,
     /// What attracts where the follower leaves the cam.
     pub loads: Vec<Loads>,
+    /// The motions that these are of.
+    pub attractors: Vec<AttractorsAt>,
+    /// For how long runs were followed.
+    pub budget: Budget,
     /// Where a limit is first passed.
     pub limits: Vec<Passed>,
     /// What must be changed.
@@ -69,6 +76,29 @@ document!(ForceAt as it {
     cam_angle_rad: it.least.angle,
     error_n if_any: it.error,
     largest_n: it.largest,
+});
+
+/// What the starts of one speed come to.
+#[derive(Clone, Debug)]
+pub struct AttractorsAt {
+    /// Speed, rpm.
+    pub rpm: f64,
+    /// The motions, in the order of the first start of each.
+    pub found: Vec<Part>,
+}
+
+document!(AttractorsAt as it { speed_rpm: it.rpm, endings: it.found.iter().map(Ended).collect::<Vec<_>>() });
+
+struct Ended<'a>(&'a Part);
+
+document!(Ended<'_> as it {
+    ending: it.0.ending.kind(),
+    revolutions if_any: it.0.ending.period().map(|(revolutions, _)| revolutions),
+    impacts if_any: it.0.ending.period().map(|(_, impacts)| impacts),
+    growth: it.0.ending.growth().value,
+    growth_error: it.0.ending.growth().error,
+    followed: it.0.followed(),
+    starts: it.0.starts.len(),
 });
 
 /// A limit that the user sets, and where it is passed first, as far as the speeds of the table tell.
@@ -135,6 +165,8 @@ document!(Design as it {
     force_round_the_cam: it.told_round(),
     loads: it.loads,
     loads_known: Known::Sampled,
+    attractors: it.attractors,
+    budget: it.budget,
     limits: it.limits,
     needs: it.needs,
     rounded: it.rounded,
@@ -181,6 +213,10 @@ pub struct Asked {
     pub limits: Vec<(Load, f64)>,
     /// A number, its lowest and highest value and how many, in its unit.
     pub against: Option<(Lever, [f64; 2], u32)>,
+    /// Where the runs of the table begin; none for the usual starts.
+    pub starts: Option<Vec<Start>>,
+    /// For how long they are followed; none for as long as is usual.
+    pub budget: Option<Budget>,
 }
 
 #[derive(Serialize)]
@@ -280,15 +316,20 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
         // As it was asked for, and not as the angular velocity has it.
         Ok(Loads { rpm: *rpm, ..Loads::at(model, &machine(model, *rpm)?)? })
     };
-    let with_errors = |rpm: &f64| -> Result<Loads, StudyError> {
-        let loads = loads_at(rpm)?;
+    let budget = asked.budget.unwrap_or(Budget::DESIGN);
+    let with_errors = |rpm: &f64| -> Result<(Loads, AttractorsAt), StudyError> {
+        let (loads, found) = Loads::among(model, &machine(model, *rpm)?, asked.starts.as_deref(), budget)?;
+        // As it was asked for, and not as the angular velocity has it.
+        let loads = Loads { rpm: *rpm, ..loads };
         let of = |model: &Model, cam: &Cam| {
             let machine = Machine::new(cam.clone(), &model.follower, angular_velocity(*rpm));
             Loads::at(model, &machine).ok().map(|loads| loads.numbers())
         };
-        Ok(Loads { errors: noisy.and_then(|likely| likely.error(loads.numbers(), of)), ..loads })
+        let errors = noisy.and_then(|likely| likely.error(loads.numbers(), of));
+        Ok((Loads { errors, ..loads }, AttractorsAt { rpm: *rpm, found }))
     };
-    let loads = parted.par_iter().map(|rpm| pieces.each(|| with_errors(rpm))).collect::<Result<Vec<_>, _>>()?;
+    let found = parted.par_iter().map(|rpm| pieces.each(|| with_errors(rpm))).collect::<Result<Vec<_>, _>>()?;
+    let (loads, attractors): (Vec<Loads>, Vec<AttractorsAt>) = found.into_iter().unzip();
     let passed = |(limit, value): &(Load, f64)| -> Result<Passed, StudyError> {
         let most = limit.inside(&model.units, *value);
         // Up to the separation the follower bears what the cam presses with.
@@ -363,6 +404,8 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
         forces,
         round,
         loads,
+        attractors,
+        budget,
         limits,
         needs,
         rounded: rounded(model, &cam),

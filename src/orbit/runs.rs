@@ -1,16 +1,16 @@
-//! What runs come to: the one answer to it.
+//! The runs of one machine: where they settle, and what follows when the cam lets go of a follower.
 //!
 //! A run that rests on the cam has no past: the cam lets go of it at an angle that the speed decides, and what follows is the
-//! same each time. So all that comes of a rest is found once for each release, however many runs rest ([`Settling::fate`]).
+//! same each time. So all that comes of a rest is found once for each release, however many runs rest ([`LongRuns::after_release`]).
 
 use std::ops::ControlFlow;
 
 use super::complete::{Standing, near_one_impact, of_two_impacts};
 use super::cycle::lift_size;
-use super::ending::{Ending, Kind, Resting, is_same_release};
-use super::settle::{close, free, near_run};
+use super::long_run::{Budget, LongRun, Recorded, StickingOrbit, is_same_release};
+use super::near::{close, free, near_run};
 use super::{Course, PeriodicOrbit};
-use crate::diagram::{Exponent, Record, exponent};
+use crate::diagram::Record;
 use crate::flight::State;
 use crate::progress::Unwatched;
 use crate::simulate::{Event, EventKind, Goal, Machine, Met, Motion, SimulateError};
@@ -18,11 +18,11 @@ use crate::tolerance;
 
 /// What a run comes to within so many revolutions.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Run {
+pub enum RunOutcome {
     /// A stable periodic orbit.
     Arrives(PeriodicOrbit),
     /// It stays on the cam for good.
-    Stays,
+    PermanentContact,
     /// It has rested on the cam, which let go of it at this angle, rad.
     Released(f64),
     /// None of these.
@@ -32,38 +32,29 @@ pub enum Run {
 /// What follows a release.
 #[derive(Clone, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "there is one for each release, and none is kept in bulk")]
-pub enum Fate {
+pub enum AfterRelease {
     /// The same release again, in the end.
-    Recurs(Resting),
+    Recurs(StickingOrbit),
     /// A stable periodic orbit, and the run at it.
     Arrives(PeriodicOrbit, Motion),
     /// Neither in the revolutions that are waited from one rest to the next.
     Wanders {
         /// As the cam let go of it.
         released: Motion,
-        /// After those revolutions.
-        end: Motion,
     },
 }
 
-/// Revolutions that are waited for the next rest of a follower that has rested.
-pub const LONGEST_REST: u64 = 20_000;
-
-/// Blocks, and revolutions of each, over which growth is averaged.
-const BLOCKS: (u64, u64) = (64, 25);
 /// Revolutions after which a run has forgotten its start, if it is to be told by how it goes on.
 const SETTLED: u64 = 100;
 
 /// The runs of one machine, with the stable orbits of it that are known beforehand: a run that comes to one of them is told
 /// sooner, and ends on the same orbit to the last bit as any other run that does.
 #[derive(Clone, Debug)]
-pub struct Settling<'a> {
+pub struct LongRuns<'a> {
     /// What turns.
     pub machine: &'a Machine,
-    /// The longest period looked for, revolutions.
-    longest: u64,
-    /// Revolutions that are waited for the next rest of a follower that has rested.
-    rest: u64,
+    /// For how long runs are followed.
+    pub budget: Budget,
     /// The size of the cam's lift and its top, m.
     size: f64,
     top: f64,
@@ -73,12 +64,12 @@ pub struct Settling<'a> {
     known: Vec<(PeriodicOrbit, Vec<State>)>,
 }
 
-impl<'a> Settling<'a> {
-    /// Of `machine`; runs are looked at for orbits of up to `longest` revolutions, and those of one impact are found without.
-    pub fn new(machine: &'a Machine, longest: u64) -> Result<Self, SimulateError> {
+impl<'a> LongRuns<'a> {
+    /// Of `machine`, with the stable orbits of one impact.
+    pub fn new(machine: &'a Machine, budget: Budget) -> Result<Self, SimulateError> {
         /// The most revolutions of an orbit with one impact.
         const ONE_IMPACT: u64 = 3;
-        let mut new = Self::unaided(machine, longest, LONGEST_REST);
+        let mut new = Self::unaided(machine, budget);
         let guesses = (1..=ONE_IMPACT).flat_map(|revolutions| near_one_impact(machine, revolutions));
         for orbit in guesses.filter_map(|guess| close(machine, &guess)) {
             new.know(&orbit)?;
@@ -95,12 +86,12 @@ impl<'a> Settling<'a> {
         orbits.iter().try_for_each(|orbit| self.know(orbit))
     }
 
-    /// As [`Self::new`] for a run or two: without any orbit that is known beforehand, as a search for them takes as long as thousands of
-    /// revolutions. The next rest is waited for as long as `rest` revolutions.
-    pub fn unaided(machine: &'a Machine, longest: u64, rest: u64) -> Self {
+    /// As [`Self::new`] for a run or a few: without any orbit that is known beforehand, as a search for them takes as long as thousands of
+    /// revolutions.
+    pub fn unaided(machine: &'a Machine, budget: Budget) -> Self {
         let top = machine.cam().top();
         let floats = !(machine.flight().force(top) < 0.0);
-        Self { machine, longest, rest, size: lift_size(machine), top, floats, known: Vec::new() }
+        Self { machine, budget, size: lift_size(machine), top, floats, known: Vec::new() }
     }
 
     /// The orbits known.
@@ -120,12 +111,12 @@ impl<'a> Settling<'a> {
     ///
     /// An orbit counts where the run repeats nearly, Newton's method leads from there to a stable one, and the run's distance
     /// from that shrinks as its multipliers say: a chaotic run now and then passes by a stable orbit outside of its basin.
-    pub fn run(&self, motion: &mut Motion, revolutions: u64) -> Result<Run, SimulateError> {
+    pub fn run(&self, motion: &mut Motion, revolutions: u64) -> Result<RunOutcome, SimulateError> {
         self.counted(motion, revolutions, &mut Met::default())
     }
 
     /// The same, with the impacts on the way added to others.
-    fn counted(&self, motion: &mut Motion, revolutions: u64, met: &mut Met) -> Result<Run, SimulateError> {
+    fn counted(&self, motion: &mut Motion, revolutions: u64, met: &mut Met) -> Result<RunOutcome, SimulateError> {
         /// Revolutions before the first look for an orbit that is not known: what most starts near one need.
         const FIRST: u64 = 50;
         /// Revolutions from one look for a known orbit to the next.
@@ -134,32 +125,32 @@ impl<'a> Settling<'a> {
         if motion.cam_angle > 0.0
             && let Some(release) = self.to_release(motion, motion.next(0.0), met)?
         {
-            return Ok(Run::Released(release));
+            return Ok(RunOutcome::Released(release));
         }
         let (mut ran, mut look) = (0, FIRST.min(revolutions));
         let omega = self.machine.angular_velocity();
         let mut past: Vec<State> = Vec::new();
         while ran < revolutions {
-            let back = look.saturating_sub(self.longest);
+            let back = look.saturating_sub(self.budget.longest);
             let stretch = if ran < back { OFTEN.min(back - ran) } else { 1 };
             if ran >= back {
                 past.push(motion.state);
             }
             if let Some(release) = self.to_release(motion, motion.after(stretch), met)? {
-                return Ok(Run::Released(release));
+                return Ok(RunOutcome::Released(release));
             }
             ran += stretch;
             if motion.contact && self.stays(*motion)? {
-                return Ok(Run::Stays);
+                return Ok(RunOutcome::PermanentContact);
             }
             if self.is_off_for_good(motion)
                 && let Some(orbit) = free(self.machine, motion.state)
             {
-                return Ok(Run::Arrives(orbit));
+                return Ok(RunOutcome::Arrives(orbit));
             }
             for (orbit, states) in &self.known {
                 if self.has_arrived(*motion, orbit, states)? {
-                    return Ok(Run::Arrives(orbit.clone()));
+                    return Ok(RunOutcome::Arrives(orbit.clone()));
                 }
             }
             if ran < look {
@@ -175,10 +166,10 @@ impl<'a> Settling<'a> {
                 && let Some(orbit) = near_run(self.machine, *motion, 0, longest)?.filter(draws)
                 && self.has_arrived(*motion, &orbit, &passages(self.machine, &orbit)?)?
             {
-                return Ok(Run::Arrives(orbit));
+                return Ok(RunOutcome::Arrives(orbit));
             }
         }
-        Ok(Run::Wanders)
+        Ok(RunOutcome::Wanders)
     }
 
     /// Whether the follower is off the cam for good: its flight never comes down to the top of the cam.
@@ -188,23 +179,13 @@ impl<'a> Settling<'a> {
             && self.machine.flight().fall_to(self.top, motion.state).is_none()
     }
 
-    /// What a run from `motion` ends on, if it is waited for so many revolutions, and from a release on as long as for any.
-    pub fn ending(&self, mut motion: Motion, revolutions: u64) -> Result<Ending, SimulateError> {
-        match self.run(&mut motion, revolutions)? {
-            Run::Arrives(orbit) => Ok(Ending::Orbit(orbit)),
-            Run::Stays => Ok(Ending::Stays),
-            Run::Released(cam_angle) => self.after(&self.fate(cam_angle)?),
-            Run::Wanders => self.by_growth(motion),
-        }
-    }
-
-    /// What a run ends on that has come to a release.
-    pub fn after(&self, fate: &Fate) -> Result<Ending, SimulateError> {
-        match fate {
-            Fate::Recurs(resting) => Ok(Ending::Resting(resting.clone())),
-            Fate::Arrives(orbit, _) => Ok(Ending::Orbit(orbit.clone())),
-            Fate::Wanders { released, .. } => Ok(Ending::by_growth(self.growth(self.settled(*released)?)?.growth)),
-        }
+    /// What a run comes to that has come to a release.
+    pub fn ending_after(&self, after: &AfterRelease) -> Result<LongRun, SimulateError> {
+        Ok(match after {
+            AfterRelease::Recurs(orbit) => LongRun::Sticking(orbit.clone()),
+            AfterRelease::Arrives(orbit, _) => LongRun::Orbit(orbit.clone()),
+            AfterRelease::Wanders { released, .. } => self.wanders(self.settled(*released)?)?,
+        })
     }
 
     /// Runs `motion` to where the cam lets go of it, rad, if it does so before the goal, and counts the impacts on the way.
@@ -246,25 +227,30 @@ impl<'a> Settling<'a> {
         Ok(distance(&motion) <= shrunk.max(tolerance::ORBIT_CLOSURE.value * size))
     }
 
-    /// What follows a release at `cam_angle`, rad.
-    pub fn fate(&self, cam_angle: f64) -> Result<Fate, SimulateError> {
-        self.fate_beside(cam_angle, |_| None)
-    }
-
-    /// The same, as far as what follows is not `known` of a release that comes later.
-    pub fn fate_beside(&self, cam_angle: f64, known: impl Fn(f64) -> Option<Fate>) -> Result<Fate, SimulateError> {
+    /// What follows a release at `cam_angle`, rad, as far as that is not `known` of a release that comes later; and the revolutions that it was
+    /// followed for.
+    pub fn after_release(
+        &self,
+        cam_angle: f64,
+        known: impl Fn(f64) -> Option<AfterRelease>,
+    ) -> Result<(AfterRelease, u64), SimulateError> {
         // Each release with the revolutions and what was met from it to the next.
         let mut releases: Vec<(f64, u64, Met)> = Vec::new();
-        let mut release = cam_angle;
+        let (mut release, mut followed) = (cam_angle, 0);
         loop {
             let begun = self.released(release)?;
             let (mut motion, mut met) = (begun, Met::default());
-            let next = match self.counted(&mut motion, self.rest, &mut met)? {
-                Run::Arrives(orbit) => return Ok(Fate::Arrives(orbit, motion)),
-                Run::Stays | Run::Wanders => return Ok(Fate::Wanders { released: begun, end: motion }),
-                Run::Released(next) => next,
+            let run = self.counted(&mut motion, self.budget.rest(), &mut met)?;
+            let turned = motion.revolution - begun.revolution;
+            followed += turned;
+            let next = match run {
+                RunOutcome::Arrives(orbit) => return Ok((AfterRelease::Arrives(orbit, motion), followed)),
+                RunOutcome::PermanentContact | RunOutcome::Wanders => {
+                    return Ok((AfterRelease::Wanders { released: begun }, followed));
+                }
+                RunOutcome::Released(next) => next,
             };
-            releases.push((release, motion.revolution - begun.revolution, met));
+            releases.push((release, turned, met));
             if let Some(first) = releases.iter().position(|(known, ..)| is_same_release(*known, next)) {
                 let period = &releases[first..];
                 let releases: Vec<f64> = period.iter().map(|(angle, ..)| *angle).collect();
@@ -273,12 +259,12 @@ impl<'a> Settling<'a> {
                 let revolutions = period.iter().map(|(_, turned, _)| turned).sum();
                 let impacts = period.iter().map(|(.., met)| met.impacts).sum();
                 let impact_speed = period.iter().fold(0.0_f64, |most, (.., met)| most.max(met.impact_speed));
-                let resting = Resting { releases, revolutions, impacts, impact_speed, growth };
+                let resting = StickingOrbit { releases, revolutions, impacts, impact_speed, growth };
                 let other = if resting.is_long() { self.by_chance(release)? } else { None };
-                return Ok(other.unwrap_or(Fate::Recurs(resting)));
+                return Ok((other.unwrap_or(AfterRelease::Recurs(resting)), followed));
             }
-            if let Some(fate) = known(next) {
-                return Ok(fate);
+            if let Some(after) = known(next) {
+                return Ok((after, followed));
             }
             release = next;
         }
@@ -286,14 +272,14 @@ impl<'a> Settling<'a> {
 
     /// The orbit that chance takes some runs to from a release, rad, of which rounding decides what follows: what bounces there is
     /// on its way to that.
-    fn by_chance(&self, cam_angle: f64) -> Result<Option<Fate>, SimulateError> {
+    fn by_chance(&self, cam_angle: f64) -> Result<Option<AfterRelease>, SimulateError> {
         /// How many runs, each a little faster at the release than the one before.
         const RUNS: u32 = 4;
         let faster = tolerance::SAME_ORBIT.value * self.size * self.machine.angular_velocity();
         for run in 1..=RUNS {
             let mut motion = self.machine.start_on_cam(cam_angle, f64::from(run) * faster)?;
-            if let Run::Arrives(orbit) = self.run(&mut motion, self.rest)? {
-                return Ok(Some(Fate::Arrives(orbit, motion)));
+            if let RunOutcome::Arrives(orbit) = self.run(&mut motion, self.budget.rest())? {
+                return Ok(Some(AfterRelease::Arrives(orbit, motion)));
             }
         }
         Ok(None)
@@ -326,21 +312,47 @@ impl<'a> Settling<'a> {
         Ok(released)
     }
 
-    /// Chaotic or undecided, by the growth of a small deviation of `motion`; or what it ends on if it rests before that is known.
-    pub fn by_growth(&self, mut motion: Motion) -> Result<Ending, SimulateError> {
-        let found = self.growth(motion)?;
-        let told = Ending::by_growth(found.growth);
-        if found.rests
-            && told.kind() == Kind::Undecided
-            && let Run::Released(cam_angle) = self.run(&mut motion, BLOCKS.0 * BLOCKS.1)?
-        {
-            return self.after(&self.fate(cam_angle)?);
+    /// What a motion comes to that has settled on nothing: chaotic or undecided by the growth of a small deviation, over up to so many
+    /// records; or what it settles on before that is known.
+    pub fn by_growth(&self, mut motion: Motion, records: u64) -> Result<LongRun, SimulateError> {
+        /// Revolutions from one record to the next, with a look for an orbit.
+        const LOOK: u64 = 8;
+        let fresh = || Record::over(self.budget.block());
+        let mut record = fresh();
+        let mut told = LongRun::by_growth(Recorded::of(&record));
+        let records = if self.budget.record == 0 { 0 } else { records.max(1) };
+        for _ in 0..records {
+            record.take(self.machine, &mut motion, self.budget.record)?;
+            told = LongRun::by_growth(Recorded::of(&record));
+            let rests = record.rests();
+            if matches!(told, LongRun::Chaotic(_)) && !rests {
+                break;
+            }
+            // The cam may have let go of it already; else the record goes on from where it is.
+            let mut onward = motion;
+            match self.run(&mut onward, if rests { self.budget.rest() } else { LOOK })? {
+                RunOutcome::Arrives(orbit) => return Ok(LongRun::Orbit(orbit)),
+                RunOutcome::PermanentContact => return Ok(LongRun::PermanentContact),
+                RunOutcome::Released(cam_angle) => {
+                    return self.ending_after(&self.after_release(cam_angle, |_| None)?.0);
+                }
+                RunOutcome::Wanders if rests => (record, motion) = (fresh(), onward),
+                RunOutcome::Wanders => {}
+            }
         }
         Ok(told)
     }
 
-    fn growth(&self, motion: Motion) -> Result<Exponent, SimulateError> {
-        exponent(self.machine, motion, BLOCKS.0 as u32, BLOCKS.1)
+    /// The same of a motion that is known to settle on nothing for as long as that takes.
+    fn wanders(&self, mut motion: Motion) -> Result<LongRun, SimulateError> {
+        let mut record = Record::over(self.budget.block());
+        for _ in 0..Budget::RECORDS {
+            record.take(self.machine, &mut motion, self.budget.record)?;
+            if record.rests() || matches!(LongRun::by_growth(Recorded::of(&record)), LongRun::Chaotic(_)) {
+                break;
+            }
+        }
+        Ok(LongRun::by_growth(Recorded::of(&record)))
     }
 }
 
@@ -351,7 +363,7 @@ fn draws(orbit: &PeriodicOrbit) -> bool {
 
 /// The states of an orbit as the cam passes angle 0, revolution by revolution.
 fn passages(machine: &Machine, orbit: &PeriodicOrbit) -> Result<Vec<State>, SimulateError> {
-    let mut motion = machine.start(0.0, orbit.state)?;
+    let mut motion = orbit.motion(machine)?;
     let mut states = vec![motion.state];
     for _ in 1..orbit.revolutions {
         machine.revolve(&mut motion, 1)?;

@@ -1,8 +1,28 @@
-//! The starts that stand for all motions of a machine.
+//! Where the runs of a survey begin.
 
 use std::f64::consts::TAU;
 
+use crate::diagram::Start;
 use crate::simulate::{Machine, Motion, SimulateError};
+
+/// Where the runs of a survey begin, at each value of what varies.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Sample {
+    /// So many starts that stand for all motions of a machine.
+    Spread(usize),
+    /// These, and no other.
+    Given(Vec<Start>),
+}
+
+impl Sample {
+    /// How many.
+    pub fn count(&self) -> usize {
+        match self {
+            Self::Spread(count) => *count,
+            Self::Given(starts) => starts.len(),
+        }
+    }
+}
 
 /// Starts on the cam: every motion that meets the cam leaves it with some relative velocity at some angle.
 #[derive(Clone, Copy, Debug, PartialEq)]

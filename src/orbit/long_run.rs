@@ -1,0 +1,251 @@
+//! What a run comes to, and for how long it is followed before that is said.
+//!
+//! One rule decides it for every command. [`super::runs`] follows a run until it settles on an orbit, stays on the cam or rests there;
+//! `study::survey` judges several at once, and lets those that wander share the revolutions that decide whether such motions ever rest.
+
+use std::f64::consts::LN_2;
+
+use serde::Serialize;
+
+use super::PeriodicOrbit;
+use crate::diagram::Record;
+use crate::estimate::{ErrorIs, Estimate};
+use crate::simulate::Met;
+use crate::tolerance;
+
+/// For how long runs are followed before it is said what they come to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Budget {
+    /// Revolutions within which a run is to settle.
+    pub transient: u64,
+    /// Revolutions after that over which the growth of a deviation is taken, where it settles on nothing; up to [`Self::RECORDS`] times as
+    /// many where that tells nothing yet.
+    pub record: u64,
+    /// The longest period looked for, revolutions.
+    pub longest: u64,
+    /// Revolutions that runs which settle on nothing are followed for before their growth is taken, all together: a chaos that is left once in
+    /// a tenth of them is seen to be left.
+    pub patience: u64,
+}
+
+impl Budget {
+    /// Of `speeds`, `basins`, `simulate` and `diagram --attractors`: at one speed, many runs share the patience, or one can afford it.
+    pub const SURVEY: Self = Self { transient: 200, record: 1600, longest: 32, patience: 100_000 };
+    /// Of `chart` and `diagram`: thousands of points of one run each, of which a chaotic one costs as many revolutions as it is followed.
+    pub const CHART: Self = Self { transient: 300, record: 100, longest: 32, patience: 0 };
+    /// Of `design`: what a rare rest leads to is no load that is not there without it.
+    pub const DESIGN: Self = Self { transient: 200, record: 200, longest: 32, patience: 0 };
+
+    /// Records of a run of which nothing can be told, before it is undecided.
+    pub const RECORDS: u64 = 8;
+    /// The least and the most of any number of them, for whoever asks.
+    pub const MOST: u64 = 1_000_000_000;
+
+    /// Revolutions that are waited for the next rest of a follower that has rested.
+    pub fn rest(&self) -> u64 {
+        /// Of the patience.
+        const SHARE: u64 = 5;
+        self.transient.saturating_add(self.record).max(self.patience / SHARE)
+    }
+
+    /// Revolutions of a block, of which the growth is the mean.
+    pub fn block(&self) -> u64 {
+        /// Blocks of a record at least, and revolutions of one at most.
+        const PARTS: u64 = 8;
+        const LONGEST: u64 = 25;
+        (self.record / PARTS).clamp(1, LONGEST)
+    }
+}
+
+/// What a run comes to.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LongRun {
+    /// The follower stays on the cam.
+    PermanentContact,
+    /// A stable periodic orbit that does not rest on the cam.
+    Orbit(PeriodicOrbit),
+    /// It rests on the cam, and repeats what it did after it rested there before.
+    Sticking(StickingOrbit),
+    /// None of these in the revolutions that were run, and small deviations grow exponentially.
+    Chaotic(Recorded),
+    /// None of these, and no growth that is above 0 by its error, or none that is faster than that of a power.
+    Undecided(Recorded),
+}
+
+/// What was recorded of a motion that settles on nothing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Recorded {
+    /// The growth of a small deviation a revolution, a natural logarithm.
+    pub growth: Estimate,
+    /// How much of it there was over the first half of the record and over the second: not by revolution, but in all.
+    pub halves: [f64; 2],
+    /// The impacts.
+    pub met: Met,
+    /// Revolutions, all together.
+    pub revolutions: u64,
+    /// Of how many runs.
+    pub runs: u64,
+}
+
+impl Recorded {
+    /// Of one record.
+    pub fn of(record: &Record) -> Self {
+        let (growth, halves) = (record.growth(), record.halves());
+        Self { growth, halves, met: record.met, revolutions: record.revolutions, runs: 1 }
+    }
+
+    /// Of several together.
+    pub fn together(all: &[Self]) -> Self {
+        let growth = Estimate::mean(&all.iter().map(|one| one.growth).collect::<Vec<_>>());
+        let half = |half: usize| all.iter().map(|one| one.halves[half]).sum::<f64>() / all.len() as f64;
+        let met = all.iter().fold(Met::default(), |all, one| all.with(one.met));
+        let sum = |number: fn(&Self) -> u64| all.iter().map(number).sum();
+        let (revolutions, runs) = (sum(|one| one.revolutions), sum(|one| one.runs));
+        Self { growth, halves: [half(0), half(1)], met, revolutions, runs }
+    }
+
+    /// Revolutions of each run, in the mean.
+    pub fn each(self) -> u64 {
+        self.revolutions / self.runs.max(1)
+    }
+
+    /// Whether the motion has impacts, and deviations grow by their error, and exponentially.
+    ///
+    /// A deviation that grows as a power n^d of the revolutions, as those of a motion without loss do, gains d ln 2 over the second half of a
+    /// record, and far more over the first. What grows exponentially gains as much over either half, but for chance.
+    fn is_chaotic(&self) -> bool {
+        /// The power that is told from an exponential.
+        const POWER: f64 = 3.0;
+        /// What the second half has of the first at least.
+        const LEFT: f64 = 0.5;
+        let (growth, [first, second]) = (self.growth, self.halves);
+        let is_seen = growth.error < tolerance::CHAOTIC_EXPONENT.value * growth.value;
+        self.met.impacts > 0 && is_seen && second > POWER * LN_2 && second > LEFT * first
+    }
+}
+
+/// The kinds of motion that runs end on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+#[expect(missing_docs, reason = "as in LongRun")]
+pub enum Kind {
+    Stays,
+    Periodic,
+    Resting,
+    Chaotic,
+    Undecided,
+}
+
+named!(Kind);
+
+impl LongRun {
+    /// Its kind.
+    pub fn kind(&self) -> Kind {
+        match self {
+            Self::PermanentContact => Kind::Stays,
+            Self::Orbit(_) => Kind::Periodic,
+            Self::Sticking(_) => Kind::Resting,
+            Self::Chaotic(_) => Kind::Chaotic,
+            Self::Undecided(_) => Kind::Undecided,
+        }
+    }
+
+    /// Whether two runs of one machine end alike.
+    ///
+    /// Chaos, and a motion that bounces as chaos does until it rests, are taken for one motion: how soon a run of it rests is
+    /// chance. Only many runs can tell chaos that does not rest beside one that does.
+    pub fn is_same(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Orbit(one), Self::Orbit(two)) => one.is_same(two),
+            (Self::Sticking(one), Self::Sticking(two)) => one.is_same(two) || (one.is_long() && two.is_long()),
+            (Self::Sticking(resting), Self::Chaotic(_)) | (Self::Chaotic(_), Self::Sticking(resting)) => {
+                resting.is_long()
+            }
+            _ => self.kind() == other.kind(),
+        }
+    }
+
+    /// By what was recorded of a motion that settles on nothing.
+    pub fn by_growth(recorded: Recorded) -> Self {
+        if recorded.is_chaotic() { Self::Chaotic(recorded) } else { Self::Undecided(recorded) }
+    }
+
+    /// The growth of a small deviation a revolution, a natural logarithm: of an orbit by its multipliers; minus infinity where the follower
+    /// rests; else the mean over the record.
+    pub fn growth(&self) -> Estimate {
+        let exactly = |value| Estimate { value, error: 0.0, error_is: ErrorIs::Correction };
+        match self {
+            Self::PermanentContact | Self::Sticking(_) => exactly(f64::NEG_INFINITY),
+            Self::Orbit(orbit) => exactly(orbit.growth()),
+            Self::Chaotic(recorded) | Self::Undecided(recorded) => recorded.growth,
+        }
+    }
+
+    /// What was recorded, where that is by what it is told.
+    pub fn of_growth(&self) -> Option<Recorded> {
+        if let Self::Chaotic(recorded) | Self::Undecided(recorded) = self { Some(*recorded) } else { None }
+    }
+
+    /// Whether a motion is left by chance alone, if it is left at all: chaos, and what bounces as chaos does until it rests.
+    pub fn wanders(&self) -> bool {
+        self.of_growth().is_some() || self.is_long()
+    }
+
+    /// Revolutions from one rest to the next, in the mean, where it rests.
+    pub fn between_rests(&self) -> Option<f64> {
+        if let Self::Sticking(orbit) = self { Some(orbit.between_rests()) } else { None }
+    }
+
+    /// Whether it rests so seldom that in between nothing tells it from chaos.
+    pub fn is_long(&self) -> bool {
+        matches!(self, Self::Sticking(resting) if resting.is_long())
+    }
+
+    /// Turns of the cam and impacts of one period, where it repeats and doubles can tell after how long.
+    pub fn period(&self) -> Option<(u64, u64)> {
+        match self {
+            Self::PermanentContact => Some((1, 0)),
+            Self::Orbit(orbit) => Some((orbit.revolutions, orbit.impacts().count() as u64)),
+            Self::Sticking(resting) if !resting.is_long() => Some((resting.revolutions, resting.impacts)),
+            Self::Sticking(_) | Self::Chaotic(_) | Self::Undecided(_) => None,
+        }
+    }
+}
+
+/// A motion of which the cam lets go again and again: an orbit, however long, since nothing but the angle of a release decides
+/// what follows it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StickingOrbit {
+    /// Where the cam lets go, rad, in the order of one period.
+    pub releases: Vec<f64>,
+    /// Turns of the cam in one period.
+    pub revolutions: u64,
+    /// Impacts in one period.
+    pub impacts: u64,
+    /// The speed of the fastest of them, of follower and cam against each other, m/s.
+    pub impact_speed: f64,
+    /// What a deviation grows by from a release to the next rest, at most: a natural logarithm.
+    pub growth: f64,
+}
+
+impl StickingOrbit {
+    /// Revolutions from one rest to the next, in the mean.
+    pub fn between_rests(&self) -> f64 {
+        self.revolutions as f64 / self.releases.len() as f64
+    }
+
+    /// Whether it rests so seldom that rounding decides when: in between it is chaos, and its period is that of the rounded run.
+    pub fn is_long(&self) -> bool {
+        self.growth > (tolerance::SAME_ORBIT.value / tolerance::ULP.value).ln()
+    }
+
+    /// Whether two of them have a release in common: one motion at most goes on from there.
+    fn is_same(&self, other: &Self) -> bool {
+        self.releases.iter().any(|one| other.releases.iter().any(|two| is_same_release(*one, *two)))
+    }
+}
+
+/// Whether two angles, rad, are one place where the cam lets go.
+pub fn is_same_release(one: f64, two: f64) -> bool {
+    (one - two).abs() <= tolerance::SAME_ORBIT.value
+}

@@ -1,0 +1,371 @@
+//! What several starts of one machine come to, and how many to each.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::orbit::long_run::{Budget, LongRun, Recorded, is_same_release};
+use crate::orbit::runs::{AfterRelease, LongRuns, RunOutcome};
+use crate::progress::{Unwatched, Watch};
+use crate::simulate::{Machine, Motion, SimulateError};
+
+/// What the runs that neither rest nor come to an orbit soon did after that, all together.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Wandering {
+    /// Revolutions.
+    pub revolutions: u64,
+    /// How many have come to what is not left again: an orbit, the cam for good, or rests that recur.
+    pub left: u64,
+    /// How many have rested on the cam.
+    pub rested: u64,
+}
+
+impl Wandering {
+    /// Of both.
+    pub fn with(self, other: Self) -> Self {
+        Self {
+            revolutions: self.revolutions + other.revolutions,
+            left: self.left + other.left,
+            rested: self.rested + other.rested,
+        }
+    }
+}
+
+/// A motion that starts end on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// The motion.
+    pub ending: LongRun,
+    /// The starts that end on it, in order; none where only the motion of another speed came to it.
+    pub starts: Vec<usize>,
+    /// Revolutions that the run from each of these was followed for until that was told, or that of another speed.
+    pub followed: Vec<u64>,
+    /// Where the first of these was when that was told.
+    pub motion: Motion,
+}
+
+impl Part {
+    /// Revolutions that the runs which end on it were followed for, all together.
+    pub fn followed(&self) -> u64 {
+        self.followed.iter().sum()
+    }
+}
+
+/// What starts end on.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Ensemble {
+    /// The motions, in the order of the first start of each.
+    pub parts: Vec<Part>,
+    /// The starts whose runs leave the cam for good.
+    pub off_for_good: Vec<usize>,
+    /// The runs that were waited for longest.
+    pub wandering: Wandering,
+    /// The starts whose runs could not go on, and why.
+    pub failed: Vec<Failed>,
+}
+
+/// Wandering runs whose growth is taken over as many records as that needs; further ones share as many between them.
+const MEASURED: u64 = 4;
+
+/// The start that could not be run, and why.
+pub type Failed = (usize, SimulateError);
+
+/// What follows each release that a run has come to.
+type Releases = Vec<Release>;
+
+#[derive(Clone, Debug)]
+struct Release {
+    /// Where, rad.
+    cam_angle: f64,
+    after: AfterRelease,
+    ending: LongRun,
+    /// Revolutions that the run was followed for from there.
+    followed: u64,
+}
+
+/// The end of one run.
+#[derive(Clone, Debug)]
+struct End {
+    run: RunOutcome,
+    motion: Motion,
+    /// Where it began, revolutions.
+    begun: u64,
+    /// Whether it had wandered before, for long enough to have forgotten its start.
+    wandered: bool,
+    /// Why it could not go on.
+    failed: Option<SimulateError>,
+}
+
+/// What `motion` comes to in the long run within a budget, and what it is then; without a look at any other run.
+pub fn long_run(machine: &Machine, motion: Motion, budget: Budget) -> Result<Part, SimulateError> {
+    let found = attractors_of(&LongRuns::unaided(machine, budget), 1, |_| Ok(Some(motion)), &Unwatched);
+    let mut parts = found.map_err(|(_, error)| error)?.parts;
+    // One start ends on one motion.
+    Ok(parts.swap_remove(0))
+}
+
+/// What `count` starts end on: the one way to judge several. Run side by side, told to `watch` one by one; `start` gives none where one is
+/// impossible.
+///
+/// What a rest leads to is found once for each release. Runs that neither rest nor come to an orbit share the patience of the budget: if one
+/// of them comes to an orbit in the end, none of them is on an attractor yet. A run that cannot go on costs its own start; it is an error
+/// where no other start is left.
+pub fn attractors_of(
+    runs: &LongRuns<'_>,
+    count: usize,
+    start: impl Fn(usize) -> Result<Option<Motion>, SimulateError> + Sync,
+    watch: &dyn Watch,
+) -> Result<Ensemble, Failed> {
+    let told = each(watch, "runs", count);
+    let first = |index: usize| {
+        told();
+        let run = start(index)?.map(|mut motion| -> Result<End, SimulateError> {
+            let begun = motion.revolution;
+            let run = runs.run(&mut motion, runs.budget.transient)?;
+            Ok(End { run, motion, begun, wandered: false, failed: None })
+        });
+        run.transpose()
+    };
+    let mut failed = Vec::new();
+    let begun: Vec<_> = (0..count).into_par_iter().map(first).collect();
+    let run = |(index, run): (usize, Result<Option<End>, SimulateError>)| {
+        run.unwrap_or_else(|error| {
+            failed.push((index, error));
+            None
+        })
+    };
+    let mut ends: Vec<Option<End>> = begun.into_iter().enumerate().map(run).collect();
+    let mut releases = Releases::new();
+    follow(runs, &ends, &mut releases)?;
+    let (outlast, wandering) = wait(runs, &mut ends, &releases, watch);
+    for (index, end) in ends.iter_mut().enumerate() {
+        if let Some(error) = end.as_ref().and_then(|end| end.failed) {
+            failed.push((index, error));
+            *end = None;
+        }
+    }
+    if let Some(failure) = failed.first().filter(|_| ends.iter().all(Option::is_none)) {
+        return Err(*failure);
+    }
+    follow(runs, &ends, &mut releases)?;
+    let exits = exits(&ends, &releases);
+    let wandering = Wandering { left: exits.len() as u64, ..wandering };
+    let wanders = if exits.is_empty() { told_wandering(runs, &ends, &releases, outlast, watch)? } else { exits };
+    // What is left sooner or later is left from each of its rests as well.
+    let wanders_on = |ending: &LongRun| wandering.left > 0 && ending.wanders();
+    let mut ensemble = Ensemble { wandering, failed, ..Ensemble::default() };
+    let mut wanderers = wanders.iter().cycle();
+    for (index, end) in ends.into_iter().enumerate() {
+        let Some(End { run, mut motion, begun, .. }) = end else { continue };
+        if runs.is_off_for_good(&motion) {
+            ensemble.off_for_good.push(index);
+        }
+        let (mut wandering_from, mut followed) = (None, motion.revolution - begun);
+        let ending = match run {
+            RunOutcome::Arrives(orbit) => Some(LongRun::Orbit(orbit)),
+            RunOutcome::PermanentContact => Some(LongRun::PermanentContact),
+            RunOutcome::Wanders => wanderers.next().cloned(),
+            RunOutcome::Released(cam_angle) => match find(&releases, cam_angle) {
+                Some(release) if wanders_on(&release.ending) => wanderers.next().cloned(),
+                Some(release) => {
+                    followed += release.followed;
+                    match &release.after {
+                        AfterRelease::Recurs(_) => {}
+                        AfterRelease::Arrives(_, end) => motion = *end,
+                        AfterRelease::Wanders { released, .. } => wandering_from = Some(*released),
+                    }
+                    Some(release.ending.clone())
+                }
+                None => None,
+            },
+        };
+        if let Some(ending) = ending {
+            followed += ending.of_growth().map_or(0, Recorded::each);
+            let settled = || wandering_from.map_or(Ok(motion), |released| runs.settled(released));
+            ensemble.add((ending, followed), index, outlast, settled).map_err(|error| (index, error))?;
+        }
+    }
+    Ok(ensemble)
+}
+
+impl Ensemble {
+    /// Counts a start that ends on `ending`, and for how long its run was followed; the first that does gives the motion.
+    fn add(
+        &mut self,
+        (ending, followed): (LongRun, u64),
+        index: usize,
+        outlast: bool,
+        motion: impl FnOnce() -> Result<Motion, SimulateError>,
+    ) -> Result<(), SimulateError> {
+        // Chaos is not what rests where it outlasts that.
+        let is_same =
+            |part: &&mut Part| part.ending.is_same(&ending) && (part.ending.kind() == ending.kind() || !outlast);
+        match self.parts.iter_mut().find(is_same) {
+            Some(part) => {
+                // That it rests is the later news.
+                if matches!((&part.ending, &ending), (LongRun::Chaotic(_), LongRun::Sticking(_))) {
+                    part.ending = ending;
+                }
+                part.starts.push(index);
+                part.followed.push(followed);
+            }
+            None => self.parts.push(Part { ending, starts: vec![index], followed: vec![followed], motion: motion()? }),
+        }
+        Ok(())
+    }
+}
+
+/// Runs those that wander on, until all of them together have run for as long as the budget's patience; what leaves at first was only slow
+/// to settle, and does not count. With whether these are runs of another motion than those that had rested by then.
+fn wait(runs: &LongRuns<'_>, ends: &mut [Option<End>], releases: &Releases, watch: &dyn Watch) -> (bool, Wandering) {
+    /// The least revolutions that are worth a look for an orbit.
+    const LEAST: u64 = 32;
+    let Budget { transient, patience, .. } = runs.budget;
+    if patience == 0 {
+        return (false, Wandering::default());
+    }
+    let (mut all, mut round, mut soon) = (None::<Wandering>, transient.max(1), Wandering::default());
+    // Those that a release was followed by count as well.
+    let followed = releases.iter().filter(|it| matches!(it.after, AfterRelease::Wanders { .. })).count() as u64;
+    let released = Wandering {
+        revolutions: followed.saturating_mul(runs.budget.rest()).min(patience / 2),
+        ..Wandering::default()
+    };
+    loop {
+        let goes_on = |end: &&End| end.run == RunOutcome::Wanders && end.failed.is_none();
+        let wanderers = ends.iter().flatten().filter(goes_on).count() as u64;
+        if wanderers == 0 || all.is_some_and(|all| all.revolutions >= patience) {
+            let all = all.unwrap_or_default();
+            return (outlasts(all, soon), all);
+        }
+        let told = each(watch, "runs that end on nothing so far", wanderers as usize);
+        let stretch = ends.par_iter_mut().map(|end| {
+            let Some(End { run: run @ RunOutcome::Wanders, motion, wandered, failed: failed @ None, .. }) = end else {
+                return Wandering::default();
+            };
+            told();
+            let begun = motion.revolution;
+            *wandered = all.is_some();
+            match runs.run(motion, round) {
+                Ok(ended) => *run = ended,
+                Err(error) => *failed = Some(error),
+            }
+            let revolutions = motion.revolution - begun;
+            Wandering { revolutions, left: 0, rested: u64::from(matches!(run, RunOutcome::Released(_))) }
+        });
+        let found = stretch.reduce(Wandering::default, Wandering::with);
+        if all.is_none() {
+            soon = ends.iter().flatten().map(soon_rested).fold(soon, Wandering::with);
+        }
+        all = Some(all.map_or(released, |all| all.with(found)));
+        let left = patience.saturating_sub(all.map_or(0, |all| all.revolutions));
+        round = (left.min(patience / 4) / wanderers).max(LEAST);
+    }
+}
+
+/// For how long a run has wandered that may have come to rest, but for the time that it takes to forget its start.
+fn soon_rested(end: &End) -> Wandering {
+    /// Revolutions.
+    const FORGOTTEN: u64 = 50;
+    let rested = u64::from(matches!(end.run, RunOutcome::Released(_)));
+    match (end.motion.revolution - end.begun).checked_sub(FORGOTTEN) {
+        Some(revolutions) if rested > 0 || end.run == RunOutcome::Wanders => Wandering { revolutions, left: 0, rested },
+        _ => Wandering::default(),
+    }
+}
+
+/// Whether runs that wandered for long have rested so much less often than they did `soon` that they are another motion than those
+/// that rested then.
+fn outlasts(long: Wandering, soon: Wandering) -> bool {
+    /// Of 10 rests that are to be expected there is none once in 20,000 times.
+    const FEWER: f64 = 10.0;
+    let rested = soon.rested as f64;
+    // With 95 % it is more often than that.
+    let rate = (rested - 2.0 * rested.sqrt()).max(0.0) / soon.revolutions.max(1) as f64;
+    rate * long.revolutions as f64 > FEWER * (long.rested + 1) as f64
+}
+
+/// Finds what follows each release that a run has come to and that is not known yet, in the order of the runs.
+fn follow(runs: &LongRuns<'_>, ends: &[Option<End>], releases: &mut Releases) -> Result<(), Failed> {
+    for (index, end) in ends.iter().enumerate() {
+        if let Some(End { run: RunOutcome::Released(cam_angle), .. }) = end
+            && find(releases, *cam_angle).is_none()
+        {
+            let known = |other: f64| find(releases, other).map(|release| release.after.clone());
+            let (after, followed) = runs.after_release(*cam_angle, known).map_err(|error| (index, error))?;
+            let ending = runs.ending_after(&after).map_err(|error| (index, error))?;
+            releases.push(Release { cam_angle: *cam_angle, after, ending, followed });
+        }
+    }
+    Ok(())
+}
+
+/// What the runs have come to that left after they had wandered, each once. Chance alone decides when a run leaves, and to where:
+/// those that wander still are on their way there, in these parts.
+fn exits(ends: &[Option<End>], releases: &Releases) -> Vec<LongRun> {
+    let wandered = ends.iter().flatten().filter(|end| end.wandered);
+    let left = wandered.filter_map(|end| match &end.run {
+        RunOutcome::Arrives(orbit) => Some(LongRun::Orbit(orbit.clone())),
+        RunOutcome::PermanentContact => Some(LongRun::PermanentContact),
+        RunOutcome::Released(cam_angle) => find(releases, *cam_angle).map(|release| release.ending.clone()),
+        RunOutcome::Wanders => None,
+    });
+    left.filter(|ending| !ending.wanders()).collect()
+}
+
+/// What the runs that wander, and that none has left, are told to be, in turn.
+///
+/// They are on the motion that rests now and then, if there is one, unless they outlast those that rest.
+fn told_wandering(
+    runs: &LongRuns<'_>,
+    ends: &[Option<End>],
+    releases: &Releases,
+    outlast: bool,
+    watch: &dyn Watch,
+) -> Result<Vec<LongRun>, Failed> {
+    let wanders = |end: &&End| end.run == RunOutcome::Wanders;
+    let wanderers: Vec<(usize, Motion)> = ends
+        .iter()
+        .enumerate()
+        .filter_map(|(index, end)| end.as_ref().filter(wanders).map(|end| (index, end.motion)))
+        .collect();
+    let measured = |(index, motion): &(usize, Motion), records: u64| {
+        runs.by_growth(*motion, records).map_err(|error| (*index, error))
+    };
+    let first = wanderers.par_iter().take(MEASURED as usize);
+    let told: Vec<LongRun> = first.map(|run| measured(run, Budget::RECORDS)).collect::<Result<_, _>>()?;
+    if let Some(settled) = told.iter().find(|ending| ending.of_growth().is_none()) {
+        return Ok(vec![settled.clone()]);
+    }
+    let together =
+        LongRun::by_growth(Recorded::together(&told.iter().filter_map(LongRun::of_growth).collect::<Vec<_>>()));
+    let long = releases.iter().map(|release| &release.ending).find(|ending| ending.is_long() && !outlast);
+    Ok(match (&together, long) {
+        (LongRun::Chaotic(_), Some(resting)) => vec![resting.clone()],
+        (LongRun::Chaotic(_), None) => vec![together],
+        // Where they are not chaotic all together, each is told by itself.
+        _ => {
+            let rest = wanderers.get(told.len()..).unwrap_or_default();
+            let further = each(watch, "growth of deviations from runs that end on nothing", rest.len());
+            let records = MEASURED * Budget::RECORDS / (rest.len() as u64).max(1);
+            let one = |run| {
+                further();
+                measured(run, records.clamp(1, Budget::RECORDS))
+            };
+            let rest: Vec<LongRun> = rest.par_iter().map(one).collect::<Result<_, _>>()?;
+            [told, rest].concat()
+        }
+    })
+}
+
+/// Tells `watch` of one more piece of so many with each call.
+fn each<'a>(watch: &'a dyn Watch, what: &'a str, total: usize) -> impl Fn() + Sync + 'a {
+    let done = AtomicU64::new(0);
+    move || watch.at(what, done.fetch_add(1, Ordering::Relaxed), total as u64)
+}
+
+/// What follows a release at an angle, rad.
+fn find(releases: &Releases, cam_angle: f64) -> Option<&Release> {
+    releases.iter().find(|known| is_same_release(known.cam_angle, cam_angle))
+}
