@@ -48,6 +48,7 @@ def test_points_are_those_of_the_command(grid: Chart, command: Command) -> None:
         "growth_error": "growth_error",
         "impact_speed": "impact_speed_m_s",
         "impacts_per_revolution": "impacts_per_revolution",
+        "followed": "followed",
     }
     for name, column in names.items():
         values = np.array(expected[column], dtype=np.float64)

@@ -36,5 +36,6 @@ pub fn basins_figure(title: &str, grid: &Grid, basins: &Basins, border: &Border)
     series.extend(Series::line("stable manifold", Colour::Ink, Stroke::Thin, line).if_any());
     series.extend(Series::points("stable orbit", Colour::Ink, Marker::Dot, stable.iter().map(at)).if_any());
     series.extend(Series::points("saddle", Colour::Ink, Marker::Ring, saddles.iter().map(at)).if_any());
-    Figure::new(title, position().over(x), vec![Panel::new(Axis::new("velocity q'", "m/s").over(y), 0.66, series)])
+    let title = format!("{title}{}", words::followed_for(basins.followed.iter().copied().flatten()));
+    Figure::new(&title, position().over(x), vec![Panel::new(Axis::new("velocity q'", "m/s").over(y), 0.66, series)])
 }

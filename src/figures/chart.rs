@@ -10,6 +10,7 @@ use crate::model::Units;
 use crate::orbit::Parameter;
 use crate::orbit::long_run::Kind;
 use crate::show::words;
+use crate::show::words::followed_for as followed;
 use crate::study::chart::{self, Charted};
 use crate::study::survey::Point;
 
@@ -180,6 +181,7 @@ pub fn chart_figure(found: &Charted, coloured: Coloured, curves: &[EventCurve], 
         Coloured::ImpactSpeed => "speed of the fastest impact",
     };
     let at = found.chart.speed().map_or_else(String::new, |rpm| format!(" at {rpm} rpm"));
-    let title = format!("{}{at}: {what}", found.chart.model.name);
+    let followed = followed(found.points.iter().flatten().map(|point| point.followed));
+    let title = format!("{}{at}: {what}{followed}", found.chart.model.name);
     Figure::new(&title, axis(x, across), vec![Panel::new(axis(y, up), 0.66, series)])
 }

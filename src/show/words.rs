@@ -402,6 +402,18 @@ pub(crate) fn followed(ending: &LongRun, revolutions: u64) -> String {
     }
 }
 
+/// For how many revolutions runs were followed, in the title of a picture.
+pub(crate) fn followed_for(each: impl Iterator<Item = u64>) -> String {
+    let range = each.fold(None, |range: Option<[u64; 2]>, one| {
+        Some(range.map_or([one; 2], |[low, high]| [low.min(one), high.max(one)]))
+    });
+    match range {
+        Some([one, other]) if one == other => format!(", seen for {}", many(one, "revolution")),
+        Some([low, high]) => format!(", seen for {low} to {high} revolutions"),
+        None => String::new(),
+    }
+}
+
 /// What runs that wandered were on, where some of them have left it.
 pub(crate) fn transient_chaos(wandering: &Wandering) -> Option<String> {
     let Wandering { revolutions, left, .. } = *wandering;

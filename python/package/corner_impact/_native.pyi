@@ -97,6 +97,12 @@ class Model:
         step: float | None = None,
         starts: int = 64,
         two_impacts: bool = False,
+        states: Sequence[tuple[float, float]] | None = None,
+        cam_angle: float = 0.0,
+        transient: int = 200,
+        record: int = 1600,
+        longest: int = 32,
+        patience: int = 100_000,
     ) -> _Document: ...
     def design(
         self, rpm: tuple[float, float] | None = None, *, speeds: int = 21, needs: Sequence[str] = ()
@@ -126,6 +132,8 @@ class Chart:
         rpm: float | None = None,
         transient: int = 300,
         record: int = 100,
+        longest: int = 32,
+        patience: int = 0,
         cam_angle: float = 0.0,
         relative_velocity: float | None = None,
         position: float | None = None,
@@ -141,6 +149,10 @@ class Chart:
     def transient(self) -> int: ...
     @property
     def record(self) -> int: ...
+    @property
+    def longest(self) -> int: ...
+    @property
+    def patience(self) -> int: ...
     @property
     def rpm(self) -> float | None: ...
     @property
