@@ -431,6 +431,7 @@ pub(crate) fn attractor(attractor: &Attractor) -> String {
 pub(crate) fn change(change: &Change) -> String {
     match change.cause {
         Cause::Fold => "fold".into(),
+        Cause::SymmetryBreaking => "symmetry breaking".into(),
         Cause::Flip => "flip".into(),
         Cause::Graze { impacts: [before, after] } => format!("graze, {before} and {after} impacts"),
         Cause::CornerImpact { cam_angle, .. } => format!("corner impact at {:.2} deg", cam_angle.to_degrees()),

@@ -1,5 +1,7 @@
 //! What a machine does at which speed: its attractors, where each begins and ends, and how many starts end on each.
 
+use std::collections::BTreeMap;
+
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -347,7 +349,7 @@ pub fn speeds(
         };
         Attractor {
             id: name(index),
-            kind: row.kind(&grid),
+            kind: most(&at).unwrap_or_else(|| row.kind(&grid)),
             revolutions: row.period().map_or_else(|| only(|period| period.0), |period| Some(period.0)),
             impacts: row.period().map_or_else(|| only(|period| period.1), |period| Some(period.1)),
             rpm: row.rpm,
@@ -389,6 +391,13 @@ pub fn speeds(
         dangers,
         failed: grid.iter().filter_map(failed).collect(),
     })
+}
+
+/// The kind that an attractor is at most speeds of the range.
+fn most(at: &[At]) -> Option<Kind> {
+    let mut counts: BTreeMap<Kind, usize> = BTreeMap::new();
+    at.iter().for_each(|at| *counts.entry(at.ending.kind()).or_default() += 1);
+    counts.into_iter().max_by_key(|(_, count)| *count).map(|(kind, _)| kind)
 }
 
 /// The dangers at corner impacts that attractors pass, begin or end with.

@@ -10,7 +10,7 @@ use corner_impact::orbit::long_run::{Budget, Kind, LongRun};
 use corner_impact::progress::Unwatched;
 use corner_impact::simulate::angular_velocity;
 use corner_impact::study::StudyError;
-use corner_impact::study::attractors::{Resolution, Step};
+use corner_impact::study::attractors::{Cause, Resolution, Step};
 use corner_impact::study::basins::{SectionStarts, States};
 use corner_impact::study::chart::{Axis, Chart};
 use corner_impact::study::design::loads::Loads;
@@ -252,4 +252,113 @@ fn starts_and_budgets_that_cannot_be_are_told() {
     assert!(words.contains("--state is given 2 times, and one run has one start"), "{words}");
     let words = refused(&["basins", "--rpm", "700", "--state", "0.8,0", "--out", "x.svg"]);
     assert!(words.contains("--grid NxM"), "{words}");
+}
+
+/// Every start ends on something that is listed: at each speed the shares are all of it, off the cam for good included.
+#[test]
+#[ignore = "slow"]
+fn shares_of_a_speed_are_all_of_it() {
+    let folder =
+        |path: &str| std::fs::read_dir(format!("{}/{path}", common::ROOT)).unwrap().map(|entry| entry.unwrap().path());
+    let models =
+        folder("models").chain(folder("models/laws")).filter(|path| path.extension().is_some_and(|it| it == "toml"));
+    let mut speeds_seen = 0;
+    for path in models {
+        let model = Model::read(&path).unwrap();
+        let [low, high] = corner_impact::study::speeds::usual_range(&model).unwrap();
+        let from = low + 0.7 * (high - low);
+        let range = [from, 1.01 * from];
+        let found = speeds(&model, range, &Resolution::new(Step::for_speeds(range, 2), 12), &Unwatched).unwrap();
+        let shares = all_of_each_speed(&found);
+        assert!(!shares.is_empty(), "{}", model.name);
+        speeds_seen += shares.len();
+    }
+    assert!(speeds_seen > 30, "{speeds_seen}");
+}
+
+/// The sum of shares at each speed, which must be 1.
+fn all_of_each_speed(found: &corner_impact::study::speeds::Speeds) -> Vec<f64> {
+    let mut all: std::collections::BTreeMap<u64, f64> = std::collections::BTreeMap::new();
+    for at in found.attractors.iter().flat_map(|it| &it.at) {
+        *all.entry(at.rpm.to_bits()).or_default() += at.share.value;
+    }
+    for (rpm, sum) in &all {
+        assert!((sum - 1.0).abs() < 1e-12, "{} at {} rpm: {sum}", found.model, f64::from_bits(*rpm));
+    }
+    all.into_values().collect()
+}
+
+/// A ball on a plate with `lobes` equal lobes.
+fn lobes(lobes: usize) -> Model {
+    let amplitudes = vec!["0.0"; lobes - 1].join(", ") + if lobes > 1 { ", " } else { "" } + "0.01";
+    let phases = vec!["0.0"; lobes].join(", ");
+    let text = format!(
+        "[follower]\nmass = 1.0\ndamping = 0.0\nstiffness = 0.0\ngravity = 9.81\nrest_position = 0.0\nrestitution = 0.5\n\
+         [cam]\nlaw = \"harmonic\"\noffset = 0.0\namplitudes = [{amplitudes}]\nphases_deg = [{phases}]\n"
+    );
+    Model::parse("lobes.toml", &text).unwrap()
+}
+
+/// Two orbits branch off from one that does the same over each of two lobes where the orbit over one lobe doubles its period, at twice the
+/// speed: located by its own equations from any step, and no row has no width.
+#[test]
+fn a_symmetry_breaks_at_half_of_the_speed_of_the_flip_over_one_lobe() {
+    let flip = 369.573_082_351_769_7;
+    for (step, starts) in [(0.5, 16), (1.0, 8)] {
+        let found =
+            speeds(&lobes(2), [184.0, 186.0], &Resolution::new(Step::at_most(step), starts), &Unwatched).unwrap();
+        let broken = found.attractors.iter().flat_map(|it| [&it.birth, &it.death].into_iter().flatten());
+        let broken: Vec<_> =
+            broken.filter(|change| change.cause == Cause::SymmetryBreaking && change.rpm > 184.5).collect();
+        // The symmetric orbit ends, and both others begin.
+        assert_eq!(broken.len(), 3, "{step}: {broken:?}");
+        for change in broken {
+            assert!((change.rpm / (0.5 * flip) - 1.0).abs() < 1e-12 && change.is_located(), "{change:?}");
+        }
+        assert!(found.attractors.iter().all(|it| it.rpm[1] - it.rpm[0] > 1e-9), "{step}");
+        all_of_each_speed(&found);
+    }
+    // The same of the cam with one lobe is a flip.
+    let found = speeds(&lobes(1), [368.0, 372.0], &Resolution::new(Step::at_most(2.0), 4), &Unwatched).unwrap();
+    let ends = found.attractors.iter().filter_map(|it| it.death.as_ref());
+    let flips: Vec<_> =
+        ends.filter(|change| change.cause == Cause::Flip && (change.rpm / flip - 1.0).abs() < 1e-9).collect();
+    assert_eq!(flips.len(), 1, "{:?}", found.attractors);
+}
+
+/// A row that no start reached hides no range: rows that overlap coexist, and one list has the headline.
+#[test]
+fn what_overlaps_coexists() {
+    let found = speeds(&lobes(2), [188.0, 192.0], &Resolution::new(Step::at_most(1.0), 8), &Unwatched).unwrap();
+    assert!(!found.coexistence.is_empty());
+    for pair in found.coexistence.windows(2) {
+        assert!(pair[0].to_rpm <= pair[1].from_rpm);
+    }
+    for rpm in [188.3, 188.9, 190.05, 191.5] {
+        let there = |it: &&corner_impact::study::speeds::Attractor| it.rpm[0] <= rpm && rpm <= it.rpm[1];
+        let there: Vec<&str> = found.attractors.iter().filter(there).map(|it| it.id.as_str()).collect();
+        let over = found.coexistence.iter().find(|over| over.from_rpm <= rpm && rpm <= over.to_rpm).unwrap();
+        assert_eq!(over.attractors, there, "{rpm}");
+    }
+}
+
+/// "Rests now and then" is said only of what was seen to rest in the range.
+#[test]
+#[ignore = "slow"]
+fn what_did_not_rest_is_not_said_to() {
+    let model = model("preloaded");
+    let found =
+        speeds(&model, [735.0, 786.868_675_463_751_4], &Resolution::new(Step::at_most(30.0), 16), &Unwatched).unwrap();
+    let wandering = found.attractors.iter().filter(|it| it.kind == Kind::Chaotic || it.kind == Kind::Resting);
+    for it in wandering {
+        let rested = it.at.iter().any(|at| at.ending.is_long());
+        assert_eq!(
+            it.kind == Kind::Resting,
+            rested,
+            "{}: {:?}",
+            it.id,
+            it.at.iter().map(|at| at.ending.kind()).collect::<Vec<_>>()
+        );
+    }
+    assert!(found.attractors.iter().any(|it| it.kind == Kind::Chaotic));
 }

@@ -37,6 +37,8 @@ document!(Change as it {
 pub enum Cause {
     /// A multiplier of the orbit passes 1.
     Fold,
+    /// Two orbits branch off from one that does the same over each of equal lobes.
+    SymmetryBreaking,
     /// A multiplier of the orbit passes -1.
     Flip,
     /// A flight touches the cam: an impact more or less.
@@ -62,6 +64,7 @@ impl Cause {
     pub fn name(self) -> &'static str {
         match self {
             Self::Fold => "fold",
+            Self::SymmetryBreaking => "symmetry-breaking",
             Self::Flip => "flip",
             Self::Graze { .. } => "graze",
             Self::CornerImpact { .. } => "corner-impact",

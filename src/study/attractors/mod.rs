@@ -205,7 +205,7 @@ pub fn attractors(
         rows.iter_mut().for_each(|row| row.detaches(rpm, error));
     }
     rows.retain_mut(|row| row.cut(range));
-    let coexistence = coexistence(&rows, &grid);
+    let coexistence = coexistence(&rows);
     Ok(Attractors { range, grid, rows, coexistence, separation })
 }
 
@@ -236,28 +236,19 @@ fn exchange(machine: &Machine, grid: &mut [Result<Here, (f64, SimulateError)>]) 
     }
 }
 
-/// Where rows overlap, and runs have come to each of them at a speed in between.
-fn coexistence(rows: &[Row], grid: &rows::Grid) -> Vec<Coexistence> {
-    let mut ends: Vec<f64> = rows.iter().flat_map(|row| row.rpm).collect();
-    ends.sort_by(f64::total_cmp);
-    ends.dedup();
+/// Where rows overlap, by more than where they begin and end is open by.
+fn coexistence(rows: &[Row]) -> Vec<Coexistence> {
+    let ends = rows.iter().flat_map(|row| row.rpm.into_iter().zip(&row.ends));
+    let open = |end: &Option<Change>| end.as_ref().map_or(0.0, |change| change.bracket[1] - change.bracket[0]);
+    let mut ends: Vec<(f64, f64)> = ends.map(|(rpm, end)| (rpm, open(end))).collect();
+    ends.sort_by(|one, other| one.0.total_cmp(&other.0));
     let mut found: Vec<Coexistence> = Vec::new();
     for pair in ends.windows(2) {
-        let [low, high] = [pair[0], pair[1]];
+        let [(low, one), (high, other)] = [pair[0], pair[1]];
         let covers = |row: &usize| rows[*row].rpm[0] <= low && high <= rows[*row].rpm[1];
         let over: Vec<usize> = (0..rows.len()).filter(covers).collect();
-        let seen = grid.iter().enumerate().any(|(index, here)| {
-            let Ok(here) = here else { return false };
-            (low <= here.rpm && here.rpm <= high)
-                && over.iter().all(|row| {
-                    rows[*row]
-                        .at
-                        .get(&index)
-                        .and_then(|part| here.parts.get(*part))
-                        .is_some_and(|part| here.is_reached(part))
-                })
-        });
-        if over.len() > 1 && seen {
+        let rounding = crate::tolerance::SPEED_FOUND.value;
+        if over.len() > 1 && high - low > one.max(other).max(rounding) {
             found.push(Coexistence { rpm: [low, high], rows: over });
         }
     }

@@ -68,6 +68,7 @@ pub fn rows(model: &Model, machine: &Machine, grid: &mut Grid, sample: &Sample) 
     beyond(model, machine, &mut rows, step);
     let mut rows = joined(machine, rows);
     rows.par_iter_mut().for_each(|row| row.narrow(machine, grid, sample));
+    rows.iter_mut().for_each(|row| row.reach(grid));
     rows.sort_by(|one, two| one.rpm[0].total_cmp(&two.rpm[0]).then(one.rpm[1].total_cmp(&two.rpm[1])));
     rows
 }
@@ -187,7 +188,9 @@ fn joined(machine: &Machine, rows: Vec<Row>) -> Vec<Row> {
     let mut joined: Vec<Row> = Vec::new();
     for row in rows {
         let middle = || row.stretch.iter().flat_map(Stretch::middle);
-        let same = |known: &&mut Row| middle().any(|(rpm, orbit)| known.holds(machine, rpm, orbit));
+        // Two motions at one speed are two.
+        let apart = |known: &Row| known.at.keys().all(|index| !row.at.contains_key(index));
+        let same = |known: &&mut Row| apart(known) && middle().any(|(rpm, orbit)| known.holds(machine, rpm, orbit));
         match joined.iter_mut().find(same) {
             Some(known) => known.at.extend(row.at),
             None => joined.push(row),
@@ -229,6 +232,22 @@ impl Row {
     fn take(&mut self, stretch: Stretch) {
         (self.rpm, self.ends) = (stretch.range(), stretch.ends.clone());
         self.stretch = Some(stretch);
+    }
+
+    /// Makes its range that of the speeds at which runs have come to it, where the branch that it is on ends before: a run that has not left
+    /// what is lost beyond is on it still.
+    fn reach(&mut self, grid: &Grid) {
+        let [Some(first), Some(last)] =
+            [self.at.keys().next(), self.at.keys().last()].map(|index| index.map(|index| speed(&grid[*index])))
+        else {
+            return;
+        };
+        let [low, high] = self.rpm;
+        for (end, own, reached, is_beyond) in [(0, low, first, first < low), (1, high, last, last > high)] {
+            if is_beyond {
+                (self.rpm[end], self.ends[end]) = (reached, Some(Change::by_runs(sorted([own, reached]))));
+            }
+        }
     }
 
     /// Narrows down where a motion that is no orbit begins and ends, between two speeds of the grid.

@@ -5,8 +5,10 @@ use crate::model::Model;
 use crate::orbit::branch::{self, Branch, BranchPoint, End, Following, Kind};
 use crate::orbit::long_run::Budget;
 use crate::orbit::runs::{LongRuns, RunOutcome};
+use crate::orbit::symmetry;
 use crate::orbit::{Family, OrbitError, Parameter, PeriodicOrbit, Stability};
 use crate::simulate::{Machine, SimulateError, angular_velocity};
+use crate::study::machine;
 
 /// A part of a branch on which the orbits are stable and have the same numbers of revolutions and impacts.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,9 +44,12 @@ impl Stretch {
         // What comes back to its start was followed backward alone, all the way round.
         let onward = if branch.ends[0] == End::Closed { before } else { after.get(1..).unwrap_or_default() };
         let last = walk(middle, onward.iter(), &branch.ends[1], &mut forward);
+        let mut ends = [first, last];
+        for (end, points) in ends.iter_mut().zip([&mut backward, &mut forward]) {
+            located(model, end, points);
+        }
         backward.reverse();
         let mut points = [backward, middle.to_vec(), forward].concat();
-        let mut ends = [first, last];
         if points.first().zip(points.last()).is_some_and(|(first, last)| first.rpm > last.rpm) {
             points.reverse();
             ends.reverse();
@@ -157,7 +162,22 @@ fn is_unstable(orbit: &PeriodicOrbit) -> bool {
     orbit.judgement.stability == Stability::Unstable
 }
 
-/// Takes the points for as long as orbits are of one kind, and returns why that is over.
+/// An end at which the branch turns back, or touches one that crosses it, by its own equations where a symmetry is lost there; the last of
+/// the points is where it ends.
+fn located(model: &Model, end: &mut Option<Change>, points: &mut Vec<BranchPoint>) {
+    let Some(change) = end.as_mut().filter(|change| matches!(change.cause, Cause::Fold | Cause::Runs)) else { return };
+    let Some(cycle) = points.last().and_then(|point| point.orbit.cycle()) else { return };
+    let Ok(near) = machine(model, change.rpm) else { return };
+    if let Some((rpm, orbit)) = symmetry::breaking(&near, cycle) {
+        let point = BranchPoint { rpm, value: rpm, orbit, held: None, special: None };
+        *change = Change { rpm, bracket: [rpm; 2], cause: Cause::SymmetryBreaking, point: None, error: None };
+        // What was taken for the end.
+        points.retain(|it| it.special.is_none());
+        points.push(point);
+    }
+}
+
+/// Takes the points for as long as orbits are of one kind and the speed goes one way, and returns why that is over.
 fn walk<'a>(
     middle: &[BranchPoint],
     points: impl Iterator<Item = &'a BranchPoint>,
@@ -167,6 +187,8 @@ fn walk<'a>(
     let numbers = |orbit: &PeriodicOrbit| (orbit.revolutions, orbit.impacts().count());
     let kind = middle.first().map(|point| numbers(&point.orbit))?;
     let mut last = middle.first()?.rpm;
+    // Where the speed turns back without a change of stability, the orbits of the other side are others: those of a symmetry that is lost.
+    let (begun, mut onward) = (last, 0.0);
     let mut pending: Option<&BranchPoint> = None;
     // A smooth corner changes nothing that a stable orbit depends on.
     let passed = |point: &&BranchPoint| point.special.is_some_and(|special| special.kind.is_smooth_corner());
@@ -186,6 +208,14 @@ fn walk<'a>(
             let change = pending.map(Change::of_point);
             taken.extend(pending.cloned());
             return Some(change.unwrap_or(Change::by_runs([low, high])));
+        }
+        if onward == 0.0 {
+            onward = point.rpm - begun;
+        }
+        if (point.rpm - last) * onward < 0.0 {
+            let change = pending.map(Change::of_point);
+            taken.extend(pending.cloned());
+            return Some(change.unwrap_or(Change::by_runs([last.min(point.rpm), last.max(point.rpm)])));
         }
         taken.extend(pending.take().cloned());
         taken.push(point.clone());
