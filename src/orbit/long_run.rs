@@ -45,7 +45,12 @@ impl Budget {
     pub fn rest(&self) -> u64 {
         /// Of the patience.
         const SHARE: u64 = 5;
-        self.transient.saturating_add(self.record).max(self.patience / SHARE)
+        self.transient.max(self.patience / SHARE)
+    }
+
+    /// The same of one that was seen to rest while its growth was recorded: from one rest to the next it takes longer than to the first.
+    pub fn later_rest(&self) -> u64 {
+        self.rest().max(self.transient.saturating_add(self.record))
     }
 
     /// Revolutions of a block, of which the growth is the mean.
@@ -117,7 +122,7 @@ impl Recorded {
         /// The power that is told from an exponential.
         const POWER: f64 = 3.0;
         /// What the second half has of the first at least.
-        const LEFT: f64 = 0.5;
+        const LEFT: f64 = 0.3;
         let (growth, [first, second]) = (self.growth, self.halves);
         let is_seen = growth.error < tolerance::CHAOTIC_EXPONENT.value * growth.value;
         self.met.impacts > 0 && is_seen && second > POWER * LN_2 && second > LEFT * first

@@ -41,6 +41,8 @@ pub enum AfterRelease {
     Wanders {
         /// As the cam let go of it.
         released: Motion,
+        /// After those revolutions.
+        end: Motion,
     },
 }
 
@@ -184,7 +186,7 @@ impl<'a> LongRuns<'a> {
         Ok(match after {
             AfterRelease::Recurs(orbit) => LongRun::Sticking(orbit.clone()),
             AfterRelease::Arrives(orbit, _) => LongRun::Orbit(orbit.clone()),
-            AfterRelease::Wanders { released, .. } => self.wanders(self.settled(*released)?)?,
+            AfterRelease::Wanders { end, .. } => self.by_growth(*end, Budget::RECORDS)?,
         })
     }
 
@@ -227,11 +229,12 @@ impl<'a> LongRuns<'a> {
         Ok(distance(&motion) <= shrunk.max(tolerance::ORBIT_CLOSURE.value * size))
     }
 
-    /// What follows a release at `cam_angle`, rad, as far as that is not `known` of a release that comes later; and the revolutions that it was
-    /// followed for.
+    /// What follows a release at `cam_angle`, rad, where the next rest is waited for as long as `rest` revolutions, as far as that is not `known`
+    /// of a release that comes later; and the revolutions that it was followed for.
     pub fn after_release(
         &self,
         cam_angle: f64,
+        rest: u64,
         known: impl Fn(f64) -> Option<AfterRelease>,
     ) -> Result<(AfterRelease, u64), SimulateError> {
         // Each release with the revolutions and what was met from it to the next.
@@ -240,13 +243,13 @@ impl<'a> LongRuns<'a> {
         loop {
             let begun = self.released(release)?;
             let (mut motion, mut met) = (begun, Met::default());
-            let run = self.counted(&mut motion, self.budget.rest(), &mut met)?;
+            let run = self.counted(&mut motion, rest, &mut met)?;
             let turned = motion.revolution - begun.revolution;
             followed += turned;
             let next = match run {
                 RunOutcome::Arrives(orbit) => return Ok((AfterRelease::Arrives(orbit, motion), followed)),
                 RunOutcome::PermanentContact | RunOutcome::Wanders => {
-                    return Ok((AfterRelease::Wanders { released: begun }, followed));
+                    return Ok((AfterRelease::Wanders { released: begun, end: motion }, followed));
                 }
                 RunOutcome::Released(next) => next,
             };
@@ -321,6 +324,7 @@ impl<'a> LongRuns<'a> {
         let mut record = fresh();
         let mut told = LongRun::by_growth(Recorded::of(&record));
         let records = if self.budget.record == 0 { 0 } else { records.max(1) };
+        let mut released = false;
         for _ in 0..records {
             record.take(self.machine, &mut motion, self.budget.record)?;
             told = LongRun::by_growth(Recorded::of(&record));
@@ -330,29 +334,22 @@ impl<'a> LongRuns<'a> {
             }
             // The cam may have let go of it already; else the record goes on from where it is.
             let mut onward = motion;
-            match self.run(&mut onward, if rests { self.budget.rest() } else { LOOK })? {
+            match self.run(&mut onward, if rests { self.budget.later_rest() } else { LOOK })? {
                 RunOutcome::Arrives(orbit) => return Ok(LongRun::Orbit(orbit)),
                 RunOutcome::PermanentContact => return Ok(LongRun::PermanentContact),
                 RunOutcome::Released(cam_angle) => {
-                    return self.ending_after(&self.after_release(cam_angle, |_| None)?.0);
+                    match self.after_release(cam_angle, self.budget.later_rest(), |_| None)?.0 {
+                        // What rests that seldom may do so any number of times.
+                        AfterRelease::Wanders { .. } if released => break,
+                        AfterRelease::Wanders { end, .. } => (record, motion, released) = (fresh(), end, true),
+                        settled => return self.ending_after(&settled),
+                    }
                 }
                 RunOutcome::Wanders if rests => (record, motion) = (fresh(), onward),
                 RunOutcome::Wanders => {}
             }
         }
         Ok(told)
-    }
-
-    /// The same of a motion that is known to settle on nothing for as long as that takes.
-    fn wanders(&self, mut motion: Motion) -> Result<LongRun, SimulateError> {
-        let mut record = Record::over(self.budget.block());
-        for _ in 0..Budget::RECORDS {
-            record.take(self.machine, &mut motion, self.budget.record)?;
-            if record.rests() || matches!(LongRun::by_growth(Recorded::of(&record)), LongRun::Chaotic(_)) {
-                break;
-            }
-        }
-        Ok(LongRun::by_growth(Recorded::of(&record)))
     }
 }
 

@@ -5,9 +5,9 @@
 
 use std::f64::consts::{PI, TAU};
 
+use super::ahead::Again;
 use super::motion::Known;
 use super::{Machine, Motion};
-use crate::cam::Lift;
 use crate::flight::{Flight, Response, State};
 use crate::tolerance;
 
@@ -27,14 +27,6 @@ impl Turn {
         let rises_once = flight.damped_frequency().is_none_or(|frequency| frequency * time <= PI);
         Self { time, response: flight.response(time), rises_once }
     }
-}
-
-/// An impact one turn on.
-pub(super) struct Again {
-    pub time: f64,
-    pub cam_angle: f64,
-    pub velocity: f64,
-    pub lift: Lift,
 }
 
 impl Machine {

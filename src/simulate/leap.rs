@@ -3,6 +3,7 @@
 //! Looking for a contact on each of 360 segments costs more than all the flights of a revolution. Where a lower bound of the
 //! flight stays above chords of the lift, segment after segment, one flight goes over all of them.
 
+use super::ahead::Leap;
 use super::{Machine, Motion};
 use crate::cam::Segment;
 
@@ -94,16 +95,6 @@ impl Stretch {
         let [from, lift] = self.lift;
         Chord { end: self.end, lift, slope: (lift - from) / width, rise, square }
     }
-}
-
-/// The end of a leap.
-pub(super) struct Leap {
-    /// The last segment that the flight goes over.
-    pub segment: usize,
-    /// When it comes to that segment's end, s.
-    pub time: f64,
-    /// Whether it meets the cam on the next one.
-    pub lands: bool,
 }
 
 impl Machine {

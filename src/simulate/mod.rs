@@ -8,6 +8,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | `motion`, `event` | where cam and follower are; what happens on the way, and who looks on |
+//! | `ahead` | what a flight comes to next |
 //! | `terrain` | the cam as the loop sees it: seams, corners, bounds |
 //! | `window` | a stretch of flight over one segment: free, or its first contact |
 //! | `contact` | the first root of the gap in it, certified |
@@ -17,6 +18,7 @@
 //! | `variation` | how a small deviation is carried along |
 
 mod again;
+mod ahead;
 mod contact;
 mod event;
 mod leap;
@@ -38,13 +40,14 @@ use crate::model::Follower;
 use crate::stop;
 use crate::tolerance;
 use again::Turn;
+use ahead::{Ahead, Passage};
 pub use event::{Event, EventKind, Met, Observer, SimulateError, Unobserved, Work};
 use motion::{Chatter, Known, Stopped};
 pub use motion::{Goal, Motion};
 pub use sticking::accumulation;
 use terrain::Terrain;
 pub use variation::Variation;
-use window::{Passage, Window};
+use window::Window;
 
 /// Steps of one search for a contact or a release after which a run is given up: a follower that swings a million times
 /// over one segment, or is pressed against it with a ten-millionth of the forces at work.
@@ -209,9 +212,9 @@ impl Machine {
         goal: Goal,
         observer: &mut impl Observer,
     ) -> Result<ControlFlow<()>, SimulateError> {
-        let mut until = None;
+        let mut stopped = None;
         if motion.left(&goal) > 0.0 {
-            until = motion.stopped.take().and_then(|stopped| stopped.undo(motion, self.angular_velocity));
+            stopped = motion.stopped.take().and_then(|stopped| stopped.undo(motion, self.angular_velocity));
         }
         let mut steps = 0_u32;
         loop {
@@ -225,19 +228,19 @@ impl Machine {
             if !(left > 0.0) && motion.cam_angle < TAU {
                 return Ok(ControlFlow::Continue(()));
             }
-            let step = match until.take() {
-                Some(until) if left < until => Step::Reached { until },
+            let step = match stopped.take() {
+                Some((until, ahead)) if left < until => Step::Reached { until, ahead },
                 _ if motion.contact => self.follow(motion, left, observer)?,
                 _ if motion.chatter == Chatter::Due => self.end_chatter(motion, left, observer),
-                _ => self.fly(motion, left, observer)?,
+                known => self.fly(motion, left, known.and_then(|(_, ahead)| ahead), observer)?,
             };
             match step {
                 Step::Moved => {}
                 Step::Event => self.counted(motion)?,
-                Step::Reached { until } => {
-                    let begun = *motion;
+                Step::Reached { until, ahead } => {
+                    let stopped = Stopped::of(motion, (until, ahead));
                     self.show_at(motion, goal, left, observer)?;
-                    motion.stopped = Some(Stopped::of(&begun, until, motion));
+                    motion.stopped = Some(stopped.shown_by(motion));
                     return Ok(ControlFlow::Continue(()));
                 }
                 Step::Broken => {
@@ -366,9 +369,95 @@ impl Machine {
     }
 
     /// One stretch of flight: over the top of the cam, or up to a contact or the end of a segment. Where it ends does not depend on how
-    /// much, `left`, rad, is left of the run.
+    /// much, `left`, rad, is left of the run; what it comes to may be `known` from a run that was stopped in it.
     #[inline(always)]
-    fn fly<O: Observer>(&self, motion: &mut Motion, left: f64, observer: &mut O) -> Result<Step, SimulateError> {
+    fn fly<O: Observer>(
+        &self,
+        motion: &mut Motion,
+        left: f64,
+        known: Option<Ahead>,
+        observer: &mut O,
+    ) -> Result<Step, SimulateError> {
+        let omega = self.angular_velocity;
+        let ahead = match known {
+            Some(ahead) => ahead,
+            None => self.ahead(motion, left, observer),
+        };
+        let until = match &ahead {
+            Ahead::Again(again) => omega * again.time,
+            Ahead::Top { time, .. } => omega * time,
+            Ahead::Leap(leap) => omega * leap.time,
+            Ahead::Never => f64::INFINITY,
+            Ahead::Over { passage: Passage::Free { .. }, .. } => {
+                let within = self.cam().segments()[motion.segment].end - motion.cam_angle;
+                if left < within { within } else { f64::NEG_INFINITY }
+            }
+            Ahead::Over { passage, .. } => match passage {
+                Passage::Contact { time, .. } | Passage::Below { time, .. } | Passage::NoProgress { time } => {
+                    omega * time
+                }
+                Passage::Free { .. } | Passage::NotFinite => f64::NEG_INFINITY,
+            },
+        };
+        if !(until < left) {
+            return Ok(Step::Reached { until, ahead: Some(ahead).filter(|_| motion.chatter != Chatter::WithinRun) });
+        }
+        match ahead {
+            Ahead::Again(again) => {
+                if O::COUNTS {
+                    observer.work(Work { repeats: 1, ..Work::default() });
+                }
+                self.flown(motion, again.time, observer);
+                motion.revolution += 1;
+                motion.cam_angle = again.cam_angle;
+                Ok(self.strike(motion, again.velocity, &again.lift, left - omega * again.time, observer))
+            }
+            Ahead::Top { time, state } => {
+                self.flown(motion, time, observer);
+                self.turn_over(motion, omega * time);
+                (motion.state, motion.gap, motion.lift) = (state, None, None);
+                // What is exactly at the top would be looked at as above it once more.
+                if state.position <= self.terrain.top { Ok(Step::Moved) } else { Err(self.not_finite(motion)) }
+            }
+            Ahead::Never => Ok(Step::Reached { until, ahead: None }),
+            Ahead::Leap(leap) => {
+                self.flown(motion, leap.time, observer);
+                (motion.state, motion.gap) = (self.flight.fly(motion.state, leap.time).1, None);
+                motion.segment = leap.segment;
+                self.enter_next(motion)?;
+                if leap.lands {
+                    motion.expected = Some(motion.cam_angle);
+                }
+                Ok(Step::Moved)
+            }
+            Ahead::Over { end, passage } => match passage {
+                Passage::Free { state, gap } => {
+                    self.flown(motion, end, observer);
+                    (motion.state, motion.gap, motion.lift) = (state, gap, None);
+                    self.enter_next(motion)?;
+                    Ok(Step::Moved)
+                }
+                Passage::Contact { time, velocity, lift } => {
+                    self.flown(motion, time, observer);
+                    // A contact found at the segment's end belongs to it, whatever the last bit says.
+                    let last = self.cam().segments()[motion.segment].end;
+                    motion.cam_angle = (motion.cam_angle + omega * time).min(last);
+                    Ok(self.strike(motion, velocity, &lift, left - omega * time, observer))
+                }
+                Passage::Below { depth, time } => Err(SimulateError::BelowCam {
+                    depth,
+                    revolution: motion.revolution,
+                    cam_angle: motion.cam_angle + omega * time,
+                }),
+                Passage::NoProgress { time } => Err(no_progress(motion, omega * time)),
+                Passage::NotFinite => Err(self.not_finite(motion)),
+            },
+        }
+    }
+
+    /// What a flight comes to next. Of the run that has `left`, rad, left it depends on that alone where each impact up to there is asked for.
+    #[inline(always)]
+    fn ahead<O: Observer>(&self, motion: &mut Motion, left: f64, observer: &mut O) -> Ahead {
         let omega = self.angular_velocity;
         let top = self.terrain.top;
         let clears = self.clears(motion, top);
@@ -376,43 +465,16 @@ impl Machine {
             && let Some(jerk) = clears
             && let Some(again) = self.again(motion, jerk)
         {
-            let left = left - omega * again.time;
-            if !(left > 0.0) {
-                return Ok(Step::Reached { until: omega * again.time });
-            }
-            if O::COUNTS {
-                observer.work(Work { repeats: 1, ..Work::default() });
-            }
-            self.flown(motion, again.time, observer);
-            motion.revolution += 1;
-            motion.cam_angle = again.cam_angle;
-            return Ok(self.strike(motion, again.velocity, &again.lift, left, observer));
+            return Ahead::Again(again);
         }
         if motion.state.position > top || clears.is_some() {
-            let Some((time, state)) = self.flight.fall_to(top, motion.state) else {
-                return Ok(Step::Reached { until: f64::INFINITY });
+            return match self.flight.fall_to(top, motion.state) {
+                Some((time, state)) => Ahead::Top { time, state },
+                None => Ahead::Never,
             };
-            if !(omega * time < left) {
-                return Ok(Step::Reached { until: omega * time });
-            }
-            self.flown(motion, time, observer);
-            self.turn_over(motion, omega * time);
-            (motion.state, motion.gap, motion.lift) = (state, None, None);
-            // What is exactly at the top would be looked at as above it once more.
-            return if state.position <= top { Ok(Step::Moved) } else { Err(self.not_finite(motion)) };
         }
         if let Some(leap) = self.leap(motion) {
-            if !(omega * leap.time < left) {
-                return Ok(Step::Reached { until: omega * leap.time });
-            }
-            self.flown(motion, leap.time, observer);
-            (motion.state, motion.gap) = (self.flight.fly(motion.state, leap.time).1, None);
-            motion.segment = leap.segment;
-            self.enter_next(motion)?;
-            if leap.lands {
-                motion.expected = Some(motion.cam_angle);
-            }
-            return Ok(Step::Moved);
+            return Ahead::Leap(leap);
         }
         let segment = &self.cam().segments()[motion.segment];
         let within = segment.end - motion.cam_angle;
@@ -427,33 +489,7 @@ impl Machine {
         } else {
             Window::new(self, motion, ()).pass(end, expected)
         };
-        match passage {
-            Passage::Free { .. } if left < within => Ok(Step::Reached { until: span }),
-            Passage::Contact { time, .. } | Passage::Below { time, .. } | Passage::NoProgress { time }
-                if !(omega * time < left) =>
-            {
-                Ok(Step::Reached { until: omega * time })
-            }
-            Passage::Free { state, gap } => {
-                self.flown(motion, end, observer);
-                (motion.state, motion.gap, motion.lift) = (state, gap, None);
-                self.enter_next(motion)?;
-                Ok(Step::Moved)
-            }
-            Passage::Contact { time, velocity, lift } => {
-                self.flown(motion, time, observer);
-                // A contact found at the segment's end belongs to it, whatever the last bit says.
-                motion.cam_angle = (motion.cam_angle + omega * time).min(segment.end);
-                Ok(self.strike(motion, velocity, &lift, left - omega * time, observer))
-            }
-            Passage::Below { depth, time } => Err(SimulateError::BelowCam {
-                depth,
-                revolution: motion.revolution,
-                cam_angle: motion.cam_angle + omega * time,
-            }),
-            Passage::NoProgress { time } => Err(no_progress(motion, omega * time)),
-            Passage::NotFinite => Err(self.not_finite(motion)),
-        }
+        Ahead::Over { end, passage }
     }
 
     fn not_finite(&self, motion: &Motion) -> SimulateError {
@@ -612,6 +648,7 @@ enum Step {
     /// The run ends in a stretch of flight or contact that is not over before `until`, rad after it began.
     Reached {
         until: f64,
+        ahead: Option<Ahead>,
     },
     /// The observer wants no more.
     Broken,

@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use super::ahead::Ahead;
 use crate::cam::Lift;
 use crate::flight::State;
 
@@ -63,32 +64,44 @@ pub(super) struct Stopped {
     contact: bool,
     chatter: Chatter,
     /// The next event, or the next segment, is so much after the stretch began, rad.
-    pub until: f64,
+    until: f64,
+    /// What that is, of a flight.
+    ahead: Option<Ahead>,
     /// Angle and state that the motion shows, and its stick.
     shown: (f64, State, bool),
 }
 
 impl Stopped {
-    /// The stretch that began at `begun` and is not over before `until`, rad; `shown` is the motion where it was stopped.
-    pub fn of(begun: &Motion, until: f64, shown: &Motion) -> Self {
-        let Motion { cam_angle, state, segment, gap, lift, contact, chatter, .. } = *begun;
-        let turns = shown.revolution - begun.revolution;
-        let shown = (shown.cam_angle, shown.state, shown.contact);
-        Self { turns, cam_angle, state, segment, gap, lift, contact, chatter, until, shown }
+    /// The stretch that begins where `motion` is, and is not over before `until`, rad.
+    #[inline(always)]
+    pub fn of(motion: &Motion, (until, ahead): (f64, Option<Ahead>)) -> Self {
+        let Motion { revolution, cam_angle, state, segment, gap, lift, contact, chatter, .. } = *motion;
+        let shown = (cam_angle, state, contact);
+        Self { turns: revolution, cam_angle, state, segment, gap, lift, contact, chatter, until, ahead, shown }
     }
 
-    /// Takes `motion` back to where the stretch began, and returns its `until`; does nothing to a motion that was changed since.
-    pub fn undo(self, motion: &mut Motion, omega: f64) -> Option<f64> {
-        let Self { cam_angle, state, segment, gap, lift, contact, chatter, until, shown, .. } = self;
+    /// The same, stopped where `motion` shows it.
+    #[inline(always)]
+    pub fn shown_by(mut self, motion: &Motion) -> Self {
+        self.turns = motion.revolution - self.turns;
+        self.shown = (motion.cam_angle, motion.state, motion.contact);
+        self
+    }
+
+    /// Takes `motion` back to where the stretch began, and returns how long it lasts and what comes then; does nothing to a motion that was
+    /// changed since.
+    pub fn undo(self, motion: &mut Motion, omega: f64) -> Option<(f64, Option<Ahead>)> {
+        let Self { cam_angle, state, segment, gap, lift, contact, chatter, until, ahead, shown, .. } = self;
         let revolution = motion.revolution.checked_sub(self.turns)?;
         if shown != (motion.cam_angle, motion.state, motion.contact) {
             return None;
         }
         let is_flight = !contact && chatter != Chatter::Due;
         let turned = self.turns as f64 * TAU + (motion.cam_angle - cam_angle);
-        let seen = is_flight.then_some((motion.state, turned / omega));
-        *motion = Motion { revolution, cam_angle, state, segment, gap, lift, contact, chatter, seen, ..*motion };
-        Some(until)
+        motion.seen = is_flight.then_some((motion.state, turned / omega));
+        (motion.revolution, motion.cam_angle, motion.state, motion.segment) = (revolution, cam_angle, state, segment);
+        (motion.gap, motion.lift, motion.contact, motion.chatter) = (gap, lift, contact, chatter);
+        Some((until, ahead))
     }
 }
 

@@ -84,7 +84,7 @@ impl Machine {
             return Step::Event;
         }
         motion.chatter = Chatter::Due;
-        Step::Reached { until: turn }
+        Step::Reached { until: turn, ahead: None }
     }
 
     /// Puts the follower on the cam, to stay.
@@ -107,7 +107,7 @@ impl Machine {
         let turn = match self.turn_to_sign(1.0, motion.cam_angle, segment, within) {
             Ok(turn) => turn,
             Err(turn) if turn < left => return Err(no_progress(motion, turn)),
-            Err(turn) => return Ok(Step::Reached { until: turn }),
+            Err(turn) => return Ok(Step::Reached { until: turn, ahead: None }),
         };
         if let Some(turn) = turn.filter(|turn| *turn < left) {
             motion.cam_angle += turn;
@@ -115,7 +115,7 @@ impl Machine {
             return Ok(self.let_go(motion, &lift, on_cam(&lift, omega), observer));
         }
         if left < within {
-            return Ok(Step::Reached { until: turn.unwrap_or(within) });
+            return Ok(Step::Reached { until: turn.unwrap_or(within), ahead: None });
         }
         let before = on_cam(&segment.law.lift(segment.end), omega);
         (motion.state, motion.gap, motion.lift) = (before, Some(0.0), None);

@@ -8,6 +8,7 @@
 
 use std::cell::Cell;
 
+use super::ahead::Passage;
 use super::contact::{self, Gap, Outcome};
 use super::{Machine, Motion, Work};
 use crate::cam::{Lift, Segment};
@@ -45,31 +46,6 @@ pub(super) struct Window<'a, T> {
     gap: Option<f64>,
     /// The lift at the start, where it is known.
     lift: Option<Lift>,
-}
-
-/// What became of a flight over a window.
-pub(super) enum Passage {
-    /// No contact up to the end.
-    Free {
-        state: State,
-        gap: Option<f64>,
-    },
-    /// The first contact, s after the start, with the velocity that it is met with.
-    Contact {
-        time: f64,
-        velocity: f64,
-        lift: Lift,
-    },
-    Below {
-        depth: f64,
-        time: f64,
-    },
-    /// More steps than a window may take; s after the start.
-    NoProgress {
-        time: f64,
-    },
-    /// Something is not a number.
-    NotFinite,
 }
 
 /// Gap, follower and cam at an instant.

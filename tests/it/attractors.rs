@@ -197,7 +197,10 @@ fn a_motion_that_rests_repeats_from_its_release_on() {
         let settling = LongRuns::new(&machine, Budget { longest: 8, ..Budget::SURVEY }).unwrap();
         let mut motion = machine.start_on_cam(0.0, 0.0).unwrap();
         let RunOutcome::Released(release) = settling.run(&mut motion, 10_000).unwrap() else { panic!("{rpm}") };
-        let AfterRelease::Recurs(rests) = settling.after_release(release, |_| None).unwrap().0 else { panic!("{rpm}") };
+        let AfterRelease::Recurs(rests) = settling.after_release(release, settling.budget.rest(), |_| None).unwrap().0
+        else {
+            panic!("{rpm}")
+        };
         assert_eq!(rests.is_long(), long, "{rpm}: {rests:?}");
         // The event loop by itself, with neither: so many revolutions and impacts from one release to the same one.
         let mut motion = settling.released(rests.releases[0]).unwrap();

@@ -57,11 +57,11 @@ fn cases() -> Vec<Case> {
     cases
 }
 
-/// A word, and the growth a revolution with its error.
-type Told = (Kind, f64, f64);
+/// A word, and the growth a revolution with its error, to the last bit.
+type Told = (Kind, u64, u64);
 
 fn told(ending: &LongRun) -> Told {
-    (ending.kind(), ending.growth().value, ending.growth().error)
+    (ending.kind(), ending.growth().value.to_bits(), ending.growth().error.to_bits())
 }
 
 /// What each command of the library says, by its name.
@@ -77,8 +77,8 @@ fn answers((name, rpm, state): Case, surveyed: bool) -> Vec<(&'static str, Told)
     let axes = [Axis::even(Parameter::Speed, &values), Axis::even(mass, &fixed)];
     let chart = Chart::new(&model, None, axes, start, BUDGET).unwrap().run(Some(1), &Unwatched).unwrap();
     let row = one_row(&machine, &values, start, BUDGET, Some(1), &Unwatched).unwrap();
-    let [point, row] =
-        [&chart.points[0], &row[0]].map(|it| it.as_ref().map(|it| (it.kind, it.growth.value, it.growth.error)));
+    let [point, row] = [&chart.points[0], &row[0]]
+        .map(|it| it.as_ref().map(|it| (it.kind, it.growth.value.to_bits(), it.growth.error.to_bits())));
     let states = SectionStarts::Given(States { cam_angle: 0.0, states: vec![state] });
     let basins = states.basins(&machine, BUDGET, Some(1), &Unwatched).unwrap();
     let loads = Loads::among(&model, &machine, Some(&[start]), BUDGET).unwrap().1;
@@ -92,7 +92,7 @@ fn answers((name, rpm, state): Case, surveyed: bool) -> Vec<(&'static str, Told)
         ("basins", told(&basins.parts[0].ending)),
         ("design", told(&loads[0].ending)),
         ("simulate", told(&run.long_run.unwrap().ending)),
-        ("diagram --lyapunov", (alone.kind(), grown.value, grown.error)),
+        ("diagram --lyapunov", (alone.kind(), grown.value.to_bits(), grown.error.to_bits())),
     ];
     if surveyed {
         let step = Step::at_most(1e-3);

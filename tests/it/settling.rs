@@ -228,7 +228,7 @@ fn what_runs_come_to_is_told_as_soon_as_it_is_certain() {
             .ending;
             all += &format!("  {revolutions} revolutions, and what follows: {}\n", ending(&ended));
         }
-        all += &match unaided.after_release(case.angle, |_| None).unwrap().0 {
+        all += &match unaided.after_release(case.angle, unaided.budget.rest(), |_| None).unwrap().0 {
             AfterRelease::Recurs(it) => format!("  let go, it rests again: {}\n", ending(&LongRun::Sticking(it))),
             AfterRelease::Arrives(it, motion) => {
                 format!("  let go, in revolution {}: {}\n", motion.revolution, orbit(&it))

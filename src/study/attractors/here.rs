@@ -126,7 +126,7 @@ impl Here {
             RunOutcome::Arrives(orbit) => (LongRun::Orbit(orbit), 0),
             RunOutcome::PermanentContact => (LongRun::PermanentContact, 0),
             RunOutcome::Released(release) => {
-                let (after, followed) = runs.after_release(release, |_| None)?;
+                let (after, followed) = runs.after_release(release, runs.budget.rest(), |_| None)?;
                 (runs.ending_after(&after)?, followed)
             }
             RunOutcome::Wanders => (runs.by_growth(motion, 1)?, 0),

@@ -293,7 +293,8 @@ fn follow(runs: &LongRuns<'_>, ends: &[Option<End>], releases: &mut Releases) ->
             && find(releases, *cam_angle).is_none()
         {
             let known = |other: f64| find(releases, other).map(|release| release.after.clone());
-            let (after, followed) = runs.after_release(*cam_angle, known).map_err(|error| (index, error))?;
+            let (after, followed) =
+                runs.after_release(*cam_angle, runs.budget.rest(), known).map_err(|error| (index, error))?;
             let ending = runs.ending_after(&after).map_err(|error| (index, error))?;
             releases.push(Release { cam_angle: *cam_angle, after, ending, followed });
         }
