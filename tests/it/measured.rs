@@ -1135,7 +1135,7 @@ fn a_fold_on_a_measured_cam_is_as_far_off_as_is_said() {
     let through = json!({ "law": "table", "spline": "quintic", "rows": rows });
     let through = Model::of_document("ball", &json!({ "follower": follower_of_a_ball(), "cam": through })).unwrap();
     for model in [ball_on_rows(2.5), ball_on_rows(0.0), through] {
-        let found = speeds(&model, [555.0, 560.0], &resolution(5.0, 2), &Unwatched).unwrap();
+        let found = speeds(&model, [555.0, 560.0], resolution(5.0, 2), &Unwatched).unwrap();
         let birth = found.attractors.iter().find(|it| it.impacts == Some(1)).unwrap().birth.as_ref().unwrap();
         let error = birth.error.unwrap();
         assert_eq!(birth.cause, Cause::Fold);
@@ -1150,7 +1150,7 @@ fn an_end_by_runs_on_a_measured_cam_is_as_far_off_as_is_said() {
     let end = (9.81 * PI.hypot(1.0) / 0.001).sqrt() * 60.0 / TAU;
     for turned_deg in [0.0, 2.5] {
         let plastic = ball_on_rows(turned_deg).with_number("follower.restitution", 0.0).unwrap();
-        let found = speeds(&plastic, [1600.0, 1800.0], &resolution(100.0, 1), &Unwatched).unwrap();
+        let found = speeds(&plastic, [1600.0, 1800.0], resolution(100.0, 1), &Unwatched).unwrap();
         let death = found.attractors[0].death.as_ref().unwrap();
         let error = death.error.unwrap();
         assert_eq!(death.cause, Cause::Runs);
@@ -1164,7 +1164,7 @@ fn an_end_by_runs_on_a_measured_cam_is_as_far_off_as_is_said() {
 #[ignore = "slow"]
 fn an_orbit_whose_end_runs_tell_is_listed_once() {
     let model = ball_on_rows(0.0).with_number("follower.restitution", 0.1).unwrap();
-    let found = speeds(&model, [1480.0, 1520.0], &resolution(20.0, 1), &Unwatched).unwrap();
+    let found = speeds(&model, [1480.0, 1520.0], resolution(20.0, 1), &Unwatched).unwrap();
     let mut listed = Vec::new();
     for row in &found.attractors {
         let by_runs = [&row.birth, &row.death].map(|end| end.as_ref().is_some_and(|end| end.cause == Cause::Runs));

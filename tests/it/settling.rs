@@ -296,7 +296,7 @@ fn a_run_comes_to_no_orbit_that_is_longer_than_what_is_looked_for() {
     let mut settled = machine.start_on_cam(1.0, 0.1).unwrap();
     machine.revolve(&mut settled, 20_000).unwrap();
     let run = |longest: u64| {
-        LongRuns::unaided(&machine, Budget { transient: 1000, record: 0, longest: longest, patience: 0 })
+        LongRuns::unaided(&machine, Budget { transient: 1000, record: 0, longest, patience: 0 })
             .run(&mut settled.clone(), 400)
             .unwrap()
     };

@@ -104,7 +104,7 @@ fn where_the_cam_is_left_is_told_within_the_range() {
     let text = "[follower]\nmass = 2.0\nrestitution = 0.5\ndamping = 3.0\nstiffness = 800.0\ngravity = 9.81\nrest_position = 0.25\n\
                 [cam]\nlaw = \"harmonic\"\noffset = 0.1\namplitudes = [0.02]\nphases_deg = [0.0]\n";
     let held = Model::parse("held.toml", text).unwrap();
-    assert_eq!(speeds(&held, [50.0, 150.0], &resolution(50.0, 1), &Unwatched).unwrap().detachment(), None);
+    assert_eq!(speeds(&held, [50.0, 150.0], resolution(50.0, 1), &Unwatched).unwrap().detachment(), None);
 }
 
 /// A motion that rests at most of the speeds of a grid, and is chaotic at some, is one that rests.
@@ -213,7 +213,7 @@ fn an_orbit_that_runs_miss_at_one_speed_is_one() {
 fn a_picture_has_as_many_impacts_as_there_are_or_as_there_is_room_for() {
     for (restitution, rpm, shown) in [(0.0, 1300.0, 120), (0.3, 1100.0, 600)] {
         let ball = ball().with_number("follower.restitution", restitution).unwrap();
-        let found = speeds(&ball, [rpm, rpm + 1.0], &resolution(1.0, 2), &Unwatched).unwrap();
+        let found = speeds(&ball, [rpm, rpm + 1.0], resolution(1.0, 2), &Unwatched).unwrap();
         let [one] = &found.attractors[..] else { panic!("{found:?}") };
         for at in &one.at {
             let impacts = at.ending.period().unwrap().1;

@@ -61,7 +61,7 @@ fn at(it: &At, starts: usize) -> String {
 }
 
 fn told(model: &Model, range: [f64; 2], resolution: &Resolution) -> String {
-    let found = speeds(model, range, &resolution, &Unwatched).unwrap();
+    let found = speeds(model, range, resolution, &Unwatched).unwrap();
     let mut told = format!("{} {range:?} by {} from {}\n", found.model, found.step, found.sample.count());
     assert!(found.failed.is_empty() && found.rpm == range);
     for it in &found.attractors {
