@@ -1,7 +1,6 @@
 //! The orbit near a guess, or near a run.
 //!
-//! `near_run` looks for an orbit that a run is on already, or nearly; whether the run stays there is for [`super::fate`] to say,
-//! which is the one answer to what a run ends on. Whatever names an orbit goes through [`close`]: Newton's method from a guess, and
+//! `near_run` looks for an orbit that a run is on already, or nearly; whether the run stays there is for [`super::runs`] to say. Whatever names an orbit goes through [`close`]: Newton's method from a guess, and
 //! a simulated period that confirms it.
 
 use std::f64::consts::TAU;
