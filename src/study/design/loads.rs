@@ -99,6 +99,8 @@ impl Loads {
     pub const STARTS: u32 = 4;
     /// Moments of a revolution at which gap and force are looked at.
     const MOMENTS: u32 = 360;
+    /// The same where one run stands for all that come to its motion: they would look at other moments each.
+    const FINE: u32 = 4 * Self::MOMENTS;
 
     /// That load.
     pub fn of(&self, load: Load) -> f64 {
@@ -134,7 +136,8 @@ impl Loads {
             }
             // As many as one period has, and of what never repeats as many as each of its runs would have.
             let repeats = part.ending.period().map_or(Self::RECORD * part.starts.len() as u64, |(turns, _)| turns);
-            for loads in Self::recorded(model, machine, motion, repeats.clamp(Self::RECORD, budget.longest))? {
+            let revolutions = repeats.clamp(Self::RECORD, budget.longest.max(Self::RECORD));
+            for loads in Self::seen(model, machine, motion, (revolutions, Self::FINE))? {
                 worst = worst.or_more(&loads);
             }
         }
@@ -173,8 +176,18 @@ impl Loads {
         motion: Motion,
         revolutions: u64,
     ) -> Result<Vec<Self>, SimulateError> {
+        Self::seen(model, machine, motion, (revolutions, Self::MOMENTS))
+    }
+
+    /// The same, looked at so many moments of each.
+    fn seen(
+        model: &Model,
+        machine: &Machine,
+        motion: Motion,
+        (revolutions, moments): (u64, u32),
+    ) -> Result<Vec<Self>, SimulateError> {
         let (follower, units) = (&model.follower, &model.units);
-        let (samples, events) = trace(machine, motion, revolutions, Self::MOMENTS)?;
+        let (samples, events) = trace(machine, motion, revolutions, moments)?;
         let first = samples.first().map_or(0.0, |sample| sample.turned);
         let rpm = machine.angular_velocity() / TAU * 60.0;
         let mut found = vec![Self { rpm, ..Self::NONE }; revolutions as usize];
