@@ -43,7 +43,7 @@ pub(super) struct Arguments {
     state: Vec<State>,
     #[command(flatten)]
     budget: BudgetArguments,
-    /// As --transient.
+    /// An older name of --transient.
     #[arg(long, value_name = "N", hide = true, conflicts_with = "transient", value_parser = clap::value_parser!(u64).range(1..=Budget::MOST))]
     revolutions: Option<u64>,
     /// Threads [default: RAYON_NUM_THREADS, or one for each core].

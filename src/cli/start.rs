@@ -83,7 +83,7 @@ pub(super) struct BudgetArguments {
 }
 
 impl BudgetArguments {
-    /// With what a command has where nothing is said.
+    /// The budget that is asked for; numbers that are not named are those of `usual`. A record of no revolutions is refused.
     pub(super) fn budget(&self, usual: Budget) -> Result<Budget, CommandError> {
         let budget = self.lengths(usual);
         match budget.record {
@@ -92,7 +92,7 @@ impl BudgetArguments {
         }
     }
 
-    /// The same where nothing is said of what runs come to.
+    /// The revolutions that are asked for, of a diagram that judges no run.
     pub(super) fn lengths(&self, usual: Budget) -> Budget {
         Budget {
             transient: self.transient.unwrap_or(usual.transient),

@@ -28,7 +28,7 @@ const ANY: Vector2<f64> = Vector2::new(0.6, 0.8);
 #[derive(Clone, Debug)]
 pub struct Record {
     means: Means,
-    /// That of the deviation.
+    /// The direction of the deviation, carried from one part of the record to the next.
     direction: Vector2<f64>,
     /// The impacts, of whole revolutions.
     pub met: Met,
@@ -66,7 +66,7 @@ impl Record {
         self.means.of_blocks.iter().fold((0.0, 0.0), grown).0
     }
 
-    /// What a deviation grows by over the first half of the blocks that are over, and over the second, a natural logarithm.
+    /// Growth of a deviation over the first half of the blocks that are over, and over the second; a natural logarithm.
     pub fn halves(&self) -> [f64; 2] {
         let blocks = &self.means.of_blocks;
         let grown = |blocks: &[f64]| self.means.per_block as f64 * blocks.iter().sum::<f64>();

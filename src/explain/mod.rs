@@ -48,7 +48,7 @@ pub struct Explanation {
     pub skipped: Vec<Skipped>,
     /// How it is known.
     pub known: Known,
-    /// What the proof of its value takes for granted.
+    /// Hypotheses of the proof of its value.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub hypotheses: Vec<String>,
     /// Of a statement of the paper: what its check found.

@@ -1,4 +1,4 @@
-//! What a run comes to, and for how long it is followed before that is said.
+//! The long-run motion that a run ends on, and the budget of revolutions within which it is judged.
 //!
 //! One rule decides it for every command. [`super::runs`] follows a run until it settles on an orbit, stays on the cam or rests there;
 //! `study::survey` judges several at once, and lets those that wander share the revolutions that decide whether such motions ever rest.
@@ -29,16 +29,16 @@ pub struct Budget {
 }
 
 impl Budget {
-    /// Of `speeds`, `basins`, `simulate` and `diagram --attractors`: at one speed, many runs share the patience, or one can afford it.
+    /// The default of `speeds`, `basins`, `simulate` and `diagram --attractors`: all runs of a speed share the patience, and one run can afford it.
     pub const SURVEY: Self = Self { transient: 200, record: 1600, longest: 32, patience: 100_000 };
-    /// Of `chart` and `diagram`: thousands of points of one run each, of which a chaotic one costs as many revolutions as it is followed.
+    /// The default of `chart` and `diagram`: they run thousands of points, and a chaotic one costs as many revolutions as it is followed.
     pub const CHART: Self = Self { transient: 300, record: 100, longest: 32, patience: 0 };
-    /// Of `design`: what a rare rest leads to is no load that is not there without it.
+    /// The default of `design`: a rare rest leads to no load that is not there without it.
     pub const DESIGN: Self = Self { transient: 200, record: 200, longest: 32, patience: 0 };
 
     /// Records of a run of which nothing can be told, before it is undecided.
     pub const RECORDS: u64 = 8;
-    /// The least and the most of any number of them, for whoever asks.
+    /// The most revolutions that an option of a budget takes.
     pub const MOST: u64 = 1_000_000_000;
 
     /// Revolutions that are waited for the next rest of a follower that has rested.
@@ -48,7 +48,7 @@ impl Budget {
         self.transient.max(self.patience / SHARE)
     }
 
-    /// The same of one that was seen to rest while its growth was recorded: from one rest to the next it takes longer than to the first.
+    /// Revolutions that are waited for the next rest of a follower that rested while its growth was recorded: rests are rarer there.
     pub fn later_rest(&self) -> u64 {
         self.rest().max(self.transient.saturating_add(self.record))
     }
@@ -62,7 +62,7 @@ impl Budget {
     }
 }
 
-/// What a run comes to.
+/// The long-run motion of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LongRun {
     /// The follower stays on the cam.
@@ -77,7 +77,7 @@ pub enum LongRun {
     Undecided(Recorded),
 }
 
-/// What was recorded of a motion that settles on nothing.
+/// Growth and impacts of a motion that settles on nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Recorded {
     /// The growth of a small deviation a revolution, a natural logarithm.
@@ -88,18 +88,18 @@ pub struct Recorded {
     pub met: Met,
     /// Revolutions, all together.
     pub revolutions: u64,
-    /// Of how many runs.
+    /// The number of runs that were recorded.
     pub runs: u64,
 }
 
 impl Recorded {
-    /// Of one record.
+    /// The growth and the impacts of one record.
     pub fn of(record: &Record) -> Self {
         let (growth, halves) = (record.growth(), record.halves());
         Self { growth, halves, met: record.met, revolutions: record.revolutions, runs: 1 }
     }
 
-    /// Of several together.
+    /// The mean growth of several runs, with all their impacts.
     pub fn together(all: &[Self]) -> Self {
         let growth = Estimate::mean(&all.iter().map(|one| one.growth).collect::<Vec<_>>());
         let half = |half: usize| all.iter().map(|one| one.halves[half]).sum::<f64>() / all.len() as f64;
@@ -121,7 +121,7 @@ impl Recorded {
     fn is_chaotic(&self) -> bool {
         /// The power that is told from an exponential.
         const POWER: f64 = 3.0;
-        /// What the second half has of the first at least.
+        /// The least growth in the second half, over that in the first.
         const LEFT: f64 = 0.3;
         let (growth, [first, second]) = (self.growth, self.halves);
         let is_seen = growth.error < tolerance::CHAOTIC_EXPONENT.value * growth.value;
@@ -186,7 +186,7 @@ impl LongRun {
         }
     }
 
-    /// What was recorded, where that is by what it is told.
+    /// Growth and impacts, of a motion that is told by them.
     pub fn of_growth(&self) -> Option<Recorded> {
         if let Self::Chaotic(recorded) | Self::Undecided(recorded) = self { Some(*recorded) } else { None }
     }

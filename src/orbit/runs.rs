@@ -67,7 +67,7 @@ pub struct LongRuns<'a> {
 }
 
 impl<'a> LongRuns<'a> {
-    /// Of `machine`, with the stable orbits of one impact.
+    /// The runs of `machine`, with the stable orbits of one impact known beforehand.
     pub fn new(machine: &'a Machine, budget: Budget) -> Result<Self, SimulateError> {
         /// The most revolutions of an orbit with one impact.
         const ONE_IMPACT: u64 = 3;
@@ -88,7 +88,7 @@ impl<'a> LongRuns<'a> {
         orbits.iter().try_for_each(|orbit| self.know(orbit))
     }
 
-    /// As [`Self::new`] for a run or a few: without any orbit that is known beforehand, as a search for them takes as long as thousands of
+    /// The runs of `machine` without any orbit that is known beforehand, for a run or a few: a search for orbits takes as long as thousands of
     /// revolutions.
     pub fn unaided(machine: &'a Machine, budget: Budget) -> Self {
         let top = machine.cam().top();
@@ -181,7 +181,7 @@ impl<'a> LongRuns<'a> {
             && self.machine.flight().fall_to(self.top, motion.state).is_none()
     }
 
-    /// What a run comes to that has come to a release.
+    /// The long-run motion of a run that has come to a release.
     pub fn ending_after(&self, after: &AfterRelease) -> Result<LongRun, SimulateError> {
         Ok(match after {
             AfterRelease::Recurs(orbit) => LongRun::Sticking(orbit.clone()),

@@ -388,8 +388,7 @@ pub(crate) fn ending(ending: &LongRun) -> String {
     motion(ending.kind(), period.map(|(revolutions, _)| revolutions), period.map(|(_, impacts)| impacts))
 }
 
-/// The same with what it takes to believe it: chaos with the revolutions in which its runs did not rest, and what is undecided with those in
-/// which it was not decided.
+/// The name of a long-run motion with its evidence: the revolutions that runs of chaos, or of an undecided motion, were followed for.
 pub(crate) fn followed(ending: &LongRun, revolutions: u64) -> String {
     let words = self::ending(ending);
     match ending {
@@ -414,7 +413,7 @@ pub(crate) fn followed_for(each: impl Iterator<Item = u64>) -> String {
     }
 }
 
-/// What runs that wandered were on, where some of them have left it.
+/// A sentence on transient chaos, where some of the runs that wandered have left it.
 pub(crate) fn transient_chaos(wandering: &Wandering) -> Option<String> {
     let Wandering { revolutions, left, .. } = *wandering;
     (left > 0).then(|| {

@@ -1,4 +1,4 @@
-//! What a flight comes to next, as far as it is known before the run comes to it.
+//! The next event of a flight, known before the run comes to it.
 
 use crate::cam::Lift;
 use crate::flight::State;

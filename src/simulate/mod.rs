@@ -455,7 +455,7 @@ impl Machine {
         }
     }
 
-    /// What a flight comes to next. Of the run that has `left`, rad, left it depends on that alone where each impact up to there is asked for.
+    /// The next event of a flight. It depends on how much, `left`, rad, is left of the run only where each impact up to there is asked for.
     #[inline(always)]
     fn ahead<O: Observer>(&self, motion: &mut Motion, left: f64, observer: &mut O) -> Ahead {
         let omega = self.angular_velocity;

@@ -65,7 +65,7 @@ pub(super) struct Stopped {
     chatter: Chatter,
     /// The next event, or the next segment, is so much after the stretch began, rad.
     until: f64,
-    /// What that is, of a flight.
+    /// The next event, where the stretch is a flight.
     ahead: Option<Ahead>,
     /// Angle and state that the motion shows, and its stick.
     shown: (f64, State, bool),
@@ -80,7 +80,7 @@ impl Stopped {
         Self { turns: revolution, cam_angle, state, segment, gap, lift, contact, chatter, until, ahead, shown }
     }
 
-    /// The same, stopped where `motion` shows it.
+    /// The stretch, stopped where `motion` shows it.
     #[inline(always)]
     pub fn shown_by(mut self, motion: &Motion) -> Self {
         self.turns = motion.revolution - self.turns;

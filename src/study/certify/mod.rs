@@ -62,7 +62,7 @@ document!(Certified as it {
     agrees: it.agrees(),
 });
 
-/// What the script's proofs take for granted, with what they take out of the cam.
+/// Hypotheses of the script's proofs, with the steps that they take out of the cam.
 fn hypotheses(assumed: Option<Assumed>) -> Vec<String> {
     let numbers = "the machine's numbers are the decimals of its model file, but for angles of a table in radians, which are the doubles \
                    nearest to them in degrees";
@@ -77,7 +77,7 @@ fn hypotheses(assumed: Option<Assumed>) -> Vec<String> {
 }
 
 impl Certified {
-    /// What the proofs take for granted; nothing where nothing is proved.
+    /// Hypotheses of the proofs; empty where nothing is proved.
     pub fn hypotheses(&self) -> Vec<String> {
         self.corner_impacts.first().map(Certificate::hypotheses).unwrap_or_default()
     }
@@ -203,7 +203,7 @@ pub struct Assumed {
 }
 
 impl Certificate {
-    /// What its proof takes for granted.
+    /// Hypotheses of the proofs.
     pub fn hypotheses(&self) -> Vec<String> {
         hypotheses(self.assumed)
     }

@@ -40,7 +40,7 @@ document!(ProvedOrbits as it {
 });
 
 impl ProvedOrbits {
-    /// What the proofs take for granted.
+    /// Hypotheses of the proofs.
     pub fn hypotheses(&self) -> Vec<String> {
         hypotheses(self.assumed)
     }
@@ -128,7 +128,7 @@ document!(ProvedCounts as it {
 });
 
 impl ProvedCounts {
-    /// What the proofs take for granted.
+    /// Hypotheses of the proofs.
     pub fn hypotheses(&self) -> Vec<String> {
         hypotheses(self.assumed)
     }

@@ -73,7 +73,7 @@ pub struct Round {
 }
 
 impl ProvedResting {
-    /// What the proofs take for granted.
+    /// Hypotheses of the proofs.
     pub fn hypotheses(&self) -> Vec<String> {
         let mut all = hypotheses(self.assumed);
         all.push("impacts that follow each other without end put the follower to rest".into());

@@ -99,7 +99,7 @@ impl Loads {
     pub const STARTS: u32 = 4;
     /// Moments of a revolution at which gap and force are looked at.
     const MOMENTS: u32 = 360;
-    /// The same where one run stands for all that come to its motion: they would look at other moments each.
+    /// Moments where one run stands for all that come to its motion: each of them would look at other moments.
     const FINE: u32 = 4 * Self::MOMENTS;
 
     /// That load.
@@ -112,7 +112,7 @@ impl Loads {
         }
     }
 
-    /// Of what several starts come to, the usual ones if none are given; and what that is.
+    /// The largest loads of the motions that several starts come to, the usual starts if none are given; and these motions.
     pub fn among(
         model: &Model,
         machine: &Machine,
@@ -144,7 +144,7 @@ impl Loads {
         Ok((Self { rpm: machine.angular_velocity() / TAU * 60.0, ..worst }, found.parts))
     }
 
-    /// Of what the usual starts come to, whatever that is.
+    /// The largest loads of the motions that the usual starts come to, which are not judged.
     pub fn at(model: &Model, machine: &Machine) -> Result<Self, SimulateError> {
         Ok(Self::among(model, machine, None, Budget { record: 0, ..Budget::DESIGN })?.0)
     }
@@ -179,7 +179,7 @@ impl Loads {
         Self::seen(model, machine, motion, (revolutions, Self::MOMENTS))
     }
 
-    /// The same, looked at so many moments of each.
+    /// The loads of each of so many revolutions of a motion, looked at so many moments of each.
     fn seen(
         model: &Model,
         machine: &Machine,

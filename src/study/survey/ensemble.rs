@@ -97,7 +97,7 @@ struct End {
     failed: Option<SimulateError>,
 }
 
-/// What `motion` comes to in the long run within a budget, and what it is then; without a look at any other run.
+/// The long-run motion of one start, judged within a budget, without a look at any other run.
 pub fn long_run(machine: &Machine, motion: Motion, budget: Budget) -> Result<Part, SimulateError> {
     let found = attractors_of(&LongRuns::unaided(machine, budget), 1, |_| Ok(Some(motion)), &Unwatched);
     let mut parts = found.map_err(|(_, error)| error)?.parts;
@@ -105,8 +105,8 @@ pub fn long_run(machine: &Machine, motion: Motion, budget: Budget) -> Result<Par
     Ok(parts.swap_remove(0))
 }
 
-/// What `count` starts end on: the one way to judge several. Run side by side, told to `watch` one by one; `start` gives none where one is
-/// impossible.
+/// The long-run motions of `count` starts: the one way to judge several. They run side by side, told to `watch` one by one; `start` gives
+/// none where one is impossible.
 ///
 /// What a rest leads to is found once for each release. Runs that neither rest nor come to an orbit share the patience of the budget: if one
 /// of them comes to an orbit in the end, none of them is on an attractor yet. A run that cannot go on costs its own start; it is an error
