@@ -211,6 +211,9 @@ table! {
     /// The standard error of a Lyapunov exponent of the local map over the exponent, when the motion counts as chaotic.
     CHAOTIC_EXPONENT = 0.2, "the standard error over the exponent: five standard errors above 0, which chance exceeds once in \
         three million runs";
+    /// The least growth over the second half of a record, over that in the first, of a motion that counts as chaotic.
+    LATER_GROWTH = 0.3, "of the growth over the first half: exponential growth has as much but for chance, and that of a power of up to 3 a \
+        fifth at most after a hundred revolutions";
     /// By how much the local map sends a region into its own inside.
     TRAPPED = 1e-10, "of the region's size: a hundred thousand roundings, so that rounding hides no way out";
     /// How much further than what is sent out of a region the region is made to reach.

@@ -101,7 +101,8 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     arguments.start.doubt(session);
     let cam = Cam::new(&model)?;
     let corners = corner_marks(&cam);
-    let sample = arguments.start.sample(SAMPLED);
+    // Attractors are those of `speeds`.
+    let (sample, found) = (arguments.start.sample(SAMPLED), arguments.budget.lengths(Budget::SURVEY));
     let budget = match arguments.lyapunov {
         true => arguments.budget.budget(Budget::CHART)?,
         false => arguments.budget.lengths(Budget::CHART),
@@ -110,7 +111,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         machine: Machine::new(cam, &model.follower, angular_velocity(arguments.rpm.low)),
         speeds: arguments.rpm,
         starts: match arguments.attractors {
-            true => Starts::Found(Arc::new(move |machine| on_attractors(machine, &sample))),
+            true => Starts::Found(Arc::new(move |machine| on_attractors(machine, &sample, found))),
             false => Starts::One(arguments.start.start()?),
         },
         following: match arguments.following {

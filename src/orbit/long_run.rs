@@ -90,13 +90,15 @@ pub struct Recorded {
     pub revolutions: u64,
     /// The number of runs that were recorded.
     pub runs: u64,
+    /// Whether any of them rested on the way.
+    pub rested: bool,
 }
 
 impl Recorded {
-    /// The growth and the impacts of one record.
+    /// Growth and impacts of one record.
     pub fn of(record: &Record) -> Self {
         let (growth, halves) = (record.growth(), record.halves());
-        Self { growth, halves, met: record.met, revolutions: record.revolutions, runs: 1 }
+        Self { growth, halves, met: record.met, revolutions: record.revolutions, runs: 1, rested: record.rests() }
     }
 
     /// The mean growth of several runs, with all their impacts.
@@ -106,7 +108,8 @@ impl Recorded {
         let met = all.iter().fold(Met::default(), |all, one| all.with(one.met));
         let sum = |number: fn(&Self) -> u64| all.iter().map(number).sum();
         let (revolutions, runs) = (sum(|one| one.revolutions), sum(|one| one.runs));
-        Self { growth, halves: [half(0), half(1)], met, revolutions, runs }
+        let rested = all.iter().any(|one| one.rested);
+        Self { growth, halves: [half(0), half(1)], met, revolutions, runs, rested }
     }
 
     /// Revolutions of each run, in the mean.
@@ -121,11 +124,10 @@ impl Recorded {
     fn is_chaotic(&self) -> bool {
         /// The power that is told from an exponential.
         const POWER: f64 = 3.0;
-        /// The least growth in the second half, over that in the first.
-        const LEFT: f64 = 0.3;
         let (growth, [first, second]) = (self.growth, self.halves);
         let is_seen = growth.error < tolerance::CHAOTIC_EXPONENT.value * growth.value;
-        self.met.impacts > 0 && is_seen && second > POWER * LN_2 && second > LEFT * first
+        let is_exponential = second > POWER * LN_2 && second > tolerance::LATER_GROWTH.value * first;
+        self.met.impacts > 0 && is_seen && is_exponential
     }
 }
 
@@ -189,6 +191,15 @@ impl LongRun {
     /// Growth and impacts, of a motion that is told by them.
     pub fn of_growth(&self) -> Option<Recorded> {
         if let Self::Chaotic(recorded) | Self::Undecided(recorded) = self { Some(*recorded) } else { None }
+    }
+
+    /// The same motion, of a run that rested on the way to it.
+    pub(super) fn having_rested(self) -> Self {
+        match self {
+            Self::Chaotic(recorded) => Self::Chaotic(Recorded { rested: true, ..recorded }),
+            Self::Undecided(recorded) => Self::Undecided(Recorded { rested: true, ..recorded }),
+            settled => settled,
+        }
     }
 
     /// Whether a motion is left by chance alone, if it is left at all: chaos, and what bounces as chaos does until it rests.

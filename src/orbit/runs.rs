@@ -186,7 +186,7 @@ impl<'a> LongRuns<'a> {
         Ok(match after {
             AfterRelease::Recurs(orbit) => LongRun::Sticking(orbit.clone()),
             AfterRelease::Arrives(orbit, _) => LongRun::Orbit(orbit.clone()),
-            AfterRelease::Wanders { end, .. } => self.by_growth(*end, Budget::RECORDS)?,
+            AfterRelease::Wanders { end, .. } => self.by_growth(*end, Budget::RECORDS)?.having_rested(),
         })
     }
 
@@ -324,11 +324,12 @@ impl<'a> LongRuns<'a> {
         let mut record = fresh();
         let mut told = LongRun::by_growth(Recorded::of(&record));
         let records = if self.budget.record == 0 { 0 } else { records.max(1) };
-        let mut released = false;
+        let (mut released, mut rested) = (false, false);
         for _ in 0..records {
             record.take(self.machine, &mut motion, self.budget.record)?;
             told = LongRun::by_growth(Recorded::of(&record));
             let rests = record.rests();
+            rested |= rests;
             if matches!(told, LongRun::Chaotic(_)) && !rests {
                 break;
             }
@@ -349,7 +350,7 @@ impl<'a> LongRuns<'a> {
                 RunOutcome::Wanders => {}
             }
         }
-        Ok(told)
+        Ok(if rested { told.having_rested() } else { told })
     }
 }
 

@@ -392,6 +392,10 @@ pub(crate) fn ending(ending: &LongRun) -> String {
 pub(crate) fn followed(ending: &LongRun, revolutions: u64) -> String {
     let words = self::ending(ending);
     match ending {
+        // A run may rest on its way, be it at its start.
+        LongRun::Chaotic(recorded) if recorded.rested => {
+            format!("{words} (no orbit and no rest that repeats in {revolutions} revolutions)")
+        }
         LongRun::Chaotic(_) => format!("{words} (no rest in {revolutions} revolutions)"),
         LongRun::Undecided(_) => format!("{words} after {revolutions} revolutions"),
         LongRun::Sticking(orbit) if orbit.is_long() => {

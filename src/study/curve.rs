@@ -37,11 +37,7 @@ pub fn curves(
     let start = own.clamp(low, high);
     let model = &if start == own { model.clone() } else { model.with_number(path, start)? };
     let is_wanted = |kind: Kind| kind.bifurcation().is_some_and(|event| events.contains(&event));
-    // An orbit without impacts meets nothing along a branch in the speed.
-    let points = match wanted.impacts {
-        Some(0) => Vec::new(),
-        _ => special_points(model, rpm, wanted, is_wanted, watch)?.points,
-    };
+    let points = special_points(model, rpm, wanted, is_wanted, watch)?.points;
     let of_event = |event: Bifurcation| {
         points
             .iter()

@@ -17,9 +17,10 @@ use crate::study::design::loads::Loads;
 use crate::study::survey::{Point, Sample};
 
 /// A motion on each of the attractors of `machine` that are found at its speed alone.
-pub fn on_attractors(machine: &Machine, sample: &Sample) -> Result<Vec<Motion>, SimulateError> {
+pub fn on_attractors(machine: &Machine, sample: &Sample, budget: Budget) -> Result<Vec<Motion>, SimulateError> {
     let rpm = machine.angular_velocity() * 60.0 / TAU;
-    let mut motions: Vec<Motion> = Here::new(machine, rpm, sample)?.parts.into_iter().map(|part| part.motion).collect();
+    let mut motions: Vec<Motion> =
+        Here::new(machine, rpm, sample, budget)?.parts.into_iter().map(|part| part.motion).collect();
     motions.iter_mut().for_each(|motion| motion.revolution = 0);
     Ok(motions)
 }

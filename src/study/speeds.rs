@@ -18,6 +18,7 @@ use crate::orbit::cycle::own_speed;
 use crate::orbit::long_run::{Budget, Kind, LongRun};
 use crate::progress::Watch;
 use crate::simulate::{EventKind, Machine, SimulateError, angular_velocity};
+use crate::study::attractors::rows::Asked;
 use crate::study::attractors::{Attractors, AttractorsError, Cause, Change, Grid, Here, Resolution, Row, attractors};
 use crate::study::compared;
 use crate::study::design::contact::{Contact, Separation};
@@ -324,8 +325,9 @@ pub fn speeds(
     let separation = known(separation, noisy);
     if let Some(likely) = noisy {
         rows.par_iter_mut().for_each(|row| {
-            let errors =
-                [0, 1].map(|side| error((&lowest, &resolution.sample), (likely, separation), row, side, &grid));
+            let errors = [0, 1].map(|side| {
+                error((&lowest, (&resolution.sample, resolution.budget)), (likely, separation), row, side, &grid)
+            });
             for (change, error) in row.ends.iter_mut().zip(errors) {
                 change.iter_mut().for_each(|change| change.error = error);
             }
@@ -428,7 +430,7 @@ fn dangers(model: &Model, cam: &Cam, rows: &[Row], range: [f64; 2]) -> Vec<Passe
 /// How far a measured cam may have moved what an attractor begins or ends with, rpm: by the event's equations, or by runs where it is
 /// known by runs.
 fn error(
-    (machine, sample): (&Machine, &Sample),
+    (machine, runs): (&Machine, Asked<'_>),
     (likely, separation): (&Likely, Separation),
     row: &Row,
     side: usize,
@@ -449,7 +451,7 @@ fn error(
         },
         (_, Some(event)) => by_equations(&|model, cam| event.moved(model, cam)),
         (Cause::Runs, None) => likely.error_by_runs(rpm, |model, cam| {
-            row.moved(&Machine::new(cam.clone(), &model.follower, speed), grid, sample, side)
+            row.moved(&Machine::new(cam.clone(), &model.follower, speed), grid, runs, side)
         }),
         _ => None,
     }

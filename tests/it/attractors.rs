@@ -32,7 +32,7 @@ pub fn ball() -> Model {
 pub fn by_growth(value: f64, error: f64) -> LongRun {
     let growth = Estimate { value, error, error_is: ErrorIs::Standard };
     let met = Met { impacts: 100, impact_speed: 1.0 };
-    LongRun::by_growth(Recorded { growth, halves: [50.0 * value; 2], met, revolutions: 100, runs: 1 })
+    LongRun::by_growth(Recorded { growth, halves: [50.0 * value; 2], met, revolutions: 100, runs: 1, rested: false })
 }
 
 fn found(model: &Model, range: [f64; 2], step: f64, starts: usize) -> Speeds {
@@ -170,7 +170,7 @@ fn one_long_motion_is_one() {
 fn what_is_left_by_chance_is_no_attractor_and_what_outlasts_rests_is() {
     let model = common::osorio();
     let kinds = |rpm: f64| {
-        let here = Here::new(&machine(&model, rpm), rpm, &Sample::Spread(64)).unwrap();
+        let here = Here::new(&machine(&model, rpm), rpm, &Sample::Spread(64), Budget::SURVEY).unwrap();
         here.parts.iter().map(|part| (part.ending.kind(), part.ending.is_long(), here.count(part))).collect::<Vec<_>>()
     };
     let [(Kind::Resting, true, most), (Kind::Chaotic, _, few)] = kinds(478.0)[..] else { panic!("{:?}", kinds(478.0)) };
@@ -183,7 +183,7 @@ fn what_is_left_by_chance_is_no_attractor_and_what_outlasts_rests_is() {
 /// From rest alone, where the follower is let go and comes to wander: what is kept of that is chaos, and not how it began.
 #[test]
 fn what_wanders_from_a_rest_is_told_from_where_it_has_forgotten_that() {
-    let here = Here::new(&machine(&common::osorio(), 380.0), 380.0, &Sample::Spread(0)).unwrap();
+    let here = Here::new(&machine(&common::osorio(), 380.0), 380.0, &Sample::Spread(0), Budget::SURVEY).unwrap();
     let [part] = &here.parts[..] else { panic!("{here:?}") };
     assert!(matches!(part.ending, LongRun::Chaotic(_)) && part.motion.revolution > 50, "{part:?}");
 }
@@ -584,7 +584,7 @@ fn a_range_of_speeds_is_chosen_by_the_machine() {
 
 /// What twenty-four starts, and rest on the cam, come to at a speed.
 fn from_starts(model: &Model, rpm: f64) -> Here {
-    Here::new(&machine(model, rpm), rpm, &Sample::Spread(24)).unwrap()
+    Here::new(&machine(model, rpm), rpm, &Sample::Spread(24), Budget::SURVEY).unwrap()
 }
 
 /// In a hundred thousand revolutions runs bounced on for long before they came to rest: a start that was not seen to rest was only not waited for.

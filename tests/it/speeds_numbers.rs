@@ -3,7 +3,7 @@
 use approx::assert_relative_eq;
 use corner_impact::estimate::{ErrorIs, Estimate};
 use corner_impact::model::Model;
-use corner_impact::orbit::long_run::{Kind, LongRun, StickingOrbit};
+use corner_impact::orbit::long_run::{Budget, Kind, LongRun, StickingOrbit};
 use corner_impact::progress::Unwatched;
 use corner_impact::study::attractors::rows::rows;
 use corner_impact::study::attractors::{Attractors, AttractorsError, Cause, Change, Here, attractors};
@@ -163,12 +163,14 @@ fn motions(grid: &[f64], power: i32, unseen: Option<usize>) -> Motions {
     let (ball, scale) = (ball(), 2.0_f64.powi(power));
     let ball = ball.with_number("follower.gravity", ball.follower.gravity * scale * scale).unwrap();
     let machine = machine(&ball, grid[0] * scale);
-    let mut grid: Vec<_> =
-        grid.iter().map(|rpm| Ok(Here::new(&machine, *rpm * scale, &Sample::Spread(2)).unwrap())).collect();
+    let mut grid: Vec<_> = grid
+        .iter()
+        .map(|rpm| Ok(Here::new(&machine, *rpm * scale, &Sample::Spread(2), Budget::SURVEY).unwrap()))
+        .collect();
     if let Some(Ok(here)) = unseen.and_then(|index| grid.get_mut(index)) {
         here.parts.retain(|part| !matches!(part.ending, LongRun::Orbit(_)));
     }
-    let rows = rows(&ball, &machine, &mut grid, &Sample::Spread(2));
+    let rows = rows(&ball, &machine, &mut grid, (&Sample::Spread(2), Budget::SURVEY));
     let cause = |end: &Option<Change>| end.as_ref().map(|end| end.cause);
     rows.iter().map(|row| (row.period(), row.rpm.map(|rpm| rpm / scale), row.ends.each_ref().map(cause))).collect()
 }

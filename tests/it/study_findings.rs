@@ -146,7 +146,7 @@ fn a_sweep_is_a_run_at_each_speed() {
         assert_eq!(bears.len(), 3);
         assert!(bears.iter().all(|it| it.rpm == rpm && it.impact_speed > 0.0));
     }
-    let motions = on_attractors(&machine(&paper, 678.0), &Sample::Spread(64)).unwrap();
+    let motions = on_attractors(&machine(&paper, 678.0), &Sample::Spread(64), Budget::SURVEY).unwrap();
     assert!(motions.len() == 2 && motions.iter().all(|motion| motion.revolution == 0), "{motions:?}");
 }
 

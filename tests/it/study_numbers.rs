@@ -8,7 +8,7 @@ use approx::{assert_abs_diff_eq, assert_relative_eq};
 use corner_impact::flight::State;
 use corner_impact::model::Model;
 use corner_impact::orbit::branch::{Branch, Following, Kind as Event};
-use corner_impact::orbit::long_run::{Kind, LongRun};
+use corner_impact::orbit::long_run::{Budget, Kind, LongRun};
 use corner_impact::orbit::{Parameter, Search, search};
 use corner_impact::progress::Unwatched;
 use corner_impact::simulate::angular_velocity;
@@ -237,6 +237,7 @@ fn the_follower_is_found_to_leave_within_reach() {
 fn a_motion_of_another_speed_comes_to_what_there_is() {
     let paper = common::osorio();
     let here = |rpm: f64, left: u64| Here {
+        budget: Budget::SURVEY,
         rpm,
         parts: Vec::new(),
         sampled: 0,
@@ -269,6 +270,7 @@ fn a_motion_of_another_speed_comes_to_what_there_is() {
 fn what_only_its_own_orbit_begins_on_is_not_reached() {
     let motion = machine(&common::osorio(), 700.0).start_on_cam(0.0, 1.0).unwrap();
     let here = Here {
+        budget: Budget::SURVEY,
         rpm: 700.0,
         parts: Vec::new(),
         sampled: 4,
@@ -342,7 +344,8 @@ fn an_end_by_runs_moves_with_the_machine() {
     let row = &found.rows[row];
     let side = usize::from(row.ends[0].is_none());
     let end = row.ends[side].as_ref().unwrap();
-    let moved = |of: &Model| row.moved(&machine(of, 421.0), &found.grid, &resolution(0.5, 3).sample, side);
+    let moved =
+        |of: &Model| row.moved(&machine(of, 421.0), &found.grid, (&resolution(0.5, 3).sample, Budget::SURVEY), side);
     let width = end.bracket[1] - end.bracket[0];
     assert_abs_diff_eq!(moved(&text(1000.0)).unwrap(), end.rpm, epsilon = 2.0 * width);
     for stiffness in [999.9, 1000.5] {

@@ -1,9 +1,8 @@
 //! The attractors at one speed.
 
-use super::{Resolution, Step};
 use crate::cam::within_a_turn;
-use crate::orbit::long_run::{Budget, LongRun, Recorded};
-use crate::orbit::runs::{LongRuns, RunOutcome};
+use crate::orbit::long_run::{Budget, LongRun};
+use crate::orbit::runs::LongRuns;
 use crate::progress::Unwatched;
 use crate::simulate::{Machine, Motion, SimulateError, angular_velocity};
 use crate::study::survey::{Ensemble, Failed, Part, Sample, Starts, Wandering, attractors_of};
@@ -13,6 +12,8 @@ use crate::study::survey::{Ensemble, Failed, Part, Sample, Starts, Wandering, at
 pub struct Here {
     /// Speed, rpm.
     pub rpm: f64,
+    /// For how long runs are followed.
+    pub budget: Budget,
     /// The motions that were found; starts below `sampled` are the sample's.
     pub parts: Vec<Part>,
     /// How many starts of the sample were run.
@@ -28,32 +29,31 @@ pub struct Here {
 }
 
 impl Here {
-    /// At `rpm`, from the starts of a sample, with the budget of a survey.
-    pub fn new(machine: &Machine, rpm: f64, sample: &Sample) -> Result<Self, SimulateError> {
-        let step = Step::at_most(rpm);
-        Self::seeded(
-            machine,
-            rpm,
-            &Resolution { step, sample: sample.clone(), budget: Budget::SURVEY, two_impacts: false },
-        )
+    /// At `rpm`, from the starts of a sample, within a budget.
+    pub fn new(machine: &Machine, rpm: f64, sample: &Sample, budget: Budget) -> Result<Self, SimulateError> {
+        Self::seeded(machine, rpm, (sample, budget), false)
     }
 
     /// At `rpm`: from the starts that are given, or from a sample of [`Starts`], from rest on the cam at each of its releases, and with the
     /// stable orbits that a search finds.
-    pub(super) fn seeded(machine: &Machine, rpm: f64, resolution: &Resolution) -> Result<Self, SimulateError> {
+    pub(super) fn seeded(
+        machine: &Machine,
+        rpm: f64,
+        (sample, budget): (&Sample, Budget),
+        two_impacts: bool,
+    ) -> Result<Self, SimulateError> {
         let machine = machine.at_speed(angular_velocity(rpm));
-        let Resolution { sample, budget, two_impacts, .. } = resolution;
         let count = match sample {
             Sample::Given(starts) => {
-                let runs = LongRuns::unaided(&machine, *budget);
+                let runs = LongRuns::unaided(&machine, budget);
                 let start = |index: usize| starts[index].motion(&machine).map(Some);
                 let found = attractors_of(&runs, starts.len(), start, &Unwatched).map_err(|(_, error)| error)?;
-                return Ok(Self::of(rpm, found, starts.len(), 0));
+                return Ok(Self::of((rpm, budget), found, starts.len(), 0));
             }
             Sample::Spread(count) => *count,
         };
-        let mut runs = LongRuns::new(&machine, *budget)?;
-        if *two_impacts {
+        let mut runs = LongRuns::new(&machine, budget)?;
+        if two_impacts {
             runs.know_two_impacts()?;
         }
         let known: Vec<Motion> = runs.known().map(|orbit| orbit.motion(&machine)).collect::<Result<_, _>>()?;
@@ -70,14 +70,14 @@ impl Here {
         };
         let all = count + rests.len() + known.len();
         let found = attractors_of(&runs, all, start, &Unwatched).map_err(|(_, error)| error)?;
-        Ok(Self::of(rpm, found, count, rests.len()))
+        Ok(Self::of((rpm, budget), found, count, rests.len()))
     }
 
     /// What so many starts of a sample, and others, come to.
-    fn of(rpm: f64, found: Ensemble, sampled: usize, rests: usize) -> Self {
+    fn of((rpm, budget): (f64, Budget), found: Ensemble, sampled: usize, rests: usize) -> Self {
         let Ensemble { parts, off_for_good, wandering, failed } = found;
         let off_for_good = off_for_good.into_iter().filter(|start| *start < sampled).count();
-        Self { rpm, parts, sampled, off_for_good, rests, wandering, failed }
+        Self { rpm, budget, parts, sampled, off_for_good, rests, wandering, failed }
     }
 
     /// Whether a run has come to a part, from the sample, from rest on the cam or from a neighbouring speed, and not only one
@@ -114,27 +114,20 @@ impl Here {
         const WAITED: u64 = 20_000;
         let machine = machine.at_speed(angular_velocity(self.rpm));
         // At another speed the cam may have come to where the follower is.
-        let Ok(mut motion) = machine.resume(motion) else { return Ok(None) };
-        let mut runs = LongRuns::new(&machine, Budget::SURVEY)?;
+        let Ok(motion) = machine.resume(motion) else { return Ok(None) };
+        let budget = Budget { transient: WAITED, patience: 0, ..self.budget };
+        let mut runs = LongRuns::new(&machine, budget)?;
         for part in &self.parts {
             if let LongRun::Orbit(orbit) = &part.ending {
                 runs.know(orbit)?;
             }
         }
-        let begun = motion.revolution;
-        let (ending, more) = match runs.run(&mut motion, WAITED)? {
-            RunOutcome::Arrives(orbit) => (LongRun::Orbit(orbit), 0),
-            RunOutcome::PermanentContact => (LongRun::PermanentContact, 0),
-            RunOutcome::Released(release) => {
-                let (after, followed) = runs.after_release(release, runs.budget.rest(), |_| None)?;
-                (runs.ending_after(&after)?, followed)
-            }
-            RunOutcome::Wanders => (runs.by_growth(motion, 1)?, 0),
-        };
-        let followed = motion.revolution - begun + more + ending.of_growth().map_or(0, Recorded::each);
+        let found = attractors_of(&runs, 1, |_| Ok(Some(motion)), &Unwatched).map_err(|(_, error)| error)?;
+        let Some(part) = found.parts.into_iter().next() else { return Ok(None) };
+        let ending = &part.ending;
         // What wanders where others have left is on its way, too.
         let is_on_its_way =
             matches!(ending, LongRun::Undecided(_)) || (self.wandering.left > 0 && ending.period().is_none());
-        Ok((!is_on_its_way).then_some(Part { ending, starts: Vec::new(), followed: vec![followed], motion }))
+        Ok((!is_on_its_way).then_some(Part { starts: Vec::new(), ..part }))
     }
 }

@@ -185,7 +185,8 @@ pub fn attractors(
         // Work that is to end does not begin at each of the speeds that are left.
         stop::ask();
         watch.at("what runs end on", done.fetch_add(1, Ordering::Relaxed), total);
-        Here::seeded(&machine, *rpm, resolution).map_err(|error| (*rpm, error))
+        Here::seeded(&machine, *rpm, (&resolution.sample, resolution.budget), resolution.two_impacts)
+            .map_err(|error| (*rpm, error))
     };
     let mut grid: Vec<_> = speeds.par_iter().map(at).collect();
     if let Some(Err((rpm, error))) = grid.first()
@@ -199,7 +200,7 @@ pub fn attractors(
         exchange(&machine, &mut grid);
     }
     watch.at("where each begins and ends", 0, 0);
-    let mut rows = rows::rows(model, &machine, &mut grid, &resolution.sample);
+    let mut rows = rows::rows(model, &machine, &mut grid, (&resolution.sample, resolution.budget));
     let separation = Contact::new(machine.cam(), model.follower).separation_above(low);
     if let Separation::At { rpm, error, .. } = separation {
         rows.iter_mut().for_each(|row| row.detaches(rpm, error));

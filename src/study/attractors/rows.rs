@@ -10,7 +10,7 @@ use super::stretch::Stretch;
 use crate::bracket::{Width, halve};
 use crate::model::Model;
 use crate::orbit::branch::BranchPoint;
-use crate::orbit::long_run::{Kind, LongRun};
+use crate::orbit::long_run::{Budget, Kind, LongRun};
 use crate::orbit::near::close;
 use crate::orbit::{Course, PeriodicOrbit};
 use crate::simulate::{Machine, Motion, SimulateError, angular_velocity};
@@ -60,14 +60,14 @@ pub struct Row {
 pub type Grid = [Result<Here, (f64, SimulateError)>];
 
 /// Matches what was found over a grid of speeds.
-pub fn rows(model: &Model, machine: &Machine, grid: &mut Grid, sample: &Sample) -> Vec<Row> {
+pub fn rows(model: &Model, machine: &Machine, grid: &mut Grid, runs: Asked<'_>) -> Vec<Row> {
     let mut rows = linked(machine, grid);
     let step = step(grid);
     rows.par_iter_mut().for_each(|row| row.follow(model, grid, step));
     let mut rows = joined(machine, rows);
     beyond(model, machine, &mut rows, step);
     let mut rows = joined(machine, rows);
-    rows.par_iter_mut().for_each(|row| row.narrow(machine, grid, sample));
+    rows.par_iter_mut().for_each(|row| row.narrow(machine, grid, runs));
     rows.iter_mut().for_each(|row| row.reach(grid));
     rows.sort_by(|one, two| one.rpm[0].total_cmp(&two.rpm[0]).then(one.rpm[1].total_cmp(&two.rpm[1])));
     rows
@@ -251,7 +251,7 @@ impl Row {
     }
 
     /// Narrows down where a motion that is no orbit begins and ends, between two speeds of the grid.
-    fn narrow(&mut self, machine: &Machine, grid: &Grid, sample: &Sample) {
+    fn narrow(&mut self, machine: &Machine, grid: &Grid, runs: Asked<'_>) {
         if self.stretch.is_some() {
             return;
         }
@@ -260,7 +260,7 @@ impl Row {
         };
         let changed = |(side, index): (usize, usize)| {
             let next = if side == 0 { index.checked_sub(1) } else { Some(index + 1) };
-            Some(self.ended((machine, sample), grid, index, speed(grid.get(next?)?)))
+            Some(self.ended((machine, runs), grid, index, speed(grid.get(next?)?)))
         };
         let (lower, upper) = rayon::join(|| changed((0, first)), || changed((1, last)));
         for ((end, own), change) in self.ends.iter_mut().zip(&mut self.rpm).zip([lower, upper]) {
@@ -272,11 +272,11 @@ impl Row {
     }
 
     /// Between the speed of an index, at which it is there, and `gone`, rpm.
-    fn ended(&self, (machine, sample): (&Machine, &Sample), grid: &Grid, index: usize, gone: f64) -> Change {
+    fn ended(&self, (machine, runs): (&Machine, Asked<'_>), grid: &Grid, index: usize, gone: f64) -> Change {
         /// Halvings of a step of the grid.
         const HALVINGS: u32 = 8;
         let ends = [speed(&grid[index]), gone];
-        let found = self.wanted(grid, index, sample).map(|(wanted, part)| {
+        let found = self.wanted(grid, index, runs).map(|(wanted, part)| {
             let mut motion = Some(part.motion);
             halve(ends, Width::Halvings(HALVINGS), |rpm| Ok(!wanted.is_there(machine, rpm, &mut motion)?))
         });
@@ -285,7 +285,7 @@ impl Row {
 
     /// The speed, rpm, at which an end that is known by runs is on another machine, whose cam differs by little; none where it is not
     /// found near by.
-    pub fn moved(&self, other: &Machine, grid: &Grid, sample: &Sample, side: usize) -> Option<f64> {
+    pub fn moved(&self, other: &Machine, grid: &Grid, runs: Asked<'_>, side: usize) -> Option<f64> {
         /// The first step, in brackets of the end: as narrow a bracket takes long, and steps are doubled.
         const FIRST: f64 = 16.0;
         /// How often.
@@ -294,7 +294,7 @@ impl Row {
         const HALVINGS: u32 = 3;
         let change = self.ends[side].as_ref().filter(|_| self.class != Class::Undecided)?;
         let index = if side == 0 { self.at.keys().next() } else { self.at.keys().last() };
-        let (wanted, _) = self.wanted(grid, *index?, sample)?;
+        let (wanted, _) = self.wanted(grid, *index?, runs)?;
         let mut motion = None;
         let mut is_there = |rpm: f64| wanted.is_there(other, rpm, &mut motion);
         let was_there = is_there(change.rpm).ok()?;
@@ -314,7 +314,7 @@ impl Row {
     }
 
     /// What it is at a speed of the grid, to be looked for elsewhere.
-    fn wanted<'a>(&self, grid: &'a Grid, index: usize, sample: &Sample) -> Option<(Wanted, &'a Part)> {
+    fn wanted<'a>(&self, grid: &'a Grid, index: usize, (sample, budget): Asked<'_>) -> Option<(Wanted, &'a Part)> {
         let here = grid.get(index)?.as_ref().ok()?;
         let part = here.parts.get(*self.at.get(&index)?)?;
         let of_class = here.parts.iter().filter(|part| Class::of(&part.ending) == self.class);
@@ -322,7 +322,7 @@ impl Row {
             Sample::Spread(_) => Sample::Spread(STARTS),
             Sample::Given(_) => sample.clone(),
         };
-        Some((Wanted { class: self.class, kind: part.ending.kind(), both: of_class.count() > 1, sample }, part))
+        Some((Wanted { class: self.class, kind: part.ending.kind(), both: of_class.count() > 1, sample, budget }, part))
     }
 
     /// Turns of the cam and impacts of one period, where that is the same all along.
@@ -382,7 +382,11 @@ struct Wanted {
     both: bool,
     /// Where runs begin at each speed that is tried.
     sample: Sample,
+    budget: Budget,
 }
+
+/// Where the runs of a survey begin, and for how long they are followed.
+pub type Asked<'a> = (&'a Sample, Budget);
 
 /// How many of a sample.
 const STARTS: usize = 12;
@@ -390,7 +394,7 @@ const STARTS: usize = 12;
 impl Wanted {
     /// Whether one of a few starts ends on it, or the `motion` of another speed goes on as one; that is put in its place then.
     fn is_there(&self, machine: &Machine, rpm: f64, motion: &mut Option<Motion>) -> Result<bool, SimulateError> {
-        let here = Here::new(machine, rpm, &self.sample)?;
+        let here = Here::new(machine, rpm, &self.sample, self.budget)?;
         let of_class = |part: &Part| Class::of(&part.ending) == self.class;
         let alike = |part: &&Part| of_class(part) && part.ending.kind() == self.kind;
         let goes_on = |part: &Part| if self.both { alike(&part) } else { of_class(part) };

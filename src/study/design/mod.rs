@@ -312,18 +312,21 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
     let round = if count == 1 && has_force { round(&contact, low, MOMENTS) } else { Vec::new() };
     let parted: Vec<f64> = speeds.iter().copied().filter(|rpm| *rpm > separation.speed()).collect();
     let pieces = Pieces::new(watch, "what attracts where the follower leaves the cam", parted.len());
+    let budget = asked.budget.unwrap_or(Budget::DESIGN);
+    // Loads are the same whether the motions are judged or not.
+    let unjudged = Budget { record: 0, ..budget };
     let loads_at = |rpm: &f64| -> Result<Loads, StudyError> {
         // As it was asked for, and not as the angular velocity has it.
-        Ok(Loads { rpm: *rpm, ..Loads::at(model, &machine(model, *rpm)?)? })
+        let (loads, _) = Loads::among(model, &machine(model, *rpm)?, asked.starts.as_deref(), unjudged)?;
+        Ok(Loads { rpm: *rpm, ..loads })
     };
-    let budget = asked.budget.unwrap_or(Budget::DESIGN);
     let with_errors = |rpm: &f64| -> Result<(Loads, AttractorsAt), StudyError> {
         let (loads, found) = Loads::among(model, &machine(model, *rpm)?, asked.starts.as_deref(), budget)?;
         // As it was asked for, and not as the angular velocity has it.
         let loads = Loads { rpm: *rpm, ..loads };
         let of = |model: &Model, cam: &Cam| {
             let machine = Machine::new(cam.clone(), &model.follower, angular_velocity(*rpm));
-            Loads::at(model, &machine).ok().map(|loads| loads.numbers())
+            Loads::among(model, &machine, asked.starts.as_deref(), unjudged).ok().map(|(loads, _)| loads.numbers())
         };
         let errors = noisy.and_then(|likely| likely.error(loads.numbers(), of));
         Ok((Loads { errors, ..loads }, AttractorsAt { rpm: *rpm, found }))
