@@ -68,6 +68,8 @@ fn main() {
     let ratio = middle(one.iter().zip(&two).map(|(one, two)| one / two).collect());
     println!(
         "\nA diagram of {} speeds on two threads is {:.2} ± {:.2} times as fast as on one.",
-        sweep.speeds.count, ratio.0, ratio.1
+        sweep.over.count(),
+        ratio.0,
+        ratio.1
     );
 }

@@ -4,14 +4,15 @@
 
 use corner_impact::border_collision::{LocalMap, passage};
 use corner_impact::cam::Cam;
-use corner_impact::diagram::{Record, Speeds};
 use corner_impact::model::{Model, OSORIO_2008};
 use corner_impact::orbit::long_run::{Budget, LongRun};
 use corner_impact::orbit::{Course, Search, search};
 use corner_impact::section::StroboscopicMap;
+use corner_impact::simulate::Record;
 use corner_impact::simulate::{Machine, angular_velocity};
 use corner_impact::study::basins::boundary::approach;
 use corner_impact::study::basins::{Curve, Extent, Reversed, Saddle};
+use corner_impact::study::survey::Values;
 use corner_impact::study::survey::long_run;
 use corner_impact::study::verify::{External, Verification, verify};
 
@@ -37,8 +38,8 @@ fn map(model: &Model, findings: &Verification, rpm: f64) -> Result<StroboscopicM
 /// Lyapunov exponents from a start at rest on the cam, by blocks of 250 revolutions.
 fn exponents(model: &Model, findings: &Verification) -> Done {
     println!("rpm exponent standard_error blocks rests");
-    let speeds = Speeds { low: 660.0, high: 682.0, count: 23 };
-    for rpm in (0..speeds.count).map(|index| speeds.value(index)) {
+    let speeds = Values::linear(660.0, 682.0, 23);
+    for rpm in speeds.all() {
         let machine = map(model, findings, rpm)?.machine;
         let mut motion = machine.start_on_cam(0.0, 0.0)?;
         let goal = motion.after(300);
@@ -55,9 +56,9 @@ fn exponents(model: &Model, findings: &Verification) -> Done {
 
 /// Speeds at which a start at rest on the cam does not end on chaos, as far as 3000 revolutions show.
 fn endings(model: &Model, findings: &Verification) -> Done {
-    let speeds = Speeds { low: 660.0, high: 682.0, count: 441 };
+    let speeds = Values::linear(660.0, 682.0, 441);
     let (mut orbits, mut resting) = (0, 0);
-    for rpm in (0..speeds.count).map(|index| speeds.value(index)) {
+    for rpm in speeds.all() {
         let machine = map(model, findings, rpm)?.machine;
         let budget = Budget { transient: 3000, longest: 64, patience: 0, ..Budget::SURVEY };
         match long_run(&machine, machine.start_on_cam(0.0, 0.0)?, budget)?.ending {

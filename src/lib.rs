@@ -11,7 +11,7 @@
 //!    ▼
 //!  simulate              the only event loop: fly, contact, impact or stick, release; the variational flow
 //!    ▼
-//!  section · diagram     the stroboscopic map and traces; sweeps over speeds, Lyapunov exponents
+//!  section               the stroboscopic map and traces
 //!    ▼
 //!  orbit                 periodic orbits, their multipliers, branches of them and the points where these change
 //!    ▼
@@ -95,8 +95,6 @@ pub mod measured;
 pub mod simulate;
 
 pub mod section;
-
-pub mod diagram;
 
 pub mod orbit;
 

@@ -5,10 +5,13 @@ use std::hint::black_box;
 use std::ops::ControlFlow;
 
 use corner_impact::cam::Cam;
-use corner_impact::diagram::{Counted, Following, Placed, Section, Speeds, Start, Starts, Sweep, SweepError};
 use corner_impact::flight::State;
 use corner_impact::model::{Model, OSORIO_2008};
+use corner_impact::orbit::Parameter;
 use corner_impact::simulate::{Machine, angular_velocity};
+use corner_impact::study::survey::{
+    Axis, Beginning, Counted, Following, Placed, Section, Start, Survey, Sweep, SweepError, Values,
+};
 
 use crate::baseline::{Baseline, Place};
 
@@ -100,12 +103,12 @@ impl Work {
 /// The diagram's sweep at ten times as many speeds, for threads to share.
 pub fn sweep() -> Sweep {
     let Ok(model) = Model::parse("osorio-2008.toml", OSORIO_2008) else { unreachable!("the built-in model") };
-    let Ok(cam) = Cam::new(&model) else { unreachable!("the built-in cam") };
+    let speeds = Axis::new(Parameter::Speed, &Values::linear(660.0, 750.0, 2000));
+    let Ok(over) = Survey::new(&model, None, speeds, None) else { unreachable!("the built-in cam") };
     let state = State { position: 0.3 + 5.09700788184262174, velocity: 0.0 };
     Sweep {
-        machine: Machine::new(cam, &model.follower, 1.0),
-        speeds: Speeds { low: 660.0, high: 750.0, count: 2000 },
-        starts: Starts::One(Start { cam_angle: 2.62112450116623235 + PI, follower: Placed::At(state) }),
+        over,
+        starts: Beginning::One(Start { cam_angle: 2.62112450116623235 + PI, follower: Placed::At(state) }),
         following: Following::Nothing,
         transient: 300,
         record: 100,

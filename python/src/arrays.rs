@@ -2,8 +2,8 @@
 
 use std::mem::take;
 
-use corner_impact::diagram::{Block, Row, Seen};
 use corner_impact::simulate::{Event, EventKind};
+use corner_impact::study::survey::{Block, Row, Seen};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -85,7 +85,7 @@ impl Events {
 /// Rows of a diagram, column by column.
 #[derive(Default)]
 pub(crate) struct Rows {
-    rpm: Vec<f64>,
+    value: Vec<f64>,
     revolution: Vec<i64>,
     cam_angle_rad: Vec<f64>,
     event: Vec<i8>,
@@ -99,7 +99,7 @@ pub(crate) struct Rows {
 
 impl Block for Rows {
     fn push(&mut self, row: &Row) {
-        self.rpm.push(row.rpm);
+        self.value.push(row.value);
         self.revolution.push(row.revolution as i64);
         match &row.seen {
             Seen::Event(event) => {
@@ -121,12 +121,12 @@ impl Block for Rows {
     }
 
     fn is_full(&self) -> bool {
-        self.rpm.len() >= 1024
+        self.value.len() >= 1024
     }
 
     /// A row without numbers; the columns that a diagram has not are left out in the end.
-    fn fail(&mut self, rpm: f64) -> bool {
-        self.rpm.push(rpm);
+    fn fail(&mut self, value: f64) -> bool {
+        self.value.push(value);
         self.revolution.push(-1);
         self.event.push(FAILED);
         let numbers = [
@@ -145,7 +145,7 @@ impl Block for Rows {
 impl Rows {
     /// Adds later rows.
     pub(crate) fn append(&mut self, mut rows: Self) {
-        self.rpm.append(&mut rows.rpm);
+        self.value.append(&mut rows.value);
         self.revolution.append(&mut rows.revolution);
         self.cam_angle_rad.append(&mut rows.cam_angle_rad);
         self.event.append(&mut rows.event);
@@ -159,19 +159,20 @@ impl Rows {
     pub(crate) fn columns<'py>(
         mut self,
         py: Python<'py>,
+        over: &str,
         at_section: bool,
         lyapunov: bool,
     ) -> PyResult<Bound<'py, PyDict>> {
         let (growth, growth_error) = (take(&mut self.growth), take(&mut self.growth_error));
-        let columns = match at_section {
+        let columns = PyDict::new(py);
+        columns.set_item(over, PyArray1::from_vec(py, take(&mut self.value)))?;
+        let seen = match at_section {
             true => columns!(py,
-                "rpm": self.rpm,
                 "revolution": self.revolution,
                 "position_m": self.position_m,
                 "velocity_m_s": self.velocity_before_m_s,
             ),
             false => columns!(py,
-                "rpm": self.rpm,
                 "revolution": self.revolution,
                 "cam_angle_rad": self.cam_angle_rad,
                 "event": self.event,
@@ -180,6 +181,7 @@ impl Rows {
                 "velocity_after_m_s": self.velocity_after_m_s,
             ),
         };
+        columns.update(seen.as_mapping())?;
         if lyapunov {
             columns.set_item("lyapunov_per_revolution", PyArray1::from_vec(py, growth))?;
             columns.set_item("lyapunov_error", PyArray1::from_vec(py, growth_error))?;

@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use corner_impact::diagram::Start;
 use corner_impact::model::Units;
 use corner_impact::orbit::Parameter;
 use corner_impact::progress::Unwatched;
+use corner_impact::study::chart::Chart;
 use corner_impact::study::chart::store::{SIDES, Store, VARIABLES, attributes, blocks_of};
-use corner_impact::study::chart::{Axis, Chart};
+use corner_impact::study::survey::{Axis, Start};
 use numpy::{IntoPyArray, PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -67,7 +67,7 @@ impl Grid {
         let axis = |(name, values): (Bound<'_, PyAny>, Bound<'_, PyAny>)| -> PyResult<Axis> {
             let name: String = name.extract()?;
             let parameter = Parameter::named(of, &name).or_raise()?;
-            Ok(Axis { parameter, values: Arc::from(numbers(&name, &values)?) })
+            Ok(Axis::of(parameter, Arc::from(numbers(&name, &values)?)))
         };
         let axes: Vec<Axis> = axes.iter().map(axis).collect::<PyResult<_>>()?;
         let Ok([y, x]) = <[Axis; 2]>::try_from(axes) else {
@@ -154,7 +154,7 @@ impl Grid {
         let (high, wide) = self.shape();
         let (rows, columns) = (part("rows", rows, high)?, part("columns", columns, wide)?);
         let shape = [rows.len(), columns.len()];
-        let (points, _) = shared(py, || self.chart.part(columns, rows, threads, &Unwatched))?.or_raise()?;
+        let (points, _) = shared(py, || self.chart.part([columns, rows], threads, &Unwatched))?.or_raise()?;
         let found = PyDict::new(py);
         for variable in &VARIABLES {
             let values = points.iter().map(|point| variable.of(point));

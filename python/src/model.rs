@@ -4,13 +4,12 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use corner_impact::cam::{Cam, within_a_turn};
-use corner_impact::diagram::{Following, Growth, Section, Starts, Sweep, SweepError};
 use corner_impact::draw::{Look, svg};
 use corner_impact::figures::cam_figure;
 use corner_impact::flight::State;
 use corner_impact::model;
-use corner_impact::orbit::Search;
 use corner_impact::orbit::long_run::Budget;
+use corner_impact::orbit::{Parameter, Search};
 use corner_impact::progress::Unwatched;
 use corner_impact::section::{StroboscopicMap, next_impact};
 use corner_impact::show::notes;
@@ -24,7 +23,9 @@ use corner_impact::study::locate::locate;
 use corner_impact::study::orbit::{Wanted, orbits};
 use corner_impact::study::simulate::{self, Sight, Simulation, Until};
 use corner_impact::study::speeds::{speeds, usual_range};
-use corner_impact::study::survey::{Sample, growth};
+use corner_impact::study::survey::{
+    Beginning, Following, Growth, Over, Sample, Section, Survey, Sweep, SweepError, growth,
+};
 use corner_impact::study::verify::{External, verify};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::{PyUserWarning, PyValueError};
@@ -35,7 +36,7 @@ use rayon::prelude::*;
 use crate::arrays::{Events, Rows, columns};
 use crate::error::OrRaise;
 use crate::values::{
-    self, budget, count, document, in_units, item, numbers, pairs, refused, start, thread_count, within,
+    self, Rpm, budget, count, document, in_units, item, numbers, pairs, refused, start, thread_count, within,
 };
 use crate::work::{alone, shared, spread};
 
@@ -248,7 +249,9 @@ impl Model {
         in_units(alone(py, run)?.or_raise()?.columns(py)?, &self.model.units)
     }
 
-    /// What happens at each of evenly spaced speeds, (lowest, highest, how many) rpm, in `record` revolutions after `transient`.
+    /// What happens at each of evenly spaced speeds, (lowest, highest, how many) rpm, in `record` revolutions after `transient`; or at the one
+    /// speed `rpm` at each value of another number, `over` (name, lowest, highest, how many), whose name the first column has then. With `log`
+    /// values are spaced by their logarithm.
     ///
     /// Each starts at `cam_angle` on the cam or as for `simulate`, or, with `follow` "up" or "down", where its neighbour ended. With
     /// `strobe`, an angle in rad, the states there are recorded instead of events. `lyapunov` adds the growth of a small deviation a
@@ -260,13 +263,15 @@ impl Model {
     /// >>> found = Model.paper().diagram((690, 710, 3), record=2)
     /// >>> found["rpm"]
     /// array([690., 690., 700., 700., 710., 710.])
-    #[pyo3(signature = (rpm, *, transient=300, record=100, strobe=None, follow=None, lyapunov=false, cam_angle=0.0,
+    #[pyo3(signature = (rpm, *, over=None, log=false, transient=300, record=100, strobe=None, follow=None, lyapunov=false, cam_angle=0.0,
         relative_velocity=None, position=None, velocity=None, threads=None))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn diagram<'py>(
         &self,
         py: Python<'py>,
-        rpm: (f64, f64, usize),
+        rpm: Rpm<(f64, f64, usize)>,
+        over: Option<(String, f64, f64, usize)>,
+        log: bool,
         #[pyo3(from_py_with = count)] transient: u64,
         #[pyo3(from_py_with = count)] record: u64,
         strobe: Option<f64>,
@@ -278,7 +283,8 @@ impl Model {
         velocity: Option<f64>,
         #[pyo3(from_py_with = thread_count)] threads: Option<usize>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let speeds = values::speeds(rpm)?;
+        let (rpm, axis) = values::axis(&self.model, rpm, over, log)?;
+        let name = axis.parameter.name().to_owned();
         let section = match strobe {
             None => Section::Impacts,
             Some(angle) if angle.is_finite() => Section::Strobe(within_a_turn(angle)),
@@ -296,9 +302,8 @@ impl Model {
             ..Budget::CHART
         };
         let sweep = Sweep {
-            machine: self.at(speeds.low)?,
-            speeds,
-            starts: Starts::One(start(cam_angle, relative_velocity, position, velocity)?),
+            over: Survey::new(&self.model, rpm, axis, None).or_raise()?,
+            starts: Beginning::One(start(cam_angle, relative_velocity, position, velocity)?),
             following,
             transient,
             record,
@@ -313,7 +318,8 @@ impl Model {
             });
             found.map(|_| rows)
         };
-        in_units(shared(py, run)?.or_raise()?.columns(py, strobe.is_some(), lyapunov)?, &self.model.units)
+        let found = shared(py, run)?.or_raise()?;
+        in_units(found.columns(py, &name, strobe.is_some(), lyapunov)?, &self.model.units)
     }
 
     /// Where `revolutions` take the states `position`, m, and `velocity`, m/s, N each, at `cam_angle`, rad: `position_m` and
@@ -453,17 +459,20 @@ impl Model {
         )
     }
 
-    /// The attractors over a range of speeds, (lowest, highest) rpm, or over the one that `corner-impact speeds` takes: at `speeds`
-    /// speeds or more, or from one to the next at most `step` rpm, with `starts` starts at each, and on the stable orbits of two
+    /// The attractors over a range of speeds, (lowest, highest) rpm, or over the one that `corner-impact speeds` takes, or at one speed over
+    /// another number, `over` (name, lowest, highest), with `log` on a logarithmic axis: at `speeds`
+    /// values or more, or from one to the next at most `step`, with `starts` starts at each, and on the stable orbits of two
     /// impacts in one revolution with `two_impacts`: the document of `corner-impact speeds --json`. With `states`, (position, velocity) each at
     /// `cam_angle`, those are the starts. `transient`, `record`, `longest` and `patience` are the options of that command.
-    #[pyo3(signature = (rpm=None, *, speeds=300, step=None, starts=64, two_impacts=false, states=None, cam_angle=0.0, transient=200,
+    #[pyo3(signature = (rpm=None, *, over=None, log=false, speeds=300, step=None, starts=64, two_impacts=false, states=None, cam_angle=0.0, transient=200,
         record=1600, longest=32, patience=100_000))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn speeds<'py>(
         &self,
         py: Python<'py>,
-        rpm: Option<(f64, f64)>,
+        rpm: Option<Rpm<(f64, f64)>>,
+        over: Option<(String, f64, f64)>,
+        log: bool,
         #[pyo3(from_py_with = count)] speeds: u64,
         step: Option<f64>,
         #[pyo3(from_py_with = count)] starts: u64,
@@ -475,10 +484,18 @@ impl Model {
         #[pyo3(from_py_with = count)] longest: u64,
         #[pyo3(from_py_with = count)] patience: u64,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let rpm = rpm.map_or_else(|| usual_range(&self.model).or_raise(), values::speed_range)?;
+        let (parameter, rpm, range) = match (rpm, over) {
+            (Some(Rpm::One(rpm)), Some((name, low, high))) => {
+                (Parameter::named(&self.model, &name).or_raise()?, values::speed(rpm)?, [low, high])
+            }
+            (None, None) => (Parameter::Speed, 1.0, usual_range(&self.model).or_raise()?),
+            (Some(Rpm::Range(range)), None) => (Parameter::Speed, 1.0, values::speed_range(range)?),
+            _ => return refused("rpm is a range of speeds, and with over one speed".into()),
+        };
+        let spacing = values::spacing(log, range[0])?;
         let step = match step {
-            None => Step::for_speeds(rpm, within("speeds", speeds, [2, 100_000])? as u32),
-            Some(step) if step > 0.0 && step.is_finite() => Step::at_most(step),
+            None => Step::for_values(range, within("speeds", speeds, [2, 100_000])? as u32, spacing),
+            Some(step) if step > 0.0 && step.is_finite() => Step::at_most(step, spacing),
             Some(step) => return refused(format!("step = {step} must be a finite number above 0")),
         };
         let starts = within("starts", starts, [1, 1_000_000])? as usize;
@@ -491,9 +508,10 @@ impl Model {
         };
         let budget = budget(transient, record, longest, patience)?;
         let resolution = Resolution { step, sample, budget, two_impacts };
+        let over = Over::new(&self.model, parameter, rpm).or_raise()?;
         document(
             py,
-            &spread(py, || self::speeds(&self.model, rpm, &resolution, &Unwatched))?.or_raise()?,
+            &spread(py, || self::speeds(&over, range, &resolution, &Unwatched))?.or_raise()?,
             &self.model.units,
         )
     }
@@ -636,7 +654,7 @@ fn map_over<T: Send>(
     if threads == Some(1) {
         return alone(py, || starts.iter().map(image).collect());
     }
-    let pool = || corner_impact::diagram::threads(threads);
+    let pool = || corner_impact::study::survey::threads(threads);
     shared(py, || Ok(pool()?.install(|| starts.par_iter().map(image).collect())))?
         .map_err(|error: SweepError| crate::error::raised(&error))
 }

@@ -1,12 +1,12 @@
 //! Python's values, checked as those of the command line are.
 
 use corner_impact::cam::within_a_turn;
-use corner_impact::diagram::{Placed, Speeds, Start};
 use corner_impact::flight::State;
-use corner_impact::model::Units;
-use corner_impact::orbit::Search;
+use corner_impact::model::{Model, Units};
 use corner_impact::orbit::long_run::Budget;
+use corner_impact::orbit::{Parameter, Search};
 use corner_impact::show::json;
+use corner_impact::study::survey::{Axis, Placed, Spacing, Start, Values};
 use numpy::{AllowTypeChange, PyArrayLike1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -14,7 +14,7 @@ use pyo3::types::{PyBool, PyDict, PyString};
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::error::raised;
+use crate::error::{OrRaise, raised};
 
 pub(crate) fn refused<T>(words: String) -> PyResult<T> {
     Err(PyValueError::new_err(words))
@@ -49,7 +49,7 @@ pub(crate) fn speed(rpm: f64) -> PyResult<f64> {
     if !(rpm > 0.0 && rpm.is_finite()) {
         return refused(format!("rpm = {rpm} must be a finite number above 0"));
     }
-    if rpm <= Speeds::FASTEST { Ok(rpm) } else { refused(format!("rpm = {rpm} must be {:e} or less", Speeds::FASTEST)) }
+    if rpm <= Values::FASTEST { Ok(rpm) } else { refused(format!("rpm = {rpm} must be {:e} or less", Values::FASTEST)) }
 }
 
 /// A range of speeds.
@@ -59,13 +59,57 @@ pub(crate) fn speed_range((low, high): (f64, f64)) -> PyResult<[f64; 2]> {
 }
 
 /// Evenly spaced speeds.
-pub(crate) fn speeds((low, high, count): (f64, f64, usize)) -> PyResult<Speeds> {
+pub(crate) fn speeds((low, high, count): (f64, f64, usize)) -> PyResult<Values> {
     let (low, high) = (speed(low)?, speed(high)?);
     match count {
         _ if high < low => refused(format!("rpm: the highest speed, {high}, is below the lowest, {low}")),
         1 if high > low => refused("rpm: 1 speed needs the lowest and the highest to be the same".into()),
-        1..=Speeds::MOST => Ok(Speeds { low, high, count }),
-        _ => refused(format!("rpm: {count} speeds must be 1 to {}", Speeds::MOST)),
+        1..=Values::MOST => Ok(Values::linear(low, high, count)),
+        _ => refused(format!("rpm: {count} speeds must be 1 to {}", Values::MOST)),
+    }
+}
+
+/// One speed, or what a survey goes over.
+#[derive(FromPyObject)]
+pub(crate) enum Rpm<Range> {
+    One(f64),
+    Range(Range),
+}
+
+/// How the values of an axis lie.
+pub(crate) fn spacing(log: bool, low: f64) -> PyResult<Spacing> {
+    match log {
+        true if low > 0.0 => Ok(Spacing::Logarithmic),
+        true => refused(format!("a logarithmic axis begins above 0, and {low} does not")),
+        false => Ok(Spacing::Linear),
+    }
+}
+
+/// The one speed, where there is one, and what a diagram goes over.
+pub(crate) fn axis(
+    model: &Model,
+    rpm: Rpm<(f64, f64, usize)>,
+    over: Option<(String, f64, f64, usize)>,
+    log: bool,
+) -> PyResult<(Option<f64>, Axis)> {
+    match (rpm, over) {
+        (Rpm::Range(range), None) => {
+            let values = Values { spacing: spacing(log, range.0)?, ..speeds(range)? };
+            Ok((None, Axis::new(Parameter::Speed, &values)))
+        }
+        (Rpm::One(rpm), Some((name, low, high, count))) => {
+            if !(low <= high && (high - low).is_finite() && (1..=Values::MOST).contains(&count)) {
+                return refused(format!(
+                    "{name}: ({low}, {high}, {count}) must be the lowest value, the highest and how many"
+                ));
+            }
+            let values = Values { low, high, count, spacing: spacing(log, low)? };
+            Ok((Some(speed(rpm)?), Axis::new(Parameter::named(model, &name).or_raise()?, &values)))
+        }
+        (Rpm::One(rpm), None) => refused(format!("rpm = {rpm} is one speed: over says what varies then")),
+        (Rpm::Range(_), Some((name, ..))) => {
+            refused(format!("rpm and {name} are both ranges: with over, rpm is one speed"))
+        }
     }
 }
 

@@ -5,8 +5,8 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use corner_impact::diagram::{SweepError, threads};
 use corner_impact::stop;
+use corner_impact::study::survey::{SweepError, threads};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 

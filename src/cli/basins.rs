@@ -3,29 +3,37 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
-use super::start::{BudgetArguments, angle, cam_angle, range, rpm, state};
+use super::over::over;
+use super::start::{BudgetArguments, Rpm, angle, axis, cam_angle, range, rpm_or_speeds, state};
 use super::threads::threads;
 use super::{CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::watched};
-use crate::figures::basins_figure;
+use crate::figures::{basins_figure, shares_figure};
 use crate::flight::State;
 use crate::foreign;
+use crate::model::Model;
 use crate::orbit::long_run::Budget;
 use crate::show::csv;
-use crate::study::basins::{Grid, Section, SectionStarts, States, Summary};
+use crate::study::basins::{BasinsOver, Begun, Grid, Section, SectionStarts, States, Summary};
+use crate::study::survey::{Over, Survey, Values};
 
-/// Runs a grid of starts at one speed and says what each ends on, as a table or a picture.
+/// Runs a grid of starts at one speed and says what each ends on, as a table or a picture; or over a number, and says how many end on what.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact basins --rpm 678 --strobe 5.76 --grid 60x40\n\
     \x20 corner-impact basins models/osorio-2008.toml --rpm 678 --strobe 5.76 --grid 200x150 --out basins.png\n\
+    \x20 corner-impact basins --over restitution=0.5:0.9:9 --rpm 700 --grid 20x20 --out shares.svg\n\
     \n\
     Exit code: 0 done, 2 bad model file, usage or file, or a run that cannot go on.")]
 pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
-    /// Speed of the cam, rpm.
-    #[arg(long, value_name = "RPM", value_parser = rpm, allow_hyphen_values = true)]
-    rpm: f64,
+    /// Speed of the cam, rpm; or lowest speed, highest speed, and how many.
+    #[arg(long, value_name = "R|LO:HI:N", value_parser = rpm_or_speeds, required_unless_present = "over", allow_hyphen_values = true)]
+    rpm: Option<Rpm>,
+    /// Tell the share of each motion at values of a number of the model, at the speed of --rpm: from where to where, at how many, and whether these are
+    /// spaced by their logarithm.
+    #[arg(long, value_name = "NAME=LO:HI:N[:log]", value_parser = axis, allow_hyphen_values = true)]
+    over: Option<(String, Values)>,
     /// Cells along the positions and along the velocities.
     #[arg(long, value_name = "NxM", value_parser = cells, required_unless_present = "state")]
     grid: Option<Cells>,
@@ -81,11 +89,15 @@ fn cells(text: &str) -> Result<Cells, String> {
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let to_standard = picture::out_is_standard(arguments.out.as_ref(), arguments.summary)?;
     let model = arguments.model.read_as_drawn(session)?;
-    let section = Section::new(&model, arguments.rpm, cam_angle("--strobe", arguments.strobe, session))?;
+    let angle = cam_angle("--strobe", arguments.strobe, session);
+    let rpm = match (arguments.rpm, &arguments.over) {
+        (Some(Rpm::One(rpm)), None) => rpm,
+        _ => return shares(arguments, &model, angle, session),
+    };
+    let section = Section::new(&model, rpm, angle)?;
     let grid =
         arguments.grid.map(|Cells(cells)| section.grid(cells, arguments.position, arguments.velocity)).transpose()?;
-    let budget = arguments.budget.budget(Budget::SURVEY)?;
-    let budget = Budget { transient: arguments.revolutions.unwrap_or(budget.transient), ..budget };
+    let budget = arguments.budget()?;
     let (clock, threads) = (Instant::now(), arguments.threads.map(usize::from));
     let begun = match grid {
         Some(grid) => SectionStarts::Grid(grid),
@@ -99,16 +111,52 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     if let Some(path) = &arguments.out {
         let table = || csv::basins(&basins);
         let picture = || {
-            let title = format!("{} at {} rpm: what each start ends on", model.name, arguments.rpm);
+            let title = format!("{} at {rpm} rpm: what each start ends on", model.name);
             // Refused above where there is none.
             let grid = grid.ok_or_else(|| CommandError::Words("a picture is of a grid".into()))?;
             Ok(basins_figure(&title, &grid, &basins, &section.border(&grid, &basins)))
         };
         Target::create(path, &mut *session.out, arguments.picture.look()?)?.fill(&model.units, table, picture)?;
     }
-    let summary = Summary::new(&model, arguments.rpm, basins, wall_s);
+    let summary = Summary::new(&model, rpm, basins, wall_s);
     if !to_standard {
         session.answer(&summary, arguments.summary)?;
+    }
+    Ok(Exit::Agrees)
+}
+
+impl Arguments {
+    fn budget(&self) -> Result<Budget, CommandError> {
+        let budget = self.budget.budget(Budget::SURVEY)?;
+        Ok(Budget { transient: self.revolutions.unwrap_or(budget.transient), ..budget })
+    }
+}
+
+/// How many starts end on what at each value of a number.
+fn shares(
+    arguments: &Arguments,
+    model: &Model,
+    cam_angle: f64,
+    session: &mut Session<'_>,
+) -> Result<Exit, CommandError> {
+    let (rpm, axis) = over((&arguments.model, model), arguments.rpm, arguments.over.as_ref())?;
+    // Asked for here, so that what is wrong with the axis or the speed is told before anything is run.
+    Survey::new(model, rpm, axis.clone(), None)?;
+    let over = Over::new(model, axis.parameter.clone(), rpm.unwrap_or(axis.values[0]))?;
+    let begun = match arguments.grid {
+        Some(Cells(cells)) => Begun::Grid(cells, [arguments.position, arguments.velocity]),
+        None => Begun::Given(arguments.state.clone()),
+    };
+    let (budget, threads) = (arguments.budget()?, arguments.threads.map(usize::from));
+    let to_standard = picture::out_is_standard(arguments.out.as_ref(), arguments.summary)?;
+    let found = watched("", |watch| BasinsOver::new(&over, &axis, (cam_angle, &begun), budget, threads, watch));
+    if let Some(path) = &arguments.out {
+        let table = || csv::basins_over(&found);
+        Target::create(path, &mut *session.out, arguments.picture.look()?)?
+            .fill(&model.units, table, || Ok(shares_figure(&found)))?;
+    }
+    if !to_standard {
+        session.answer(&found, arguments.summary)?;
     }
     Ok(Exit::Agrees)
 }

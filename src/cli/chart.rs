@@ -8,15 +8,15 @@ use super::curve::{LONGEST_STEP, MOST_POINTS};
 use super::start::{BudgetArguments, StartArguments, axis, rpm};
 use super::threads::threads;
 use super::{CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::watched};
-use crate::diagram::Speeds;
 use crate::figures::{Coloured, chart_figure};
 use crate::orbit::branch::{Bifurcation, Following};
 use crate::orbit::long_run::Budget;
 use crate::orbit::{Parameter, Search};
 use crate::show::csv;
+use crate::study::chart::Chart;
 use crate::study::chart::store::{SIDES, Shard, Store, status};
-use crate::study::chart::{Axis, Chart};
 use crate::study::curve::curves;
+use crate::study::survey::{Axis, Values};
 
 /// Charts over two numbers what a run comes to: its period, its growth, how hard it hits.
 #[derive(clap::Args)]
@@ -30,12 +30,12 @@ use crate::study::curve::curves;
 pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
-    /// What varies across: rpm, or a number of the model; from where to where, and at how many values.
-    #[arg(long, value_name = "NAME=LO:HI:N", value_parser = axis, required_unless_present = "status")]
-    x: Option<(String, Speeds)>,
+    /// What varies across: rpm, or a number of the model; from where to where, at how many values, and whether these are spaced by their logarithm.
+    #[arg(long, value_name = "NAME=LO:HI:N[:log]", value_parser = axis, required_unless_present = "status")]
+    x: Option<(String, Values)>,
     /// What varies upwards, alike.
-    #[arg(long, value_name = "NAME=LO:HI:N", value_parser = axis, required_unless_present = "status")]
-    y: Option<(String, Speeds)>,
+    #[arg(long, value_name = "NAME=LO:HI:N[:log]", value_parser = axis, required_unless_present = "status")]
+    y: Option<(String, Values)>,
     /// Speed of the cam, rpm, where neither --x nor --y is it.
     #[arg(long, value_name = "RPM", value_parser = rpm, allow_hyphen_values = true)]
     rpm: Option<f64>,
@@ -121,19 +121,12 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     }
     let to_standard = picture::out_is_standard(arguments.out.as_ref(), arguments.summary)?;
     let model = arguments.model.read_as_drawn(session)?;
-    let named = |(name, values): &(String, Speeds)| -> Result<Axis, CommandError> {
-        Ok(Axis::even(Parameter::named(&model, name)?, values))
+    let named = |(name, values): &(String, Values), option| -> Result<Axis, CommandError> {
+        Ok(Axis::new(arguments.model.varied(&model, name, option)?, values))
     };
     // Neither is missing where it is not the state of a store that is asked for.
     let (Some(x), Some(y)) = (&arguments.x, &arguments.y) else { return Ok(Exit::BadInput) };
-    let (x, y) = (named(x)?, named(y)?);
-    for (Axis { parameter, .. }, option) in [(&x, "--x"), (&y, "--y")] {
-        if arguments.model.sets(&model, parameter)? {
-            let name = parameter.name();
-            let words = format!("--set {name}: no point would have that value, as {option} goes through others");
-            return Err(CommandError::Words(words));
-        }
-    }
+    let (x, y) = (named(x, "--x")?, named(y, "--y")?);
     arguments.start.doubt(session);
     let budget = arguments.budget.budget(Budget::CHART)?;
     let chart = Chart::new(&model, arguments.rpm, [x, y], arguments.start.start()?, budget)?;

@@ -6,12 +6,12 @@ use super::diagram::load;
 use super::picture::{Canvas, PictureArguments, picture};
 use super::start::{BudgetArguments, StartArguments, axis, positive, rpm_or_range};
 use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
-use crate::diagram::Speeds;
 use crate::figures::design_figure;
 use crate::orbit::long_run::Budget;
 use crate::study::design::loads::Load;
 use crate::study::design::needs::{Lever, Need, in_si};
 use crate::study::design::{Asked, design};
+use crate::study::survey::{Axis, Values};
 
 /// Tells up to which speed the follower stays on the cam, how hard it hits beyond, and what must be changed.
 #[derive(clap::Args)]
@@ -19,6 +19,7 @@ use crate::study::design::{Asked, design};
     \x20 corner-impact design\n\
     \x20 corner-impact design models/laws/program.toml --need \"no separation to 600 rpm\"\n\
     \x20 corner-impact design models/laws/program.toml --rpm 300 --out force.svg\n\
+    \x20 corner-impact design --rpm 200 --over preload=100:300:5\n\
     \n\
     Where runs are looked at, it is those from four starts at each speed: another motion may do worse.\n\
     Exit code: 0 done, 2 bad model file, usage or file, or a run that cannot go on.")]
@@ -29,6 +30,10 @@ pub(super) struct Arguments {
     /// speed at which the follower first leaves the cam].
     #[arg(long, value_name = "R|LO:HI", value_parser = rpm_or_range, allow_hyphen_values = true)]
     rpm: Option<[f64; 2]>,
+    /// A number of the model that the table goes over in place of the speed, at the one of --rpm: from where to where, at how many values, and whether
+    /// these are spaced by their logarithm.
+    #[arg(long, value_name = "NAME=LO:HI:N[:log]", value_parser = axis, requires = "rpm", allow_hyphen_values = true)]
+    over: Option<(String, Values)>,
     /// Speeds of a range.
     #[arg(long, value_name = "N", default_value_t = 21, value_parser = clap::value_parser!(u32).range(2..=10_000))]
     speeds: u32,
@@ -42,7 +47,7 @@ pub(super) struct Arguments {
     limit: Vec<(Load, f64, Option<f64>)>,
     /// What is needed against one of preload, stiffness, damping and mass, in the units of the model.
     #[arg(long, value_name = "NAME=LO:HI:N", value_parser = against, requires = "need", allow_hyphen_values = true)]
-    against: Option<(Lever, Speeds)>,
+    against: Option<(Lever, Values)>,
     #[command(flatten)]
     start: StartArguments,
     #[command(flatten)]
@@ -71,7 +76,7 @@ fn limit(text: &str) -> Result<(Load, f64, Option<f64>), String> {
     Ok((load, positive(number.trim())?, unit.map(|unit| in_si(load, unit)).transpose()?))
 }
 
-fn against(text: &str) -> Result<(Lever, Speeds), String> {
+fn against(text: &str) -> Result<(Lever, Values), String> {
     let (name, values) = axis(text)?;
     let lever = Lever::ALL.into_iter().find(|lever| lever.to_string() == name);
     let lever =
@@ -83,8 +88,12 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let model = arguments.model.read(session)?;
     let canvas = arguments.out.as_ref().map(|path| Canvas::create(path, arguments.picture.look()?)).transpose()?;
     arguments.start.doubt(session);
+    let over = arguments.over.as_ref().map(|(name, values)| -> Result<Axis, CommandError> {
+        Ok(Axis::new(arguments.model.varied(&model, name, "--over")?, values))
+    });
     let asked = Asked {
         rpm: arguments.rpm,
+        over: over.transpose()?,
         speeds: arguments.speeds,
         needs: arguments.need.clone(),
         limits: arguments

@@ -6,35 +6,39 @@ use std::sync::Arc;
 
 use clap::ValueEnum;
 
-use super::start::{BudgetArguments, StartArguments, angle, cam_angle, speeds};
+use super::over::over;
+use super::start::{BudgetArguments, Rpm, StartArguments, angle, axis, cam_angle, rpm_or_speeds};
 use super::threads::threads;
 use super::{
     CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::Progress, progress::watched,
 };
 use crate::cam::Cam;
-use crate::diagram::{Counted, Following, Growth, Places, Section, Speeds, Starts, Sweep};
-use crate::figures::{corner_marks, impact_diagram, loads_diagram, strobe_diagram};
+use crate::figures::{Across, corner_marks, impact_diagram, loads_diagram, strobe_diagram};
 use crate::model::Model;
+use crate::orbit::Parameter;
 use crate::orbit::long_run::Budget;
 use crate::show::csv;
-use crate::simulate::{Machine, angular_velocity};
 use crate::study::design::loads::Load;
 use crate::study::diagram::{self as swept, Shown, Swept, on_attractors};
-use crate::study::survey::growth;
+use crate::study::survey::{Beginning, Counted, Following, Growth, Places, Section, Survey, Sweep, Values, growth};
 
-/// Sweeps over speeds: what the motion settles on, as a table or a picture.
+/// Sweeps over speeds, or over a number of the model: what the motion settles on, as a table or a picture.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact diagram --rpm 660:750:400 --out impacts.svg\n\
     \x20 corner-impact diagram models/osorio-2008.toml --rpm 660:750:400 --start down --out impacts.csv\n\
+    \x20 corner-impact diagram --over restitution=0.5:0.95:200 --rpm 700 --out impacts.svg\n\
     \n\
     Exit code: 0 done, 2 bad model file, usage or file, or a run that cannot go on.")]
 pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
-    /// Lowest speed, highest speed, and how many.
-    #[arg(long, value_name = "LO:HI:N", value_parser = speeds, allow_hyphen_values = true)]
-    rpm: Speeds,
+    /// Lowest speed, highest speed, and how many; with --over the one speed.
+    #[arg(long, value_name = "LO:HI:N|R", value_parser = rpm_or_speeds, allow_hyphen_values = true)]
+    rpm: Option<Rpm>,
+    /// A number of the model to go over in place of the speed: from where to where, at how many values, and whether these are spaced by their logarithm.
+    #[arg(long, value_name = "NAME=LO:HI:N[:log]", value_parser = axis, allow_hyphen_values = true)]
+    over: Option<(String, Values)>,
     #[command(flatten)]
     budget: BudgetArguments,
     /// Record what happens at the cam, or the state at one cam angle.
@@ -43,15 +47,15 @@ pub(super) struct Arguments {
     /// That angle, rad or as 90deg [default: 0].
     #[arg(long, value_name = "RAD", value_parser = angle, allow_hyphen_values = true)]
     strobe: Option<f64>,
-    /// Start every speed alike, or go on from the next lower (up) or next higher speed (down).
+    /// Start every value alike, or go on from the next lower (up) or next higher one (down).
     #[arg(long = "start", value_enum, default_value = "fixed")]
     following: FollowingName,
-    /// Record, at each speed, what happens on each attractor that 64 starts come to there, or those of --state, as `speeds` finds them.
+    /// Record, at each value, what happens on each attractor that 64 starts come to there, or those of --state, as `speeds` finds them.
     #[arg(long, conflicts_with = "following")]
     attractors: bool,
     #[command(flatten)]
     start: StartArguments,
-    /// Threads [default: RAYON_NUM_THREADS, or one for each core]; up and down go from speed to speed on one.
+    /// Threads [default: RAYON_NUM_THREADS, or one for each core]; up and down go from value to value on one.
     #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
     threads: Option<u16>,
     /// A table (.csv, or - for standard output) or a picture (.svg, .png, .pdf).
@@ -59,7 +63,7 @@ pub(super) struct Arguments {
     out: Option<PathBuf>,
     #[command(flatten)]
     picture: picture::PictureArguments,
-    /// Write one row a speed: what the run comes to, its period, impacts, growth and fastest impact, as in `chart`.
+    /// Write one row a value: what the run comes to, its period, impacts, growth and fastest impact, as in `chart`.
     #[arg(long, requires = "out", conflicts_with_all = ["attractors", "following", "section", "strobe", "lyapunov", "summary"])]
     one_row: bool,
     /// Show a load of each revolution that is recorded: the fastest impact, the largest gap, the energy that impacts take, or the largest
@@ -67,7 +71,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "LOAD", value_parser = load, requires = "out",
         conflicts_with_all = ["attractors", "following", "section", "strobe", "lyapunov", "summary", "one_row"])]
     show: Option<Load>,
-    /// Add the Lyapunov exponent of each speed, per revolution, and its error: two columns, or a second panel. Of a motion that
+    /// Add the Lyapunov exponent of each value, per revolution, and its error: two columns, or a second panel. Of a motion that
     /// repeats it is that of its multipliers; -inf where the follower came to stick to the cam, be it once.
     #[arg(long, requires = "out")]
     lyapunov: bool,
@@ -99,8 +103,9 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     }
     let model = arguments.model.read_as_drawn(session)?;
     arguments.start.doubt(session);
-    let cam = Cam::new(&model)?;
-    let corners = corner_marks(&cam);
+    let corners = corner_marks(&Cam::new(&model)?);
+    let (rpm, axis) = over((&arguments.model, &model), arguments.rpm, arguments.over.as_ref())?;
+    let across = Across::of(&axis, &model.units);
     // Attractors are those of `speeds`.
     let (sample, found) = (arguments.start.sample(SAMPLED), arguments.budget.lengths(Budget::SURVEY));
     let budget = match arguments.lyapunov {
@@ -108,11 +113,10 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         false => arguments.budget.lengths(Budget::CHART),
     };
     let sweep = Sweep {
-        machine: Machine::new(cam, &model.follower, angular_velocity(arguments.rpm.low)),
-        speeds: arguments.rpm,
+        over: Survey::new(&model, rpm, axis, None)?,
         starts: match arguments.attractors {
-            true => Starts::Found(Arc::new(move |machine| on_attractors(machine, &sample, found))),
-            false => Starts::One(arguments.start.start()?),
+            true => Beginning::Found(Arc::new(move |machine| on_attractors(machine, &sample, found))),
+            false => Beginning::One(arguments.start.start()?),
         },
         following: match arguments.following {
             FollowingName::Fixed => Following::Nothing,
@@ -130,10 +134,10 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
             .then(|| -> Growth { Arc::new(move |machine, motion| growth(machine, motion, budget)) }),
     };
     if let Some(load) = arguments.show {
-        return loads(arguments, &model, &sweep, load, session);
+        return loads(arguments, &model, (&sweep.over, &across), load, session);
     }
     if arguments.one_row {
-        return one_row(arguments, &sweep, session);
+        return one_row(arguments, &sweep.over, session);
     }
     let (threads, target) = (arguments.threads.map(usize::from), arguments.out.as_deref());
     let (name, progress) = (model.name.as_str(), Progress::spinner(""));
@@ -163,7 +167,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
                     Section::Impacts => impact_diagram(&title, places, &corners, exponents),
                     Section::Strobe(_) => strobe_diagram(&title, places, exponents),
                 };
-                super::commit(vec![canvas.draw(figure, &model.units)?])?;
+                super::commit(vec![canvas.draw(across.under(figure), &model.units)?])?;
                 swept
             }
         };
@@ -184,7 +188,7 @@ pub(super) fn load(text: &str) -> Result<Load, String> {
 fn loads(
     arguments: &Arguments,
     model: &Model,
-    sweep: &Sweep,
+    (survey, across): (&Survey, &Across),
     load: Load,
     session: &mut Session<'_>,
 ) -> Result<Exit, CommandError> {
@@ -192,15 +196,19 @@ fn loads(
     let target = Target::create(path, &mut *session.out, arguments.picture.look()?)?;
     let (start, threads) = (arguments.start.start()?, arguments.threads.map(usize::from));
     let budget = arguments.budget.lengths(Budget::CHART);
-    let found = watched("", |watch| swept::loads(model, sweep, start, budget, threads, watch))?;
-    let table = || csv::loads(&found);
-    let title = format!("{}: {} against cam speed", model.name, load.to_string().replace('-', " "));
-    target.fill(&model.units, table, || Ok(loads_diagram(&title, &found, load, &model.units)))?;
+    let found = watched("", |watch| swept::loads(survey, start, budget, threads, watch))?;
+    let table = || csv::loads(survey.axis().parameter.name(), &found);
+    let over = match &survey.axis().parameter {
+        Parameter::Speed => "cam speed",
+        Parameter::Field(path) => path,
+    };
+    let title = format!("{}: {} against {over}", model.name, load.to_string().replace('-', " "));
+    target.fill(&model.units, table, || Ok(loads_diagram(&title, across, &found, load, &model.units)))?;
     Ok(Exit::Agrees)
 }
 
-/// A row for each speed, in a table.
-fn one_row(arguments: &Arguments, sweep: &Sweep, session: &mut Session<'_>) -> Result<Exit, CommandError> {
+/// A row for each value, in a table.
+fn one_row(arguments: &Arguments, survey: &Survey, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let Some(Target::Table(mut file)) = arguments
         .out
         .as_deref()
@@ -211,8 +219,8 @@ fn one_row(arguments: &Arguments, sweep: &Sweep, session: &mut Session<'_>) -> R
     };
     let (start, threads) = (arguments.start.start()?, arguments.threads.map(usize::from));
     let budget = arguments.budget.budget(Budget::CHART)?;
-    let points = watched("", |watch| swept::one_row(&sweep.machine, &sweep.speeds, start, budget, threads, watch))?;
-    file.write_all(csv::told(&csv::one_row(&sweep.speeds, &points), &session.units).as_bytes())?;
+    let points = watched("", |watch| swept::one_row(survey, start, budget, threads, watch))?;
+    file.write_all(csv::told(&csv::one_row(survey.axis(), &points), &session.units).as_bytes())?;
     super::commit(vec![file])?;
     Ok(Exit::Agrees)
 }
@@ -222,11 +230,14 @@ fn title(model: &str, sweep: &Sweep) -> String {
         Section::Impacts => "impacts".to_owned(),
         Section::Strobe(angle) => format!("states at {:.4}°", angle.to_degrees()),
     };
+    let is_speed = sweep.over.axis().parameter == Parameter::Speed;
     let how = match sweep.following {
-        Following::Nothing if matches!(sweep.starts, Starts::Found(_)) => "on each attractor",
+        Following::Nothing if matches!(sweep.starts, Beginning::Found(_)) => "on each attractor",
         Following::Nothing => "from one start",
-        Following::Up => "speed going up",
-        Following::Down => "speed going down",
+        Following::Up if is_speed => "speed going up",
+        Following::Down if is_speed => "speed going down",
+        Following::Up => "each value from the end of the next lower",
+        Following::Down => "each value from the end of the next higher",
     };
     format!("{model}: {what} of {} revolutions after {}, {how}", sweep.record, sweep.transient)
 }

@@ -21,6 +21,7 @@ mod man;
 mod model;
 mod new;
 mod orbit;
+mod over;
 mod picture;
 mod progress;
 mod report;

@@ -38,10 +38,16 @@ impl ModelArgument {
         Self { file: file.map(Path::to_path_buf), changes: changes.clone() }
     }
 
-    /// Whether a number is one of those that were changed.
-    pub(super) fn sets(&self, model: &Model, parameter: &Parameter) -> Result<bool, CommandError> {
-        let named = self.changes.numbers.iter().map(|(name, _)| Parameter::named(model, name));
-        Ok(named.collect::<Result<Vec<_>, _>>()?.contains(parameter))
+    /// A number that an option goes through the values of; refused where --set gives it one.
+    pub(super) fn varied(&self, model: &Model, name: &str, option: &str) -> Result<Parameter, CommandError> {
+        let parameter = Parameter::named(model, name)?;
+        let set = self.changes.numbers.iter().map(|(name, _)| Parameter::named(model, name));
+        if set.collect::<Result<Vec<_>, _>>()?.contains(&parameter) {
+            let name = parameter.name();
+            let words = format!("--set {name}: no point would have that value, as {option} goes through others");
+            return Err(CommandError::Words(words));
+        }
+        Ok(parameter)
     }
 
     /// Reads the model; says on standard error which one it is where none is named.

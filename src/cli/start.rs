@@ -5,12 +5,11 @@ use std::f64::consts::TAU;
 use super::CommandError;
 use super::session::Session;
 use crate::cam::within_a_turn;
-use crate::diagram::{Placed, Speeds, Start};
 use crate::flight::State;
 use crate::foreign;
 use crate::orbit::Search;
 use crate::orbit::long_run::Budget;
-use crate::study::survey::Sample;
+use crate::study::survey::{Placed, Sample, Spacing, Start, Values};
 
 /// Where the run starts, or the runs of a survey.
 #[derive(clap::Args)]
@@ -144,7 +143,7 @@ pub(super) fn count(text: &str) -> Result<u64, String> {
 /// A speed that a simulation can turn at.
 pub(super) fn rpm(text: &str) -> Result<f64, String> {
     let number = positive(text)?;
-    if number <= Speeds::FASTEST { Ok(number) } else { Err(format!("must be {:e} or less", Speeds::FASTEST)) }
+    if number <= Values::FASTEST { Ok(number) } else { Err(format!("must be {:e} or less", Values::FASTEST)) }
 }
 
 /// `LO:HI` of what `number` takes.
@@ -177,13 +176,51 @@ pub(super) fn parameter(text: &str) -> Result<(String, [f64; 2]), String> {
     Ok((name.trim().into(), range(ends)?))
 }
 
-/// `LO:HI:N`.
-pub(super) fn speeds(text: &str) -> Result<Speeds, String> {
+/// `LO:HI:N` or `LO:HI:N:log`, speeds.
+pub(super) fn speeds(text: &str) -> Result<Values, String> {
     spaced(text, rpm, "speed")
 }
 
-/// `NAME=LO:HI:N`.
-pub(super) fn axis(text: &str) -> Result<(String, Speeds), String> {
+/// `NAME=LO:HI`, with how many values and the spacing, if these are named.
+pub(super) type RangeAxis = (String, [f64; 2], Option<u32>, Spacing);
+
+/// `NAME=LO:HI`, `NAME=LO:HI:N`, `NAME=LO:HI:log` or `NAME=LO:HI:N:log`.
+pub(super) fn range_axis(text: &str) -> Result<RangeAxis, String> {
+    let bare = text.trim_end();
+    let (bare, spacing) =
+        bare.strip_suffix(":log").map_or((bare, Spacing::Linear), |bare| (bare, Spacing::Logarithmic));
+    if let Ok((name, [low, high])) = parameter(bare) {
+        return match spacing {
+            Spacing::Logarithmic if low <= 0.0 => Err(begins_below(low)),
+            _ => Ok((name, [low, high], None, spacing)),
+        };
+    }
+    let (name, Values { low, high, count, spacing }) = axis(text)?;
+    match u32::try_from(count).ok().filter(|count| (2..=100_000).contains(count)) {
+        Some(count) if low < high => Ok((name, [low, high], Some(count), spacing)),
+        Some(_) => Err(format!("{low} is not below {high}")),
+        None => Err(format!("{count} values: there must be 2 to 100000")),
+    }
+}
+
+fn begins_below(low: f64) -> String {
+    format!("a logarithmic axis begins above 0, and {low} does not")
+}
+
+/// One speed, or several of them.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Rpm {
+    One(f64),
+    Range(Values),
+}
+
+/// `R`, or `LO:HI:N`.
+pub(super) fn rpm_or_speeds(text: &str) -> Result<Rpm, String> {
+    if text.contains(':') { speeds(text).map(Rpm::Range) } else { rpm(text).map(Rpm::One) }
+}
+
+/// `NAME=LO:HI:N` or `NAME=LO:HI:N:log`.
+pub(super) fn axis(text: &str) -> Result<(String, Values), String> {
     let Some((name, values)) = text.split_once('=') else {
         return Err("must be NAME=LO:HI:N: what changes, from where to where, and at how many values".into());
     };
@@ -192,21 +229,29 @@ pub(super) fn axis(text: &str) -> Result<(String, Speeds), String> {
     Ok((name.into(), values?))
 }
 
-/// `LO:HI:N` of what `number` takes.
-fn spaced(text: &str, number: fn(&str) -> Result<f64, String>, what: &str) -> Result<Speeds, String> {
+/// `LO:HI:N` of what `number` takes, spaced evenly or, with `:log`, evenly in the logarithm.
+fn spaced(text: &str, number: fn(&str) -> Result<f64, String>, what: &str) -> Result<Values, String> {
     let parts: Vec<&str> = text.split(':').collect();
-    let [low, high, count] = parts.as_slice() else {
-        return Err(format!("must be LO:HI:N: lowest {what}, highest {what}, how many"));
+    let (low, high, count, spacing) = match parts.as_slice() {
+        [low, high, count] => (low, high, count, Spacing::Linear),
+        [low, high, count, spacing] if spacing.trim() == "log" => (low, high, count, Spacing::Logarithmic),
+        [_, _, _, other] => return Err(format!("\"{}\" is no spacing: it can only be log", foreign::value(other))),
+        _ => {
+            return Err(format!(
+                "must be LO:HI:N: lowest {what}, highest {what}, how many; and :log, if they are to be spaced by it"
+            ));
+        }
     };
     let (low, high) = (number(low)?, number(high)?);
     let count: usize =
         count.trim().parse().map_err(|_| format!("\"{}\" is not a number of {what}s", foreign::value(count)))?;
     match (high >= low && (high - low).is_finite(), count) {
         (false, _) => Err(format!("the highest {what}, {high}, is below the lowest, {low}")),
+        (true, _) if spacing == Spacing::Logarithmic && low <= 0.0 => Err(begins_below(low)),
         (_, 0) => Err(format!("must be 1 {what} or more")),
         (true, 1) if high > low => Err(format!("1 {what} needs LO and HI to be the same")),
-        _ if count > Speeds::MOST => Err(format!("must be {} {what}s or fewer", Speeds::MOST)),
-        _ => Ok(Speeds { low, high, count }),
+        _ if count > Values::MOST => Err(format!("must be {} {what}s or fewer", Values::MOST)),
+        _ => Ok(Values { low, high, count, spacing }),
     }
 }
 

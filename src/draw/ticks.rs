@@ -1,4 +1,4 @@
-//! Where ticks stand: at 1, 2 or 5 times a power of ten, or at the usual parts of a circle.
+//! Where ticks stand: at 1, 2 or 5 times a power of ten, at the usual parts of a circle, or at powers of ten and their multiples.
 
 use serde::Serialize;
 
@@ -10,6 +10,8 @@ pub enum Spacing {
     Decimal,
     /// Degrees: multiples of 15, 30, 45, 60, 90, …; decimal below 10.
     Degrees,
+    /// Powers of ten and their multiples: what is drawn are decimal logarithms.
+    Logarithmic,
     /// Nowhere: what stands along the axis has no numbers.
     Nothing,
 }
@@ -49,6 +51,9 @@ pub fn ticks(range: [f64; 2], spacing: Spacing, most: usize, fits: impl Fn(&[Tic
     if spacing == Spacing::Nothing || !(span > 0.0 && span.is_finite()) {
         return Ticks::default();
     }
+    if spacing == Spacing::Logarithmic {
+        return Ticks { ticks: powers([low, high], most.max(2), fits), exponent: 0 };
+    }
     let exponent = exponent(low.abs().max(high.abs()));
     let (most, mut step) = (most.max(2) as f64, first_step(span / most.max(2) as f64, spacing));
     loop {
@@ -59,6 +64,35 @@ pub fn ticks(range: [f64; 2], spacing: Spacing, most: usize, fits: impl Fn(&[Tic
         }
         step = next_step(step, spacing);
     }
+}
+
+/// The most of powers of ten and their multiples that fit, in a range of exponents.
+fn powers([low, high]: [f64; 2], most: usize, fits: impl Fn(&[Tick]) -> bool) -> Vec<Tick> {
+    const MULTIPLES: [&[i32]; 3] = [&[1, 2, 3, 4, 5, 6, 7, 8, 9], &[1, 2, 5], &[1]];
+    /// Beyond, a power of ten is written as one.
+    const PLAIN: std::ops::Range<i32> = -4..5;
+    let decades = (low.floor() as i32)..=(high.ceil() as i32);
+    let label = |digit: i32, power: i32| match digit {
+        _ if PLAIN.contains(&power) => format!("{}", f64::from(digit) * 10_f64.powi(power)),
+        1 => unit("", power),
+        digit => format!("{digit}·{}", unit("", power)),
+    };
+    let of = |multiples: &[i32], every: usize| -> Vec<Tick> {
+        let powers = decades.clone().filter(|power| power.rem_euclid(every as i32) == 0);
+        let all = powers.flat_map(|power| multiples.iter().map(move |digit| (*digit, power)));
+        let tick = |(digit, power): (i32, i32)| {
+            let at = f64::from(power) + f64::from(digit).log10();
+            Tick { at: at.clamp(low, high), label: label(digit, power) }
+        };
+        let is_inside = |(digit, power): &(i32, i32)| {
+            let at = f64::from(*power) + f64::from(*digit).log10();
+            (low - ROUNDING..=high + ROUNDING).contains(&at)
+        };
+        all.filter(is_inside).map(tick).collect()
+    };
+    let finest = MULTIPLES.iter().map(|multiples| of(multiples, 1));
+    let coarser = (2..=decades.clone().count().max(2)).map(|every| of(&[1], every));
+    finest.chain(coarser).find(|ticks| ticks.len() <= most && fits(ticks)).unwrap_or_default()
 }
 
 fn exponent(largest: f64) -> i32 {

@@ -2,7 +2,6 @@
 //! shape of its own, and what runs settle on behind them: told apart without colours.
 
 use crate::border_collision::feigin::Scenario;
-use crate::diagram::recurrence;
 use crate::draw::{Axis, BREAK, Colour, Data, Figure, Marker, Panel, Series};
 use crate::figures::cam::{CornerMark, corner_marks};
 use crate::figures::impacts::{WHOLE_CAM, cloud, impact_angles, shown_impacts};
@@ -10,6 +9,7 @@ use crate::figures::{Entry, Fast, SPEED, Subject, by_stability, drawn};
 use crate::orbit::branch::{Branch, BranchPoint, Kind, find_branches};
 use crate::orbit::{Course, Search, Stability};
 use crate::show::words;
+use crate::study::survey::recurrence;
 
 /// Around the corner impact.
 pub(crate) const FAST_IMPACTS: Entry = Entry {

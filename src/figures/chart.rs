@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{curve, unit_of};
+use super::{Across, curve};
 use crate::border_collision::EventCurve;
 use crate::draw::ticks::{Spacing, Tick, Ticks, ticks};
 use crate::draw::{Axis, Colour, Data, Density, Figure, Panel, Series};
@@ -11,8 +11,8 @@ use crate::orbit::Parameter;
 use crate::orbit::long_run::Kind;
 use crate::show::words;
 use crate::show::words::followed_for as followed;
-use crate::study::chart::{self, Charted};
-use crate::study::survey::Point;
+use crate::study::chart::Charted;
+use crate::study::survey::{self, Point};
 
 /// What the colours of a chart tell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -137,9 +137,9 @@ fn bands(edges: &[Tick], exponent: i32, coloured: Coloured) -> Vec<Class> {
 pub fn chart_figure(found: &Charted, coloured: Coloured, curves: &[EventCurve], units: &Units) -> Figure {
     let (x, y) = (&found.chart.x, &found.chart.y);
     let (classes, class_of) = classes(found, coloured);
-    let range = |axis: &chart::Axis| {
+    let range = |axis: &survey::Axis| {
         // The middles of the outermost cells are the ends of the axis; one value alone has a cell of some width.
-        let ([low, high], count) = (axis.ends(), axis.values.len() as f64);
+        let ([low, high], count) = (axis.ends().map(|end| axis.spacing.place(end)), axis.values.len() as f64);
         let half = if high > low {
             0.5 * (high - low) / (count - 1.0)
         } else {
@@ -167,11 +167,14 @@ pub fn chart_figure(found: &Charted, coloured: Coloured, curves: &[EventCurve], 
         Series::new(label, *colour, Data::Region { cells, strength: *strength })
     });
     let across_speeds = x.parameter == Parameter::Speed;
-    let place = if across_speeds { |rpm, value| [rpm, value] } else { |rpm, value| [value, rpm] };
+    let place = |rpm, value| {
+        let (right, above) = if across_speeds { (rpm, value) } else { (value, rpm) };
+        [x.spacing.place(right), y.spacing.place(above)]
+    };
     let series = series.chain(curve::lines(curves, place)).collect();
-    let axis = |axis: &chart::Axis, range| match &axis.parameter {
-        Parameter::Speed => Axis::new("speed", "rpm").over(range),
-        Parameter::Field(path) => Axis::new(path.rsplit('.').next().unwrap_or(path), &unit_of(path, units)).over(range),
+    let axis = |axis: &survey::Axis, range| match &axis.parameter {
+        Parameter::Speed => Axis { label: "speed".into(), ..Across::of(axis, units).axis() }.over(range),
+        Parameter::Field(_) => Across::of(axis, units).axis().over(range),
     };
     let what = match coloured {
         Coloured::Period => "after how many revolutions the motion repeats",

@@ -46,7 +46,7 @@ pub fn curve_figure(
 }
 
 /// A line for each kind of event, and the marks on them; `place` tells where a speed, rpm, and a value of the number are drawn.
-pub(super) fn lines(curves: &[EventCurve], place: fn(f64, f64) -> [f64; 2]) -> Vec<Series> {
+pub(super) fn lines(curves: &[EventCurve], place: impl Fn(f64, f64) -> [f64; 2]) -> Vec<Series> {
     let place = |point: &EventPoint| place(point.rpm, point.value);
     let mut series = Vec::new();
     for (kind, colour, stroke) in KINDS {

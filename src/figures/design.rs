@@ -1,7 +1,7 @@
 //! What an engineer asks, drawn: the contact force round the cam, forces and loads against the speed, or one number against another.
 
 use crate::draw::{Axis, BREAK, Colour, Figure, Mark, Marker, Panel, Series, Stroke, extent};
-use crate::figures::SPEED;
+use crate::figures::Across;
 use crate::figures::impacts::WHOLE_CAM;
 use crate::measured::Measured;
 use crate::model::Units;
@@ -9,6 +9,7 @@ use crate::show::digits::with_error;
 use crate::study::design::contact::Separation;
 use crate::study::design::loads::{Load, Loads};
 use crate::study::design::{Design, Pair, Trade};
+use crate::study::survey::Place;
 
 /// Trades where there are any, else the force round the cam at one speed, else forces and loads against the speed.
 pub fn design_figure(found: &Design) -> Figure {
@@ -26,7 +27,7 @@ fn round(found: &Design) -> Figure {
     let points = found.round.iter().map(|[angle, force]| [angle.to_degrees(), found.force(*force)]);
     let line = Series::line("", Colour::Blue, Stroke::Solid, points);
     let panel = Panel::new(force_axis(found, "contact force"), 0.5, vec![line]).with_zero();
-    let rpm = found.forces.first().map_or(f64::NAN, |at| at.rpm);
+    let rpm = found.forces.first().map_or(f64::NAN, |at| at.place.rpm);
     let title = format!("{} at {rpm} rpm: contact force round the cam", found.model.name);
     let figure = Figure::new(&title, Axis::degrees("cam angle").over(WHOLE_CAM), vec![panel]);
     // A force that would pull is none.
@@ -39,16 +40,19 @@ fn round(found: &Design) -> Figure {
 
 fn speeds(found: &Design) -> Figure {
     type Quantity = (&'static str, &'static str, f64);
-    let all = found.forces.iter().map(|at| at.rpm).chain(found.loads.iter().map(|loads| loads.rpm));
-    let range = extent(all);
-    let forces = found.forces.iter().map(|at| [at.rpm, found.force(at.least.value)]);
+    let all = found.forces.iter().map(|at| at.place).chain(found.loads.iter().map(|loads| loads.place));
+    let range = extent(all.map(|place| place.across()));
+    let (name, spacing) = (found.over.as_deref().unwrap_or("rpm"), found.spacing);
+    let across = Across::new(name, spacing, range, &found.units);
+    let x = |place: Place| across.place(place.across());
+    let forces = found.forces.iter().map(|at| [x(at.place), found.force(at.least.value)]);
     let mut panels = Vec::new();
     if !found.forces.is_empty() {
         let line = Series::line("", Colour::Blue, Stroke::Solid, forces);
         let open = found
             .forces
             .iter()
-            .map(|at| (at.rpm, found.force(at.least.value), at.error.map(|error| found.force(error))));
+            .map(|at| (x(at.place), found.force(at.least.value), at.error.map(|error| found.force(error))));
         let series = open_by_cam(OPEN, open.collect()).into_iter().chain([line]).collect();
         panels.push(Panel::new(force_axis(found, "least contact force"), 0.24, series).with_zero());
     }
@@ -62,15 +66,16 @@ fn speeds(found: &Design) -> Figure {
         // In the order of the numbers of loads.
         panels.extend(quantities.into_iter().enumerate().map(|(index, (name, unit, scale))| {
             let value = |loads: &Loads| scale * loads.numbers()[index];
-            let points = found.loads.iter().map(|loads| [loads.rpm, value(loads)]);
+            let points = found.loads.iter().map(|loads| [x(loads.place), value(loads)]);
             let line = Series::line("", Colour::Vermilion, Stroke::Solid, points);
             let error = |loads: &Loads| loads.errors.map(|errors| scale * errors[index]);
             let open =
-                open_by_cam("", found.loads.iter().map(|loads| (loads.rpm, value(loads), error(loads))).collect());
+                open_by_cam("", found.loads.iter().map(|loads| (x(loads.place), value(loads), error(loads))).collect());
             Panel::new(Axis::new(name, unit), 0.15, open.into_iter().chain([line]).collect()).with_zero()
         }));
     }
     let at = found.separation.speed();
+    let is_speed = found.over.is_none();
     let label = || match found.separation {
         Separation::At { rpm, error, .. } if Measured::noisy(&found.measured).is_some() => {
             let (digits, error) = with_error(error);
@@ -78,30 +83,23 @@ fn speeds(found: &Design) -> Figure {
         }
         _ => format!("separation, {at:.1} rpm"),
     };
-    let marks = (range[0] <= at && at <= range[1]).then(|| Mark { at, label: label() });
+    let marks = (is_speed && range[0] <= at && at <= range[1]).then(|| Mark { at, label: label() });
     let title = format!("{}: contact force and loads", found.model.name);
-    let axis = Axis::new(SPEED[0], SPEED[1]).over(range);
-    Figure { marks: marks.into_iter().collect(), ..Figure::new(&title, axis, panels) }
+    Figure { marks: marks.into_iter().collect(), ..Figure::new(&title, across.axis(), panels) }
 }
 
-/// One load in each revolution of a sweep, against the speed.
-pub fn loads_diagram(title: &str, sweep: &[Vec<Loads>], load: Load, units: &Units) -> Figure {
+/// One load in each revolution of a sweep, against what varies.
+pub fn loads_diagram(title: &str, across: &Across, sweep: &[Vec<Loads>], load: Load, units: &Units) -> Figure {
     let told = |value: f64| if load == Load::Force { units.force.told(value) } else { value };
-    let points = sweep.iter().flatten().map(|loads| [loads.rpm, told(loads.of(load))]);
+    let points = sweep.iter().flatten().map(|loads| [across.place(loads.place.across()), told(loads.of(load))]);
     let (name, unit) = match load {
         Load::ImpactSpeed => ("fastest impact of a revolution", "m/s"),
         Load::Gap => ("largest gap of a revolution", "m"),
         Load::Energy => ("energy lost in a revolution", "J"),
         Load::Force => ("largest contact force of a revolution", units.force.name()),
     };
-    let range = extent(sweep.iter().flatten().map(|loads| loads.rpm));
-    let range = if range[0] < range[1] { range } else { [0.99 * range[0], 1.01 * range[1]] };
     let series = Series::points("", Colour::Blue, Marker::Dot, points);
-    Figure::new(
-        title,
-        Axis::new(SPEED[0], SPEED[1]).over(range),
-        vec![Panel::new(Axis::new(name, unit), 0.5, vec![series])],
-    )
+    Figure::new(title, across.axis(), vec![Panel::new(Axis::new(name, unit), 0.5, vec![series])])
 }
 
 fn trades(found: &Design) -> Figure {

@@ -1,10 +1,13 @@
 //! Diagrams over speeds: where impacts fall on the cam, or where the follower is at the section.
 
-use crate::diagram::{Following, Placed, Places, Section, Speeds, Start, Starts, Sweep, SweepError};
 use crate::draw::layout::widened;
 use crate::draw::{Axis, Colour, Data, Density, Figure, Panel, Series, Stroke};
 use crate::figures::cam::{CornerMark, corner_marks};
 use crate::figures::{Effort, Entry, SPEED, Slow, Subject, drawn, position};
+use crate::orbit::Parameter;
+use crate::study::survey::{
+    Axis as Over, Beginning, Following, Placed, Places, Section, Start, Survey, Sweep, SweepError, Values,
+};
 
 /// Impacts above the speed at which the follower begins to leave the cam.
 pub(crate) const SLOW_IMPACTS: Entry = Entry {
@@ -96,10 +99,10 @@ impl Subject {
         effort: Effort,
     ) -> Result<Vec<[f64; 2]>, String> {
         let [low, high] = range;
+        let speeds = Over::new(Parameter::Speed, &Values::linear(low, high, effort.speeds));
         let sweep = Sweep {
-            machine: self.machine(low),
-            speeds: Speeds { low, high, count: effort.speeds },
-            starts: Starts::One(Start { cam_angle: 0.0, follower: Placed::OnCam(0.0) }),
+            over: Survey::new(&self.model, None, speeds, None).map_err(|error| error.to_string())?,
+            starts: Beginning::One(Start { cam_angle: 0.0, follower: Placed::OnCam(0.0) }),
             following,
             transient: effort.transient,
             record: effort.record,

@@ -24,12 +24,13 @@ mod trace;
 
 use serde::Serialize;
 
-use crate::draw::{Axis, Colour, Figure, Series, Stroke};
+use crate::draw::{self, Axis, Colour, Figure, Series, Stroke};
 use crate::model::Units;
 use crate::orbit::Stability;
 use crate::show::command::command;
+use crate::study::survey::{self, Spacing};
 
-pub use basins::basins_figure;
+pub use basins::{basins_figure, shares_figure};
 pub use branches::branches_figure;
 pub use cam::{CornerMark, cam_figure, corner_marks};
 pub use cam_shape::{Outline, Piece};
@@ -170,11 +171,52 @@ const SPEED: [&str; 2] = ["cam speed ω", "rpm"];
 
 /// The unit of what changes: of the speed, or of a number of a model.
 pub fn unit_of(name: &str, units: &Units) -> String {
-    let name = name.strip_prefix("follower.").unwrap_or(name);
-    match name {
-        "rpm" => SPEED[1].into(),
-        "rest_position" => units.length.name().into(),
-        _ => units.of_follower(name).map_or(String::new(), |unit| unit.name().into()),
+    units.of_number(name)
+}
+
+/// What a diagram goes over, as it is drawn: the speed or another number, or the decimal logarithm of it.
+#[derive(Clone, Debug)]
+pub struct Across {
+    axis: Axis,
+    spacing: Spacing,
+}
+
+impl Across {
+    /// The number of this name, in the units of a model, from one value to another.
+    pub fn new(name: &str, spacing: Spacing, ends: [f64; 2], units: &Units) -> Self {
+        Self::named(name, &unit_of(name, units), spacing, ends)
+    }
+
+    /// The number of this name in this unit, from one value to another.
+    pub(crate) fn named(name: &str, unit: &str, spacing: Spacing, ends: [f64; 2]) -> Self {
+        let label = if name == "rpm" { SPEED[0] } else { name.rsplit('.').next().unwrap_or(name) };
+        let axis = Axis::new(label, unit).over(ends.map(|end| spacing.place(end)));
+        let ticks = if spacing == Spacing::Logarithmic { draw::Spacing::Logarithmic } else { draw::Spacing::Decimal };
+        Self { axis: Axis { spacing: ticks, ..axis }, spacing }
+    }
+
+    /// What a survey goes over.
+    pub fn of(axis: &survey::Axis, units: &Units) -> Self {
+        Self::new(axis.parameter.name(), axis.spacing, axis.ends(), units)
+    }
+
+    /// Where a value is drawn.
+    pub fn place(&self, value: f64) -> f64 {
+        self.spacing.place(value)
+    }
+
+    /// A figure over it, in the range that is drawn.
+    pub fn under(&self, figure: Figure) -> Figure {
+        let axis = Axis { range: figure.x.range, ..self.axis() };
+        Figure { x: axis, ..figure }
+    }
+
+    /// The axis; of one value with room on both sides.
+    pub(crate) fn axis(&self) -> Axis {
+        match self.axis.range {
+            Some([low, high]) if low == high => self.axis.clone().over([0.99 * low, 1.01 * low]),
+            _ => self.axis.clone(),
+        }
     }
 }
 

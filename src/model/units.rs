@@ -172,6 +172,16 @@ impl Units {
         }
     }
 
+    /// What a number is told in that varies, by its dotted path or `rpm`; nothing of a pure number, or of one of the cam.
+    pub fn of_number(&self, path: &str) -> String {
+        let name = path.strip_prefix("follower.").unwrap_or(path);
+        match name {
+            "rpm" => "rpm".into(),
+            "rest_position" => self.length.name().into(),
+            _ => self.of_follower(name).map_or(String::new(), |unit| unit.name().into()),
+        }
+    }
+
     /// A number of the follower as it is inside.
     pub(super) fn number(&self, fields: &mut Fields, name: &str, allowed: Allowed) -> Result<f64, ModelError> {
         let path = format!("follower.{name}");

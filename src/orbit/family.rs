@@ -89,15 +89,7 @@ impl Family {
 
     /// The machine with these values of the free numbers, and its speed, rpm.
     pub fn machine(&self, values: &[f64]) -> Result<(Machine, f64), FamilyError> {
-        let (mut rpm, mut model) = (self.rpm, None);
-        for (parameter, value) in self.free.iter().zip(values) {
-            match parameter {
-                Parameter::Speed => rpm = *value,
-                Parameter::Field(path) => {
-                    model = Some(model.as_ref().unwrap_or(&self.model).with_number(path, *value)?);
-                }
-            }
-        }
+        let (rpm, model) = self.changed(values)?;
         let omega = speed(rpm)?;
         let machine = match model {
             None => self.machine.at_speed(omega),
@@ -109,7 +101,27 @@ impl Family {
         Ok((machine, rpm))
     }
 
-    /// The same, refused where the cam has another number of segments: cycles name theirs by index.
+    /// The model with these values of the free numbers.
+    pub fn model(&self, values: &[f64]) -> Result<Model, FamilyError> {
+        Ok(self.changed(values)?.1.unwrap_or_else(|| self.model.clone()))
+    }
+
+    /// The speed, rpm, and the model with these values of the free numbers; none where the speed alone is free.
+    fn changed(&self, values: &[f64]) -> Result<(f64, Option<Model>), FamilyError> {
+        let (mut rpm, mut model) = (self.rpm, None);
+        for (parameter, value) in self.free.iter().zip(values) {
+            match parameter {
+                Parameter::Speed => rpm = *value,
+                Parameter::Field(path) => {
+                    model = Some(model.as_ref().unwrap_or(&self.model).with_number(path, *value)?);
+                }
+            }
+        }
+        Ok((rpm, model))
+    }
+
+    /// The machine with these values of the free numbers, and its speed, rpm; refused where the cam has another number of segments, as
+    /// cycles name theirs by index.
     pub fn machine_of_cycles(&self, values: &[f64]) -> Result<(Machine, f64), FamilyError> {
         let (machine, rpm) = self.machine(values)?;
         match [&self.machine, &machine].map(|machine| machine.cam().segments().len()) {

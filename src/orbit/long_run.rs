@@ -8,9 +8,9 @@ use std::f64::consts::LN_2;
 use serde::Serialize;
 
 use super::PeriodicOrbit;
-use crate::diagram::Record;
 use crate::estimate::{ErrorIs, Estimate};
 use crate::simulate::Met;
+use crate::simulate::Record;
 use crate::tolerance;
 
 /// For how long runs are followed before it is said what they come to.

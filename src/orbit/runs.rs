@@ -10,9 +10,9 @@ use super::cycle::lift_size;
 use super::long_run::{Budget, LongRun, Recorded, StickingOrbit, is_same_release};
 use super::near::{close, free, near_run};
 use super::{Course, PeriodicOrbit};
-use crate::diagram::Record;
 use crate::flight::State;
 use crate::progress::Unwatched;
+use crate::simulate::Record;
 use crate::simulate::{Event, EventKind, Goal, Machine, Met, Motion, SimulateError};
 use crate::tolerance;
 

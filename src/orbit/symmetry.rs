@@ -16,40 +16,43 @@ use nalgebra::Matrix2;
 use super::near::close;
 use super::{Course, Cycle, Impact, PeriodicOrbit};
 use crate::cam::Cam;
-use crate::simulate::{Machine, angular_velocity};
+use crate::simulate::Machine;
 use crate::tolerance;
 
-/// The speed, rpm, near that of `machine` at which the symmetric orbit near `near` has the multiplier -1 of a p-th of its period; and that orbit
+/// The value near `begun` with whose `machine` the symmetric orbit near `near` has the multiplier -1 of a p-th of its period; and that orbit
 /// right beside it, as the equations of the whole period do not determine it there. `None` where the cam has no such lobes, or the orbit is
-/// not symmetric near by.
-pub(crate) fn breaking(machine: &Machine, near: &Cycle) -> Option<(f64, PeriodicOrbit)> {
-    /// Where the orbit is asked, over the speed: far enough from where it is not determined, and so near that a cubic through these errs by
+/// not symmetric near by, and where the value is 0.
+pub(crate) fn breaking(
+    machine: impl Fn(f64) -> Option<Machine>,
+    begun: f64,
+    near: &Cycle,
+) -> Option<(f64, PeriodicOrbit)> {
+    /// Where the orbit is asked, over the value: far enough from where it is not determined, and so near that a cubic through these errs by
     /// less than rounding.
     const BESIDE: [f64; 4] = [-2e-4, -1e-4, 1e-4, 2e-4];
     /// How often that is done about what came out before.
     const ROUNDS: usize = 8;
-    /// How far from where it is looked for it may be, of the speed.
+    /// How far from where it is looked for it may be, of the value.
     const FAR: f64 = 0.02;
-    let parts = parts(machine.cam(), near)?;
-    let begun = machine.angular_velocity() * 60.0 / TAU;
-    let (mut rpm, mut guess) = (begun, symmetric(machine.cam(), near, parts));
+    let first = machine(begun)?;
+    let parts = parts(first.cam(), near)?;
+    let (mut value, mut guess) = (begun, symmetric(first.cam(), near, parts));
     for _ in 0..ROUNDS {
         let mut seen: Vec<(f64, f64)> = Vec::new();
         for beside in BESIDE {
-            let speed = rpm * (1.0 + beside);
-            let machine = machine.at_speed(angular_velocity(speed));
+            let machine = machine(value * (1.0 + beside))?;
             let closed = guess.closed(&machine).ok()?.0;
             guess = symmetric(machine.cam(), &closed, parts);
             let step = step(&machine, &guess, parts);
             seen.push((1.0 + step.trace() + step.determinant(), beside));
         }
         let moved = at_zero(&seen)?;
-        rpm *= 1.0 + moved;
-        if !((rpm - begun).abs() <= FAR * begun) {
+        value *= 1.0 + moved;
+        if !((value - begun).abs() <= FAR * begun.abs()) {
             return None;
         }
         if moved.abs() <= tolerance::ROOT_WIDTH.value {
-            return Some((rpm, close(&machine.at_speed(angular_velocity(rpm * (1.0 + BESIDE[3]))), &guess)?));
+            return Some((value, close(&machine(value * (1.0 + BESIDE[3]))?, &guess)?));
         }
     }
     None

@@ -86,10 +86,14 @@ pub(crate) fn separation(found: &Design) -> Words {
 pub(crate) fn margin(found: &Design) -> Option<Words> {
     /// Of the speed of separation: at that itself what is left is rounding.
     const BELOW: f64 = 0.999;
+    // Over another number the speed of separation is another at each value.
+    if found.over.is_some() {
+        return None;
+    }
     let below = BELOW * found.separation.speed();
-    let last = found.forces.iter().rfind(|at| at.rpm < below)?;
+    let last = found.forces.iter().rfind(|at| at.place.rpm < below)?;
     let force = with_open(found.force(last.least.value), last.error.map(|error| found.force(error)), SIX);
-    let (rpm, angle) = ((last.rpm, SIX), (last.least.angle.to_degrees(), Digits::Fixed(3)));
+    let (rpm, angle) = ((last.place.rpm, SIX), (last.least.angle.to_degrees(), Digits::Fixed(3)));
     let unit = found.units.force.name();
     Some(words!["At ", rpm, " rpm the cam presses with ", force, format!(" {unit} at least, at "), angle, " deg."])
 }
@@ -97,7 +101,8 @@ pub(crate) fn margin(found: &Design) -> Option<Words> {
 pub(crate) fn speeds(found: &Design) -> Vec<Block> {
     let is_open = Measured::noisy(&found.measured).is_some();
     let force = found.units.force.name();
-    let mut columns = vec![number("rpm"), number(format!("least force {force}")), number("at deg")];
+    let over = found.over.as_deref().unwrap_or("rpm");
+    let mut columns = vec![number(over), number(format!("least force {force}")), number("at deg")];
     let head = |name: &str, unit: &'static str| number(words![name, Span::Unit(unit)]);
     if !found.loads.is_empty() {
         columns.extend([
@@ -108,14 +113,15 @@ pub(crate) fn speeds(found: &Design) -> Vec<Block> {
             number(format!("most force {force}")),
         ]);
     }
-    let mut table = Table::new("Contact force and loads by speed", columns);
-    let mut speeds: Vec<f64> = found.forces.iter().map(|at| at.rpm).collect();
-    speeds.extend(found.loads.iter().map(|loads| loads.rpm));
-    speeds.sort_by(f64::total_cmp);
-    speeds.dedup();
-    for rpm in speeds {
-        let mut cells = vec![words![(rpm, SIX)]];
-        match found.forces.iter().find(|at| at.rpm == rpm) {
+    let by = found.over.as_ref().map_or("speed".into(), |name| format!("{name} at {} rpm", found.rpm()));
+    let mut table = Table::new(&format!("Contact force and loads by {by}"), columns);
+    let mut values: Vec<f64> = found.forces.iter().map(|at| at.place.across()).collect();
+    values.extend(found.loads.iter().map(|loads| loads.place.across()));
+    values.sort_by(f64::total_cmp);
+    values.dedup();
+    for value in values {
+        let mut cells = vec![words![(value, SIX)]];
+        match found.forces.iter().find(|at| at.place.across() == value) {
             Some(at) => cells.extend([
                 with_open(found.force(at.least.value), at.error.map(|error| found.force(error)), SIX),
                 words![(at.least.angle.to_degrees(), Digits::Fixed(2))],
@@ -124,7 +130,7 @@ pub(crate) fn speeds(found: &Design) -> Vec<Block> {
         }
         if !found.loads.is_empty() {
             let three = |value: f64| words![(value, Digits::Aligned(3))];
-            match found.loads.iter().find(|loads| loads.rpm == rpm) {
+            match found.loads.iter().find(|loads| loads.place.across() == value) {
                 Some(loads) => {
                     let error = |index: usize| loads.errors.map(|errors| errors[index]);
                     // In per cent it is no number of the document.
@@ -141,14 +147,15 @@ pub(crate) fn speeds(found: &Design) -> Vec<Block> {
                 }
                 None => {
                     cells.extend((0..4).map(|_| "".into()));
-                    let on_cam = found.forces.iter().find(|at| at.rpm == rpm);
+                    let on_cam = found.forces.iter().find(|at| at.place.across() == value);
                     cells.push(on_cam.map_or("".into(), |at| three(found.force(at.largest))));
                 }
             }
         }
         table.row(cells);
     }
-    let mut blocks = vec![Block::Heading("Speeds".into()), Block::Table(table)];
+    let heading = found.over.as_ref().map_or("Speeds".into(), |name| format!("Over {name} at {} rpm", found.rpm()));
+    let mut blocks = vec![Block::Heading(heading.as_str().into()), Block::Table(table)];
     blocks.push(Block::Note(
         "least force: between follower and cam as long as they touch, where it is below 0 they part; computed.".into(),
     ));
@@ -170,19 +177,26 @@ fn limits(found: &Design) -> Vec<Block> {
     let sentence = |passed: &crate::study::design::Passed| {
         let name = passed.limit.to_string().replace('-', " ");
         let limit = words![format!("{name} of "), (passed.value, SIX), format!(" {}: ", passed.unit)];
+        let values = if found.over.is_none() { "speeds" } else { "values" };
         let open = if is_open { ", of the cam as it is drawn: what it leaves open is the ± above" } else { "" };
-        match passed.speed_rpm {
-            Some(rpm) => {
+        match passed.at {
+            Some(at) => {
                 words![
                     limit,
                     Span::Marked(Mark::Bad, "passed".into()),
                     " at ",
-                    (rpm, Digits::Significant(4)),
-                    " rpm first, as far as the speeds above tell",
+                    (at.across(), Digits::Significant(4)),
+                    if found.over.is_none() {
+                        " rpm first, as far as the speeds above tell"
+                    } else {
+                        " first, as far as the values above tell"
+                    },
                     open
                 ]
             }
-            None => words![limit, Span::Marked(Mark::Good, "kept".into()), " at each of the speeds above", open],
+            None => {
+                words![limit, Span::Marked(Mark::Good, "kept".into()), format!(" at each of the {values} above"), open]
+            }
         }
     };
     if found.limits.is_empty() {

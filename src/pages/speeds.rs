@@ -6,19 +6,18 @@ use crate::show::Paged;
 use crate::show::block::{Block, Column, Mark, Table, Words, words};
 use crate::show::digits::{Digits, with_error};
 use crate::show::words;
-use crate::study::attractors::Change;
-use crate::study::speeds::{Attractor, Speeds};
-use crate::study::survey::Sample;
+use crate::study::attractors::Transition;
+use crate::study::speeds::{AttractorRow, SpeedSurvey};
+use crate::study::survey::{Sample, Spacing};
 
-impl Paged for Speeds {
+impl Paged for SpeedSurvey {
     fn blocks(&self) -> Vec<Block> {
-        let [low, high] = self.rpm;
         let heading = |text: String| Block::Line((Mark::Heading, text.as_str()).into());
-        let mut page = vec![heading(format!("{}, {low} to {high} rpm", self.model)), Block::Gap];
+        let mut page = vec![heading(format!("{}, {}", self.model, self.over.range(self.range))), Block::Gap];
         page.push(Block::Line(words!["  leaves the cam first at  ", detachment(self)]));
         let together = together(self);
         let together =
-            if together.is_empty() { "nowhere".into() } else { words![Words::joined(together, ", "), " rpm"] };
+            if together.is_empty() { "nowhere".into() } else { words![Words::joined(together, ", "), unit(self)] };
         page.extend([
             Block::Line(words!["  several attractors        ", together]),
             Block::Gap,
@@ -38,51 +37,62 @@ impl Paged for Speeds {
                 None => "nothing".to_owned(),
             };
             let of_them = if failed.starts.is_some() { "could not be run" } else { "could be run" };
-            Block::paragraph(format!("At {} rpm {what} {of_them}: {}.", failed.speed_rpm, failed.why))
+            let at = self.over.words(failed.at.across());
+            Block::paragraph(format!("At {at} {what} {of_them}: {}.", failed.why))
         }));
         page
     }
 }
 
 /// Where there are several attractors, ranges that meet as one.
-pub(crate) fn together(found: &Speeds) -> Vec<Words> {
+pub(crate) fn together(found: &SpeedSurvey) -> Vec<Words> {
     let mut joined: Vec<[f64; 2]> = Vec::new();
     for over in &found.coexistence {
         match joined.last_mut() {
-            Some(last) if over.from_rpm <= last[1] => last[1] = over.to_rpm,
-            _ => joined.push([over.from_rpm, over.to_rpm]),
+            Some(last) if over.range()[0] <= last[1] => last[1] = over.range()[1],
+            _ => joined.push(over.range()),
         }
     }
     joined.into_iter().map(|[from, to]| words![open_to(found, from), "–", open_to(found, to)]).collect()
 }
 
 /// Where attractors begin and end.
-fn ends(found: &Speeds) -> impl Iterator<Item = &Change> {
+fn ends(found: &SpeedSurvey) -> impl Iterator<Item = &Transition> {
     found.attractors.iter().flat_map(|attractor| attractor.birth.iter().chain(&attractor.death))
 }
 
-/// A speed at which an attractor begins or ends, in no more digits than a measured cam leaves it.
-fn open_to(found: &Speeds, rpm: f64) -> Words {
-    match ends(found).find(|end| end.rpm == rpm) {
-        Some(end) => words![(rpm, open(found, end).map_or(Digits::Fixed(2), |error| with_error(error).0))],
-        None => words![(rpm, Digits::Fixed(2))],
-    }
+/// A value at which an attractor begins or ends, in no more digits than a measured cam leaves it.
+fn open_to(found: &SpeedSurvey, value: f64) -> Words {
+    let usual = if found.over.is_speed() { Digits::Fixed(2) } else { Digits::Significant(5) };
+    let end = ends(found).find(|end| end.value() == value);
+    words![(value, end.and_then(|end| open(found, end)).map_or(usual, |error| with_error(error).0))]
+}
+
+/// The unit behind a value, with a space.
+fn unit(found: &SpeedSurvey) -> String {
+    found.over.words("").trim_end().to_owned()
 }
 
 /// How far a measured cam may have moved an end, as far as digits go, rpm: one of which that is not known has no more of them than
 /// the best known, and no decimals where none is known.
-fn open(found: &Speeds, end: &Change) -> Option<f64> {
+fn open(found: &SpeedSurvey, end: &Transition) -> Option<f64> {
     const WHOLE: f64 = 10.0;
     let best = || ends(found).filter_map(|end| end.error).reduce(f64::min);
     end.error.or_else(|| Measured::noisy(&found.measured).map(|_| best().unwrap_or(WHOLE)))
 }
 
 /// Where the follower first leaves the cam.
-pub(crate) fn detachment(found: &Speeds) -> Words {
+pub(crate) fn detachment(found: &SpeedSurvey) -> Words {
+    let Some(separation) = found.separation else {
+        return match found.detachment() {
+            Some([value, _]) => words![(value, Digits::Significant(9)), unit(found)],
+            None => "no value in between".into(),
+        };
+    };
     match found.detachment() {
         Some([rpm, _]) => measured_speed(rpm, Digits::Fixed(6), found.detachment_error(), found.measured.as_ref()),
-        None if found.separation.speed() > found.rpm[1] => "no speed in between".into(),
-        None => format!("{} rpm already, or below", found.rpm[0]).into(),
+        None if separation.speed() > found.range[1] => "no speed in between".into(),
+        None => format!("{} rpm already, or below", found.range[0]).into(),
     }
 }
 
@@ -101,28 +111,36 @@ pub(crate) fn measured_speed(rpm: f64, digits: Digits, error: Option<f64>, cam: 
 }
 
 /// How it was found out, and what that can miss.
-pub(crate) fn how(found: &Speeds) -> String {
+pub(crate) fn how(found: &SpeedSurvey) -> String {
     const LOCATED: &str = " A speed with six decimals was located by the equations of what happens there; others are known from runs \
                            alone, to the digits shown.";
-    let located = if Measured::noisy(&found.measured).is_some() { "" } else { LOCATED };
+    const VALUE_LOCATED: &str = " A value with nine digits was located by the equations of what happens there; others are known from \
+                                 runs alone, to the digits shown.";
+    let located = match (Measured::noisy(&found.measured), found.over.is_speed()) {
+        (Some(_), _) => "",
+        (None, true) => LOCATED,
+        (None, false) => VALUE_LOCATED,
+    };
+    let value = found.over.value();
     let Budget { transient, patience, .. } = found.budget;
     let followed = format!(
-        " Runs that settle on nothing within {transient} revolutions are followed for {patience} more, all of a speed together, before \
+        " Runs that settle on nothing within {transient} revolutions are followed for {patience} more, all of a {value} together, before \
          that is called chaos: a rest that is rarer than that is not seen."
     );
-    let step = found.step;
+    let unit = if found.over.spacing == Spacing::Logarithmic { " decades".into() } else { unit(found) };
+    let step = format!("at each of the {value}s {}{unit} apart", found.step);
     if let Sample::Given(starts) = &found.sample {
         let starts = words::many(starts.len() as u64, "start");
         return format!(
-            "Sampled: {starts} that {} given, at each of the speeds {step} rpm apart.{followed}{located}",
+            "Sampled: {starts} that {} given, {step}.{followed}{located}",
             if starts == "1 start" { "is" } else { "are" }
         );
     }
     let listed = if found.two_impacts { ", and of two in one that a search by intervals finds" } else { "" };
     format!(
-        "Sampled: {} starts at each of the speeds {step} rpm apart, on the cam at any angle and up to the velocity that impacts keep \
+        "Sampled: {} starts {step}, on the cam at any angle and up to the velocity that impacts keep \
          up; rest on the cam wherever that lets go; and the stable orbits of one impact in up to three revolutions{listed}. Another \
-         attractor with a basin of less than {:.1} % of the starts may be missed at a speed, and what is there between two speeds only.{followed}{located}",
+         attractor with a basin of less than {:.1} % of the starts may be missed at a {value}, and what is there between two {value}s only.{followed}{located}",
         found.sample.count(),
         100.0 * found.missed(),
     )
@@ -142,7 +160,7 @@ pub(crate) fn cam(measured: &Measured) -> Option<Block> {
 }
 
 /// How often a motion rests that bounces as chaos does in between.
-pub(crate) fn rests(attractor: &Attractor) -> Option<String> {
+pub(crate) fn rests(attractor: &AttractorRow) -> Option<String> {
     let rests = attractor.rests()?;
     let id = &attractor.id;
     Some(match rests.rate_error {
@@ -163,11 +181,11 @@ pub(crate) fn rests(attractor: &Attractor) -> Option<String> {
 }
 
 /// The corner impacts at which there is danger.
-pub(crate) fn dangers(found: &Speeds) -> impl Iterator<Item = Block> {
+pub(crate) fn dangers(found: &SpeedSurvey) -> impl Iterator<Item = Block> {
     found.dangers.iter().map(|it| {
-        let (speed, angle) = ((it.speed_rpm, Digits::Fixed(6)), (it.cam_angle.to_degrees(), Digits::Fixed(2)));
+        let (value, angle) = ((it.at.across(), digits(found)), (it.cam_angle.to_degrees(), Digits::Fixed(2)));
         let attractors = it.attractors.join(", ");
-        let mut words = words!["At ", speed, " rpm ", attractors, " has a corner impact at ", angle, " deg: "];
+        let mut words = words!["At ", value, unit(found), " ", attractors, " has a corner impact at ", angle, " deg: "];
         let lines = std::iter::once(words::danger(&it.danger)).chain(words::returns(&it.danger));
         words.push(words![Words::joined(lines, "; "), "."]);
         Block::paragraph(words)
@@ -175,16 +193,17 @@ pub(crate) fn dangers(found: &Speeds) -> impl Iterator<Item = Block> {
 }
 
 /// The attractors, with where each begins and ends.
-pub(crate) fn table(found: &Speeds) -> Table {
+pub(crate) fn table(found: &SpeedSurvey) -> Table {
+    let ends = if found.over.is_speed() { ["from (rpm)", "to (rpm)"] } else { ["from", "to"] };
     let columns = [
         Column::left("", 2, 3),
-        Column { gap: 1, ..Column::right("from (rpm)", 10) },
-        Column { gap: 1, ..Column::right("to (rpm)", 10) },
+        Column { gap: 1, ..Column::right(ends[0], 10) },
+        Column { gap: 1, ..Column::right(ends[1], 10) },
         Column::left("motion", 2, 20),
         Column { gap: 1, ..Column::right("starts (%)", 8) },
         Column::left("begins with – ends with", 2, 0),
     ];
-    let mut table = Table::new("Attractors by rising speed", columns);
+    let mut table = Table::new(&format!("Attractors by rising {}", found.over.value()), columns);
     for attractor in &found.attractors {
         let shares = || attractor.at.iter().map(|at| 100.0 * at.share.value);
         let [least, most] = [shares().fold(f64::INFINITY, f64::min), shares().fold(0.0, f64::max)];
@@ -194,8 +213,8 @@ pub(crate) fn table(found: &Speeds) -> Table {
             _ => String::new(),
         };
         let ends = [&attractor.birth, &attractor.death];
-        let [from, to] = [0, 1].map(|side| speed(found, attractor.rpm[side], ends[side].as_ref()));
-        let ends = ends.map(|end| end.as_ref().map_or(String::new(), words::change)).join(" – ");
+        let [from, to] = [0, 1].map(|side| end(found, attractor.range()[side], ends[side].as_ref()));
+        let ends = ends.map(|end| end.as_ref().map_or(String::new(), words::transition)).join(" – ");
         table.row([
             attractor.id.as_str().into(),
             from,
@@ -208,16 +227,22 @@ pub(crate) fn table(found: &Speeds) -> Table {
     table
 }
 
-/// A speed to the digits that it is known to.
-fn speed(found: &Speeds, rpm: f64, change: Option<&Change>) -> Words {
-    /// Of a located speed.
-    const LOCATED: f64 = 6.0;
-    let Some(change) = change else { return words![(rpm, Digits::UpTo(LOCATED as usize))] };
+/// The digits of a located value: six decimals of a speed.
+fn digits(found: &SpeedSurvey) -> Digits {
+    if found.over.is_speed() { Digits::Fixed(6) } else { Digits::Significant(9) }
+}
+
+/// A value to the digits that it is known to.
+fn end(found: &SpeedSurvey, value: f64, change: Option<&Transition>) -> Words {
+    /// The most decimals: of a speed those of one that is located.
+    const MOST: [f64; 2] = [6.0, 12.0];
+    let most = MOST[usize::from(!found.over.is_speed())];
+    let Some(change) = change else { return words![(value, Digits::UpTo(most as usize))] };
     let places = match open(found, change).map(with_error) {
-        Some((digits, error)) if change.error.is_some() => return words![(rpm, digits), " ± ", (error, digits)],
-        Some((digits, _)) => return words![(rpm, digits), " ± ?"],
-        None if change.is_located() => LOCATED,
-        None => (-(change.bracket[1] - change.bracket[0]).log10()).ceil().clamp(0.0, LOCATED),
+        Some((digits, error)) if change.error.is_some() => return words![(value, digits), " ± ", (error, digits)],
+        Some((digits, _)) => return words![(value, digits), " ± ?"],
+        None if change.is_located() => return words![(value, digits(found))],
+        None => (-(change.bracket[1] - change.bracket[0]).log10()).ceil().clamp(0.0, most),
     };
-    words![(rpm, Digits::Fixed(places as usize))]
+    words![(value, Digits::Fixed(places as usize))]
 }

@@ -20,11 +20,12 @@ use crate::report::quantities::{Quantity, quantities};
 use crate::report::through::ThroughCorner;
 use crate::show::command::command;
 use crate::show::words;
-use crate::study::attractors::{Resolution, Step};
+use crate::study::attractors::{AttractorsError, Resolution, Step};
 use crate::study::cam::CamSheet;
 use crate::study::design::contact::{Contact, Separation};
 use crate::study::design::{Asked, Design, design, known};
-use crate::study::speeds::{Speeds, speeds, usual_range};
+use crate::study::speeds::{SpeedSurvey, speeds, usual_range};
+use crate::study::survey::{Over, Spacing};
 use crate::study::verify::{External, Tally, Verification, verify_watched};
 
 /// A report on one model; serializes to the document `corner-impact/report/1`.
@@ -53,7 +54,7 @@ pub struct Report {
     /// The model.
     pub parsed: Model,
     /// What the follower does at other speeds, or why that is not known.
-    pub speeds: Result<Speeds, String>,
+    pub speeds: Result<SpeedSurvey, String>,
     /// Where its impacts fall over these speeds: the picture of the answer.
     pub overview: Option<Plate>,
     /// What cam and follower bear over the range; none where a run cannot go on.
@@ -224,8 +225,10 @@ impl Report {
         };
         let range = rpm.map_or_else(|| usual_range(model), Ok)?;
         let (count, starts) = if is_paper { PAPERS_SPEEDS } else { SPEEDS };
-        let resolution = Resolution::new(Step::for_speeds(range, count), starts);
-        let speeds = speeds(model, range, &resolution, &part(HELD, SURVEYED)).map_err(|error| error.to_string());
+        let resolution = Resolution::new(Step::for_values(range, count, Spacing::Linear), starts);
+        let surveyed = Over::speed(model, range[0]).map_err(AttractorsError::from);
+        let surveyed = surveyed.and_then(|over| speeds(&over, range, &resolution, &part(HELD, SURVEYED)));
+        let speeds = surveyed.map_err(|error| error.to_string());
         let overview = speeds.as_ref().ok().map(|found| overview(model, &cam, found));
         let attractors = speeds.as_ref().ok().map(|found| attractors(model, &cam, found));
         let asked = Asked { rpm: Some(range), speeds: LOADED, ..Asked::default() };
@@ -290,10 +293,10 @@ impl Report {
 }
 
 /// Where runs hit the cam at which speed.
-fn overview(model: &Model, cam: &Cam, found: &Speeds) -> Plate {
+fn overview(model: &Model, cam: &Cam, found: &SpeedSurvey) -> Plate {
     let figure = impacts_by_speed(found, &corner_marks(cam));
     let title = figure.title.clone();
-    let [low, high] = found.rpm;
+    let [low, high] = found.range;
     let caption = format!(
         "Where on the cam the follower of {} hits it, {low} to {high} rpm. Grey: speeds with several motions, each of which runs come to.",
         model.name
@@ -316,13 +319,13 @@ fn loads(model: &Model, found: &Design, [low, high]: [f64; 2]) -> Plate {
 }
 
 /// What runs end on, drawn.
-fn attractors(model: &Model, cam: &Cam, found: &Speeds) -> Plate {
+fn attractors(model: &Model, cam: &Cam, found: &SpeedSurvey) -> Plate {
     let figure = speeds_figure(found, &corner_marks(cam), WIDTH);
     let title = figure.title.clone();
     let caption = "What runs end on against the speed: where its impacts are on the cam, a bar for each attractor, and the share of \
                    the starts that end on it."
         .to_owned();
-    let [low, high] = found.rpm;
+    let [low, high] = found.range;
     let command = command("speeds", model, &format!("--rpm {low}:{high} --out attractors.svg"));
     Plate { id: "attractors", place: "", title, command, drawn: Ok(Drawn { figure, caption }) }
 }

@@ -5,7 +5,6 @@ use std::borrow::Cow;
 use std::fmt::{Display, Write};
 
 use crate::border_collision::EventCurve;
-use crate::diagram::{Block, Row, Section, Seen, Speeds, Starts, Sweep};
 use crate::draw::{Data, Figure};
 use crate::estimate::Estimate;
 use crate::flight::State;
@@ -16,11 +15,11 @@ use crate::orbit::long_run::LongRun;
 use crate::section::Sample;
 use crate::show::digits::Digits;
 use crate::simulate::{Event, Machine, Motion};
-use crate::study::basins::Basins;
+use crate::study::basins::{Basin, Basins, BasinsOver};
 use crate::study::chart::{Chart, Charted, class};
 use crate::study::design::loads::Loads;
-use crate::study::speeds::{At, Attractor, Speeds as Surveyed};
-use crate::study::survey::Point;
+use crate::study::speeds::{At, AttractorRow, SpeedSurvey};
+use crate::study::survey::{Axis, Beginning, Block, Found, Point, Row, Section, Seen, Sweep};
 
 /// A table in the units of a model.
 pub(crate) fn told<'a>(table: &'a str, units: &Units) -> Cow<'a, str> {
@@ -97,8 +96,8 @@ pub(crate) fn diagram(sweep: &Sweep) -> String {
         Section::Strobe(_) => "position_m,velocity_m_s",
     };
     let growth = sweep.growth.as_ref().map_or("", |_| ",lyapunov_per_revolution,lyapunov_error");
-    let motion = if matches!(sweep.starts, Starts::Found(_)) { ",attractor" } else { "" };
-    format!("rpm,revolution,{seen}{growth}{motion}\n")
+    let motion = if matches!(sweep.starts, Beginning::Found(_)) { ",attractor" } else { "" };
+    format!("{},revolution,{seen}{growth}{motion}\n", sweep.over.axis().parameter.name())
 }
 
 /// Lines of a diagram, as a worker makes them.
@@ -113,14 +112,14 @@ impl Lines {
 impl Block for Lines {
     fn push(&mut self, row: &Row) {
         let line = &mut self.0;
-        let Row { rpm, revolution, motion, seen, growth } = row;
+        let Row { value, revolution, motion, seen, growth } = row;
         let _ = match seen {
             Seen::Event(event) => {
                 let Event { cam_angle, position, velocity_before, velocity_after, .. } = event;
                 let kind = event.kind.name();
-                write!(line, "{rpm},{revolution},{cam_angle},{kind},{position},{velocity_before},{velocity_after}")
+                write!(line, "{value},{revolution},{cam_angle},{kind},{position},{velocity_before},{velocity_after}")
             }
-            Seen::Section(State { position, velocity }) => write!(line, "{rpm},{revolution},{position},{velocity}"),
+            Seen::Section(State { position, velocity }) => write!(line, "{value},{revolution},{position},{velocity}"),
         };
         if let Some(Estimate { value, error, .. }) = growth {
             let _ = write!(line, ",{value},{error}");
@@ -161,6 +160,28 @@ pub(crate) fn basins(basins: &Basins) -> String {
     lines
 }
 
+/// A line for each motion at each value: the share of the starts that end on it.
+pub(crate) fn basins_over(found: &BasinsOver) -> String {
+    let mut lines = format!(
+        "{},ending,part,revolutions,impacts,growth_rate,growth_error,starts,share,share_error,followed\n",
+        found.over.name
+    );
+    for at in &found.at {
+        let value = at.place.across();
+        for (part, it) in at.found.iter().flat_map(|found| &found.parts).enumerate() {
+            let (name, period, growth) = (it.ending.kind(), it.ending.period(), it.ending.growth());
+            let (turns, impacts) = (cell(period.map(|period| period.0)), cell(period.map(|period| period.1)));
+            let Basin { starts, share: Estimate { value: share, error, .. }, followed, .. } = it;
+            let (rate, rate_error) = (growth.value, growth.error);
+            let _ = writeln!(
+                lines,
+                "{value},{name},{part},{turns},{impacts},{rate},{rate_error},{starts},{share},{error},{followed}"
+            );
+        }
+    }
+    lines
+}
+
 /// The columns of what a run comes to; no cell is empty, so that numerical programs read all but the class.
 const POINT: &str =
     "class,revolutions,impacts,growth_rate,growth_error,impact_speed_m_s,impacts_per_revolution,followed\n";
@@ -189,45 +210,47 @@ pub(crate) fn chart(found: &Charted) -> String {
     lines
 }
 
-/// A line for each speed: what a run comes to there.
-pub(crate) fn one_row(speeds: &Speeds, points: &[Result<Point, String>]) -> String {
-    let mut lines = format!("rpm,{POINT}");
-    for (index, point) in points.iter().enumerate() {
-        let _ = write!(lines, "{},", speeds.value(index));
+/// A line for each value: what a run comes to there.
+pub(crate) fn one_row(over: &Axis, points: &Found<Point>) -> String {
+    let mut lines = format!("{},{POINT}", over.parameter.name());
+    for (value, point) in over.values.iter().zip(points) {
+        let _ = write!(lines, "{value},");
         self::point(&mut lines, point);
     }
     lines
 }
 
 /// A line for each revolution of a sweep: what follower and cam bear in it.
-pub(crate) fn loads(sweep: &[Vec<Loads>]) -> String {
-    let mut lines = String::from("rpm,revolution,impact_speed_m_s,gap_m,off_cam_share,energy_lost_j,largest_force_n\n");
-    for (revolution, Loads { rpm, impact_speed, gap, off_cam, energy, force, .. }) in
-        sweep.iter().flat_map(|speed| speed.iter().enumerate())
+pub(crate) fn loads(over: &str, sweep: &[Vec<Loads>]) -> String {
+    let mut lines = format!("{over},revolution,impact_speed_m_s,gap_m,off_cam_share,energy_lost_j,largest_force_n\n");
+    for (revolution, Loads { place, impact_speed, gap, off_cam, energy, force, .. }) in
+        sweep.iter().flat_map(|at| at.iter().enumerate())
     {
-        let _ = writeln!(lines, "{rpm},{revolution},{impact_speed},{gap},{off_cam},{energy},{force}");
+        let value = place.across();
+        let _ = writeln!(lines, "{value},{revolution},{impact_speed},{gap},{off_cam},{energy},{force}");
     }
     lines
 }
 
-/// What each attractor is at each speed of the grid.
-pub(crate) fn speeds(found: &Surveyed) -> String {
-    let mut lines = String::from(
-        "rpm,attractor,kind,revolutions,impacts,growth_rate,growth_error,share,share_error,coexisting,followed\n",
+/// What each attractor is at each value of the grid.
+pub(crate) fn speeds(found: &SpeedSurvey) -> String {
+    let mut lines = format!(
+        "{},attractor,kind,revolutions,impacts,growth_rate,growth_error,share,share_error,coexisting,followed\n",
+        found.over.name
     );
-    let mut all: Vec<(&Attractor, &At)> =
+    let mut all: Vec<(&AttractorRow, &At)> =
         found.attractors.iter().flat_map(|attractor| attractor.at.iter().map(move |at| (attractor, at))).collect();
-    all.sort_by(|(_, one), (_, two)| one.rpm.total_cmp(&two.rpm));
+    all.sort_by(|(_, one), (_, two)| one.value().total_cmp(&two.value()));
     for (attractor, at) in &all {
-        let coexisting = all.iter().filter(|(_, other)| other.rpm == at.rpm).count();
+        let value = at.value();
+        let coexisting = all.iter().filter(|(_, other)| other.value() == value).count();
         let (period, growth) = (at.ending.period(), at.ending.growth());
         let (turns, impacts) = (cell(period.map(|period| period.0)), cell(period.map(|period| period.1)));
         let (rate, error, followed) = (growth.value, growth.error, at.followed);
-        let (rpm, id, kind, share, share_error) =
-            (at.rpm, &attractor.id, at.ending.kind(), at.share.value, at.share.error);
+        let (id, kind, share, share_error) = (&attractor.id, at.ending.kind(), at.share.value, at.share.error);
         let _ = writeln!(
             lines,
-            "{rpm},{id},{kind},{turns},{impacts},{rate},{error},{share},{share_error},{coexisting},{followed}"
+            "{value},{id},{kind},{turns},{impacts},{rate},{error},{share},{share_error},{coexisting},{followed}"
         );
     }
     lines

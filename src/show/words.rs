@@ -23,8 +23,8 @@ use crate::orbit::long_run::{Kind, LongRun};
 use crate::published::Verdict;
 use crate::show::block::{Mark, Symbol, Words, words};
 use crate::show::digits::Digits;
-use crate::study::attractors::{Cause, Change};
-use crate::study::speeds::Attractor;
+use crate::study::attractors::{Cause, Transition};
+use crate::study::speeds::AttractorRow;
 use crate::study::survey::Wandering;
 
 /// A route's name.
@@ -425,14 +425,14 @@ pub(crate) fn transient_chaos(wandering: &Wandering) -> Option<String> {
     })
 }
 
-/// An attractor over a range of speeds.
-pub(crate) fn attractor(attractor: &Attractor) -> String {
-    motion(attractor.kind, attractor.revolutions, attractor.impacts)
+/// An attractor over a range.
+pub(crate) fn attractor(row: &AttractorRow) -> String {
+    motion(row.kind, row.revolutions, row.impacts)
 }
 
 /// What an attractor begins or ends with.
-pub(crate) fn change(change: &Change) -> String {
-    match change.cause {
+pub(crate) fn transition(transition: &Transition) -> String {
+    match transition.cause {
         Cause::Fold => "fold".into(),
         Cause::SymmetryBreaking => "symmetry breaking".into(),
         Cause::Flip => "flip".into(),

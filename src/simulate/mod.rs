@@ -16,11 +16,13 @@
 //! | `again` | a settled motion's next impact, one turn on: checked, not searched |
 //! | `sticking` | infinitely many impacts, contact, release |
 //! | `variation` | how a small deviation is carried along |
+//! | `growth` | how fast one grows |
 
 mod again;
 mod ahead;
 mod contact;
 mod event;
+mod growth;
 mod leap;
 mod motion;
 mod sticking;
@@ -42,6 +44,7 @@ use crate::tolerance;
 use again::Turn;
 use ahead::{Ahead, Passage};
 pub use event::{Event, EventKind, Met, Observer, SimulateError, Unobserved, Work};
+pub use growth::{Record, growth};
 use motion::{Chatter, Known, Stopped};
 pub use motion::{Goal, Motion};
 pub use sticking::accumulation;

@@ -1,11 +1,11 @@
 //! Where orbits go when a number changes: branches of them, the points that they pass, and what runs settle on.
 
 use super::{StudyError, inside, machine};
-use crate::diagram::settled_impacts;
 use crate::model::Model;
 use crate::orbit::branch::{Branch, Following, FoundBranches, crossing, doubled};
 use crate::orbit::{Family, Parameter, Search, search};
 use crate::progress::{Pieces, Watch};
+use crate::study::survey::settled_impacts;
 
 /// The branches through the orbits of one speed.
 #[derive(Clone, Debug)]

@@ -1,73 +1,61 @@
-//! What the motion settles on, speed by speed.
+//! What the motion settles on, value by value of the speed or of another number.
 
-use std::f64::consts::TAU;
 use std::time::Instant;
 
-use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::diagram::{Block, Following, Places, Section, Speeds, Start, Sweep, SweepError, Tally};
 use crate::draw::{Cloud, Density};
-use crate::model::Model;
 use crate::orbit::long_run::Budget;
-use crate::progress::{Pieces, Watch};
-use crate::simulate::{Machine, Motion, SimulateError, angular_velocity};
-use crate::study::attractors::Here;
+use crate::progress::Watch;
+use crate::simulate::{Machine, Motion, SimulateError};
+use crate::study::attractors::AttractorsAtValue;
 use crate::study::design::loads::Loads;
-use crate::study::survey::{Point, Sample};
+use crate::study::survey::{
+    Block, Following, Found, Places, Point, Sample, Section, Start, Survey, Sweep, SweepError, Tally,
+};
 
-/// A motion on each of the attractors of `machine` that are found at its speed alone.
+/// A motion on each of the attractors of `machine`, as they are found without a look at other machines.
 pub fn on_attractors(machine: &Machine, sample: &Sample, budget: Budget) -> Result<Vec<Motion>, SimulateError> {
-    let rpm = machine.angular_velocity() * 60.0 / TAU;
-    let mut motions: Vec<Motion> =
-        Here::new(machine, rpm, sample, budget)?.parts.into_iter().map(|part| part.motion).collect();
+    let found = AttractorsAtValue::new(machine, sample, budget)?;
+    let mut motions: Vec<Motion> = found.attractors.into_iter().map(|attractor| attractor.motion).collect();
     motions.iter_mut().for_each(|motion| motion.revolution = 0);
     Ok(motions)
 }
 
-/// What a run from `start` comes to at each of `speeds`, side by side on `threads` threads, for `None` on one for each core.
+/// What a run from `start` comes to at each value, side by side on `threads` threads, for `None` on one for each core.
 pub fn one_row(
-    machine: &Machine,
-    speeds: &Speeds,
+    over: &Survey,
     start: Start,
     budget: Budget,
     threads: Option<usize>,
     watch: &dyn Watch,
-) -> Result<Vec<Result<Point, String>>, SweepError> {
-    let pieces = Pieces::new(watch, "", speeds.count);
-    let one = |index: usize| {
-        let machine = machine.at_speed(angular_velocity(speeds.value(index)));
-        let run = start.motion(&machine).and_then(|motion| Point::of(&machine, motion, budget));
-        run.map_err(|error| error.to_string())
-    };
-    let each = |index: usize| pieces.each(|| one(index));
-    Ok(crate::diagram::threads(threads)?.install(|| (0..speeds.count).into_par_iter().map(each).collect()))
+) -> Result<Found<Point>, SweepError> {
+    over.run(threads, watch, |_, machine| Point::from(machine, start, budget))
 }
 
-/// The loads of each recorded revolution of a run from `start` at each of `speeds`; an error where it cannot be run.
+/// The loads of each recorded revolution of a run from `start` at each value; an error where it cannot be run.
 pub fn loads(
-    model: &Model,
-    sweep: &Sweep,
+    over: &Survey,
     start: Start,
     budget: Budget,
     threads: Option<usize>,
     watch: &dyn Watch,
 ) -> Result<Vec<Vec<Loads>>, SweepError> {
-    let (machine, speeds) = (&sweep.machine, &sweep.speeds);
-    let pieces = Pieces::new(watch, "", speeds.count);
-    let of_speed = |rpm: f64| -> Result<Vec<Loads>, SimulateError> {
-        let machine = machine.at_speed(angular_velocity(rpm));
-        let mut motion = start.motion(&machine)?;
-        machine.revolve(&mut motion, budget.transient)?;
-        let found = Loads::recorded(model, &machine, motion, budget.record)?;
+    let found = over.run(threads, watch, |index, machine| {
+        let model = over.model(index).map_err(|error| error.to_string())?;
+        let recorded = || {
+            let mut motion = start.motion(machine)?;
+            machine.revolve(&mut motion, budget.transient)?;
+            Loads::recorded(&model, machine, motion, budget.record)
+        };
+        let loads = recorded().map_err(|error: SimulateError| error.to_string())?;
         // As it was asked for, and not as the angular velocity has it.
-        Ok(found.into_iter().map(|loads| Loads { rpm, ..loads }).collect())
+        Ok(loads.into_iter().map(|loads| Loads { place: over.place(index), ..loads }).collect())
+    });
+    let one = |(index, found): (usize, Result<Vec<Loads>, String>)| {
+        found.map_err(|error| SweepError::Run { place: over.words(index), error })
     };
-    let one = |index: usize| {
-        let rpm = speeds.value(index);
-        pieces.each(|| of_speed(rpm)).map_err(|error| SweepError::Simulate { rpm, error })
-    };
-    crate::diagram::threads(threads)?.install(|| (0..speeds.count).into_par_iter().map(one).collect())
+    found?.into_iter().enumerate().map(one).collect()
 }
 
 /// What a sweep came to: the document of `diagram --summary`.
@@ -96,12 +84,12 @@ impl Swept {
     ) -> Result<Self, E> {
         let cores = || std::thread::available_parallelism().map_or(1, usize::from);
         let threads = match sweep.following {
-            Following::Nothing => threads.unwrap_or_else(cores).min(sweep.speeds.count),
+            Following::Nothing => threads.unwrap_or_else(cores).min(sweep.over.count()),
             Following::Up | Following::Down => 1,
         };
         let clock = Instant::now();
         let tally = sweep.run(Some(threads), |index, block| {
-            watch.at("", index as u64, sweep.speeds.count as u64);
+            watch.at("", index as u64, sweep.over.count() as u64);
             take(block)
         })?;
         let (schema, wall_s) = ("corner-impact/diagram/1", clock.elapsed().as_secs_f64());
@@ -114,22 +102,22 @@ impl Swept {
 pub struct Shown {
     in_degrees: bool,
     cloud: Cloud,
-    /// Speed, rpm, and Lyapunov exponent per revolution, of each speed that has one.
+    /// The value, and the Lyapunov exponent per revolution, of each that has one.
     pub exponents: Vec<[f64; 2]>,
 }
 
 impl Shown {
     /// Nothing of a sweep yet.
     pub fn new(sweep: &Sweep) -> Self {
-        let (low, high) = (sweep.speeds.low, sweep.speeds.high);
+        let [low, high] = sweep.over.axis().ends();
         let cloud = Cloud::new(if high > low { [low, high] } else { [0.99 * low, 1.01 * low] });
         Self { in_degrees: sweep.section == Section::Impacts, cloud, exponents: Vec::new() }
     }
 
     /// Adds what was found.
     pub fn take(&mut self, found: &Places) {
-        for [rpm, place] in &found.places {
-            self.cloud.push(*rpm, if self.in_degrees { place.to_degrees() } else { *place });
+        for [value, place] in &found.places {
+            self.cloud.push(*value, if self.in_degrees { place.to_degrees() } else { *place });
         }
         let is_new = |new: &[f64; 2]| self.exponents.last().is_none_or(|last| last[0] != new[0]);
         self.exponents.extend(found.exponent.filter(is_new));

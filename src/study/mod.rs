@@ -82,11 +82,17 @@ pub enum StudyError {
         cam_angle.to_degrees()
     )]
     NoImpact { waited: u64, impacts: u64, cam_angle: f64, revolution: u64 },
+    /// What varies is not the speed, and no one speed was named.
+    #[error("--over needs the one speed at which the number varies: give --rpm")]
+    OneSpeed,
     /// No speeds were named, and the machine has none of its own.
     #[error(
         "no range of speeds: the follower leaves the cam at every speed or at none, and the model has no [study]; give --rpm"
     )]
     NoSpeeds,
+    /// Starts cannot be run.
+    #[error(transparent)]
+    Basins(#[from] basins::GridError),
     /// No starts were named, and the machine has none of its own.
     #[error("no range to put starts in: give --position and --velocity")]
     NoStarts,

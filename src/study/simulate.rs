@@ -7,13 +7,12 @@ use std::time::{Duration, Instant};
 use serde::Serialize;
 
 use super::{StudyError, machine};
-use crate::diagram::Start;
 use crate::known::Known;
 use crate::model::Model;
 use crate::orbit::long_run::{Budget, Kind, LongRun};
 use crate::progress::Watch;
 use crate::simulate::{Event, EventKind, Goal, Machine, Motion};
-use crate::study::survey::{Part, long_run};
+use crate::study::survey::{Attractor, Start, long_run};
 
 /// A machine at a speed, and the motion that begins there.
 #[derive(Clone, Debug)]
@@ -111,8 +110,8 @@ pub struct Lyapunov {
 }
 
 impl Lyapunov {
-    fn of(part: Part, budget: Budget) -> Self {
-        let (followed, ending) = (part.followed(), part.ending);
+    fn of(attractor: Attractor, budget: Budget) -> Self {
+        let (followed, ending) = (attractor.followed(), attractor.ending);
         let (growth, kind) = (ending.growth(), ending.kind());
         let lyapunov_standard_error = ending.of_growth().map(|_| growth.error).filter(|error| error.is_finite());
         let (lyapunov_per_revolution, known) = (growth.value, Known::Sampled);

@@ -1,4 +1,5 @@
-//! What a machine does at which speed: its attractors, where each begins and ends, and how many starts end on each.
+//! What a machine does at which speed, or at which value of another number: its attractors, where each begins and ends, and how many starts
+//! end on each.
 
 use std::collections::BTreeMap;
 
@@ -18,60 +19,70 @@ use crate::orbit::cycle::own_speed;
 use crate::orbit::long_run::{Budget, Kind, LongRun};
 use crate::progress::Watch;
 use crate::simulate::{EventKind, Machine, SimulateError, angular_velocity};
-use crate::study::attractors::rows::Asked;
-use crate::study::attractors::{Attractors, AttractorsError, Cause, Change, Grid, Here, Resolution, Row, attractors};
+use crate::study::attractors::{
+    Asked, AttractorFamily, Attractors, AttractorsAtValue, AttractorsError, Cause, Grid, GridValue, Resolution,
+    Transition, attractors,
+};
 use crate::study::compared;
 use crate::study::design::contact::{Contact, Separation};
 use crate::study::design::known;
 use crate::study::machine;
-use crate::study::survey::{Part, Sample, Wandering};
+use crate::study::survey::{Attractor, Over, Place, Sample, Spacing, Varied, Wandering};
 use crate::tolerance;
 
-/// What a machine does over a range of speeds: the document of `speeds --json`.
+/// What a machine does over a range of speeds, or of values of another number: the document of `speeds --json`.
 #[derive(Clone, Debug)]
-pub struct Speeds {
+pub struct SpeedSurvey {
     /// The model's name.
     pub model: String,
-    /// The range, rpm.
-    pub rpm: [f64; 2],
-    /// From one speed to the next, rpm.
+    /// What varies.
+    pub over: Varied,
+    /// The range; of the speed, rpm.
+    pub range: [f64; 2],
+    /// From one value to the next; of a logarithmic grid in decades.
     pub step: f64,
-    /// The starts at each speed.
+    /// The starts at each value.
     pub sample: Sample,
     /// For how long runs were followed.
     pub budget: Budget,
     /// Whether runs began on the stable orbits of two impacts in one revolution, too.
     pub two_impacts: bool,
     /// Where the follower first leaves the cam above the lowest speed, by the force between them; its error has what a measured cam leaves open.
-    pub separation: Separation,
+    /// None where the speed does not vary.
+    pub separation: Option<Separation>,
     /// How well the cam is known, if it is measured.
     pub measured: Option<Measured>,
-    /// The attractors, by rising speed.
-    pub attractors: Vec<Attractor>,
+    /// The attractors, by rising value.
+    pub attractors: Vec<AttractorRow>,
     /// Where there are several.
     pub coexistence: Vec<Coexistence>,
-    /// Corner impacts of its attractors at which there is danger, by rising speed.
+    /// Corner impacts of its attractors at which there is danger, by rising value.
     pub dangers: Vec<PassedDanger>,
-    /// Speeds at which starts leave the cam for good, by rising speed, and how many do.
+    /// Values at which starts leave the cam for good, by rising value, and how many do.
     pub off: Vec<Off>,
-    /// How many speeds of the range were run.
+    /// How many values of the range were run.
     pub run: usize,
-    /// Speeds at which nothing, or not every start, could be run.
+    /// Values at which nothing, or not every start, could be run.
     pub failed: Vec<Failed>,
 }
 
-document!(Speeds as it {
+document!(SpeedSurvey as it {
     schema: "corner-impact/speeds/1",
     model: it.model,
-    rpm: it.rpm,
+    rpm: it.over.rpm.map_or(it.range, |rpm| [rpm; 2]),
+    over if_any: it.over.rpm.map(|_| &it.over.name),
+    range if_any: it.over.rpm.map(|_| it.range),
     known: Known::Sampled,
-    step_rpm: it.step,
+    step_rpm if_any: it.over.is_speed().then_some(it.step),
+    step if_any: it.over.rpm.map(|_| it.step),
+    logarithmic if_any: (it.over.spacing == Spacing::Logarithmic).then_some(true),
     starts: it.sample.count(),
     given if_any: matches!(it.sample, Sample::Given(_)).then_some(true),
     budget: it.budget,
     two_impacts: it.two_impacts,
     missed_below_share: it.missed(),
-    detachment_rpm: it.detachment().map(|[rpm, _]| rpm),
+    detachment_rpm: it.detachment().filter(|_| it.over.is_speed()).map(|[rpm, _]| rpm),
+    detachment if_any: it.detachment().filter(|_| !it.over.is_speed()).map(|[value, _]| value),
     detachment_error_rpm if_any: it.detachment_error(),
     measured if_any: it.measured,
     attractors: it.attractors,
@@ -81,65 +92,67 @@ document!(Speeds as it {
     failed: it.failed,
 });
 
-/// The share of the sample's starts that leave the cam for good at a speed.
+/// The share of the sample's starts that leave the cam for good at a value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Off {
-    /// rpm.
-    pub rpm: f64,
+    /// Where.
+    pub at: Place,
     /// Their share.
     pub share: Estimate,
 }
 
-document!(Off as it { speed_rpm: it.rpm, share: it.share.value, error: it.share.error });
+document!(Off as it { speed_rpm: it.at.rpm, value if_any: it.at.value, share: it.share.value, error: it.share.error });
 
 /// Which starts leave the cam for good: a flight that never comes down to it again ends on no attractor that has impacts.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct OffForGood {
     /// In a sentence.
     pub words: String,
-    /// At each speed at which there are any.
+    /// At each value at which there are any.
     pub shares: Vec<Off>,
 }
 
-/// An attractor over a range of speeds.
+/// An attractor over a range of values.
 #[derive(Clone, Debug)]
-pub struct Attractor {
+pub struct AttractorRow {
     /// Its name.
     pub id: String,
-    /// What it is at most of the speeds.
+    /// What it is at most of the values.
     pub kind: Kind,
-    /// Turns of the cam in one period, where it is the same at every speed.
+    /// Turns of the cam in one period, where it is the same at every value.
     pub revolutions: Option<u64>,
     /// Impacts in one period, likewise.
     pub impacts: Option<u64>,
-    /// Lowest and highest speed, rpm.
-    pub rpm: [f64; 2],
-    /// What it begins with at the lowest speed; nothing at the end of the range.
-    pub birth: Option<Change>,
+    /// Where it is lowest and highest.
+    pub ends: [Place; 2],
+    /// What it begins with at the lowest value; nothing at the end of the range.
+    pub birth: Option<Transition>,
     /// What it ends with at the highest.
-    pub death: Option<Change>,
-    /// What it is at each speed of the grid, by rising speed.
+    pub death: Option<Transition>,
+    /// What it is at each value of the grid, by rising value.
     pub at: Vec<At>,
 }
 
-document!(Attractor as it {
+document!(AttractorRow as it {
     id: it.id,
     kind: it.kind,
     revolutions: it.revolutions,
     impacts: it.impacts,
-    from_rpm: it.rpm[0],
-    to_rpm: it.rpm[1],
+    from_rpm: it.ends[0].rpm,
+    to_rpm: it.ends[1].rpm,
+    from if_any: it.ends[0].value,
+    to if_any: it.ends[1].value,
     birth: it.birth,
     death: it.death,
     rests: it.rests(),
     shares: it.at,
 });
 
-/// An attractor at one speed.
+/// An attractor at one value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct At {
-    /// rpm.
-    pub rpm: f64,
+    /// Where.
+    pub place: Place,
     /// The share of the sample's starts that end on it. They are spread better than by chance, so that its error errs on the
     /// large side.
     pub share: Estimate,
@@ -156,7 +169,8 @@ pub struct At {
 }
 
 document!(At as it {
-    speed_rpm: it.rpm,
+    speed_rpm: it.place.rpm,
+    value if_any: it.place.value,
     share: it.share.value,
     error: it.share.error,
     kind: it.ending.kind(),
@@ -182,24 +196,30 @@ pub struct Rests {
     pub rate_error: Option<f64>,
 }
 
-/// Two or more attractors at the same speeds, each of which runs have come to.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+/// Two or more attractors at the same values, each of which runs have come to.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Coexistence {
-    /// Lowest speed, rpm.
-    pub from_rpm: f64,
-    /// Highest speed, rpm.
-    pub to_rpm: f64,
+    /// Where they are lowest and highest.
+    pub ends: [Place; 2],
     /// Their names.
     pub attractors: Vec<String>,
 }
+
+document!(Coexistence as it {
+    from_rpm: it.ends[0].rpm,
+    to_rpm: it.ends[1].rpm,
+    from if_any: it.ends[0].value,
+    to if_any: it.ends[1].value,
+    attractors: it.attractors,
+});
 
 /// A corner impact that attractors pass, begin or end with, and at which there is danger.
 #[derive(Clone, Debug)]
 pub struct PassedDanger {
     /// The attractors' names.
     pub attractors: Vec<String>,
-    /// rpm.
-    pub speed_rpm: f64,
+    /// Where.
+    pub at: Place,
     /// Where the corner is, rad.
     pub cam_angle: f64,
     /// By the local map of the corner impact.
@@ -208,28 +228,30 @@ pub struct PassedDanger {
 
 document!(PassedDanger as it {
     attractors: it.attractors,
-    speed_rpm: it.speed_rpm,
+    speed_rpm: it.at.rpm,
+    value if_any: it.at.value,
     cam_angle_rad: it.cam_angle,
     danger: it.danger,
 });
 
-/// A speed at which nothing, or not every start, could be run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+/// A value at which nothing, or not every start, could be run.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Failed {
-    /// rpm.
-    pub speed_rpm: f64,
+    /// Where.
+    pub at: Place,
     /// How many starts could not be run; none are named where nothing could.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub starts: Option<usize>,
     /// Why.
     pub why: String,
 }
 
+document!(Failed as it { speed_rpm: it.at.rpm, value if_any: it.at.value, starts if_any: it.starts, why: it.why });
+
 /// -ln(0.05): the mean number of starts in a basin that is hit by one of them with 95 %.
 const HIT: f64 = 2.995_732_273_553_991;
 
-impl Speeds {
-    /// The share of the starts' rectangle that a basin has which one of the starts of a speed hits with 95 %, if they were drawn by
+impl SpeedSurvey {
+    /// The share of the starts' rectangle that a basin has which one of the starts of a value hits with 95 %, if they were drawn by
     /// chance.
     pub fn missed(&self) -> f64 {
         (HIT / self.sample.count() as f64).min(1.0)
@@ -241,22 +263,37 @@ impl Speeds {
         let all = self.off.iter().filter(|off| off.share.value == 1.0).count();
         let words = match (all, self.off.len()) {
             (all, _) if all == self.run => {
-                "Every start leaves the cam for good, at every speed that was run: nothing brings the follower back."
-                    .into()
+                let value = self.over.value();
+                format!(
+                    "Every start leaves the cam for good, at every {value} that was run: nothing brings the follower back."
+                )
             }
-            (_, some) => format!(
-                "Starts leave the cam for good at {some} of {} speeds, {} to {} rpm: all of them at {all}. Nothing brings the follower back.",
-                self.run, first.rpm, last.rpm
-            ),
+            (_, some) => {
+                let range = self.over.words(format!("{} to {}", first.at.across(), last.at.across()));
+                format!(
+                    "Starts leave the cam for good at {some} of {} {}s, {range}: all of them at {all}. Nothing brings the follower back.",
+                    self.run,
+                    self.over.value(),
+                )
+            }
         };
         Some(OffForGood { words, shares: self.off.clone() })
     }
 
-    /// The speed at which the follower first leaves the cam, and how far that may be off, rpm; none outside of the range, or where there is no
-    /// such speed.
+    /// The value at which the follower first leaves the cam, or ceases to, and how far that may be off; none outside of the range, or where
+    /// there is no such value.
     pub fn detachment(&self) -> Option<[f64; 2]> {
-        let Separation::At { rpm, error, .. } = self.separation else { return None };
-        (self.rpm[0] <= rpm && rpm <= self.rpm[1]).then_some([rpm, error])
+        match self.separation {
+            Some(Separation::At { rpm, error, .. }) => {
+                (self.range[0] <= rpm && rpm <= self.range[1]).then_some([rpm, error])
+            }
+            Some(_) => None,
+            None => {
+                let ends = self.attractors.iter().flat_map(|row| row.birth.iter().chain(&row.death));
+                let first = ends.filter(|end| end.cause == Cause::Detachment).map(|end| (end.value(), end.bracket));
+                first.map(|(value, [low, high])| [value, 0.5 * (high - low)]).next()
+            }
+        }
     }
 
     /// How far a measured cam may have moved the detachment, rpm; none of another cam, or where that is not known.
@@ -265,18 +302,30 @@ impl Speeds {
         self.detachment().map(|[_, error]| error).filter(|error| error.is_finite())
     }
 
-    /// The fastest impact that was seen on an attractor, m/s relative to the cam, and at which speed, rpm.
+    /// The fastest impact that was seen on an attractor, m/s relative to the cam, and at which value.
     pub fn hardest(&self) -> Option<[f64; 2]> {
         let all = self.attractors.iter().flat_map(|attractor| &attractor.at);
-        let all = all.filter_map(|at| Some([at.impact_speed?, at.rpm]));
+        let all = all.filter_map(|at| Some([at.impact_speed?, at.value()]));
         all.max_by(|one, other| one[0].total_cmp(&other[0]))
     }
 }
 
-impl Attractor {
+impl Coexistence {
+    /// The lowest and the highest value.
+    pub fn range(&self) -> [f64; 2] {
+        self.ends.map(|end| end.across())
+    }
+}
+
+impl AttractorRow {
+    /// The lowest and the highest value.
+    pub fn range(&self) -> [f64; 2] {
+        self.ends.map(|end| end.across())
+    }
+
     /// How often it rests, if runs of it wandered for long enough to tell.
     pub fn rests(&self) -> Option<Rests> {
-        /// Revolutions: what the runs of one speed are given.
+        /// Revolutions: what the runs of one value are given.
         const TOLD: u64 = 100_000;
         let is_wandering = |at: &&At| matches!(at.ending, LongRun::Chaotic(_)) || at.ending.is_long();
         let all = self.at.iter().filter(is_wandering).fold(Wandering::default(), |all, at| all.with(at.wandering));
@@ -310,38 +359,40 @@ fn two_digits(rpm: f64, towards: fn(f64) -> f64) -> f64 {
     towards(rpm * scale) / scale
 }
 
-/// What `model` does over a range of speeds, rpm; `watch` is told speed by speed.
+/// What a machine does over a range of speeds, rpm, or of values of another number; `watch` is told value by value.
 pub fn speeds(
-    model: &Model,
+    over: &Over<'_>,
     range: [f64; 2],
     resolution: &Resolution,
     watch: &dyn Watch,
-) -> Result<Speeds, AttractorsError> {
-    let Attractors { grid, mut rows, coexistence, separation, .. } = attractors(model, range, resolution, watch)?;
-    let lowest = machine(model, range[0])?;
+) -> Result<SpeedSurvey, AttractorsError> {
+    let Attractors { grid, mut families, coexistence, separation, .. } = attractors(over, range, resolution, watch)?;
     watch.at("what the measured cam leaves open", 0, 0);
-    let likely = Likely::of(model)?;
+    let likely = Likely::of(over.model)?;
     let noisy = likely.as_ref().filter(|likely| likely.best.is_some());
-    let separation = known(separation, noisy);
-    if let Some(likely) = noisy {
-        rows.par_iter_mut().for_each(|row| {
+    let separation = separation.map(|separation| known(separation, noisy));
+    // By another number an event moves along with the cam: how far is not known.
+    if let (Some(likely), Some(separation)) = (noisy, separation) {
+        let lowest = machine(over.model, range[0])?;
+        families.par_iter_mut().for_each(|family| {
             let errors = [0, 1].map(|side| {
-                error((&lowest, (&resolution.sample, resolution.budget)), (likely, separation), row, side, &grid)
+                error((&lowest, (&resolution.sample, resolution.budget)), (likely, separation), family, side, &grid)
             });
-            for (change, error) in row.ends.iter_mut().zip(errors) {
-                change.iter_mut().for_each(|change| change.error = error);
+            for (end, error) in family.ends.iter_mut().zip(errors) {
+                end.iter_mut().for_each(|end| end.error = error);
             }
         });
     }
     watch.at("corner impacts on the way", 0, 0);
-    let dangers = dangers(model, lowest.cam(), &rows, range);
-    let is_inside = |rpm: f64| range[0] <= rpm && rpm <= range[1];
-    let attractor = |(index, row): (usize, &Row)| {
-        let at = row.at.iter().filter_map(|(place, part)| {
-            let here = grid.get(*place)?.as_ref().ok().filter(|here| is_inside(here.rpm))?;
-            let part = here.parts.get(*part)?;
-            let machine = lowest.at_speed(angular_velocity(here.rpm));
-            Some(At::new(here, part, impacts(&machine, part).unwrap_or_default()))
+    let dangers = dangers(over, &families, range);
+    let is_inside = |at: &&GridValue| range[0] <= at.value && at.value <= range[1];
+    let row = |(index, family): (usize, &AttractorFamily)| {
+        let at = family.at.iter().filter_map(|(place, attractor)| {
+            let at = grid.get(*place).filter(is_inside)?;
+            let here = at.found.as_ref().ok()?;
+            let attractor = here.attractors.get(*attractor)?;
+            let impacts = over.machine(at.value).ok().and_then(|machine| impacts(&machine, attractor).ok());
+            Some(At::new(over.place(at.value), here, attractor, impacts.unwrap_or_default()))
         });
         let at: Vec<At> = at.collect();
         let only = |number: fn((u64, u64)) -> u64| {
@@ -349,31 +400,32 @@ pub fn speeds(
             let first = numbers.next()??;
             numbers.all(|other| other == Some(first)).then_some(first)
         };
-        Attractor {
+        AttractorRow {
             id: name(index),
-            kind: most(&at).unwrap_or_else(|| row.kind(&grid)),
-            revolutions: row.period().map_or_else(|| only(|period| period.0), |period| Some(period.0)),
-            impacts: row.period().map_or_else(|| only(|period| period.1), |period| Some(period.1)),
-            rpm: row.rpm,
-            birth: row.ends[0].clone(),
-            death: row.ends[1].clone(),
+            kind: most(&at).unwrap_or_else(|| family.kind(&grid)),
+            revolutions: family.period().map_or_else(|| only(|period| period.0), |period| Some(period.0)),
+            impacts: family.period().map_or_else(|| only(|period| period.1), |period| Some(period.1)),
+            ends: family.range.map(|end| over.place(end)),
+            birth: family.ends[0].clone(),
+            death: family.ends[1].clone(),
             at,
         }
     };
-    let run = || grid.iter().filter_map(|found| found.as_ref().ok()).filter(|here| is_inside(here.rpm));
-    let off = run().filter(|here| here.off_for_good > 0);
-    let off = off.map(|here| Off { rpm: here.rpm, share: Estimate::share(here.off_for_good, here.sampled) }).collect();
-    let failed = |found: &Result<Here, (f64, SimulateError)>| {
-        let (speed_rpm, starts, error) = match found {
-            Err((rpm, error)) => (*rpm, None, *error),
-            Ok(here) => (here.rpm, Some(here.failed.len()), here.failed.first()?.1),
+    let run = || grid.iter().filter(is_inside).filter_map(|at| Some((over.place(at.value), at.found.as_ref().ok()?)));
+    let off = run().filter(|(_, here)| here.off_for_good > 0);
+    let off = off.map(|(at, here)| Off { at, share: Estimate::share(here.off_for_good, here.sampled) }).collect();
+    let failed = |at: &GridValue| {
+        let (starts, why) = match &at.found {
+            Err(error) => (None, error.to_string()),
+            Ok(here) => (Some(here.failed.len()), here.failed.first()?.1.to_string()),
         };
-        is_inside(speed_rpm).then(|| Failed { speed_rpm, starts, why: error.to_string() })
+        Some(Failed { at: over.place(at.value), starts, why })
     };
-    Ok(Speeds {
-        model: model.name.clone(),
-        rpm: range,
-        step: resolution.step.rpm(),
+    Ok(SpeedSurvey {
+        model: over.model.name.clone(),
+        over: over.varied(resolution.step.spacing),
+        range,
+        step: resolution.step.width(),
         sample: resolution.sample.clone(),
         budget: resolution.budget,
         two_impacts: resolution.two_impacts,
@@ -381,21 +433,20 @@ pub fn speeds(
         off,
         run: run().count(),
         measured: likely.map(|likely| likely.measured),
-        attractors: rows.par_iter().enumerate().map(attractor).collect(),
+        attractors: families.par_iter().enumerate().map(row).collect(),
         coexistence: coexistence
             .iter()
-            .map(|over| Coexistence {
-                from_rpm: over.rpm[0],
-                to_rpm: over.rpm[1],
-                attractors: over.rows.iter().map(|index| name(*index)).collect(),
+            .map(|several| Coexistence {
+                ends: several.range.map(|end| over.place(end)),
+                attractors: several.families.iter().map(|index| name(*index)).collect(),
             })
             .collect(),
         dangers,
-        failed: grid.iter().filter_map(failed).collect(),
+        failed: grid.iter().filter(is_inside).filter_map(failed).collect(),
     })
 }
 
-/// The kind that an attractor is at most speeds of the range.
+/// The kind that an attractor is at most values of the range.
 fn most(at: &[At]) -> Option<Kind> {
     let mut counts: BTreeMap<Kind, usize> = BTreeMap::new();
     at.iter().for_each(|at| *counts.entry(at.ending.kind()).or_default() += 1);
@@ -403,28 +454,31 @@ fn most(at: &[At]) -> Option<Kind> {
 }
 
 /// The dangers at corner impacts that attractors pass, begin or end with.
-fn dangers(model: &Model, cam: &Cam, rows: &[Row], range: [f64; 2]) -> Vec<PassedDanger> {
-    let mut places: Vec<(CornerImpact, Vec<String>)> = Vec::new();
-    for (index, row) in rows.iter().enumerate() {
-        let found = row.corner_impacts(range).filter_map(|point| on_branch(cam, point)?.confirmed(model, cam).ok());
-        for at in found {
-            let same = |other: &CornerImpact| {
-                other.corner.angle == at.corner.angle
-                    && (other.period - at.period).abs() <= tolerance::SAME_ORBIT.value * at.period
+fn dangers(over: &Over<'_>, families: &[AttractorFamily], range: [f64; 2]) -> Vec<PassedDanger> {
+    let mut found: Vec<(f64, CornerImpact, Vec<String>)> = Vec::new();
+    for (index, family) in families.iter().enumerate() {
+        for point in family.corner_impacts(range) {
+            let Ok((model, cam)) = over.model(point.value) else { continue };
+            let Some(at) = on_branch(&cam, point).and_then(|at| at.confirmed(&model, &cam).ok()) else { continue };
+            let value = if over.is_speed() { at.speed_rpm() } else { point.value };
+            let same = |(other, known, _): &&mut (f64, CornerImpact, Vec<String>)| {
+                known.corner.angle == at.corner.angle
+                    && (other - value).abs() <= tolerance::SAME_ORBIT.value * value.abs()
             };
-            match places.iter_mut().find(|(other, _)| same(other)) {
-                Some((_, names)) => names.push(name(index)),
-                None => places.push((at, vec![name(index)])),
+            match found.iter_mut().find(same) {
+                Some((.., names)) => names.push(name(index)),
+                None => found.push((value, at, vec![name(index)])),
             }
         }
     }
-    places.sort_by(|(one, _), (other, _)| other.period.total_cmp(&one.period));
-    let danger = |(at, mut attractors): (CornerImpact, Vec<String>)| {
-        let danger = compared::danger(model, cam, &at)?;
+    found.sort_by(|(one, ..), (other, ..)| one.total_cmp(other));
+    let danger = |(value, at, mut attractors): (f64, CornerImpact, Vec<String>)| {
+        let (model, cam) = over.model(value).ok()?;
+        let danger = compared::danger(&model, &cam, &at)?;
         attractors.dedup();
-        Some(PassedDanger { attractors, speed_rpm: at.speed_rpm(), cam_angle: at.corner.angle, danger })
+        Some(PassedDanger { attractors, at: over.place(value), cam_angle: at.corner.angle, danger })
     };
-    places.into_par_iter().filter_map(danger).collect()
+    found.into_par_iter().filter_map(danger).collect()
 }
 
 /// How far a measured cam may have moved what an attractor begins or ends with, rpm: by the event's equations, or by runs where it is
@@ -432,18 +486,18 @@ fn dangers(model: &Model, cam: &Cam, rows: &[Row], range: [f64; 2]) -> Vec<Passe
 fn error(
     (machine, runs): (&Machine, Asked<'_>),
     (likely, separation): (&Likely, Separation),
-    row: &Row,
+    family: &AttractorFamily,
     side: usize,
     grid: &Grid,
 ) -> Option<f64> {
-    let change = row.ends[side].as_ref()?;
-    let (rpm, speed) = (change.rpm, angular_velocity(change.rpm));
+    let end = family.ends[side].as_ref()?;
+    let (rpm, speed) = (end.at.rpm, angular_velocity(end.at.rpm));
     let machine = machine.at_speed(speed);
-    let event = change.point.as_ref().and_then(|point| Event::of_point(&machine, point));
+    let event = end.point.as_ref().and_then(|point| Event::of_point(&machine, point));
     let by_equations = |moved: &(dyn Fn(&Model, &Cam) -> Option<f64> + Sync)| {
         likely.error([rpm], |model, cam| moved(model, cam).map(|rpm| [rpm])).map(|[error]| error)
     };
-    match (change.cause, event) {
+    match (end.cause, event) {
         // One speed has one error.
         (Cause::Detachment, _) => match separation {
             Separation::At { error, .. } => Some(error).filter(|error| error.is_finite()),
@@ -451,7 +505,7 @@ fn error(
         },
         (_, Some(event)) => by_equations(&|model, cam| event.moved(model, cam)),
         (Cause::Runs, None) => likely.error_by_runs(rpm, |model, cam| {
-            row.moved(&Machine::new(cam.clone(), &model.follower, speed), grid, runs, side)
+            family.moved(&Machine::new(cam.clone(), &model.follower, speed), grid, runs, side)
         }),
         _ => None,
     }
@@ -462,28 +516,33 @@ fn name(index: usize) -> String {
 }
 
 impl At {
-    fn new(here: &Here, part: &Part, impacts: Vec<[f64; 2]>) -> Self {
+    /// The value; of the speed, rpm.
+    pub fn value(&self) -> f64 {
+        self.place.across()
+    }
+
+    fn new(place: Place, here: &AttractorsAtValue, attractor: &Attractor, impacts: Vec<[f64; 2]>) -> Self {
         let impact_speed = impacts.iter().map(|[_, speed]| *speed).reduce(f64::max);
         let impact_angles = impacts.into_iter().map(|[angle, _]| angle).collect();
-        let share = Estimate::share(here.count(part), here.sampled);
-        let (rpm, ending, followed, wandering) = (here.rpm, part.ending.clone(), part.followed(), here.wandering);
-        Self { rpm, share, ending, followed, wandering, impact_angles, impact_speed }
+        let share = Estimate::share(here.count(attractor), here.sampled);
+        let (ending, followed, wandering) = (attractor.ending.clone(), attractor.followed(), here.wandering);
+        Self { place, share, ending, followed, wandering, impact_angles, impact_speed }
     }
 }
 
 /// Where the impacts of an attractor are, cam angles in rad, and how fast relative to the cam, m/s: of a period, or of as many
 /// revolutions as a picture has room for.
-fn impacts(machine: &Machine, part: &Part) -> Result<Vec<[f64; 2]>, SimulateError> {
+fn impacts(machine: &Machine, attractor: &Attractor) -> Result<Vec<[f64; 2]>, SimulateError> {
     /// Revolutions that a picture has room for.
     const SHOWN: u64 = 120;
     /// Impacts of them: before a rest there are any number.
     const MOST: usize = 600;
-    if let LongRun::Orbit(orbit) = &part.ending {
+    if let LongRun::Orbit(orbit) = &attractor.ending {
         let of =
             |impact: &crate::simulate::Event| [impact.cam_angle, (impact.velocity_before - impact.cam_velocity).abs()];
         return Ok(orbit.impacts().map(of).collect());
     }
-    let mut motion = machine.resume(&part.motion)?;
+    let mut motion = machine.resume(&attractor.motion)?;
     let mut impacts = Vec::new();
     machine.watch(&mut motion, SHOWN, |event| {
         if event.kind == EventKind::Impact && impacts.len() < MOST {

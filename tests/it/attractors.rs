@@ -16,9 +16,9 @@ use corner_impact::orbit::runs::{AfterRelease, LongRuns, RunOutcome};
 use corner_impact::orbit::{Course, PeriodicOrbit, Search, search};
 use corner_impact::progress::Unwatched;
 use corner_impact::simulate::{Event, EventKind, Machine, Met, Motion, SimulateError, angular_velocity};
-use corner_impact::study::attractors::{AttractorsError, Cause, Change, Here, Resolution, Step};
+use corner_impact::study::attractors::{AttractorsAtValue, AttractorsError, Cause, Resolution, Step, Transition};
 use corner_impact::study::basins::{Grid, SectionStarts};
-use corner_impact::study::speeds::{At, Attractor, Speeds, speeds, usual_range};
+use corner_impact::study::speeds::{At, AttractorRow, SpeedSurvey, usual_range};
 use corner_impact::study::survey::{Sample, Starts};
 
 /// A ball on a table that goes up and down by a millimetre.
@@ -35,10 +35,10 @@ pub fn by_growth(value: f64, error: f64) -> LongRun {
     LongRun::by_growth(Recorded { growth, halves: [50.0 * value; 2], met, revolutions: 100, runs: 1, rested: false })
 }
 
-fn found(model: &Model, range: [f64; 2], step: f64, starts: usize) -> Speeds {
-    let found = speeds(model, range, &Resolution::new(Step::at_most(step), starts), &Unwatched).unwrap();
+fn found(model: &Model, range: [f64; 2], step: f64, starts: usize) -> SpeedSurvey {
+    let found = common::speeds(model, range, &Resolution::new(common::step(step), starts), &Unwatched).unwrap();
     for attractor in &found.attractors {
-        let ends = [(attractor.rpm[0], &attractor.birth), (attractor.rpm[1], &attractor.death)];
+        let ends = [(attractor.range()[0], &attractor.birth), (attractor.range()[1], &attractor.death)];
         // What ends inside of the range does so for a reason.
         let for_nothing = ends.iter().find(|(rpm, end)| end.is_none() && range[0] < *rpm && *rpm < range[1]);
         assert!(for_nothing.is_none(), "{}: {attractor:?}", model.name);
@@ -50,7 +50,7 @@ fn machine(model: &Model, rpm: f64) -> Machine {
     Machine::new(common::cam(model), &model.follower, angular_velocity(rpm))
 }
 
-fn periodic(found: &Speeds, numbers: (u64, u64)) -> Option<&Attractor> {
+fn periodic(found: &SpeedSurvey, numbers: (u64, u64)) -> Option<&AttractorRow> {
     found
         .attractors
         .iter()
@@ -58,10 +58,10 @@ fn periodic(found: &Speeds, numbers: (u64, u64)) -> Option<&Attractor> {
 }
 
 /// What every attractor begins and ends with, where that was located: kind, cause, speed.
-fn events(found: &Speeds) -> Vec<(Kind, Cause, f64)> {
-    let ends = |attractor: &Attractor| {
+fn events(found: &SpeedSurvey) -> Vec<(Kind, Cause, f64)> {
+    let ends = |attractor: &AttractorRow| {
         let kind = attractor.kind;
-        let of = move |change: &Change| (kind, change.cause, change.rpm);
+        let of = move |change: &Transition| (kind, change.cause, change.value());
         [&attractor.birth, &attractor.death].map(|end| end.as_ref().filter(|end| end.is_located()).map(of))
     };
     found.attractors.iter().flat_map(ends).flatten().collect()
@@ -89,16 +89,16 @@ fn a_ball_on_a_table_has_the_motions_of_the_textbook_from_any_range() {
         let one = periodic(&found, (1, 1)).unwrap();
         let birth = one.birth.as_ref().unwrap();
         assert_eq!(birth.cause, Cause::Fold);
-        assert_relative_eq!(birth.rpm, fold, max_relative = 1e-9);
+        assert_relative_eq!(birth.value(), fold, max_relative = 1e-9);
         if let Some(death) = &one.death {
             assert_eq!(death.cause, Cause::Flip);
-            assert_relative_eq!(death.rpm, flip, max_relative = 1e-9);
+            assert_relative_eq!(death.value(), flip, max_relative = 1e-9);
         }
         assert_eq!(one.death.is_some(), range[1] > flip);
         // Below the detachment the ball may also stay on the table.
-        let both = found.coexistence.iter().find(|over| over.from_rpm < 600.0 && over.to_rpm > 600.0).unwrap();
+        let both = found.coexistence.iter().find(|over| over.range()[0] < 600.0 && over.range()[1] > 600.0).unwrap();
         assert_eq!(both.attractors.len(), 2);
-        assert_abs_diff_eq!(both.from_rpm, fold, epsilon = 1e-6);
+        assert_abs_diff_eq!(both.range()[0], fold, epsilon = 1e-6);
     }
 }
 
@@ -107,9 +107,9 @@ fn a_ball_on_a_table_has_the_motions_of_the_textbook_from_any_range() {
 #[test]
 fn chaos_beside_a_long_motion_ends_before_the_next_speed() {
     let found = found(&common::osorio(), [547.0, 553.0], 2.0, 64);
-    let chaotic: Vec<&Attractor> = found.attractors.iter().filter(|one| one.kind == Kind::Chaotic).collect();
+    let chaotic: Vec<&AttractorRow> = found.attractors.iter().filter(|one| one.kind == Kind::Chaotic).collect();
     let [chaotic] = chaotic[..] else { panic!("{found:?}") };
-    assert!(549.0 < chaotic.rpm[0] && chaotic.rpm[1] < 551.0, "{:?}", chaotic.rpm);
+    assert!(549.0 < chaotic.range()[0] && chaotic.range()[1] < 551.0, "{:?}", chaotic.range());
     assert_eq!(found.coexistence.len(), 1, "{:?}", found.coexistence);
 }
 
@@ -124,7 +124,7 @@ fn the_paper_s_cam_has_two_motions_up_to_682_rpm() {
         let one = periodic(&found, (1, 1)).unwrap();
         for rpm in [674.0, 676.0, 678.0, 680.0] {
             let at = found.attractors.iter().flat_map(|attractor| attractor.at.iter().map(move |at| (attractor, at)));
-            let here: Vec<_> = at.filter(|(_, at)| at.rpm == rpm).collect();
+            let here: Vec<_> = at.filter(|(_, at)| at.value() == rpm).collect();
             let [(_, stable), (other, wild)] = here.as_slice() else {
                 let [(other, wild), (_, stable)] = here.as_slice() else { panic!("{rpm}: {here:?}") };
                 panic!("{rpm}: {other:?} {wild:?} {stable:?}");
@@ -135,10 +135,11 @@ fn the_paper_s_cam_has_two_motions_up_to_682_rpm() {
             let [few, most] = [stable.share.value, wild.share.value];
             assert!(few > 0.0 && most > 0.5 && (few + most - 1.0).abs() < 1e-12);
         }
-        assert!(found.coexistence.iter().any(|over| over.from_rpm < 678.0 && over.to_rpm > 678.0));
+        assert!(found.coexistence.iter().any(|over| over.range()[0] < 678.0 && over.range()[1] > 678.0));
     }
     let wide = found(&model, [660.0, 690.0], 2.0, 48);
-    let wild = wide.attractors.iter().find(|attractor| attractor.rpm[0] < 674.0 && attractor.death.is_some()).unwrap();
+    let wild =
+        wide.attractors.iter().find(|attractor| attractor.range()[0] < 674.0 && attractor.death.is_some()).unwrap();
     let death = wild.death.as_ref().unwrap();
     // By the distance of the manifolds it is between 682.2 and 682.22 rpm; runs that are lost once in a hundred thousand
     // revolutions are taken for lasting ones.
@@ -153,7 +154,7 @@ fn one_long_motion_is_one() {
     for rpm in [450.0, 541.8, 579.0] {
         let found = found(&model, [rpm - 0.1, rpm + 0.1], 0.1, 32);
         let here =
-            found.attractors.iter().filter(|attractor| attractor.at.iter().any(|at| (at.rpm - rpm).abs() < 1e-9));
+            found.attractors.iter().filter(|attractor| attractor.at.iter().any(|at| (at.value() - rpm).abs() < 1e-9));
         assert_eq!(here.count(), 1, "{rpm}: {found:?}");
         assert!(found.coexistence.is_empty(), "{rpm}: {:?}", found.coexistence);
         let machine = machine(&model, rpm);
@@ -170,8 +171,11 @@ fn one_long_motion_is_one() {
 fn what_is_left_by_chance_is_no_attractor_and_what_outlasts_rests_is() {
     let model = common::osorio();
     let kinds = |rpm: f64| {
-        let here = Here::new(&machine(&model, rpm), rpm, &Sample::Spread(64), Budget::SURVEY).unwrap();
-        here.parts.iter().map(|part| (part.ending.kind(), part.ending.is_long(), here.count(part))).collect::<Vec<_>>()
+        let here = AttractorsAtValue::new(&machine(&model, rpm), &Sample::Spread(64), Budget::SURVEY).unwrap();
+        here.attractors
+            .iter()
+            .map(|part| (part.ending.kind(), part.ending.is_long(), here.count(part)))
+            .collect::<Vec<_>>()
     };
     let [(Kind::Resting, true, most), (Kind::Chaotic, _, few)] = kinds(478.0)[..] else { panic!("{:?}", kinds(478.0)) };
     assert!(few > 1 && most > 50 && few + most == 64, "{few} {most}");
@@ -183,8 +187,8 @@ fn what_is_left_by_chance_is_no_attractor_and_what_outlasts_rests_is() {
 /// From rest alone, where the follower is let go and comes to wander: what is kept of that is chaos, and not how it began.
 #[test]
 fn what_wanders_from_a_rest_is_told_from_where_it_has_forgotten_that() {
-    let here = Here::new(&machine(&common::osorio(), 380.0), 380.0, &Sample::Spread(0), Budget::SURVEY).unwrap();
-    let [part] = &here.parts[..] else { panic!("{here:?}") };
+    let here = AttractorsAtValue::new(&machine(&common::osorio(), 380.0), &Sample::Spread(0), Budget::SURVEY).unwrap();
+    let [part] = &here.attractors[..] else { panic!("{here:?}") };
     assert!(matches!(part.ending, LongRun::Chaotic(_)) && part.motion.revolution > 50, "{part:?}");
 }
 
@@ -248,8 +252,8 @@ fn a_run_arrives_where_its_distance_shrinks() {
 fn runs_begin_on_all_orbits_of_two_impacts_where_that_is_asked_for() {
     let paper = common::osorio();
     let at = |two_impacts: bool| {
-        let resolution = Resolution { two_impacts, ..Resolution::new(Step::at_most(0.01), 1) };
-        speeds(&paper, [356.0, 356.01], &resolution, &Unwatched).unwrap()
+        let resolution = Resolution { two_impacts, ..Resolution::new(common::step(0.01), 1) };
+        common::speeds(&paper, [356.0, 356.01], &resolution, &Unwatched).unwrap()
     };
     let (without, with) = (at(false), at(true));
     assert!(periodic(&without, (1, 2)).is_none() && without.coexistence.is_empty(), "{without:?}");
@@ -259,15 +263,15 @@ fn runs_begin_on_all_orbits_of_two_impacts_where_that_is_asked_for() {
 
 #[test]
 fn speeds_of_a_grid_are_the_same_for_every_range() {
-    assert_eq!(Step::for_speeds([50.0, 760.0], 300).rpm(), 2.0);
-    assert_eq!(Step::for_speeds([500.0, 1400.0], 300).rpm(), 3.0);
-    assert_eq!(Step::at_most(0.3).rpm(), 0.3);
-    assert_eq!(Step::at_most(0.5).rpm(), 0.5);
-    assert_eq!(Step::at_most(0.001).rpm(), 0.001);
-    assert_eq!(Step::at_most(19.9).rpm(), 10.0);
+    assert_eq!(Step::for_values([50.0, 760.0], 300, corner_impact::study::survey::Spacing::Linear).width(), 2.0);
+    assert_eq!(Step::for_values([500.0, 1400.0], 300, corner_impact::study::survey::Spacing::Linear).width(), 3.0);
+    assert_eq!(common::step(0.3).width(), 0.3);
+    assert_eq!(common::step(0.5).width(), 0.5);
+    assert_eq!(common::step(0.001).width(), 0.001);
+    assert_eq!(common::step(19.9).width(), 10.0);
     let refused = |range, step| {
-        let resolution = Resolution::new(Step::at_most(step), 1);
-        speeds(&common::osorio(), range, &resolution, &Unwatched).unwrap_err()
+        let resolution = Resolution::new(common::step(step), 1);
+        common::speeds(&common::osorio(), range, &resolution, &Unwatched).unwrap_err()
     };
     assert!(matches!(refused([0.0, 700.0], 1.0), AttractorsError::NoRange { .. }));
     assert!(matches!(refused([700.0, 700.0], 1.0), AttractorsError::NoRange { .. }));
@@ -277,7 +281,7 @@ fn speeds_of_a_grid_are_the_same_for_every_range() {
 }
 
 /// What located events there are, by rising speed.
-fn sorted_events(found: &[Speeds]) -> Vec<(Kind, Cause, f64)> {
+fn sorted_events(found: &[SpeedSurvey]) -> Vec<(Kind, Cause, f64)> {
     let mut all: Vec<_> = found.iter().flat_map(events).collect();
     all.sort_by(|one, two| one.2.total_cmp(&two.2).then(one.1.name().cmp(two.1.name())));
     all
@@ -285,10 +289,10 @@ fn sorted_events(found: &[Speeds]) -> Vec<(Kind, Cause, f64)> {
 
 /// In so many parts of a range there are the located events of the whole, its kinds of motion at each speed, and its attractors side by
 /// side.
-fn parts_agree(model: &Model, whole: &Speeds, step: f64, parts: u32) {
-    let [low, high] = whole.rpm;
+fn parts_agree(model: &Model, whole: &SpeedSurvey, step: f64, parts: u32) {
+    let [low, high] = whole.range;
     let ends: Vec<f64> = (0..=parts).map(|part| low + (high - low) * f64::from(part) / f64::from(parts)).collect();
-    let each: Vec<Speeds> =
+    let each: Vec<SpeedSurvey> =
         ends.windows(2).map(|range| found(model, [range[0], range[1]], step, whole.sample.count())).collect();
     let (joined, all) = (sorted_events(&each), sorted_events(std::slice::from_ref(whole)));
     assert_eq!(joined.len(), all.len(), "{} in {parts}: {joined:?} {all:?}", model.name);
@@ -296,32 +300,33 @@ fn parts_agree(model: &Model, whole: &Speeds, step: f64, parts: u32) {
         assert_eq!((one.0, one.1.name()), (two.0, two.1.name()));
         assert_relative_eq!(one.2, two.2, max_relative = 1e-9);
     }
-    let kinds = |found: &Speeds, rpm: f64| {
-        let here = found.attractors.iter().flat_map(|attractor| &attractor.at).filter(|at| at.rpm == rpm);
+    let kinds = |found: &SpeedSurvey, rpm: f64| {
+        let here = found.attractors.iter().flat_map(|attractor| &attractor.at).filter(|at| at.value() == rpm);
         let mut kinds: Vec<_> = here.map(|at| (at.ending.kind(), at.ending.period())).collect();
         kinds.sort();
         kinds
     };
-    let several = |found: &Speeds, rpm: f64| found.coexistence.iter().any(|it| it.from_rpm < rpm && rpm < it.to_rpm);
-    for rpm in whole.attractors.iter().flat_map(|attractor| attractor.at.iter().map(|at| at.rpm)) {
-        let part = each.iter().find(|found| found.rpm[0] <= rpm && rpm <= found.rpm[1]).unwrap();
+    let several =
+        |found: &SpeedSurvey, rpm: f64| found.coexistence.iter().any(|it| it.range()[0] < rpm && rpm < it.range()[1]);
+    for rpm in whole.attractors.iter().flat_map(|attractor| attractor.at.iter().map(|at| at.value())) {
+        let part = each.iter().find(|found| found.range[0] <= rpm && rpm <= found.range[1]).unwrap();
         assert_eq!(kinds(part, rpm), kinds(whole, rpm), "{} at {rpm}", model.name);
-        let is_inside = part.rpm[0] < rpm && rpm < part.rpm[1];
+        let is_inside = part.range[0] < rpm && rpm < part.range[1];
         assert!(!is_inside || several(part, rpm) == several(whole, rpm), "{} at {rpm}", model.name);
     }
 }
 
 /// At half the step there are the located events of the whole step, and where that knows an end by runs, an end within its bracket.
-fn resolutions_agree(model: &Model, coarse: &Speeds, step: f64) {
-    let fine = found(model, coarse.rpm, 0.5 * step, coarse.sample.count());
-    let changes = |found: &Speeds| -> Vec<Change> {
+fn resolutions_agree(model: &Model, coarse: &SpeedSurvey, step: f64) {
+    let fine = found(model, coarse.range, 0.5 * step, coarse.sample.count());
+    let changes = |found: &SpeedSurvey| -> Vec<Transition> {
         found.attractors.iter().flat_map(|attractor| [&attractor.birth, &attractor.death]).flatten().cloned().collect()
     };
     for end in changes(coarse) {
-        let room = 1e-9 * end.rpm;
-        let [low, high] = if end.is_located() { [end.rpm; 2] } else { end.bracket };
-        let is_there = |other: &Change| {
-            let [from, to] = if other.is_located() { [other.rpm; 2] } else { other.bracket };
+        let room = 1e-9 * end.value();
+        let [low, high] = if end.is_located() { [end.value(); 2] } else { end.bracket };
+        let is_there = |other: &Transition| {
+            let [from, to] = if other.is_located() { [other.value(); 2] } else { other.bracket };
             from <= high + room && low - room <= to && (other.cause.name() == end.cause.name() || !end.is_located())
         };
         assert!(changes(&fine).iter().any(is_there), "{}: {end:?} is not among {:?}", model.name, changes(&fine));
@@ -381,8 +386,8 @@ fn orbits_between_two_speeds_are_found() {
             let one = periodic(&found, numbers).unwrap_or_else(|| panic!("no {numbers:?} at {step}: {found:?}"));
             let named = [&one.birth, &one.death].map(|end| end.as_ref().map_or("", |end| end.cause.name()));
             assert_eq!(named, causes, "{numbers:?} at {step}");
-            assert_abs_diff_eq!(one.rpm[0], rpm[0], epsilon = 1e-6);
-            assert_abs_diff_eq!(one.rpm[1], rpm[1], epsilon = 1e-6);
+            assert_abs_diff_eq!(one.range()[0], rpm[0], epsilon = 1e-6);
+            assert_abs_diff_eq!(one.range()[1], rpm[1], epsilon = 1e-6);
             let same = found
                 .attractors
                 .iter()
@@ -439,16 +444,16 @@ fn plain_runs_end_on_what_is_listed() {
         if swings > 30.0 {
             return Ok(());
         }
-        let step = Step::at_most(0.2 * case.rpm);
+        let step = common::step(0.2 * case.rpm);
         let range = [0.8 * case.rpm, 1.2 * case.rpm];
-        let Ok(found) = speeds(&case.model, range, &Resolution::new(step, 32), &Unwatched) else {
+        let Ok(found) = common::speeds(&case.model, range, &Resolution::new(step, 32), &Unwatched) else {
             return Ok(());
         };
         let listed = found.attractors.iter().flat_map(|attractor| &attractor.at);
         let mut all: BTreeMap<u64, Vec<&At>> = BTreeMap::new();
-        listed.for_each(|at| all.entry(at.rpm.to_bits()).or_default().push(at));
+        listed.for_each(|at| all.entry(at.value().to_bits()).or_default().push(at));
         for here in all.values() {
-            let machine = case.machine.at_speed(angular_velocity(here[0].rpm));
+            let machine = case.machine.at_speed(angular_velocity(here[0].value()));
             let starts = Starts::of(&machine);
             let settled = |index: usize| {
                 let mut motion = starts.motion(&machine, index)?;
@@ -461,12 +466,12 @@ fn plain_runs_end_on_what_is_listed() {
             let on = |at: &At| runs.iter().filter(|run| is_on(&machine, **run, &at.ending)).count();
             let missed = runs.iter().filter(|run| !here.iter().any(|at| is_on(&machine, **run, &at.ending))).count();
             // Of eight, four in a basin of a tenth are one chance in two hundred.
-            prop_assert!(missed < 4, "{missed} of 8 at {} rpm are on none of {here:#?}", here[0].rpm);
+            prop_assert!(missed < 4, "{missed} of 8 at {} rpm are on none of {here:#?}", here[0].value());
             for at in here {
                 prop_assert!(
                     at.share.value - at.share.error < 0.5 || on(at) > 0,
                     "at {} rpm none is on {at:#?}",
-                    at.rpm
+                    at.value()
                 );
             }
             LOOKED_AT.fetch_add(1, Ordering::Relaxed);
@@ -583,8 +588,8 @@ fn a_range_of_speeds_is_chosen_by_the_machine() {
 }
 
 /// What twenty-four starts, and rest on the cam, come to at a speed.
-fn from_starts(model: &Model, rpm: f64) -> Here {
-    Here::new(&machine(model, rpm), rpm, &Sample::Spread(24), Budget::SURVEY).unwrap()
+fn from_starts(model: &Model, rpm: f64) -> AttractorsAtValue {
+    AttractorsAtValue::new(&machine(model, rpm), &Sample::Spread(24), Budget::SURVEY).unwrap()
 }
 
 /// In a hundred thousand revolutions runs bounced on for long before they came to rest: a start that was not seen to rest was only not waited for.
@@ -594,7 +599,7 @@ fn chaos_that_is_seen_to_rest_is_no_other_motion_than_what_rests() {
         let here = from_starts(&common::osorio(), rpm);
         assert!(here.wandering.rested > 0 && here.wandering.revolutions >= 100_000, "{rpm}: {:?}", here.wandering);
         let wild: Vec<&LongRun> =
-            here.parts.iter().map(|part| &part.ending).filter(|it| it.period().is_none()).collect();
+            here.attractors.iter().map(|part| &part.ending).filter(|it| it.period().is_none()).collect();
         assert!(matches!(wild[..], [it] if it.is_long()), "{rpm}: {wild:?}");
     }
 }
@@ -603,9 +608,9 @@ fn chaos_that_is_seen_to_rest_is_no_other_motion_than_what_rests() {
 #[test]
 fn runs_that_wander_are_told_together() {
     let here = from_starts(&ball().with_number("follower.restitution", 0.5).unwrap(), 2155.0);
-    let kinds: Vec<Kind> = here.parts.iter().map(|part| part.ending.kind()).collect();
+    let kinds: Vec<Kind> = here.attractors.iter().map(|part| part.ending.kind()).collect();
     assert_eq!(kinds, [Kind::Resting, Kind::Chaotic], "{here:?}");
-    assert_eq!(here.parts[1].starts.len(), 2);
+    assert_eq!(here.attractors[1].starts.len(), 2);
 }
 
 /// Whatever rests goes on as the cam lets go of it. Where all that is repeats, each run that wandered until it rested has left what it was on.
@@ -613,7 +618,7 @@ fn runs_that_wander_are_told_together() {
 fn what_wanders_and_rests_where_all_repeats_has_left() {
     for rpm in [304.8, 333.7, 334.0] {
         let here = from_starts(&common::osorio(), rpm);
-        assert!(here.parts.iter().all(|part| part.ending.period().is_some()), "{rpm}: {:?}", here.parts);
+        assert!(here.attractors.iter().all(|part| part.ending.period().is_some()), "{rpm}: {:?}", here.attractors);
         assert!(
             here.wandering.rested > 0 && here.wandering.left == here.wandering.rested,
             "{rpm}: {:?}",
@@ -630,9 +635,9 @@ fn what_is_left_in_the_end_is_left_from_its_rests_and_what_repeats_is_not() {
         let model = ball().with_number("follower.restitution", restitution).unwrap();
         let here = from_starts(&model, rpm);
         assert!(here.wandering.left > 0, "{rpm}: {:?}", here.wandering);
-        assert!(here.parts.iter().all(|part| part.ending.period().is_some()), "{rpm}: {:?}", here.parts);
-        let resting = here.parts.iter().filter(|part| part.ending.kind() == Kind::Resting);
-        assert_eq!(resting.count(), rests, "{rpm}: {:?}", here.parts);
+        assert!(here.attractors.iter().all(|part| part.ending.period().is_some()), "{rpm}: {:?}", here.attractors);
+        let resting = here.attractors.iter().filter(|part| part.ending.kind() == Kind::Resting);
+        assert_eq!(resting.count(), rests, "{rpm}: {:?}", here.attractors);
     }
 }
 
@@ -645,7 +650,7 @@ fn orbits_below_the_end_of_another_are_found() {
     let found = found(&model, [1498.0, 1520.0], 200.0, 1);
     for (numbers, rpm) in [((1, 2), [1503.7839, 1514.5427]), ((1, 3), [1498.7194, 1500.5706])] {
         let one = periodic(&found, numbers).unwrap_or_else(|| panic!("no {numbers:?}: {found:?}"));
-        assert_abs_diff_eq!(one.rpm[0], rpm[0], epsilon = 1e-3);
-        assert_abs_diff_eq!(one.rpm[1], rpm[1], epsilon = 1e-3);
+        assert_abs_diff_eq!(one.range()[0], rpm[0], epsilon = 1e-3);
+        assert_abs_diff_eq!(one.range()[1], rpm[1], epsilon = 1e-3);
     }
 }

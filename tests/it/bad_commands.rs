@@ -55,8 +55,8 @@ fn numbers_that_cannot_be() {
     let diagram = |rest: &str| format!("diagram MODEL --out out.csv {rest}");
     for rpm in ["0", "-0", "-1", "nan", "NaN", "inf", "-inf", "1e999", "fast", ""] {
         place.refuses(&simulate(&format!("--rpm={rpm}")), &["--rpm <R>"]);
-        place.refuses(&diagram(&format!("--rpm={rpm}:700:3")), &["--rpm <LO:HI:N>"]);
-        place.refuses(&diagram(&format!("--rpm=600:{rpm}:3")), &["--rpm <LO:HI:N>"]);
+        place.refuses(&diagram(&format!("--rpm={rpm}:700:3")), &["--rpm <LO:HI:N|R>"]);
+        place.refuses(&diagram(&format!("--rpm=600:{rpm}:3")), &["--rpm <LO:HI:N|R>"]);
     }
     place.refuses(&simulate("--rpm 0"), &["above 0"]);
     place.refuses(&simulate("--rpm -5"), &["'-5'", "above 0"]);
@@ -64,9 +64,8 @@ fn numbers_that_cannot_be() {
     place.refuses(&simulate("--rpm 1.1e9"), &["1e9 or less"]);
     place.refuses(&simulate(""), &["--rpm <R>", "not provided"]);
     for (range, says) in [
-        ("700", "LO:HI:N"),
         ("600:700", "LO:HI:N"),
-        ("600:700:3:4", "LO:HI:N"),
+        ("600:700:3:4", "can only be log"),
         ("700:600:3", "the highest speed, 600, is below the lowest, 700"),
         ("600:700:0", "1 speed or more"),
         ("600:700:1", "LO and HI to be the same"),
@@ -75,7 +74,7 @@ fn numbers_that_cannot_be() {
         ("600:700:20000000", "10000000 speeds or fewer"),
         ("600:700:99999999999999999999999", "not a number of speeds"),
     ] {
-        place.refuses(&diagram(&format!("--rpm {range}")), &["--rpm <LO:HI:N>", range, says]);
+        place.refuses(&diagram(&format!("--rpm {range}")), &["--rpm <LO:HI:N|R>", range, says]);
     }
     for count in ["-1", "1.5", "nan", "many", "99999999999999999999999"] {
         for name in ["--revolutions", "--impacts", "--drawn"] {

@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use corner_impact::diagram::{Placed, Speeds, Start};
 use corner_impact::flight::State;
 use corner_impact::model::Model;
 use corner_impact::orbit::Parameter;
@@ -10,8 +9,9 @@ use corner_impact::orbit::long_run::{Budget, Kind};
 use corner_impact::progress::Unwatched;
 use corner_impact::study::chaos::chaos;
 use corner_impact::study::chart::store::{CLASSES, Shard, Store, StoreError, VARIABLES, blocks_of, status};
-use corner_impact::study::chart::{Axis, Blocks, Chart, ChartError};
+use corner_impact::study::chart::{Blocks, Chart};
 use corner_impact::study::survey::Point;
+use corner_impact::study::survey::{Axis, Placed, Start, SurveyError, Values};
 use serde_json::{Value, json};
 
 use crate::common;
@@ -20,7 +20,7 @@ use crate::orbit_numbers::{machine, model};
 pub const START: Start = Start { cam_angle: 0.0, follower: Placed::OnCam(0.0) };
 
 fn axis(model: &Model, name: &str, low: f64, high: f64, count: usize) -> Axis {
-    Axis::even(Parameter::named(model, name).unwrap(), &Speeds { low, high, count })
+    Axis::new(Parameter::named(model, name).unwrap(), &Values::linear(low, high, count))
 }
 
 pub fn chart(model: &Model, record: u64) -> Chart {
@@ -183,19 +183,22 @@ fn charts_that_cannot_be_are_refused_and_speeds_that_cannot_are_points() {
     let new = |rpm, axes: [Axis; 2]| Chart::new(&paper, rpm, axes, START, budget);
     let (speed, mass) = (axis(&paper, "rpm", 100.0, 180.0, 3), axis(&paper, "mass", 1.0, 2.0, 2));
     let damping = axis(&paper, "damping", 0.0, 1.0, 2);
-    let told = |found: Result<Chart, ChartError>| found.map(|_| ()).unwrap_err();
-    assert_eq!(told(new(None, [speed.clone(), speed.clone()])), ChartError::OneNumber("rpm".into()));
-    assert_eq!(told(new(None, [damping.clone(), mass.clone()])), ChartError::NoSpeed);
-    assert_eq!(told(new(Some(700.0), [speed.clone(), mass.clone()])), ChartError::TwoSpeeds);
+    let told = |found: Result<Chart, SurveyError>| found.map(|_| ()).unwrap_err();
+    assert_eq!(told(new(None, [speed.clone(), speed.clone()])), SurveyError::OneNumber("rpm".into()));
+    assert_eq!(
+        told(new(None, [damping.clone(), mass.clone()])),
+        SurveyError::NoSpeed { axes: "neither axis is".into() }
+    );
+    assert_eq!(told(new(Some(700.0), [speed.clone(), mass.clone()])), SurveyError::TwoSpeeds);
     let none = Axis { values: [].into(), ..mass.clone() };
-    assert_eq!(told(new(None, [speed.clone(), none.clone()])), ChartError::Points { points: 0 });
+    assert_eq!(told(new(None, [speed.clone(), none.clone()])), SurveyError::Points { points: 0 });
     assert!(none.ends().iter().all(|end| end.is_nan()) && speed.ends() == [100.0, 180.0]);
     let found = new(Some(150.0), [damping.clone(), mass.clone()]).unwrap();
-    assert_eq!((found.speed(), found.rpm), (Some(150.0), 150.0));
+    assert_eq!(found.speed(), Some(150.0));
     let odd = Axis { values: [-3.0, 0.0, f64::INFINITY, 150.0, 120.0].into(), ..speed.clone() };
     for axes in [[odd.clone(), mass.clone()], [mass.clone(), odd.clone()]] {
         let found = new(None, axes).unwrap();
-        assert_eq!((found.speed(), found.rpm), (None, 150.0));
+        assert_eq!(found.speed(), None);
         let is_across = found.x.parameter == Parameter::Speed;
         let all = found.run(Some(1), &Unwatched).unwrap();
         let kind = |speed: usize, mass: usize| {

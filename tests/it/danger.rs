@@ -17,7 +17,6 @@ use corner_impact::show::Paged;
 use corner_impact::simulate::Machine;
 use corner_impact::study::attractors::{Resolution, Step};
 use corner_impact::study::locate::locate;
-use corner_impact::study::speeds::speeds;
 use corner_impact::study::verify::{External, verify};
 use nalgebra::{Matrix2, Vector2};
 
@@ -312,10 +311,11 @@ fn every_command_tells_of_the_danger() {
     assert_eq!(it["classification"]["danger"]["kind"], "dangerous");
     assert!(page(&located).contains("persistence, dangerous"));
 
-    let resolution = Resolution::new(Step::for_speeds([59.98, 60.02], 4), 8);
-    let surveyed = speeds(&model, [59.98, 60.02], &resolution, &Unwatched).unwrap();
+    let resolution =
+        Resolution::new(Step::for_values([59.98, 60.02], 4, corner_impact::study::survey::Spacing::Linear), 8);
+    let surveyed = common::speeds(&model, [59.98, 60.02], &resolution, &Unwatched).unwrap();
     let [event] = surveyed.dangers.as_slice() else { panic!("{:?}", surveyed.dangers) };
-    assert_relative_eq!(event.speed_rpm, 60.0, max_relative = 1e-9);
+    assert_relative_eq!(event.at.rpm, 60.0, max_relative = 1e-9);
     assert_eq!((event.danger.kind, event.attractors.len()), (DangerKind::Dangerous, 1));
     assert!(page(&surveyed).contains("dangerous"));
 }

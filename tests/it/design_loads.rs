@@ -32,7 +32,7 @@ fn loads_of_a_ball_are_those_of_the_textbook() {
             assert_relative_eq!(loads.impact_speed, closing * scale, max_relative = 1e-9);
             assert_relative_eq!(loads.energy, 0.5 * mass * (1.0 - r * r) * closing * closing, max_relative = 1e-9);
             assert_abs_diff_eq!(loads.off_cam, 1.0, epsilon = 1e-12);
-            assert_relative_eq!(loads.rpm, 700.0, max_relative = 1e-12);
+            assert_relative_eq!(loads.place.rpm, 700.0, max_relative = 1e-12);
             assert_eq!((loads.force, loads.errors), (0.0, None));
             // A parabola over a sine: no less than the height of the one and no more than that and the stroke.
             let height = GRAVITY / 8.0 * (TAU / machine.angular_velocity()).powi(2) * scale;
@@ -146,7 +146,7 @@ fn a_force_that_is_too_much_is_passed_where_its_closed_form_is() {
         };
         let found = design(model, &asked, &Unwatched).unwrap();
         assert_eq!((found.limits[0].limit, found.limits[0].value), (Load::Force, limit));
-        found.limits[0].speed_rpm.map(|speed| speed / rpm(leaves))
+        found.limits[0].at.map(|at| at.rpm / rpm(leaves))
     };
     let at = passes(&own.model(false, false), most, [0.7, 0.99], 4).unwrap();
     assert!((0.9..0.901).contains(&at), "{at}");
@@ -161,7 +161,7 @@ fn a_force_that_is_too_much_is_passed_where_its_closed_form_is() {
 fn passed(restitution: f64, limit: (Load, f64), range: [f64; 2], speeds: u32) -> Option<f64> {
     let ball = crate::attractors::ball().with_number("follower.restitution", restitution).unwrap();
     let asked = Asked { rpm: Some(range), speeds, limits: vec![limit], ..Asked::default() };
-    design(&ball, &asked, &Unwatched).unwrap().limits[0].speed_rpm
+    design(&ball, &asked, &Unwatched).unwrap().limits[0].at.map(|at| at.rpm)
 }
 
 /// A ball that loses little bounces on below the speed at which it leaves the table, if something has begun that. What is not disturbed stays on

@@ -342,13 +342,13 @@ fn what_is_needed_against_another_number_is_what_each_needs() {
 fn forces_are_at_the_speeds_that_are_asked_for() {
     let own = OWN.model(false, false);
     let leaves = separation(&own).speed();
-    let speeds = |found: &Design| found.forces.iter().map(|at| at.rpm).collect::<Vec<_>>();
+    let speeds = |found: &Design| found.forces.iter().map(|at| at.place.rpm).collect::<Vec<_>>();
     let told = |rpm: Option<[f64; 2]>, speeds: u32| {
         design(&own, &Asked { rpm, speeds, ..Asked::default() }, &Unwatched).unwrap()
     };
     let usual = told(None, 0);
     assert_eq!((speeds(&usual), usual.round.len()), (vec![0.5 * leaves, 1.5 * leaves], 0));
-    assert_eq!(usual.loads.iter().map(|it| it.rpm).collect::<Vec<_>>(), [1.5 * leaves]);
+    assert_eq!(usual.loads.iter().map(|it| it.place.rpm).collect::<Vec<_>>(), [1.5 * leaves]);
     assert_eq!(speeds(&told(Some([100.0, 200.0]), 3)), [100.0, 150.0, 200.0]);
     let one = told(Some([300.0, 300.0]), 7);
     assert_eq!((speeds(&one), one.round.len()), (vec![300.0], 721));
@@ -420,9 +420,13 @@ fn at_the_separation_itself_the_cam_presses() {
     for (rpm, loads) in [(leaves, 0), (leaves * (1.0 + 1e-9), 1)] {
         let asked = Asked { rpm: Some([rpm; 2]), limits: vec![(Load::Force, OWN.mean())], ..Asked::default() };
         let found = design(&own, &asked, &Unwatched).unwrap();
-        assert_eq!((found.loads.len(), found.limits[0].speed_rpm), (loads, Some(rpm)));
+        assert_eq!((found.loads.len(), found.limits[0].at.map(|at| at.rpm)), (loads, Some(rpm)));
     }
-    assert_relative_eq!(Loads::at(&own, &machine(&own, 2.0 * leaves)).unwrap().rpm, 2.0 * leaves, max_relative = 1e-15);
+    assert_relative_eq!(
+        Loads::at(&own, &machine(&own, 2.0 * leaves)).unwrap().place.rpm,
+        2.0 * leaves,
+        max_relative = 1e-15
+    );
 }
 
 /// Without damping and weight the least force is `P + 2 k a - m a w^2`: a little above `m w^2 = 2 k` a preload is needed that is a
@@ -478,7 +482,7 @@ fn limits_and_forces_are_of_their_own_kind() {
     let asked =
         Asked { rpm: Some([below; 2]), limits: vec![(Load::ImpactSpeed, 1e-3), (Load::Gap, 1e-9)], ..Asked::default() };
     let found = design(&own, &asked, &Unwatched).unwrap();
-    assert!(found.loads.is_empty() && found.limits.iter().all(|it| it.speed_rpm.is_none()), "{:?}", found.limits);
+    assert!(found.loads.is_empty() && found.limits.iter().all(|it| it.at.is_none()), "{:?}", found.limits);
     let document = serde_json::to_value(&found).unwrap();
     assert_eq!(document["force_round_the_cam"].as_array().unwrap().len(), 721);
     let kink = design(&model("laws/rectified-sine"), &Asked { rpm: Some([20.0; 2]), ..Asked::default() }, &Unwatched);

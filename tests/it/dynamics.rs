@@ -5,9 +5,9 @@ use std::ops::ControlFlow;
 
 use crate::common;
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use corner_impact::diagram::growth;
 use corner_impact::flight::State;
 use corner_impact::section::StroboscopicMap;
+use corner_impact::simulate::growth;
 use corner_impact::simulate::{Event, EventKind, Machine, Motion, Unobserved, angular_velocity};
 
 /// The corners R, P, Q, Q', P', R' by index.

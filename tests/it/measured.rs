@@ -10,16 +10,17 @@ use corner_impact::model::{Model, Study};
 use corner_impact::orbit::{PeriodicOrbit, Search};
 use corner_impact::progress::Unwatched;
 use corner_impact::show::Paged;
-use corner_impact::study::attractors::{Cause, Change, Resolution, Step};
+use corner_impact::study::attractors::{Cause, Resolution, Step, Transition};
 use corner_impact::study::design::contact::{Contact, Separation};
 use corner_impact::study::design::needs::Answer;
 use corner_impact::study::design::{Asked, design, known};
 use corner_impact::study::locate::locate;
 use corner_impact::study::orbit::{Wanted, orbits};
-use corner_impact::study::speeds::{Speeds, speeds};
+use corner_impact::study::speeds::SpeedSurvey;
 use corner_impact::study::verify::{External, Verification, verify};
 use serde_json::{Value, json};
 
+use crate::common;
 use crate::design_numbers::{OWN, asked, rpm};
 use crate::snapshots;
 use crate::study_numbers::resolution;
@@ -143,15 +144,19 @@ fn loads_are_within_their_error() {
             let found = design(&found, &asked, &Unwatched).unwrap();
             for loads in &found.loads {
                 // Where the exact cam does not separate it has no load but the force.
-                let truth = exact.loads.iter().find(|truth| truth.rpm == loads.rpm).map(|truth| truth.numbers());
+                let truth = exact.loads.iter().find(|truth| truth.place == loads.place).map(|truth| truth.numbers());
                 let told = if truth.is_some() { 5 } else { 4 };
                 let numbers = loads.numbers().into_iter().zip(truth.unwrap_or_default()).zip(loads.errors.unwrap());
                 for ((found, truth), error) in numbers.take(told) {
                     let off = (found - truth).abs();
-                    assert!(off < 1.3 * error, "{motion}, {places}, {}: {found} ± {error}, not {truth}", loads.rpm);
+                    assert!(
+                        off < 1.3 * error,
+                        "{motion}, {places}, {}: {found} ± {error}, not {truth}",
+                        loads.place.rpm
+                    );
                     (outside, count) = (outside + usize::from(off > error), count + 1);
                     // Far above the separation they are known well.
-                    assert!(loads.rpm < 5400.0 || error < 0.25 * found, "{motion}, {places}: {found} ± {error}");
+                    assert!(loads.place.rpm < 5400.0 || error < 0.25 * found, "{motion}, {places}: {found} ± {error}");
                 }
             }
         }
@@ -595,26 +600,26 @@ fn a_measured_corner_impact() {
     let looked_at = &located.looked_at;
     assert!(looked_at.corners.iter().all(|corner| corner.jump_order < 5) && looked_at.left_out > 50, "{looked_at:?}");
     // The events of the paper's machine, to within what is said.
-    let resolution = Resolution::new(Step::at_most(20.0), 8);
-    let survey = speeds(&model, [665.0, 755.0], &resolution, &Unwatched).unwrap();
-    let ends: Vec<&Change> = survey.attractors.iter().flat_map(|one| one.birth.iter().chain(&one.death)).collect();
+    let resolution = Resolution::new(common::step(20.0), 8);
+    let survey = common::speeds(&model, [665.0, 755.0], &resolution, &Unwatched).unwrap();
+    let ends: Vec<&Transition> = survey.attractors.iter().flat_map(|one| one.birth.iter().chain(&one.death)).collect();
     for (name, rpm) in [("corner-impact", 673.234_445), ("flip", 739.319_780)] {
         let event = ends.iter().find(|end| end.cause.name() == name).unwrap();
         let open = event.error.unwrap();
-        assert!((event.rpm - rpm).abs() <= open && open < 2.0, "{name}: {} ± {open}", event.rpm);
+        assert!((event.value() - rpm).abs() <= open && open < 2.0, "{name}: {} ± {open}", event.value());
     }
     assert!((error - speed).abs() < 0.05 * speed, "{error}, not {speed}");
     // Where chaos ends and begins is known by runs, of either machine.
-    let by_runs = |survey: &Speeds| -> Vec<Change> {
+    let by_runs = |survey: &SpeedSurvey| -> Vec<Transition> {
         let ends = survey.attractors.iter().flat_map(|one| one.death.iter().chain(&one.birth));
         ends.filter(|end| end.cause == Cause::Runs).cloned().collect()
     };
-    let exact = by_runs(&speeds(&paper, [665.0, 755.0], &resolution, &Unwatched).unwrap());
+    let exact = by_runs(&common::speeds(&paper, [665.0, 755.0], &resolution, &Unwatched).unwrap());
     let measured = by_runs(&survey);
     assert_eq!((exact.len(), measured.len()), (2, 2));
     for (end, exact) in measured.iter().zip(&exact) {
         let open = end.error.unwrap();
-        assert!((end.rpm - exact.rpm).abs() <= open && open > 0.0 && open < 5.0, "{} ± {open}", end.rpm);
+        assert!((end.value() - exact.value()).abs() <= open && open > 0.0 && open < 5.0, "{} ± {open}", end.value());
         assert_eq!(exact.error, None);
     }
 }
@@ -842,8 +847,9 @@ fn a_new_measured_machine() {
         page.split_whitespace().filter_map(|word| word.split_once('.')).map(|(_, decimals)| decimals.len()).max();
     assert!(decimals < Some(4) && !page.contains("six decimals"), "{page}");
     let model = Model::read(&folder.path().join("valve.toml")).unwrap();
-    let resolution = Resolution::new(Step::for_speeds([2700.0, 3000.0], 2), 2);
-    let mut found = corner_impact::study::speeds::speeds(&model, [2700.0, 3000.0], &resolution, &Unwatched).unwrap();
+    let resolution =
+        Resolution::new(Step::for_values([2700.0, 3000.0], 2, corner_impact::study::survey::Spacing::Linear), 2);
+    let mut found = common::speeds(&model, [2700.0, 3000.0], &resolution, &Unwatched).unwrap();
     found.attractors[0].death.as_mut().unwrap().error = None;
     let page = found.text().unwrap();
     assert!(page.contains("2915 ± ?  stays") && page.contains("2915 ± 13"), "{page}");
@@ -1094,12 +1100,12 @@ fn where_a_dwell_is_found_to_end_is_no_corner() {
 /// The flip of the paper's machine.
 #[test]
 fn a_flip_of_a_measured_cam_is_known_to_within_what_is_said() {
-    let resolution = Resolution::new(Step::at_most(0.05), 2);
-    let survey = speeds(&the_papers_cam(0.0, 1, &json!({})), [739.2, 739.36], &resolution, &Unwatched).unwrap();
-    let ends: Vec<&Change> = survey.attractors.iter().flat_map(|one| one.birth.iter().chain(&one.death)).collect();
+    let resolution = Resolution::new(common::step(0.05), 2);
+    let survey = common::speeds(&the_papers_cam(0.0, 1, &json!({})), [739.2, 739.36], &resolution, &Unwatched).unwrap();
+    let ends: Vec<&Transition> = survey.attractors.iter().flat_map(|one| one.birth.iter().chain(&one.death)).collect();
     let flip = ends.iter().find(|end| end.cause.name() == "flip").unwrap();
     let error = flip.error.unwrap();
-    assert!((flip.rpm - 739.319_780).abs() <= error && error < 1.0, "{} ± {error}", flip.rpm);
+    assert!((flip.value() - 739.319_780).abs() <= error && error < 1.0, "{} ± {error}", flip.value());
 }
 
 /// A ball on a table `a cos(theta + turned)` of a millimetre, measured in rows of 5 degrees to its hundred thousandths.
@@ -1119,7 +1125,7 @@ fn follower_of_a_ball() -> Value {
 fn the_force_on_a_measured_cam_is_as_far_off_as_is_said() {
     let asked = Asked { rpm: Some([600.0, 800.0]), speeds: 3, ..Asked::default() };
     for at in design(&ball_on_rows(2.5), &asked, &Unwatched).unwrap().forces {
-        let (omega, error) = (at.rpm * TAU / 60.0, at.error.unwrap());
+        let (omega, error) = (at.place.rpm * TAU / 60.0, at.error.unwrap());
         let off = (at.least.value - (9.81 - 0.001 * omega * omega)).abs();
         assert!(off <= error && error < 5e-3, "{off} {at:?}");
     }
@@ -1135,11 +1141,11 @@ fn a_fold_on_a_measured_cam_is_as_far_off_as_is_said() {
     let through = json!({ "law": "table", "spline": "quintic", "rows": rows });
     let through = Model::of_document("ball", &json!({ "follower": follower_of_a_ball(), "cam": through })).unwrap();
     for model in [ball_on_rows(2.5), ball_on_rows(0.0), through] {
-        let found = speeds(&model, [555.0, 560.0], resolution(5.0, 2), &Unwatched).unwrap();
+        let found = common::speeds(&model, [555.0, 560.0], resolution(5.0, 2), &Unwatched).unwrap();
         let birth = found.attractors.iter().find(|it| it.impacts == Some(1)).unwrap().birth.as_ref().unwrap();
         let error = birth.error.unwrap();
         assert_eq!(birth.cause, Cause::Fold);
-        assert!((birth.rpm - fold).abs() <= error && error < 0.05, "{} {error}", birth.rpm);
+        assert!((birth.value() - fold).abs() <= error && error < 0.05, "{} {error}", birth.value());
     }
 }
 
@@ -1150,11 +1156,11 @@ fn an_end_by_runs_on_a_measured_cam_is_as_far_off_as_is_said() {
     let end = (9.81 * PI.hypot(1.0) / 0.001).sqrt() * 60.0 / TAU;
     for turned_deg in [0.0, 2.5] {
         let plastic = ball_on_rows(turned_deg).with_number("follower.restitution", 0.0).unwrap();
-        let found = speeds(&plastic, [1600.0, 1800.0], resolution(100.0, 1), &Unwatched).unwrap();
+        let found = common::speeds(&plastic, [1600.0, 1800.0], resolution(100.0, 1), &Unwatched).unwrap();
         let death = found.attractors[0].death.as_ref().unwrap();
         let error = death.error.unwrap();
         assert_eq!(death.cause, Cause::Runs);
-        assert!((death.rpm - end).abs() <= error && error < 2.0, "{} {error}", death.rpm);
+        assert!((death.value() - end).abs() <= error && error < 2.0, "{} {error}", death.value());
     }
 }
 
@@ -1164,11 +1170,11 @@ fn an_end_by_runs_on_a_measured_cam_is_as_far_off_as_is_said() {
 #[ignore = "slow"]
 fn an_orbit_whose_end_runs_tell_is_listed_once() {
     let model = ball_on_rows(0.0).with_number("follower.restitution", 0.1).unwrap();
-    let found = speeds(&model, [1480.0, 1520.0], resolution(20.0, 1), &Unwatched).unwrap();
+    let found = common::speeds(&model, [1480.0, 1520.0], resolution(20.0, 1), &Unwatched).unwrap();
     let mut listed = Vec::new();
     for row in &found.attractors {
         let by_runs = [&row.birth, &row.death].map(|end| end.as_ref().is_some_and(|end| end.cause == Cause::Runs));
-        listed.push((row.revolutions, row.impacts, by_runs, row.rpm));
+        listed.push((row.revolutions, row.impacts, by_runs, row.range()));
     }
     let alike = |one: &[f64; 2], two: &[f64; 2]| (one[0] - two[0]).abs() < 1e-6 * two[0] && one[1] > two[0];
     for (index, one) in listed.iter().enumerate() {

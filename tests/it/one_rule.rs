@@ -2,7 +2,6 @@
 
 use std::f64::consts::TAU;
 
-use corner_impact::diagram::{Placed, Speeds as Values, Start};
 use corner_impact::flight::State;
 use corner_impact::model::Model;
 use corner_impact::orbit::Parameter;
@@ -12,12 +11,11 @@ use corner_impact::simulate::angular_velocity;
 use corner_impact::study::StudyError;
 use corner_impact::study::attractors::{Cause, Resolution, Step};
 use corner_impact::study::basins::{SectionStarts, States};
-use corner_impact::study::chart::{Axis, Chart};
+use corner_impact::study::chart::Chart;
 use corner_impact::study::design::loads::Loads;
 use corner_impact::study::diagram::one_row;
 use corner_impact::study::simulate::{Simulation, Until, Wanted};
-use corner_impact::study::speeds::speeds;
-use corner_impact::study::survey::{Sample, growth, long_run};
+use corner_impact::study::survey::{Axis, Placed, Sample, Start, Survey, Values, growth, long_run};
 use serde_json::Value;
 
 use crate::common::{self, corner_impact, text};
@@ -71,12 +69,14 @@ fn answers((name, rpm, state): Case, surveyed: bool) -> Vec<(&'static str, Told)
     let machine = machine(&model, rpm);
     let motion = start.motion(&machine).unwrap();
     let alone = long_run(&machine, motion, BUDGET).unwrap().ending;
-    let values = Values { low: rpm, high: rpm, count: 1 };
+    let values = Values::linear(rpm, rpm, 1);
     let mass = Parameter::named(&model, "mass").unwrap();
-    let fixed = Values { low: model.follower.mass, high: model.follower.mass, count: 1 };
-    let axes = [Axis::even(Parameter::Speed, &values), Axis::even(mass, &fixed)];
+    let fixed = Values::linear(model.follower.mass, model.follower.mass, 1);
+    let speed = Axis::new(Parameter::Speed, &values);
+    let axes = [speed.clone(), Axis::new(mass, &fixed)];
     let chart = Chart::new(&model, None, axes, start, BUDGET).unwrap().run(Some(1), &Unwatched).unwrap();
-    let row = one_row(&machine, &values, start, BUDGET, Some(1), &Unwatched).unwrap();
+    let over = Survey::new(&model, None, speed, None).unwrap();
+    let row = one_row(&over, start, BUDGET, Some(1), &Unwatched).unwrap();
     let [point, row] = [&chart.points[0], &row[0]]
         .map(|it| it.as_ref().map(|it| (it.kind, it.growth.value.to_bits(), it.growth.error.to_bits())));
     let states = SectionStarts::Given(States { cam_angle: 0.0, states: vec![state] });
@@ -95,11 +95,11 @@ fn answers((name, rpm, state): Case, surveyed: bool) -> Vec<(&'static str, Told)
         ("diagram --lyapunov", (alone.kind(), grown.value.to_bits(), grown.error.to_bits())),
     ];
     if surveyed {
-        let step = Step::at_most(1e-3);
+        let step = common::step(1e-3);
         let sample = Sample::Given(vec![start]);
         let resolution = Resolution { step, sample, budget: BUDGET, two_impacts: false };
-        let found = speeds(&model, [rpm, rpm + 1e-3], &resolution, &Unwatched).unwrap();
-        let mut here = found.attractors.iter().flat_map(|it| &it.at).filter(|at| at.rpm == rpm);
+        let found = common::speeds(&model, [rpm, rpm + 1e-3], &resolution, &Unwatched).unwrap();
+        let mut here = found.attractors.iter().flat_map(|it| &it.at).filter(|at| at.value() == rpm);
         let at = here.next().unwrap_or_else(|| panic!("{name} {rpm}: nothing, {:?}", found.failed));
         assert!(here.next().is_none() && at.share.value == 1.0, "{name} {rpm}");
         all.push(("speeds", told(&at.ending)));
@@ -268,7 +268,13 @@ fn shares_of_a_speed_are_all_of_it() {
         let [low, high] = corner_impact::study::speeds::usual_range(&model).unwrap();
         let from = low + 0.7 * (high - low);
         let range = [from, 1.01 * from];
-        let found = speeds(&model, range, &Resolution::new(Step::for_speeds(range, 2), 12), &Unwatched).unwrap();
+        let found = common::speeds(
+            &model,
+            range,
+            &Resolution::new(Step::for_values(range, 2, corner_impact::study::survey::Spacing::Linear), 12),
+            &Unwatched,
+        )
+        .unwrap();
         let shares = all_of_each_speed(&found);
         assert!(!shares.is_empty(), "{}", model.name);
         speeds_seen += shares.len();
@@ -277,10 +283,10 @@ fn shares_of_a_speed_are_all_of_it() {
 }
 
 /// The sum of shares at each speed, which must be 1.
-fn all_of_each_speed(found: &corner_impact::study::speeds::Speeds) -> Vec<f64> {
+fn all_of_each_speed(found: &corner_impact::study::speeds::SpeedSurvey) -> Vec<f64> {
     let mut all: std::collections::BTreeMap<u64, f64> = std::collections::BTreeMap::new();
     for at in found.attractors.iter().flat_map(|it| &it.at) {
-        *all.entry(at.rpm.to_bits()).or_default() += at.share.value;
+        *all.entry(at.value().to_bits()).or_default() += at.share.value;
     }
     for (rpm, sum) in &all {
         assert!((sum - 1.0).abs() < 1e-12, "{} at {} rpm: {sum}", found.model, f64::from_bits(*rpm));
@@ -305,39 +311,39 @@ fn lobes(lobes: usize) -> Model {
 fn a_symmetry_breaks_at_half_of_the_speed_of_the_flip_over_one_lobe() {
     let flip = 369.573_082_351_769_7;
     for (step, starts) in [(0.5, 16), (1.0, 8)] {
-        let found =
-            speeds(&lobes(2), [184.0, 186.0], &Resolution::new(Step::at_most(step), starts), &Unwatched).unwrap();
+        let found = common::speeds(&lobes(2), [184.0, 186.0], &Resolution::new(common::step(step), starts), &Unwatched)
+            .unwrap();
         let broken = found.attractors.iter().flat_map(|it| [&it.birth, &it.death].into_iter().flatten());
         let broken: Vec<_> =
-            broken.filter(|change| change.cause == Cause::SymmetryBreaking && change.rpm > 184.5).collect();
+            broken.filter(|change| change.cause == Cause::SymmetryBreaking && change.value() > 184.5).collect();
         // The symmetric orbit ends, and both others begin.
         assert_eq!(broken.len(), 3, "{step}: {broken:?}");
         for change in broken {
-            assert!((change.rpm / (0.5 * flip) - 1.0).abs() < 1e-12 && change.is_located(), "{change:?}");
+            assert!((change.value() / (0.5 * flip) - 1.0).abs() < 1e-12 && change.is_located(), "{change:?}");
         }
-        assert!(found.attractors.iter().all(|it| it.rpm[1] - it.rpm[0] > 1e-9), "{step}");
+        assert!(found.attractors.iter().all(|it| it.range()[1] - it.range()[0] > 1e-9), "{step}");
         all_of_each_speed(&found);
     }
     // The same of the cam with one lobe is a flip.
-    let found = speeds(&lobes(1), [368.0, 372.0], &Resolution::new(Step::at_most(2.0), 4), &Unwatched).unwrap();
+    let found = common::speeds(&lobes(1), [368.0, 372.0], &Resolution::new(common::step(2.0), 4), &Unwatched).unwrap();
     let ends = found.attractors.iter().filter_map(|it| it.death.as_ref());
     let flips: Vec<_> =
-        ends.filter(|change| change.cause == Cause::Flip && (change.rpm / flip - 1.0).abs() < 1e-9).collect();
+        ends.filter(|change| change.cause == Cause::Flip && (change.value() / flip - 1.0).abs() < 1e-9).collect();
     assert_eq!(flips.len(), 1, "{:?}", found.attractors);
 }
 
 /// A row that no start reached hides no range: rows that overlap coexist, and one list has the headline.
 #[test]
 fn what_overlaps_coexists() {
-    let found = speeds(&lobes(2), [188.0, 192.0], &Resolution::new(Step::at_most(1.0), 8), &Unwatched).unwrap();
+    let found = common::speeds(&lobes(2), [188.0, 192.0], &Resolution::new(common::step(1.0), 8), &Unwatched).unwrap();
     assert!(!found.coexistence.is_empty());
     for pair in found.coexistence.windows(2) {
-        assert!(pair[0].to_rpm <= pair[1].from_rpm);
+        assert!(pair[0].range()[1] <= pair[1].range()[0]);
     }
     for rpm in [188.3, 188.9, 190.05, 191.5] {
-        let there = |it: &&corner_impact::study::speeds::Attractor| it.rpm[0] <= rpm && rpm <= it.rpm[1];
+        let there = |it: &&corner_impact::study::speeds::AttractorRow| it.range()[0] <= rpm && rpm <= it.range()[1];
         let there: Vec<&str> = found.attractors.iter().filter(there).map(|it| it.id.as_str()).collect();
-        let over = found.coexistence.iter().find(|over| over.from_rpm <= rpm && rpm <= over.to_rpm).unwrap();
+        let over = found.coexistence.iter().find(|over| over.range()[0] <= rpm && rpm <= over.range()[1]).unwrap();
         assert_eq!(over.attractors, there, "{rpm}");
     }
 }
@@ -348,7 +354,8 @@ fn what_overlaps_coexists() {
 fn what_did_not_rest_is_not_said_to() {
     let model = model("preloaded");
     let found =
-        speeds(&model, [735.0, 786.868_675_463_751_4], &Resolution::new(Step::at_most(30.0), 16), &Unwatched).unwrap();
+        common::speeds(&model, [735.0, 786.868_675_463_751_4], &Resolution::new(common::step(30.0), 16), &Unwatched)
+            .unwrap();
     let wandering = found.attractors.iter().filter(|it| it.kind == Kind::Chaotic || it.kind == Kind::Resting);
     for it in wandering {
         let rested = it.at.iter().any(|at| at.ending.is_long());

@@ -16,7 +16,8 @@ use corner_impact::figures::{cam_figure, corner_marks, impact_diagram, speeds_fi
 use corner_impact::model::{Model, OSORIO_2008};
 use corner_impact::progress::Unwatched;
 use corner_impact::study::attractors::{Resolution, Step};
-use corner_impact::study::speeds::{Attractor, Speeds, speeds};
+use corner_impact::study::speeds::{AttractorRow, SpeedSurvey};
+use corner_impact::study::survey::Place;
 use flate2::read::ZlibDecoder;
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::fontdb::Source;
@@ -298,8 +299,9 @@ fn a_font_of_a_file_is_taken_or_refused() {
 #[test]
 fn attractors_are_told_apart_by_shapes() {
     let model = common::osorio();
-    let resolution = Resolution::new(Step::for_speeds([738.8, 739.4], 12), 8);
-    let found = speeds(&model, [738.8, 739.4], &resolution, &Unwatched).unwrap();
+    let resolution =
+        Resolution::new(Step::for_values([738.8, 739.4], 12, corner_impact::study::survey::Spacing::Linear), 8);
+    let found = common::speeds(&model, [738.8, 739.4], &resolution, &Unwatched).unwrap();
     let figure = speeds_figure(&found, &[], WIDTH);
     let shapes = |panel: &Panel| {
         let of = |series: &Series| match &series.data {
@@ -319,11 +321,16 @@ fn attractors_are_told_apart_by_shapes() {
 #[test]
 fn names_of_attractors_have_room() {
     let model = common::osorio();
-    let resolution = Resolution::new(Step::for_speeds([700.0, 701.0], 2), 4);
-    let mut found = speeds(&model, [700.0, 701.0], &resolution, &Unwatched).unwrap();
+    let resolution =
+        Resolution::new(Step::for_values([700.0, 701.0], 2, corner_impact::study::survey::Spacing::Linear), 4);
+    let mut found = common::speeds(&model, [700.0, 701.0], &resolution, &Unwatched).unwrap();
     let one = found.attractors[0].clone();
-    let over = |from: f64, to: f64, index: usize| Attractor { id: format!("A{index}"), rpm: [from, to], ..one.clone() };
-    let words = |found: &Speeds, across: f64| {
+    let over = |from: f64, to: f64, index: usize| AttractorRow {
+        id: format!("A{index}"),
+        ends: [from, to].map(Place::of_speed),
+        ..one.clone()
+    };
+    let words = |found: &SpeedSurvey, across: f64| {
         let figure = speeds_figure(found, &[], across);
         let bars = figure.panels[1].series.iter();
         let words =
@@ -337,7 +344,7 @@ fn names_of_attractors_have_room() {
         let lanes: Vec<f64> = words.iter().map(|word| word.at[1]).collect();
         assert_eq!(lanes, [0.0, -1.0, -2.0], "{across}: {words:?}");
     }
-    found.attractors[0].rpm[1] = 700.2;
+    found.attractors[0].ends[1] = Place::of_speed(700.2);
     let (few, note) = words(&found, WIDTH);
     assert_eq!((few[0].at[1], few[1].at[1], few.len(), note.as_str()), (0.0, 0.0, 3, ""), "{few:?}");
     found.attractors.extend((4..40).map(|index| over(700.5, 700.501, index)));

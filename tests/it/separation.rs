@@ -9,11 +9,11 @@ use corner_impact::model::Model;
 use corner_impact::progress::Unwatched;
 use corner_impact::show::Paged;
 use corner_impact::simulate::{Event, Machine, angular_velocity};
-use corner_impact::study::attractors::{Resolution, Step, detachment};
+use corner_impact::study::attractors::{Resolution, detachment};
 use corner_impact::study::design::contact::{Contact, Separation};
 use corner_impact::study::design::needs::Lever;
 use corner_impact::study::design::{Asked, design};
-use corner_impact::study::speeds::{Speeds, speeds};
+use corner_impact::study::speeds::SpeedSurvey;
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 
@@ -50,9 +50,9 @@ fn stays(model: &Model, rpm: f64) -> bool {
     motion.contact && machine.advance(&mut motion, goal, &mut |_: &Event| ControlFlow::Break(())).unwrap().is_continue()
 }
 
-fn over(model: &Model, range: [f64; 2], step: f64) -> Speeds {
-    let resolution = Resolution::new(Step::at_most(step), 2);
-    speeds(model, range, &resolution, &Unwatched).unwrap()
+fn over(model: &Model, range: [f64; 2], step: f64) -> SpeedSurvey {
+    let resolution = Resolution::new(common::step(step), 2);
+    common::speeds(model, range, &resolution, &Unwatched).unwrap()
 }
 
 /// `k a (1 + cos 2 theta) = 4 m a w^2 cos 2 theta` first where the cosine is 1: `w^2 = k/(2 m)`.
@@ -87,7 +87,7 @@ fn speeds_has_the_separation_of_design() {
     let found = over(&model, [0.8 * rpm, 1.2 * rpm], 20.0);
     assert_eq!(found.detachment(), Some([rpm, error]));
     let end = found.attractors[0].death.as_ref().unwrap();
-    assert_eq!((end.cause.name(), end.rpm, end.bracket), ("detachment", rpm, [rpm - error, rpm + error]));
+    assert_eq!((end.cause.name(), end.value(), end.bracket), ("detachment", rpm, [rpm - error, rpm + error]));
 }
 
 /// The force is 0 all along the lowest dwell, at every speed. With every motion, on a base or at 0, with the spring's rest given as a

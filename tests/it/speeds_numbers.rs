@@ -5,23 +5,24 @@ use corner_impact::estimate::{ErrorIs, Estimate};
 use corner_impact::model::Model;
 use corner_impact::orbit::long_run::{Budget, Kind, LongRun, StickingOrbit};
 use corner_impact::progress::Unwatched;
-use corner_impact::study::attractors::rows::rows;
-use corner_impact::study::attractors::{Attractors, AttractorsError, Cause, Change, Here, attractors};
-use corner_impact::study::speeds::{At, Attractor, Speeds, speeds};
-use corner_impact::study::survey::{Sample, Wandering};
+use corner_impact::study::attractors::{
+    Attractors, AttractorsAtValue, AttractorsError, Cause, GridValue, Transition, attractors, families,
+};
+use corner_impact::study::speeds::{At, AttractorRow, SpeedSurvey};
+use corner_impact::study::survey::{Over, Place, RunError, Sample, Wandering};
 
 use crate::attractors::{ball, by_growth};
 use crate::common;
-use crate::orbit_numbers::{machine, model};
+use crate::orbit_numbers::model;
 use crate::study_numbers::resolution;
 
-fn attractor(at: Vec<At>) -> Attractor {
-    Attractor {
+fn attractor(at: Vec<At>) -> AttractorRow {
+    AttractorRow {
         id: "A1".into(),
         kind: Kind::Chaotic,
         revolutions: None,
         impacts: None,
-        rpm: [1.0, 2.0],
+        ends: [1.0, 2.0].map(Place::of_speed),
         birth: None,
         death: None,
         at,
@@ -33,7 +34,7 @@ fn attractor(at: Vec<At>) -> Attractor {
 fn rests_of_chaos_are_counted_where_runs_were_long_enough() {
     let growth = Estimate { value: 1.0, error: 0.1, error_is: ErrorIs::Standard };
     let wanders = |revolutions: u64, rested: u64| At {
-        rpm: 1.0,
+        place: Place::of_speed(1.0),
         share: growth,
         ending: by_growth(1.0, 0.1),
         followed: revolutions,
@@ -58,22 +59,24 @@ fn rests_of_chaos_are_counted_where_runs_were_long_enough() {
 
 #[test]
 fn the_hardest_impact_and_the_smallest_basin_are_told() {
-    let found = speeds(&model("laws/polynomial"), [420.0, 422.0], resolution(0.5, 3), &Unwatched).unwrap();
+    let found = common::speeds(&model("laws/polynomial"), [420.0, 422.0], resolution(0.5, 3), &Unwatched).unwrap();
     let fastest: Vec<[f64; 2]> =
-        found.attractors.iter().flat_map(|it| &it.at).filter_map(|at| Some([at.impact_speed?, at.rpm])).collect();
+        found.attractors.iter().flat_map(|it| &it.at).filter_map(|at| Some([at.impact_speed?, at.value()])).collect();
     let [speed, rpm] = found.hardest().unwrap();
     assert!(fastest.contains(&[speed, rpm]) && fastest.iter().all(|it| it[0] <= speed));
-    let missed =
-        |starts: usize| Speeds { sample: Sample::Spread(starts), attractors: Vec::new(), ..found.clone() }.missed();
+    let missed = |starts: usize| {
+        SpeedSurvey { sample: Sample::Spread(starts), attractors: Vec::new(), ..found.clone() }.missed()
+    };
     // exp(-3 %) of 100 starts.
     assert_relative_eq!((-missed(100) * 100.0).exp(), 0.05, max_relative = 1e-12);
     assert_eq!([missed(1), missed(2)], [1.0, 1.0]);
     assert!(missed(3) < 1.0);
-    assert_eq!(Speeds { attractors: Vec::new(), ..found }.hardest(), None);
+    assert_eq!(SpeedSurvey { attractors: Vec::new(), ..found }.hardest(), None);
 }
 
 fn over(model: &Model, range: [f64; 2], step: f64, starts: usize) -> Result<Attractors, AttractorsError> {
-    attractors(model, range, resolution(step, starts), &Unwatched)
+    let first = if range[0] > 0.0 && range[0].is_finite() { range[0] } else { 1.0 };
+    attractors(&Over::speed(model, first).unwrap(), range, resolution(step, starts), &Unwatched)
 }
 
 /// Few speeds are no too many however high they are, but a step that rounding takes.
@@ -86,7 +89,7 @@ fn a_range_is_as_fine_as_its_speeds_are_apart() {
     assert!(matches!(over(&paper, [1000.0, next], 1e-13, 1), Err(AttractorsError::TooFine { .. })));
     // A range that begins at the first speed of the grid has it once.
     let found = over(&paper, [5.0, 10.0], 5.0, 1).unwrap();
-    let speeds: Vec<f64> = found.grid.iter().map(|it| it.as_ref().unwrap().rpm).collect();
+    let speeds: Vec<f64> = found.grid.iter().map(|it| it.value).collect();
     assert_eq!(speeds[..3], [5.0, 10.0, 15.0]);
 }
 
@@ -96,7 +99,8 @@ fn where_the_cam_is_left_is_told_within_the_range() {
     // a omega^2 = g of a table that goes up and down by a millimetre.
     let leaves = crate::design_numbers::rpm((9.81_f64 / 0.001).sqrt());
     for (range, is_told) in [([945.0, 947.0], true), ([947.0, 949.0], false), ([942.0, 944.0], false)] {
-        let found = speeds(&ball(), range, resolution(1.0, 1), &Unwatched).unwrap().detachment().map(|[rpm, _]| rpm);
+        let found =
+            common::speeds(&ball(), range, resolution(1.0, 1), &Unwatched).unwrap().detachment().map(|[rpm, _]| rpm);
         assert_eq!(found.is_some(), is_told, "{range:?}");
         assert!(found.is_none_or(|rpm| (rpm - leaves).abs() < 1e-6), "{found:?}");
     }
@@ -104,7 +108,7 @@ fn where_the_cam_is_left_is_told_within_the_range() {
     let text = "[follower]\nmass = 2.0\nrestitution = 0.5\ndamping = 3.0\nstiffness = 800.0\ngravity = 9.81\nrest_position = 0.25\n\
                 [cam]\nlaw = \"harmonic\"\noffset = 0.1\namplitudes = [0.02]\nphases_deg = [0.0]\n";
     let held = Model::parse("held.toml", text).unwrap();
-    assert_eq!(speeds(&held, [50.0, 150.0], resolution(50.0, 1), &Unwatched).unwrap().detachment(), None);
+    assert_eq!(common::speeds(&held, [50.0, 150.0], resolution(50.0, 1), &Unwatched).unwrap().detachment(), None);
 }
 
 /// A motion that rests at most of the speeds of a grid, and is chaotic at some, is one that rests.
@@ -112,11 +116,11 @@ fn where_the_cam_is_left_is_told_within_the_range() {
 fn a_kind_is_that_of_most_speeds() {
     let found = over(&common::osorio(), [425.0, 445.0], 3.0, 3).unwrap();
     let mut mixed = 0;
-    for row in &found.rows {
+    for row in &found.families {
         let kinds: Vec<Kind> = row
             .at
             .iter()
-            .map(|(index, part)| found.grid[*index].as_ref().unwrap().parts[*part].ending.kind())
+            .map(|(index, part)| found.grid[*index].found.as_ref().unwrap().attractors[*part].ending.kind())
             .collect();
         let count = |kind: Kind| kinds.iter().filter(|it| **it == kind).count();
         assert!(kinds.iter().all(|kind| count(*kind) <= count(row.kind(&found.grid))), "{kinds:?}");
@@ -130,9 +134,9 @@ fn a_kind_is_that_of_most_speeds() {
 #[test]
 fn an_orbit_goes_on_over_a_corner() {
     let found = over(&model("persistence"), [493.5, 494.5], 0.5, 1).unwrap();
-    let orbits: Vec<_> = found.rows.iter().filter(|row| row.period() == Some((1, 1))).collect();
+    let orbits: Vec<_> = found.families.iter().filter(|row| row.period() == Some((1, 1))).collect();
     let [orbit] = orbits[..] else { panic!("{orbits:?}") };
-    assert!(orbit.rpm[0] < 493.82 && orbit.rpm[1] == 494.5, "{:?}", orbit.rpm);
+    assert!(orbit.range[0] < 493.82 && orbit.range[1] == 494.5, "{:?}", orbit.range);
 }
 
 /// Over a sine that is turned up at its zeros two orbits are half a turn apart, each of which runs come to first at some speeds: each is
@@ -141,9 +145,9 @@ fn an_orbit_goes_on_over_a_corner() {
 fn two_orbits_of_one_kind_are_not_mixed_up() {
     let found = over(&model("laws/rectified-sine"), [20.0, 20.2], 0.1, 8).unwrap();
     let mut first = Vec::new();
-    for row in &found.rows {
-        assert_eq!((row.period(), row.rpm), (Some((1, 1)), found.range));
-        let angle = |index: &usize| match &found.grid[*index].as_ref().unwrap().parts[row.at[index]].ending {
+    for row in &found.families {
+        assert_eq!((row.period(), row.range), (Some((1, 1)), found.range));
+        let angle = |index: &usize| match &found.grid[*index].found.as_ref().unwrap().attractors[row.at[index]].ending {
             LongRun::Orbit(orbit) => orbit.impacts().next().unwrap().cam_angle,
             other => panic!("{other:?}"),
         };
@@ -162,17 +166,20 @@ type Motions = Vec<(Option<(u64, u64)>, [f64; 2], [Option<Cause>; 2])>;
 fn motions(grid: &[f64], power: i32, unseen: Option<usize>) -> Motions {
     let (ball, scale) = (ball(), 2.0_f64.powi(power));
     let ball = ball.with_number("follower.gravity", ball.follower.gravity * scale * scale).unwrap();
-    let machine = machine(&ball, grid[0] * scale);
-    let mut grid: Vec<_> = grid
-        .iter()
-        .map(|rpm| Ok(Here::new(&machine, *rpm * scale, &Sample::Spread(2), Budget::SURVEY).unwrap()))
-        .collect();
-    if let Some(Ok(here)) = unseen.and_then(|index| grid.get_mut(index)) {
-        here.parts.retain(|part| !matches!(part.ending, LongRun::Orbit(_)));
+    let over = Over::speed(&ball, grid[0] * scale).unwrap();
+    let at = |rpm: &f64| {
+        let value = rpm * scale;
+        let found = AttractorsAtValue::new(&over.machine(value).unwrap(), &Sample::Spread(2), Budget::SURVEY);
+        GridValue { value, found: found.map_err(RunError::from) }
+    };
+    let mut grid: Vec<_> = grid.iter().map(at).collect();
+    if let Some(GridValue { found: Ok(here), .. }) = unseen.and_then(|index| grid.get_mut(index)) {
+        here.attractors.retain(|it| !matches!(it.ending, LongRun::Orbit(_)));
     }
-    let rows = rows(&ball, &machine, &mut grid, (&Sample::Spread(2), Budget::SURVEY));
-    let cause = |end: &Option<Change>| end.as_ref().map(|end| end.cause);
-    rows.iter().map(|row| (row.period(), row.rpm.map(|rpm| rpm / scale), row.ends.each_ref().map(cause))).collect()
+    let apart = grid.windows(2).map(|pair| pair[1].value - pair[0].value).fold(0.0, f64::max);
+    let rows = families(&over, &grid, &|_| apart, (&Sample::Spread(2), Budget::SURVEY));
+    let cause = |end: &Option<Transition>| end.as_ref().map(|end| end.cause);
+    rows.iter().map(|row| (row.period(), row.range.map(|rpm| rpm / scale), row.ends.each_ref().map(cause))).collect()
 }
 
 /// The motion of one impact begins and ends where the textbook has it, and where one ends in a flip that of twice as many begins, however far
@@ -215,7 +222,7 @@ fn an_orbit_that_runs_miss_at_one_speed_is_one() {
 fn a_picture_has_as_many_impacts_as_there_are_or_as_there_is_room_for() {
     for (restitution, rpm, shown) in [(0.0, 1300.0, 120), (0.3, 1100.0, 600)] {
         let ball = ball().with_number("follower.restitution", restitution).unwrap();
-        let found = speeds(&ball, [rpm, rpm + 1.0], resolution(1.0, 2), &Unwatched).unwrap();
+        let found = common::speeds(&ball, [rpm, rpm + 1.0], resolution(1.0, 2), &Unwatched).unwrap();
         let [one] = &found.attractors[..] else { panic!("{found:?}") };
         for at in &one.at {
             let impacts = at.ending.period().unwrap().1;

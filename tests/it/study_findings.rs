@@ -7,7 +7,6 @@ use corner_impact::agreement::{Agreement, Quantity, compare_routes};
 use corner_impact::cam::Side;
 use corner_impact::corner::map::{RouteName, SideMap, Uncertainty};
 use corner_impact::corner::{CornerMap, finite_difference, least_squares, variational};
-use corner_impact::diagram::{Placed, Places, Section as Shows, Speeds, Start, Starts, Sweep};
 use corner_impact::flight::State;
 use corner_impact::model::{Model, Study};
 use corner_impact::orbit::branch::Following;
@@ -20,7 +19,9 @@ use corner_impact::study::continuation::branches;
 use corner_impact::study::diagram::{Shown, loads, on_attractors, one_row};
 use corner_impact::study::locate::{Happens, locate};
 use corner_impact::study::simulate::{Sight, Simulation, Until, Wanted};
-use corner_impact::study::survey::{Point, Sample};
+use corner_impact::study::survey::{
+    Axis, Beginning, Place, Placed, Places, Point, Sample, Section as Shows, Start, Survey, Sweep, Values,
+};
 use corner_impact::study::verify::{External, verify};
 use serde_json::{Value, json};
 
@@ -97,11 +98,11 @@ fn the_next_impact_is_waited_for_from_the_last_one_on() {
 }
 
 fn sweep(model: &Model, low: f64, high: f64, count: usize, section: Shows) -> Sweep {
+    let speeds = Axis::new(Parameter::Speed, &Values::linear(low, high, count));
     Sweep {
-        machine: machine(model, low),
-        speeds: Speeds { low, high, count },
-        starts: Starts::One(START),
-        following: corner_impact::diagram::Following::Nothing,
+        over: Survey::new(model, None, speeds, None).unwrap(),
+        starts: Beginning::One(START),
+        following: corner_impact::study::survey::Following::Nothing,
         transient: 20,
         record: 3,
         section,
@@ -134,17 +135,16 @@ fn a_picture_of_a_sweep_shows_its_places() {
 fn a_sweep_is_a_run_at_each_speed() {
     let paper = common::osorio();
     let budget = Budget { transient: 20, record: 3, ..Budget::CHART };
-    let speeds = Speeds { low: 690.0, high: 710.0, count: 3 };
-    let row = one_row(&machine(&paper, 690.0), &speeds, START, budget, Some(1), &Unwatched).unwrap();
-    let sweep = sweep(&paper, 690.0, 710.0, 3, Shows::Impacts);
-    let bears = loads(&paper, &sweep, START, budget, Some(1), &Unwatched).unwrap();
+    let over = sweep(&paper, 690.0, 710.0, 3, Shows::Impacts).over;
+    let row = one_row(&over, START, budget, Some(1), &Unwatched).unwrap();
+    let bears = loads(&over, START, budget, Some(1), &Unwatched).unwrap();
     assert_eq!([row.len(), bears.len()], [3, 3]);
     for ((rpm, point), bears) in [690.0, 700.0, 710.0].into_iter().zip(&row).zip(&bears) {
         let machine = machine(&paper, rpm);
         let expected = Point::of(&machine, START.motion(&machine).unwrap(), budget).unwrap();
         assert_eq!(point.as_ref().unwrap(), &expected);
         assert_eq!(bears.len(), 3);
-        assert!(bears.iter().all(|it| it.rpm == rpm && it.impact_speed > 0.0));
+        assert!(bears.iter().all(|it| it.place == Place::of_speed(rpm) && it.impact_speed > 0.0));
     }
     let motions = on_attractors(&machine(&paper, 678.0), &Sample::Spread(64), Budget::SURVEY).unwrap();
     assert!(motions.len() == 2 && motions.iter().all(|motion| motion.revolution == 0), "{motions:?}");

@@ -12,9 +12,11 @@ use corner_impact::orbit::long_run::{Budget, Kind, LongRun};
 use corner_impact::orbit::{Parameter, Search, search};
 use corner_impact::progress::Unwatched;
 use corner_impact::simulate::angular_velocity;
-use corner_impact::study::attractors::{Attractors, Cause, Change, Here, Resolution, Step, attractors, detachment};
-use corner_impact::study::speeds::{At, speeds};
-use corner_impact::study::survey::{Part, Starts, Wandering};
+use corner_impact::study::attractors::{
+    Attractors, AttractorsAtValue, Cause, Resolution, Step, Transition, attractors, detachment,
+};
+use corner_impact::study::speeds::At;
+use corner_impact::study::survey::{Attractor, Over, Starts, Wandering};
 
 use crate::attractors::ball;
 use crate::common;
@@ -22,25 +24,25 @@ use crate::design_numbers::rpm;
 use crate::orbit_numbers::{ending, is_as_it_was, machine, model};
 
 pub fn resolution(step: f64, starts: usize) -> &'static Resolution {
-    Box::leak(Box::new(Resolution::new(Step::at_most(step), starts)))
+    Box::leak(Box::new(Resolution::new(common::step(step), starts)))
 }
 
 /// Where an attractor begins or ends: what was solved to nine digits, what runs tell to a bracket.
-fn end(change: Option<&Change>) -> String {
+fn end(change: Option<&Transition>) -> String {
     let Some(it) = change else { return "the range".into() };
     let [low, high] = it.bracket;
     if it.is_located() {
-        assert!(low <= it.rpm && it.rpm <= high && high - low < 1e-6 * it.rpm, "{it:?}");
+        assert!(low <= it.value() && it.value() <= high && high - low < 1e-6 * it.value(), "{it:?}");
         assert!(it.error.is_none());
         // An angle is known to fewer digits than it has.
         let cause = match it.cause {
             Cause::CornerImpact { cam_angle, jump_order } => format!("corner of order {jump_order} at {cam_angle:.6}"),
             other => format!("{other:?}"),
         };
-        return format!("{cause} at {:.8e}", it.rpm);
+        return format!("{cause} at {:.8e}", it.value());
     }
     assert_eq!((it.cause, it.point.is_none()), (Cause::Runs, true));
-    assert_abs_diff_eq!(it.rpm, 0.5 * (low + high), epsilon = 1e-9);
+    assert_abs_diff_eq!(it.value(), 0.5 * (low + high), epsilon = 1e-9);
     format!("runs between {low:.6} and {high:.6}")
 }
 
@@ -51,7 +53,7 @@ fn at(it: &At, starts: usize) -> String {
     // As of one more that ends on it and one that does not.
     let likely = (count + 1.0) / (all + 2.0);
     assert_relative_eq!(share.error, (likely * (1.0 - likely) / all).sqrt(), max_relative = 1e-12);
-    let mut told = format!("    {} rpm, {count} starts: {}\n", it.rpm, ending(&it.ending));
+    let mut told = format!("    {} rpm, {count} starts: {}\n", it.value(), ending(&it.ending));
     if it.ending.period().is_some_and(|(_, impacts)| impacts < 8) {
         let impacts: Vec<String> = it.impact_angles.iter().map(|angle| format!("{angle:.5}")).collect();
         let fastest = it.impact_speed.map(|speed| format!("{speed:.5e}"));
@@ -61,11 +63,11 @@ fn at(it: &At, starts: usize) -> String {
 }
 
 fn told(model: &Model, range: [f64; 2], resolution: &Resolution) -> String {
-    let found = speeds(model, range, resolution, &Unwatched).unwrap();
+    let found = common::speeds(model, range, resolution, &Unwatched).unwrap();
     let mut told = format!("{} {range:?} by {} from {}\n", found.model, found.step, found.sample.count());
-    assert!(found.failed.is_empty() && found.rpm == range);
+    assert!(found.failed.is_empty() && found.range == range);
     for it in &found.attractors {
-        let [low, high] = it.rpm;
+        let [low, high] = it.range();
         let numbers = [it.revolutions, it.impacts].map(|number| number.map_or("-".into(), |number| number.to_string()));
         let (birth, death) = (end(it.birth.as_ref()), end(it.death.as_ref()));
         let name = format!("  {} {} {} {low:.6} to {high:.6}", it.id, it.kind, numbers.join(" "));
@@ -73,7 +75,7 @@ fn told(model: &Model, range: [f64; 2], resolution: &Resolution) -> String {
         told.extend(it.at.iter().map(|it| at(it, found.sample.count())));
     }
     for it in &found.coexistence {
-        writeln!(told, "  {:.6} to {:.6}: {}", it.from_rpm, it.to_rpm, it.attractors.join(" ")).unwrap();
+        writeln!(told, "  {:.6} to {:.6}: {}", it.range()[0], it.range()[1], it.attractors.join(" ")).unwrap();
     }
     writeln!(told, "  leaves the cam at {:.8e}", found.detachment().map_or(f64::NAN, |[rpm, _]| rpm)).unwrap();
     told
@@ -89,9 +91,9 @@ fn a_ball_begins_to_bounce_to_leave_and_to_double() {
     // With K = a omega^2/g and K cos(theta) = pi (1 - r)/(1 + r) at the impact, K sin(theta) = 2 (1 + r^2)/(1 + r)^2 there.
     let flip = rpm((g / a * (PI * (1.0 - r) / (1.0 + r)).hypot(2.0 * (1.0 + r * r) / (1.0 + r).powi(2))).sqrt());
     let events = |range: [f64; 2]| -> Vec<(Cause, f64)> {
-        let found = speeds(&ball(), range, resolution(1.0, 1), &Unwatched).unwrap();
+        let found = common::speeds(&ball(), range, resolution(1.0, 1), &Unwatched).unwrap();
         let ends = found.attractors.iter().flat_map(|it| [it.birth.clone(), it.death.clone()]).flatten();
-        ends.map(|it| (it.cause, it.rpm)).collect()
+        ends.map(|it| (it.cause, it.value())).collect()
     };
     for (range, cause, rpm, count) in [
         ([558.0, 560.0], Cause::Fold, fold, 1),
@@ -141,9 +143,10 @@ fn attractors_that_end_at_a_corner_are_as_they_were() {
 fn a_grid_is_the_range_and_its_margin() {
     let paper = common::osorio();
     let grid = |range: [f64; 2], step: f64| -> Vec<f64> {
-        let Attractors { grid, range: told, .. } = attractors(&paper, range, resolution(step, 1), &Unwatched).unwrap();
+        let Attractors { grid, range: told, .. } =
+            attractors(&Over::speed(&paper, range[0]).unwrap(), range, resolution(step, 1), &Unwatched).unwrap();
         assert_eq!(told, range);
-        grid.iter().map(|it| it.as_ref().unwrap().rpm).collect()
+        grid.iter().map(|it| it.value).collect()
     };
     let found = grid([20.0, 23.0], 1.0);
     assert_eq!(found, (12..=31).map(f64::from).collect::<Vec<_>>());
@@ -172,14 +175,14 @@ fn a_step_is_the_longest_of_its_digits() {
     ] {
         for power in [-6, -3, -1, 0, 1, 2] {
             let scale = 10_f64.powi(power);
-            assert_relative_eq!(Step::at_most(longest * scale).rpm(), step * scale, max_relative = 1e-12);
+            assert_relative_eq!(common::step(longest * scale).width(), step * scale, max_relative = 1e-12);
         }
     }
     // What rounding has taken from a digit is one of it.
-    assert_eq!(Step::at_most(0.1 * 3.0).rpm(), 0.3);
-    assert_eq!(Step::at_most(3.0 - 1e-13).rpm(), 2.0);
-    assert_eq!(Step::for_speeds([600.0, 700.0], 0).rpm(), 100.0);
-    assert_eq!(Step::for_speeds([600.0, 700.0], 50), Step::at_most(2.0));
+    assert_eq!(common::step(0.1 * 3.0).width(), 0.3);
+    assert_eq!(common::step(3.0 - 1e-13).width(), 2.0);
+    assert_eq!(Step::for_values([600.0, 700.0], 0, corner_impact::study::survey::Spacing::Linear).width(), 100.0);
+    assert_eq!(Step::for_values([600.0, 700.0], 50, corner_impact::study::survey::Spacing::Linear), common::step(2.0));
 }
 
 /// `2 V + w` of the cam's largest velocity V and the velocity w of the way down its lift, times what impacts keep up of it.
@@ -236,10 +239,9 @@ fn the_follower_is_found_to_leave_within_reach() {
 #[test]
 fn a_motion_of_another_speed_comes_to_what_there_is() {
     let paper = common::osorio();
-    let here = |rpm: f64, left: u64| Here {
+    let here = |left: u64| AttractorsAtValue {
         budget: Budget::SURVEY,
-        rpm,
-        parts: Vec::new(),
+        attractors: Vec::new(),
         sampled: 0,
         off_for_good: 0,
         rests: 0,
@@ -249,9 +251,9 @@ fn a_motion_of_another_speed_comes_to_what_there_is() {
     let comes_to = |from: f64, to: f64, left: u64| {
         let from = machine(&paper, from);
         let motion = from.start_on_cam(0.0, 1.0).unwrap();
-        here(to, left).come_to(&from, &motion).unwrap()
+        here(left).come_to(&machine(&paper, to), &motion).unwrap()
     };
-    let kind = |part: &Option<Part>| part.as_ref().map(|part| part.ending.kind());
+    let kind = |part: &Option<Attractor>| part.as_ref().map(|part| part.ending.kind());
     let found = comes_to(690.0, 700.0, 0).unwrap();
     assert!(found.starts.is_empty() && found.ending.period() == Some((1, 1)), "{found:?}");
     // An orbit is there whatever others have left, and so is what rests or stays.
@@ -262,17 +264,16 @@ fn a_motion_of_another_speed_comes_to_what_there_is() {
     // On the cam of another machine the follower may be inside of this one's.
     let low = machine(&model("laws/polynomial"), 690.0);
     let motion = low.start(0.0, State { position: 0.1, velocity: 0.0 }).unwrap();
-    assert_eq!(here(690.0, 0).come_to(&machine(&paper, 700.0), &motion).unwrap(), None);
+    assert_eq!(here(0).come_to(&machine(&paper, 690.0), &motion).unwrap(), None);
 }
 
 /// Starts below so many are the sample's, those after them from rest; what no start ends on was come to from another speed.
 #[test]
 fn what_only_its_own_orbit_begins_on_is_not_reached() {
     let motion = machine(&common::osorio(), 700.0).start_on_cam(0.0, 1.0).unwrap();
-    let here = Here {
+    let here = AttractorsAtValue {
         budget: Budget::SURVEY,
-        rpm: 700.0,
-        parts: Vec::new(),
+        attractors: Vec::new(),
         sampled: 4,
         off_for_good: 0,
         rests: 2,
@@ -282,8 +283,12 @@ fn what_only_its_own_orbit_begins_on_is_not_reached() {
     for (starts, reached, count) in
         [(vec![], true, 0), (vec![6], false, 0), (vec![5, 6], true, 0), (vec![4], true, 0), (vec![3, 4], true, 1)]
     {
-        let part =
-            Part { ending: LongRun::PermanentContact, starts: starts.clone(), followed: vec![1; starts.len()], motion };
+        let part = Attractor {
+            ending: LongRun::PermanentContact,
+            starts: starts.clone(),
+            followed: vec![1; starts.len()],
+            motion,
+        };
         assert_eq!((here.is_reached(&part), here.count(&part)), (reached, count), "{starts:?}");
     }
     let one = Wandering { revolutions: 1, left: 2, rested: 3 };
@@ -305,8 +310,8 @@ fn a_point_of_a_branch_is_a_cause() {
     let cause = |kind: Event| {
         let mut point = corner.clone();
         point.special.as_mut().unwrap().kind = kind;
-        let change = Change::of_point(&point);
-        assert_eq!((change.rpm, change.bracket), (point.rpm, point.special.unwrap().bracket));
+        let change = Transition::of_point(&Parameter::Speed, &point);
+        assert_eq!((change.value(), change.bracket), (point.rpm, point.special.unwrap().bracket));
         assert!(change.point.as_deref() == Some(&point) && change.error.is_none());
         assert_eq!(change.is_located(), change.cause != Cause::Runs);
         change.cause
@@ -326,9 +331,12 @@ fn a_point_of_a_branch_is_a_cause() {
     assert!(kinds.into_iter().all(|kind| cause(kind) == Cause::Runs));
     assert_eq!(cause(Event::Type { after_corner: None, multiplier: 1.0 }), Cause::Runs);
     let plain = branch.points.iter().find(|it| it.special.is_none()).unwrap();
-    assert_eq!(Change::of_point(plain), Change::by_runs([plain.rpm; 2]));
-    let runs = Change::by_runs([3.0, 4.0]);
-    assert_eq!((runs.rpm, runs.bracket, runs.cause, runs.is_located()), (3.5, [3.0, 4.0], Cause::Runs, false));
+    assert_eq!(
+        Transition::of_point(&Parameter::Speed, plain),
+        Transition::by_runs(&Parameter::Speed, 1.0, [plain.rpm; 2])
+    );
+    let runs = Transition::by_runs(&Parameter::Speed, 1.0, [3.0, 4.0]);
+    assert_eq!((runs.value(), runs.bracket, runs.cause, runs.is_located()), (3.5, [3.0, 4.0], Cause::Runs, false));
 }
 
 /// An end that is known by runs, of a machine that differs by little: there it is known by runs again.
@@ -336,22 +344,24 @@ fn a_point_of_a_branch_is_a_cause() {
 fn an_end_by_runs_moves_with_the_machine() {
     let text = |stiffness: f64| model("laws/polynomial").with_number("follower.stiffness", stiffness).unwrap();
     let ends = |of: &Model| {
-        let found = attractors(of, [420.0, 422.0], resolution(0.5, 3), &Unwatched).unwrap();
-        let row = found.rows.iter().position(|row| row.kind(&found.grid) == Kind::Resting && row.period().is_none());
+        let found =
+            attractors(&Over::speed(of, 420.0).unwrap(), [420.0, 422.0], resolution(0.5, 3), &Unwatched).unwrap();
+        let row =
+            found.families.iter().position(|row| row.kind(&found.grid) == Kind::Resting && row.period().is_none());
         (row.unwrap(), found)
     };
     let (row, found) = ends(&text(1000.0));
-    let row = &found.rows[row];
+    let row = &found.families[row];
     let side = usize::from(row.ends[0].is_none());
     let end = row.ends[side].as_ref().unwrap();
     let moved =
         |of: &Model| row.moved(&machine(of, 421.0), &found.grid, (&resolution(0.5, 3).sample, Budget::SURVEY), side);
     let width = end.bracket[1] - end.bracket[0];
-    assert_abs_diff_eq!(moved(&text(1000.0)).unwrap(), end.rpm, epsilon = 2.0 * width);
+    assert_abs_diff_eq!(moved(&text(1000.0)).unwrap(), end.value(), epsilon = 2.0 * width);
     for stiffness in [999.9, 1000.5] {
         let other = text(stiffness);
         let (row, there) = ends(&other);
-        let there = there.rows[row].ends[side].as_ref().unwrap().rpm;
+        let there = there.families[row].ends[side].as_ref().unwrap().value();
         assert_abs_diff_eq!(moved(&other).unwrap(), there, epsilon = 10.0 * width);
     }
     // Of another machine altogether it is nowhere near.
@@ -361,8 +371,8 @@ fn an_end_by_runs_moves_with_the_machine() {
 /// What counts is how many speeds there are, and not how many times as fast the last is as the first.
 #[test]
 fn a_range_may_begin_at_next_to_nothing() {
-    let resolution = Resolution::new(Step::at_most(0.02), 1);
-    let found = attractors(&ball(), [1e-5, 1.0], &resolution, &Unwatched).unwrap();
-    let [row] = &found.rows[..] else { panic!("{:?}", found.rows) };
-    assert_eq!((row.rpm, row.ends.each_ref().map(Option::is_some)), ([1e-5, 1.0], [false, false]));
+    let resolution = Resolution::new(common::step(0.02), 1);
+    let found = attractors(&Over::speed(&ball(), 1e-5).unwrap(), [1e-5, 1.0], &resolution, &Unwatched).unwrap();
+    let [row] = &found.families[..] else { panic!("{:?}", found.families) };
+    assert_eq!((row.range, row.ends.each_ref().map(Option::is_some)), ([1e-5, 1.0], [false, false]));
 }

@@ -2,7 +2,7 @@
 
 use corner_impact::model::Model;
 use corner_impact::orbit::long_run::{Budget, Kind};
-use corner_impact::study::attractors::Here;
+use corner_impact::study::attractors::AttractorsAtValue;
 use corner_impact::study::survey::{Sample, Wandering};
 
 use crate::common;
@@ -10,8 +10,8 @@ use crate::orbit_numbers::{machine, model};
 
 /// The motions that so many starts come to at a speed: kind, whether what tells it from chaos is rounding, and of how many starts.
 fn parts(model: &Model, rpm: f64, starts: usize) -> (Vec<(Kind, bool, usize)>, Wandering) {
-    let here = Here::new(&machine(model, rpm), rpm, &Sample::Spread(starts), Budget::SURVEY).unwrap();
-    let parts = here.parts.iter().map(|part| (part.ending.kind(), part.ending.is_long(), here.count(part)));
+    let here = AttractorsAtValue::new(&machine(model, rpm), &Sample::Spread(starts), Budget::SURVEY).unwrap();
+    let parts = here.attractors.iter().map(|part| (part.ending.kind(), part.ending.is_long(), here.count(part)));
     (parts.collect(), here.wandering)
 }
 

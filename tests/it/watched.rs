@@ -2,7 +2,6 @@
 
 use std::sync::Mutex;
 
-use corner_impact::diagram::{Placed, Start};
 use corner_impact::flight::State;
 use corner_impact::model::Study;
 use corner_impact::progress::Watch;
@@ -13,7 +12,7 @@ use corner_impact::study::design::design;
 use corner_impact::study::design::needs::Lever;
 use corner_impact::study::locate::locate;
 use corner_impact::study::simulate::{Sight, Simulation, Until, Wanted};
-use corner_impact::study::speeds::speeds;
+use corner_impact::study::survey::{Placed, Start};
 
 use crate::chart_store::chart;
 use crate::common;
@@ -45,7 +44,7 @@ fn as_much_is_told_to_be_done_as_there_is_at_most() {
     let (paper, told) = (common::osorio(), Told::default());
     let narrow = Study { rpm_min: 679.0, rpm_max: 681.0 };
     locate(&paper, narrow, 1, &told).unwrap();
-    speeds(&ball(""), [300.0, 303.0], resolution(1.0, 4), &told).unwrap();
+    common::speeds(&ball(""), [300.0, 303.0], resolution(1.0, 4), &told).unwrap();
     chart(&paper, 8).run(Some(1), &told).unwrap();
     chaos(&paper, [100.0, 100.05], false, &told).unwrap();
     let all = told.0.lock().unwrap().clone();

@@ -207,7 +207,12 @@ impl Branch {
     }
 
     /// The branch through `orbit`, of the machine that has `value` of what is followed, the one free number of `family`.
-    fn at(family: &Family, value: f64, orbit: &PeriodicOrbit, following: &Following) -> Result<Self, OrbitError> {
+    pub(crate) fn at(
+        family: &Family,
+        value: f64,
+        orbit: &PeriodicOrbit,
+        following: &Following,
+    ) -> Result<Self, OrbitError> {
         let (_, rpm) = family.machine(&[value])?;
         let spans = [following.range[1] - following.range[0]];
         let half = |direction| match &orbit.course {

@@ -6,13 +6,13 @@ use std::ops::ControlFlow;
 use super::{corners, listed, machine, one_impact};
 use crate::covering::prove::prove;
 use crate::covering::{HSet, known};
-use crate::diagram::{Record, growth};
 use crate::orbit::branch::{Branch, BranchPoint, Following, Kind};
 use crate::orbit::{Parameter, Search, search};
 use crate::paper::context::{Context, Decision, decide};
 use crate::published::Verdict;
 use crate::section::StroboscopicMap;
 use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError};
+use crate::simulate::{Record, growth};
 use crate::study::certify::{BITS, OrbitKind, ProvedCounts, proved_counts};
 use crate::tolerance;
 

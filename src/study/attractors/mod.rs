@@ -1,234 +1,251 @@
-//! The attractors of a machine over a range of speeds: sought at each speed of a grid, matched from speed to speed, each with
-//! where it begins and ends.
+//! The attractors of a machine over a range of speeds, or of values of another number: sought at each value of a grid, matched from value to
+//! value, each with where it begins and ends.
 //!
-//! At each speed runs are made from a sample of starts, from rest on the cam, and from the stable orbits that are known without
-//! a run; then from what the two neighbouring speeds have and this one has not. The grid is the same for every range: a part
+//! At each value runs are made from a sample of starts, from rest on the cam, and from the stable orbits that are known without
+//! a run; then from what the two neighbouring values have and this one has not. The grid is the same for every range: a part
 //! of a range has the attractors of that part.
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`here`] | the attractors at one speed |
-//! | `stretch` | how far a periodic orbit is stable, by the branch that it is on |
-//! | [`change`] | where an attractor begins or ends, and why |
-//! | [`rows`] | what was found at one speed matched with what was found at the next |
+//! | `at_value` | the attractors of one machine |
+//! | `stable_range` | how far a periodic orbit is stable, by the branch that it is on |
+//! | `transition` | where an attractor begins or ends, and why |
+//! | `family` | what was found at one value matched with what was found at the next |
+//! | `step` | the grid of values |
 
-pub mod change;
+mod at_value;
 mod detachment;
-pub mod here;
-pub mod rows;
-mod stretch;
+mod family;
+mod stable_range;
+mod step;
+mod transition;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use crate::model::{Model, ModelError};
+use rayon::prelude::*;
+
+use crate::bracket::{Width, halve};
+use crate::model::ModelError;
+use crate::orbit::FamilyError;
 use crate::orbit::long_run::Budget;
 use crate::progress::Watch;
-use crate::simulate::{Machine, SimulateError};
 use crate::stop;
 use crate::study::design::contact::{Contact, Separation};
-use crate::study::machine;
-use crate::study::survey::{Part, Sample};
-pub use change::{Cause, Change};
+use crate::study::survey::{Attractor, Over, RunError, Sample, Spacing};
+use crate::tolerance;
+pub use at_value::AttractorsAtValue;
 pub use detachment::detachment;
+pub use family::{Asked, AttractorFamily, Grid, GridValue, families};
+pub use step::Step;
+pub use transition::{Cause, Transition};
 
-pub use here::Here;
-use rayon::prelude::*;
-pub use rows::{Grid, Row};
-
-/// A grid of speeds that no range has a say in: whole multiples of a step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Step {
-    /// 1, 2, 3 or 5, so that the step is no shorter than half of what was asked for.
-    digit: u64,
-    /// Of ten.
-    power: i32,
+/// Something that runs alone tell, between two values in either order.
+fn by_runs(over: &Over<'_>, [one, two]: [f64; 2]) -> Transition {
+    Transition::by_runs(&over.parameter, over.rpm, [one.min(two), one.max(two)])
 }
 
-impl Step {
-    /// The longest step that puts `speeds` of them, or more, into `range`, rpm.
-    pub fn for_speeds([low, high]: [f64; 2], speeds: u32) -> Self {
-        Self::at_most((high - low) / f64::from(speeds.max(1)))
+/// The value between two at which the follower first leaves the cam or ceases to, by the force between them, and how far it may be off.
+fn leaves(over: &Over<'_>, bracket: [f64; 2]) -> Option<[f64; 2]> {
+    let parts = |value: f64| -> Result<bool, FamilyError> {
+        let (model, cam) = over.model(value)?;
+        Ok(Contact::new(&cam, model.follower).separation().speed() < over.rpm)
+    };
+    let [low, high] = bracket;
+    let at_low = parts(low).ok()?;
+    if parts(high).ok()? == at_low {
+        return None;
     }
-
-    /// The longest step that is no longer than so many rpm.
-    pub fn at_most(longest: f64) -> Self {
-        let power = longest.log10().floor();
-        let digits = longest / 10.0_f64.powf(power);
-        // A step of exactly one of them is not to be lost to rounding.
-        let digit = [5, 3, 2]
-            .into_iter()
-            .find(|digit| digits * (1.0 + 8.0 * crate::tolerance::ULP.value) >= *digit as f64)
-            .unwrap_or(1);
-        Self { digit, power: power as i32 }
-    }
-
-    /// The step, rpm.
-    pub fn rpm(self) -> f64 {
-        self.times(1)
-    }
-
-    /// A multiple of it, rpm: the double nearest to the decimal number.
-    fn times(self, count: u64) -> f64 {
-        let count = (count * self.digit) as f64;
-        if self.power < 0 { count / 10.0_f64.powi(-self.power) } else { count * 10.0_f64.powi(self.power) }
-    }
-
-    /// The multiples from the last that is not above `low` to the first that is not below `high`, rpm.
-    fn over(self, [low, high]: [f64; 2]) -> impl Iterator<Item = f64> {
-        let first = (low / self.rpm()).floor() as u64;
-        let mut first = first.saturating_sub(1);
-        while self.times(first + 1) <= low {
-            first += 1;
-        }
-        let mut last = first;
-        while self.times(last) < high {
-            last += 1;
-        }
-        (first..=last).map(move |count| self.times(count))
-    }
+    let width = Width::Relative(tolerance::ROOT_WIDTH.value);
+    let [low, high] = halve(bracket, width, |value| Ok::<_, FamilyError>(parts(value)? != at_low)).ok()?;
+    Some([0.5 * (low + high), 0.5 * (high - low).abs()])
 }
 
 /// How closely a range is looked at.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Resolution {
-    /// From one speed to the next.
+    /// From one value to the next.
     pub step: Step,
     /// The starts that are run at each.
     pub sample: Sample,
     /// For how long.
     pub budget: Budget,
-    /// Whether runs begin on the stable orbits of two impacts in one revolution, too: a search at each speed that takes up to
+    /// Whether runs begin on the stable orbits of two impacts in one revolution, too: a search at each value that takes up to
     /// seconds, and finds all of them but next to a fold, a graze or a corner.
     pub two_impacts: bool,
 }
 
 impl Resolution {
-    /// So many starts of a sample at each speed, with the budget of a survey.
+    /// So many starts of a sample at each value, with the budget of a survey.
     pub fn new(step: Step, starts: usize) -> Self {
         Self { step, sample: Sample::Spread(starts), budget: Budget::SURVEY, two_impacts: false }
     }
 }
 
-/// Two or more attractors at the same speeds.
+/// Two or more attractors at the same values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coexistence {
-    /// Lowest and highest speed, rpm.
-    pub rpm: [f64; 2],
-    /// The rows, by their indices.
-    pub rows: Vec<usize>,
+    /// Lowest and highest value.
+    pub range: [f64; 2],
+    /// The families, by their indices.
+    pub families: Vec<usize>,
 }
 
-/// The attractors of a range of speeds.
+/// The attractors of a range of values.
 #[derive(Clone, Debug)]
 pub struct Attractors {
-    /// The range, rpm.
+    /// The range.
     pub range: [f64; 2],
-    /// What was found at each speed of the grid, by rising speed, or why nothing was.
-    pub grid: Vec<Result<Here, (f64, SimulateError)>>,
-    /// The attractors, by rising speed.
-    pub rows: Vec<Row>,
+    /// What was found at each value of the grid, from the lowest up, or why nothing was.
+    pub grid: Vec<GridValue>,
+    /// The attractors, by rising value.
+    pub families: Vec<AttractorFamily>,
     /// Where there are several.
     pub coexistence: Vec<Coexistence>,
-    /// Where the follower first leaves the cam above the lowest speed, by the force between them.
-    pub separation: Separation,
+    /// Where the follower first leaves the cam above the lowest speed, by the force between them; none where the speed does not vary.
+    pub separation: Option<Separation>,
 }
 
-/// Why a range of speeds cannot be looked through.
+/// Why a range of values cannot be looked through.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says what each number is")]
 pub enum AttractorsError {
     /// The model is impossible.
     #[error("{0}")]
     Model(#[from] ModelError),
+    /// What varies is no number of the model, or none that it could have.
+    #[error(transparent)]
+    Family(#[from] FamilyError),
     /// Ends that are no range.
     #[error("{low}:{high} rpm: a range goes from a speed above 0 to a higher one")]
     NoRange { low: f64, high: f64 },
-    /// A grid that no double resolves, or of more speeds than can be run.
-    #[error("{low}:{high} rpm: speeds that are {step:e} rpm apart are too many, or too near to be told apart")]
+    /// Ends that are none of another number.
+    #[error("{name} = {low}:{high}: a range goes from a value to a higher one{}", if *of_logarithms { ", and a logarithmic one begins above 0" } else { "" })]
+    NoRangeOf { name: String, low: f64, high: f64, of_logarithms: bool },
+    /// A grid that no double resolves, or of more values than can be run.
+    #[error("{low}:{high}: values that are {step:e} apart are too many, or too near to be told apart")]
     TooFine { low: f64, high: f64, step: f64 },
-    /// No speed could be run.
-    #[error("at {rpm} rpm, and at every other speed: {error}")]
-    Simulate { rpm: f64, error: SimulateError },
+    /// No value could be run.
+    #[error("at {place}, and at every other value: {error}")]
+    Run { place: String, error: RunError },
 }
 
 /// How far beyond a range attractors are looked for, in steps.
 const MARGIN: f64 = 8.0;
-/// The most speeds of one grid.
-const MOST_SPEEDS: f64 = 200_000.0;
+/// The most values of one grid.
+const MOST_VALUES: f64 = 200_000.0;
 
-/// The attractors of `model` over `range`, rpm; `watch` is told speed by speed.
+/// The attractors of a model over a range of one of its numbers; `watch` is told value by value.
 pub fn attractors(
-    model: &Model,
+    over: &Over<'_>,
     range: [f64; 2],
     resolution: &Resolution,
     watch: &dyn Watch,
 ) -> Result<Attractors, AttractorsError> {
-    let [low, high] = range;
-    if !(low > 0.0 && high > low && high.is_finite()) {
-        return Err(AttractorsError::NoRange { low, high });
-    }
-    let step = resolution.step.rpm();
-    if !(step > high * crate::tolerance::ULP.value && (high - low) / step <= MOST_SPEEDS) {
-        return Err(AttractorsError::TooFine { low, high, step });
-    }
-    let machine = machine(model, low)?;
-    // What lives between two speeds of the grid is found from attractors next to it, which may lie outside of the range.
-    let around = MARGIN * step;
-    let mut speeds: Vec<f64> = resolution.step.over([(low - around).max(0.0), high + around]).collect();
-    // Nothing turns at speed 0.
-    speeds.retain(|rpm| *rpm > 0.0);
-    if speeds.first().is_some_and(|first| low < *first) {
-        speeds.insert(0, low);
-    }
-    let (done, total) = (AtomicU64::new(0), speeds.len() as u64);
-    let at = |rpm: &f64| {
-        // Work that is to end does not begin at each of the speeds that are left.
+    let values = values(over, range, resolution)?;
+    let (done, total) = (AtomicU64::new(0), values.len() as u64);
+    let at = |value: &f64| {
+        // Work that is to end does not begin at each of the values that are left.
         stop::ask();
         watch.at("what runs end on", done.fetch_add(1, Ordering::Relaxed), total);
-        Here::seeded(&machine, *rpm, (&resolution.sample, resolution.budget), resolution.two_impacts)
-            .map_err(|error| (*rpm, error))
+        let found = over.machine(*value).map_err(RunError::from).and_then(|machine| {
+            let runs = (&resolution.sample, resolution.budget);
+            Ok(AttractorsAtValue::seeded(&machine, runs, resolution.two_impacts)?)
+        });
+        GridValue { value: *value, found }
     };
-    let mut grid: Vec<_> = speeds.par_iter().map(at).collect();
-    if let Some(Err((rpm, error))) = grid.first()
-        && grid.iter().all(Result::is_err)
+    let mut grid: Vec<GridValue> = values.par_iter().map(at).collect();
+    // Beyond the range there may be no machine.
+    grid.retain(|at| (range[0] <= at.value && at.value <= range[1]) || !matches!(at.found, Err(RunError::Family(_))));
+    if let Some(GridValue { value, found: Err(error) }) = grid.first()
+        && grid.iter().all(|at| at.found.is_err())
     {
-        return Err(AttractorsError::Simulate { rpm: *rpm, error: *error });
+        return Err(AttractorsError::Run { place: over.parameter.words(*value), error: error.clone() });
     }
-    watch.at("what neighbouring speeds end on", 0, 0);
+    watch.at("what neighbouring values end on", 0, 0);
     // Starts that are given are all that is asked about.
     if let Sample::Spread(_) = resolution.sample {
-        exchange(&machine, &mut grid);
+        exchange(over, &mut grid);
     }
     watch.at("where each begins and ends", 0, 0);
-    let mut rows = rows::rows(model, &machine, &mut grid, (&resolution.sample, resolution.budget));
-    let separation = Contact::new(machine.cam(), model.follower).separation_above(low);
-    if let Separation::At { rpm, error, .. } = separation {
-        rows.iter_mut().for_each(|row| row.detaches(rpm, error));
+    let mut families =
+        families(over, &grid, &|value| resolution.step.near(value), (&resolution.sample, resolution.budget));
+    let separation = over.is_speed().then(|| {
+        let machine = over.machine(range[0])?;
+        Ok::<_, FamilyError>(Contact::new(machine.cam(), over.model.follower).separation_above(range[0]))
+    });
+    let separation = separation.transpose()?;
+    let detachments: Vec<[f64; 2]> = match separation {
+        Some(Separation::At { rpm, error, .. }) => vec![[rpm, error]],
+        Some(_) => Vec::new(),
+        None => families
+            .iter()
+            .flat_map(AttractorFamily::contact_ends)
+            .filter_map(|bracket| leaves(over, bracket))
+            .collect(),
+    };
+    for [value, error] in detachments {
+        families.iter_mut().for_each(|family| family.detaches(over, value, error));
     }
-    rows.retain_mut(|row| row.cut(range));
-    let coexistence = coexistence(&rows);
-    Ok(Attractors { range, grid, rows, coexistence, separation })
+    families.retain_mut(|family| family.cut(range));
+    let coexistence = coexistence(&families, range);
+    Ok(Attractors { range, grid, families, coexistence, separation })
 }
 
-/// Runs on, at each speed, what its neighbours have and it has not, until that finds nothing new.
-fn exchange(machine: &Machine, grid: &mut [Result<Here, (f64, SimulateError)>]) {
+/// The values at which attractors are looked for.
+fn values(over: &Over<'_>, [low, high]: [f64; 2], resolution: &Resolution) -> Result<Vec<f64>, AttractorsError> {
+    let (step, is_range) = (resolution.step, high > low && (high - low).is_finite());
+    let of_logarithms = step.spacing == Spacing::Logarithmic;
+    match over.is_speed() {
+        true if !(is_range && low > 0.0) => return Err(AttractorsError::NoRange { low, high }),
+        false if !is_range || (of_logarithms && low <= 0.0) => {
+            let name = over.parameter.name().into();
+            return Err(AttractorsError::NoRangeOf { name, low, high, of_logarithms });
+        }
+        _ => {}
+    }
+    let [from, to] = [low, high].map(|end| step.spacing.place(end));
+    let size = from.abs().max(to.abs());
+    if !(step.width() > size * tolerance::ULP.value && (to - from) / step.width() <= MOST_VALUES) {
+        return Err(AttractorsError::TooFine { low, high, step: step.width() });
+    }
+    // What lives between two values of the grid is found from attractors next to it, which may lie outside of the range.
+    let around = MARGIN * step.width();
+    let from = if over.is_speed() && !of_logarithms { (from - around).max(0.0) } else { from - around };
+    let mut values: Vec<f64> = step.over([from, to + around]).collect();
+    if over.is_speed() {
+        // Nothing turns at speed 0.
+        values.retain(|rpm| *rpm > 0.0);
+        if values.first().is_some_and(|first| low < *first) {
+            values.insert(0, low);
+        }
+    }
+    Ok(values)
+}
+
+/// Runs on, at each value, what its neighbours have and it has not, until that finds nothing new.
+fn exchange(over: &Over<'_>, grid: &mut [GridValue]) {
     let mut fresh: Vec<usize> = (0..grid.len()).collect();
     while !fresh.is_empty() {
         let pairs = fresh.iter().flat_map(|from| [(*from, from.checked_sub(1)), (*from, Some(from + 1))]);
         let pairs: Vec<(usize, usize)> = pairs.filter_map(|(from, to)| Some((from, to?))).collect();
-        let found: Vec<(usize, Part)> = pairs
+        let found: Vec<(usize, Attractor)> = pairs
             .par_iter()
             .flat_map_iter(|(from, to)| {
-                let (Some(Ok(from)), Some(Ok(here))) = (grid.get(*from), grid.get(*to)) else { return Vec::new() };
-                let missing = from.parts.iter().filter(|part| !rows::has_reached(here, &part.ending));
-                let found = missing.filter_map(|part| here.come_to(machine, &part.motion).ok().flatten());
-                found.map(|part| (*to, part)).collect()
+                let (Some(from), Some(at)) = (grid.get(*from), grid.get(*to)) else { return Vec::new() };
+                let (Ok(from), Ok(here)) = (&from.found, &at.found) else { return Vec::new() };
+                let mut missing = from.attractors.iter().filter(|it| !family::has_reached(here, &it.ending)).peekable();
+                if missing.peek().is_none() {
+                    return Vec::new();
+                }
+                let Ok(machine) = over.machine(at.value) else { return Vec::new() };
+                let found = missing.filter_map(|it| here.come_to(&machine, &it.motion).ok().flatten());
+                found.map(|attractor| (*to, attractor)).collect()
             })
             .collect();
         fresh.clear();
-        for (index, part) in found {
-            if let Ok(here) = &mut grid[index]
-                && here.take(part)
+        for (index, attractor) in found {
+            if let Ok(here) = &mut grid[index].found
+                && here.take(attractor)
             {
                 fresh.push(index);
             }
@@ -237,20 +254,20 @@ fn exchange(machine: &Machine, grid: &mut [Result<Here, (f64, SimulateError)>]) 
     }
 }
 
-/// Where rows overlap, by more than where they begin and end is open by.
-fn coexistence(rows: &[Row]) -> Vec<Coexistence> {
-    let ends = rows.iter().flat_map(|row| row.rpm.into_iter().zip(&row.ends));
-    let open = |end: &Option<Change>| end.as_ref().map_or(0.0, |change| change.bracket[1] - change.bracket[0]);
-    let mut ends: Vec<(f64, f64)> = ends.map(|(rpm, end)| (rpm, open(end))).collect();
+/// Where families overlap, by more than where they begin and end is open by.
+fn coexistence(families: &[AttractorFamily], range: [f64; 2]) -> Vec<Coexistence> {
+    let ends = families.iter().flat_map(|family| family.range.into_iter().zip(&family.ends));
+    let open = |end: &Option<Transition>| end.as_ref().map_or(0.0, |end| end.bracket[1] - end.bracket[0]);
+    let mut ends: Vec<(f64, f64)> = ends.map(|(value, end)| (value, open(end))).collect();
     ends.sort_by(|one, other| one.0.total_cmp(&other.0));
+    let rounding = tolerance::SPEED_FOUND.value * (range[1] - range[0]).min(1.0);
     let mut found: Vec<Coexistence> = Vec::new();
     for pair in ends.windows(2) {
         let [(low, one), (high, other)] = [pair[0], pair[1]];
-        let covers = |row: &usize| rows[*row].rpm[0] <= low && high <= rows[*row].rpm[1];
-        let over: Vec<usize> = (0..rows.len()).filter(covers).collect();
-        let rounding = crate::tolerance::SPEED_FOUND.value;
-        if over.len() > 1 && high - low > one.max(other).max(rounding) {
-            found.push(Coexistence { rpm: [low, high], rows: over });
+        let covers = |index: &usize| families[*index].range[0] <= low && high <= families[*index].range[1];
+        let families: Vec<usize> = (0..families.len()).filter(covers).collect();
+        if families.len() > 1 && high - low > one.max(other).max(rounding) {
+            found.push(Coexistence { range: [low, high], families });
         }
     }
     found

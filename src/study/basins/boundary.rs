@@ -24,7 +24,7 @@ pub fn border(map: &StroboscopicMap, [from, to]: [State; 2], budget: Budget) -> 
     let end = |share: f64| -> Result<LongRun, SimulateError> {
         let start = |_| map.machine.start(map.cam_angle, at(share)).map(Some);
         let mut found = attractors_of(&runs, 1, start, &Unwatched).map_err(|(_, error)| error)?;
-        Ok(found.parts.swap_remove(0).ending)
+        Ok(found.attractors.swap_remove(0).ending)
     };
     let (first, last) = (end(0.0)?, end(1.0)?);
     if first.is_same(&last) {

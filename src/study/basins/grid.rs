@@ -2,14 +2,13 @@
 
 use serde::Serialize;
 
-use crate::diagram::SweepError;
 use crate::estimate::Estimate;
 use crate::flight::State;
 use crate::orbit::long_run::{Budget, LongRun};
 use crate::orbit::runs::LongRuns;
 use crate::progress::Watch;
 use crate::simulate::{Machine, SimulateError};
-use crate::study::survey::{Ensemble, Wandering, attractors_of};
+use crate::study::survey::{Ensemble, SweepError, Wandering, attractors_of};
 
 /// Starts on the section at one cam angle: the middles of cells, evenly spaced in position and velocity.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -98,7 +97,7 @@ impl SectionStarts {
         threads: Option<usize>,
         watch: &dyn Watch,
     ) -> Result<Basins, GridError> {
-        let pool = crate::diagram::threads(threads)?;
+        let pool = crate::study::survey::threads(threads)?;
         let failed = |(index, error): (usize, SimulateError)| GridError::Simulate { state: self.state(index), error };
         let start = |index: usize| match machine.start(self.cam_angle(), self.state(index)) {
             Ok(motion) => Ok(Some(motion)),
@@ -189,11 +188,11 @@ pub struct Basins {
 impl Basins {
     fn new(begun: SectionStarts, budget: Budget, mut found: Ensemble) -> Self {
         // Stable: among parts of one size the first found comes first.
-        found.parts.sort_by_key(|part| std::cmp::Reverse(part.starts.len()));
+        found.attractors.sort_by_key(|part| std::cmp::Reverse(part.starts.len()));
         let (mut cells, mut followed) = (vec![None; begun.count()], vec![None; begun.count()]);
-        let starts = found.parts.iter().map(|part| part.starts.len()).sum::<usize>();
-        let mut parts = Vec::with_capacity(found.parts.len());
-        for (index, part) in found.parts.into_iter().enumerate() {
+        let starts = found.attractors.iter().map(|part| part.starts.len()).sum::<usize>();
+        let mut parts = Vec::with_capacity(found.attractors.len());
+        for (index, part) in found.attractors.into_iter().enumerate() {
             part.starts.iter().for_each(|cell| cells[*cell] = Some(index));
             part.starts.iter().zip(&part.followed).for_each(|(cell, turns)| followed[*cell] = Some(*turns));
             let share = Estimate::share(part.starts.len(), starts);

@@ -9,14 +9,13 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
-use super::{Axis, Blocks, Chart, ChartError, Filled, class};
-use crate::diagram::{Placed, Start};
+use super::{Blocks, Chart, Filled, class};
 use crate::file::{self, FileError, Output};
 use crate::flight::State;
 use crate::model::Units;
 use crate::orbit::long_run::Kind;
 use crate::progress::{Unwatched, Watch};
-use crate::study::survey::Point;
+use crate::study::survey::{Axis, Placed, Point, Start, SweepError};
 
 /// A store of a chart, in a folder.
 #[derive(Clone, Copy, Debug)]
@@ -54,7 +53,7 @@ pub enum StoreError {
     Write(#[from] std::io::Error),
     /// The chart cannot be run.
     #[error(transparent)]
-    Chart(#[from] ChartError),
+    Chart(#[from] SweepError),
 }
 
 /// The part of the blocks that a process sees to: those whose number, counted from 1, leaves `index` if divided by `of`.
@@ -295,7 +294,7 @@ impl<'a> Store<'a> {
         let range = |index: usize, side: usize, axis: &Axis| index * side..axis.values.len().min((index + 1) * side);
         let (columns, rows) = (range(column, wide, &self.chart.x), range(row, high, &self.chart.y));
         let width = columns.len();
-        let (found, times) = self.chart.part(columns, rows, threads, &Unwatched)?;
+        let (found, times) = self.chart.part([columns, rows], threads, &Unwatched)?;
         for variable in &VARIABLES {
             let value = |index: usize| {
                 let (right, up) = (index % wide, index / wide);

@@ -4,14 +4,13 @@ use std::f64::consts::TAU;
 
 use serde::Serialize;
 
-use crate::diagram::{Placed, Start};
 use crate::model::{Model, Units};
 use crate::orbit::long_run::{Budget, LongRun};
 use crate::orbit::runs::LongRuns;
 use crate::progress::Unwatched;
 use crate::section::trace;
 use crate::simulate::{EventKind, Machine, Motion, SimulateError};
-use crate::study::survey::{Part, attractors_of};
+use crate::study::survey::{Attractor, Place, Placed, Start, attractors_of};
 
 /// What a load is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -57,11 +56,11 @@ impl Load {
     }
 }
 
-/// The loads of what runs come to at one speed: the largest among several starts.
+/// The loads of what one machine's runs come to: the largest among several starts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Loads {
-    /// Speed, rpm.
-    pub rpm: f64,
+    /// Of which machine.
+    pub place: Place,
     /// Of follower and cam against each other at the fastest impact, m/s; 0 without any.
     pub impact_speed: f64,
     /// The largest gap, m.
@@ -77,7 +76,8 @@ pub struct Loads {
 }
 
 document!(Loads as it {
-    speed_rpm: it.rpm,
+    speed_rpm: it.place.rpm,
+    value if_any: it.place.value,
     impact_speed_m_s: it.impact_speed,
     gap_m: it.gap,
     off_cam_share: it.off_cam,
@@ -118,7 +118,7 @@ impl Loads {
         machine: &Machine,
         given: Option<&[Start]>,
         budget: Budget,
-    ) -> Result<(Self, Vec<Part>), SimulateError> {
+    ) -> Result<(Self, Vec<Attractor>), SimulateError> {
         let usual = |start: u32| {
             let cam_angle = TAU * f64::from(start) / f64::from(Self::STARTS);
             let fast = machine.angular_velocity() * machine.cam().lift(cam_angle).slope.abs();
@@ -129,19 +129,20 @@ impl Loads {
         let start = |index: usize| starts[index].motion(machine).map(Some);
         let found = attractors_of(&runs, starts.len(), start, &Unwatched).map_err(|(_, error)| error)?;
         let mut worst = Self::NONE;
-        for part in &found.parts {
-            let mut motion = part.motion;
-            if let LongRun::Sticking(_) = part.ending {
+        for attractor in &found.attractors {
+            let mut motion = attractor.motion;
+            if let LongRun::Sticking(_) = attractor.ending {
                 machine.revolve(&mut motion, Self::AFTER_A_REST)?;
             }
             // As many as one period has, and of what never repeats as many as each of its runs would have.
-            let repeats = part.ending.period().map_or(Self::RECORD * part.starts.len() as u64, |(turns, _)| turns);
+            let repeats =
+                attractor.ending.period().map_or(Self::RECORD * attractor.starts.len() as u64, |(turns, _)| turns);
             let revolutions = repeats.clamp(Self::RECORD, budget.longest.max(Self::RECORD));
             for loads in Self::seen(model, machine, motion, (revolutions, Self::FINE))? {
                 worst = worst.or_more(&loads);
             }
         }
-        Ok((Self { rpm: machine.angular_velocity() / TAU * 60.0, ..worst }, found.parts))
+        Ok((Self { place: place(machine), ..worst }, found.attractors))
     }
 
     /// The largest loads of the motions that the usual starts come to, which are not judged.
@@ -149,8 +150,15 @@ impl Loads {
         Ok(Self::among(model, machine, None, Budget { record: 0, ..Budget::DESIGN })?.0)
     }
 
-    const NONE: Self =
-        Self { rpm: 0.0, impact_speed: 0.0, gap: 0.0, off_cam: 0.0, energy: 0.0, force: 0.0, errors: None };
+    const NONE: Self = Self {
+        place: Place { rpm: 0.0, value: None },
+        impact_speed: 0.0,
+        gap: 0.0,
+        off_cam: 0.0,
+        energy: 0.0,
+        force: 0.0,
+        errors: None,
+    };
 
     /// The numbers, in their order.
     pub fn numbers(&self) -> [f64; 5] {
@@ -159,7 +167,7 @@ impl Loads {
 
     fn or_more(&self, other: &Self) -> Self {
         Self {
-            rpm: other.rpm,
+            place: other.place,
             impact_speed: self.impact_speed.max(other.impact_speed),
             gap: self.gap.max(other.gap),
             off_cam: self.off_cam.max(other.off_cam),
@@ -189,8 +197,7 @@ impl Loads {
         let (follower, units) = (&model.follower, &model.units);
         let (samples, events) = trace(machine, motion, revolutions, moments)?;
         let first = samples.first().map_or(0.0, |sample| sample.turned);
-        let rpm = machine.angular_velocity() / TAU * 60.0;
-        let mut found = vec![Self { rpm, ..Self::NONE }; revolutions as usize];
+        let mut found = vec![Self { place: place(machine), ..Self::NONE }; revolutions as usize];
         let place = |turned: f64| (((turned - first) / TAU) as usize).min((revolutions as usize).saturating_sub(1));
         for pair in samples.windows(2) {
             let [one, two] = pair else { continue };
@@ -211,4 +218,9 @@ impl Loads {
         found.iter_mut().for_each(|loads| loads.off_cam = loads.off_cam.min(1.0));
         Ok(found)
     }
+}
+
+/// The speed of a machine, as its angular velocity has it.
+fn place(machine: &Machine) -> Place {
+    Place::of_speed(machine.angular_velocity() / TAU * 60.0)
 }

@@ -10,17 +10,16 @@ use std::f64::consts::{PI, TAU};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::{ModelLabel, StudyError, machine};
+use super::{ModelLabel, StudyError};
 use crate::bracket::{Width, halve};
 use crate::cam::{Cam, Least};
-use crate::diagram::Start;
 use crate::known::Known;
 use crate::measured::{Likely, Measured};
 use crate::model::{CORNER_ROUNDING, Model, Units};
 use crate::orbit::long_run::Budget;
 use crate::progress::{Pieces, Watch};
 use crate::simulate::{Machine, angular_velocity};
-use crate::study::survey::Part;
+use crate::study::survey::{Attractor, Axis, Over, Place, Spacing, Start, Values};
 use crate::tolerance;
 use contact::{Contact, Separation};
 use loads::{Load, Loads};
@@ -37,7 +36,11 @@ pub struct Design {
     pub separation: Separation,
     /// How well the cam is known, if it is measured.
     pub measured: Option<Measured>,
-    /// The least force at each speed, in the unit inside.
+    /// The number that the table goes over; none where that is the speed.
+    pub over: Option<String>,
+    /// How its values lie.
+    pub spacing: Spacing,
+    /// The least force at each value, in the unit inside.
     pub forces: Vec<ForceAt>,
     /// The force round the cam at the one speed that is asked for.
     pub round: Vec<[f64; 2]>,
@@ -57,11 +60,11 @@ pub struct Design {
     pub trades: Vec<Trade>,
 }
 
-/// The least force at a speed.
+/// The least force on one machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ForceAt {
-    /// Speed, rpm.
-    pub rpm: f64,
+    /// Which.
+    pub place: Place,
     /// Where it is, and how large.
     pub least: Least,
     /// How far a measured cam may have moved that; none where nothing is open.
@@ -71,25 +74,30 @@ pub struct ForceAt {
 }
 
 document!(ForceAt as it {
-    speed_rpm: it.rpm,
+    speed_rpm: it.place.rpm,
+    value if_any: it.place.value,
     least_n: it.least.value,
     cam_angle_rad: it.least.angle,
     error_n if_any: it.error,
     largest_n: it.largest,
 });
 
-/// What the starts of one speed come to.
+/// What the starts of one machine come to.
 #[derive(Clone, Debug)]
 pub struct AttractorsAt {
-    /// Speed, rpm.
-    pub rpm: f64,
+    /// Of which.
+    pub place: Place,
     /// The motions, in the order of the first start of each.
-    pub found: Vec<Part>,
+    pub found: Vec<Attractor>,
 }
 
-document!(AttractorsAt as it { speed_rpm: it.rpm, endings: it.found.iter().map(Ended).collect::<Vec<_>>() });
+document!(AttractorsAt as it {
+    speed_rpm: it.place.rpm,
+    value if_any: it.place.value,
+    endings: it.found.iter().map(Ended).collect::<Vec<_>>(),
+});
 
-struct Ended<'a>(&'a Part);
+struct Ended<'a>(&'a Attractor);
 
 document!(Ended<'_> as it {
     ending: it.0.ending.kind(),
@@ -101,8 +109,8 @@ document!(Ended<'_> as it {
     starts: it.0.starts.len(),
 });
 
-/// A limit that the user sets, and where it is passed first, as far as the speeds of the table tell.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+/// A limit that the user sets, and where it is passed first, as far as the values of the table tell.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Passed {
     /// Of which load.
     pub limit: Load,
@@ -110,10 +118,18 @@ pub struct Passed {
     pub value: f64,
     /// The unit.
     pub unit: String,
-    /// Where it is passed, rpm: to a thousandth below the first speed of the table at which it is, at the lowest of them that speed
+    /// Where it is passed: to a thousandth below the first value of the table at which it is, at the lowest of them that value
     /// itself; none where it is passed at none.
-    pub speed_rpm: Option<f64>,
+    pub at: Option<Place>,
 }
+
+document!(Passed as it {
+    limit: it.limit,
+    value: it.value,
+    unit: it.unit,
+    speed_rpm: it.at.map(|at| at.rpm),
+    at if_any: it.at.and_then(|at| at.value),
+});
 
 /// What one number has to be at one value of another.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -158,6 +174,7 @@ pub struct Trade {
 document!(Design as it {
     schema: "corner-impact/design/1",
     model: it.model,
+    over if_any: it.over.as_ref(),
     separation: it.separated(),
     separates: it.separation.name(),
     measured if_any: it.measured,
@@ -205,6 +222,8 @@ fn rounded(model: &Model, cam: &Cam) -> Vec<Rounded> {
 pub struct Asked {
     /// Lowest and highest speed, rpm; of one speed the force is told round the cam. None: around the separation.
     pub rpm: Option<[f64; 2]>,
+    /// What the table goes over, in place of the speed, at one speed then.
+    pub over: Option<Axis>,
     /// Speeds of a range.
     pub speeds: u32,
     /// Each as it was said.
@@ -241,6 +260,12 @@ impl Design {
             }),
             _ => None,
         }
+    }
+
+    /// The one speed of a table that goes over another number, rpm.
+    pub fn rpm(&self) -> f64 {
+        let places = self.forces.iter().map(|at| at.place).chain(self.loads.iter().map(|loads| loads.place));
+        places.map(|place| place.rpm).next().unwrap_or(f64::NAN)
     }
 
     fn told_round(&self) -> Vec<RoundEntry> {
@@ -292,67 +317,91 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
         Separation::At { rpm, .. } => Some(USUAL.map(|part| part * rpm)),
         _ => model.study.map(|study| [study.rpm_min, study.rpm_max]),
     });
-    let [low, high] = range.ok_or(StudyError::NoSpeeds)?;
-    let count = if low == high { 1 } else { asked.speeds.max(2) };
-    let speed =
-        |index: u32| if count == 1 { low } else { low + (high - low) * f64::from(index) / f64::from(count - 1) };
-    let speeds: Vec<f64> = (0..count).map(speed).collect();
-    let has_force = !matches!(separation, Separation::Kink { .. });
-    let noisy = likely.as_ref().filter(|likely| likely.best.is_some());
-    let force_at = |rpm: &f64| {
-        let least = contact.least(*rpm);
-        let of = |model: &Model, cam: &Cam| Some([Contact::new(cam, model.follower).least(*rpm).value]);
-        let (error, largest) = (noisy.and_then(|likely| likely.error([least.value], of)), contact.largest(*rpm));
+    let (over, values): (Over<'_>, Vec<f64>) = match (&asked.over, asked.rpm) {
+        (Some(axis), Some([rpm, other])) if rpm == other => {
+            (Over::new(model, axis.parameter.clone(), rpm)?, axis.values.to_vec())
+        }
+        (Some(_), _) => return Err(StudyError::OneSpeed),
+        (None, _) => {
+            let [low, high] = range.ok_or(StudyError::NoSpeeds)?;
+            let speeds = Values::linear(low, high, if low == high { 1 } else { asked.speeds.max(2) as usize });
+            (Over::speed(model, low)?, speeds.all().collect())
+        }
+    };
+    // By another number the loads move along with the cam: how far is not known.
+    let noisy = likely.as_ref().filter(|likely| likely.best.is_some() && over.is_speed());
+    let parts_at = |contact: &Contact<'_>| if over.is_speed() { separation } else { contact.separation() };
+    let force_at = |value: &f64| -> Result<Option<(ForceAt, bool)>, StudyError> {
+        let (model, cam) = over.model(*value)?;
+        let (contact, place) = (Contact::new(&cam, model.follower), over.place(*value));
+        let parts = parts_at(&contact);
+        let is_parted = place.rpm > parts.speed();
+        if matches!(parts, Separation::Kink { .. }) {
+            return Ok(None);
+        }
+        let least = contact.least(place.rpm);
+        let of = |model: &Model, cam: &Cam| Some([Contact::new(cam, model.follower).least(place.rpm).value]);
+        let (error, largest) = (noisy.and_then(|likely| likely.error([least.value], of)), contact.largest(place.rpm));
         // On a dwell nothing is open but the rounding.
         let rounding = tolerance::JET_ROUNDING.value * largest.abs();
         let error = error.map(|[error]| error).filter(|error| *error > rounding);
-        ForceAt { rpm: *rpm, least, error, largest }
+        Ok(Some((ForceAt { place, least, error, largest }, is_parted)))
     };
-    let forces: Vec<ForceAt> = if has_force { speeds.iter().map(force_at).collect() } else { Vec::new() };
-    let round = if count == 1 && has_force { round(&contact, low, MOMENTS) } else { Vec::new() };
-    let parted: Vec<f64> = speeds.iter().copied().filter(|rpm| *rpm > separation.speed()).collect();
+    let at_each = values.iter().map(force_at).collect::<Result<Vec<_>, _>>()?;
+    // Where the cam's velocity jumps, it has no force, and the follower leaves it at any speed.
+    let parted = values.iter().zip(&at_each).filter(|(_, at)| at.is_none_or(|(_, is_parted)| is_parted));
+    let parted: Vec<f64> = parted.map(|(value, _)| *value).collect();
+    let round = match (values.as_slice(), at_each.as_slice()) {
+        ([rpm], [Some(_)]) if over.is_speed() => round(&contact, *rpm, MOMENTS),
+        _ => Vec::new(),
+    };
     let pieces = Pieces::new(watch, "what attracts where the follower leaves the cam", parted.len());
     let budget = asked.budget.unwrap_or(Budget::DESIGN);
     // Loads are the same whether the motions are judged or not.
     let unjudged = Budget { record: 0, ..budget };
-    let loads_at = |rpm: &f64| -> Result<Loads, StudyError> {
+    let loads_at = |value: f64, budget: Budget| -> Result<(Loads, Vec<Attractor>), StudyError> {
+        let (model, machine) = (over.family.model(&[value])?, over.machine(value)?);
+        let (loads, found) = Loads::among(&model, &machine, asked.starts.as_deref(), budget)?;
         // As it was asked for, and not as the angular velocity has it.
-        let (loads, _) = Loads::among(model, &machine(model, *rpm)?, asked.starts.as_deref(), unjudged)?;
-        Ok(Loads { rpm: *rpm, ..loads })
+        Ok((Loads { place: over.place(value), ..loads }, found))
     };
-    let with_errors = |rpm: &f64| -> Result<(Loads, AttractorsAt), StudyError> {
-        let (loads, found) = Loads::among(model, &machine(model, *rpm)?, asked.starts.as_deref(), budget)?;
-        // As it was asked for, and not as the angular velocity has it.
-        let loads = Loads { rpm: *rpm, ..loads };
+    let with_errors = |value: &f64| -> Result<(Loads, AttractorsAt), StudyError> {
+        let (loads, found) = loads_at(*value, budget)?;
+        let place = over.place(*value);
         let of = |model: &Model, cam: &Cam| {
-            let machine = Machine::new(cam.clone(), &model.follower, angular_velocity(*rpm));
+            let machine = Machine::new(cam.clone(), &model.follower, angular_velocity(place.rpm));
             Loads::among(model, &machine, asked.starts.as_deref(), unjudged).ok().map(|(loads, _)| loads.numbers())
         };
         let errors = noisy.and_then(|likely| likely.error(loads.numbers(), of));
-        Ok((Loads { errors, ..loads }, AttractorsAt { rpm: *rpm, found }))
+        Ok((Loads { errors, ..loads }, AttractorsAt { place, found }))
     };
-    let found = parted.par_iter().map(|rpm| pieces.each(|| with_errors(rpm))).collect::<Result<Vec<_>, _>>()?;
+    let found = parted.par_iter().map(|value| pieces.each(|| with_errors(value))).collect::<Result<Vec<_>, _>>()?;
     let (loads, attractors): (Vec<Loads>, Vec<AttractorsAt>) = found.into_iter().unzip();
+    let forces: Vec<ForceAt> = at_each.iter().flatten().map(|(at, _)| *at).collect();
     let passed = |(limit, value): &(Load, f64)| -> Result<Passed, StudyError> {
         let most = limit.inside(&model.units, *value);
         // Up to the separation the follower bears what the cam presses with.
-        let on_cam = forces.iter().filter(|at| *limit == Load::Force && at.rpm <= separation.speed());
-        let on_cam = on_cam.map(|at| (at.rpm, at.largest));
-        let all = on_cam.chain(loads.iter().map(|loads| (loads.rpm, loads.of(*limit))));
-        let first = all.filter(|(_, load)| *load > most).map(|(rpm, _)| rpm).next();
-        let is_passed = |rpm: f64| -> Result<bool, StudyError> {
+        let is_passed = |value: f64| -> Result<bool, StudyError> {
+            let (of_value, cam) = over.model(value)?;
+            let (contact, rpm) = (Contact::new(&cam, of_value.follower), over.place(value).rpm);
+            let is_parted = rpm > parts_at(&contact).speed();
             Ok(match limit {
-                Load::Force if rpm <= separation.speed() => contact.largest(rpm) > most,
-                _ => rpm > separation.speed() && loads_at(&rpm)?.of(*limit) > most,
+                Load::Force if !is_parted => contact.largest(rpm) > most,
+                _ => is_parted && loads_at(value, unjudged)?.0.of(*limit) > most,
             })
         };
-        // Between that speed and the one before.
-        let before = |rpm: f64| speeds.iter().rev().copied().find(|speed| *speed < rpm);
-        let bracket = first.and_then(|rpm| Some([before(rpm)?, rpm]));
+        let on_cam = at_each.iter().flatten().filter(|(_, is_parted)| *limit == Load::Force && !is_parted);
+        let on_cam = on_cam.map(|(at, _)| (at.place.across(), at.largest));
+        let all = on_cam.chain(loads.iter().map(|loads| (loads.place.across(), loads.of(*limit))));
+        let beyond: Vec<f64> = all.filter(|(_, load)| *load > most).map(|(value, _)| value).collect();
+        let first = values.iter().position(|value| beyond.contains(value));
+        // Between that value and the one before.
+        let bracket = first.and_then(|first| Some([values[first.checked_sub(1)?], values[first]]));
         let width = Width::Relative(tolerance::NEEDED_BY_RUNS.value);
         let located = bracket.map(|bracket| halve(bracket, width, is_passed)).transpose()?;
-        let speed_rpm = located.map(|[_, passed]| passed).or(first);
-        Ok(Passed { limit: *limit, value: *value, unit: limit.unit(&model.units), speed_rpm })
+        let at = located.map(|[_, passed]| passed).or(first.map(|first| values[first]));
+        let at = at.map(|value| over.place(value));
+        Ok(Passed { limit: *limit, value: *value, unit: limit.unit(&model.units), at })
     };
     let limits = asked.limits.iter().map(passed).collect::<Result<_, _>>()?;
     let changed = Changed::new(model, &contact);
@@ -404,6 +453,8 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
         units,
         separation,
         measured: likely.map(|likely| likely.measured),
+        over: (!over.is_speed()).then(|| over.parameter.name().to_owned()),
+        spacing: asked.over.as_ref().map_or(Spacing::Linear, |axis| axis.spacing),
         forces,
         round,
         loads,

@@ -34,7 +34,7 @@ impl Wandering {
 
 /// A motion that starts end on.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Part {
+pub struct Attractor {
     /// The motion.
     pub ending: LongRun,
     /// The starts that end on it, in order; none where only the motion of another speed came to it.
@@ -45,7 +45,7 @@ pub struct Part {
     pub motion: Motion,
 }
 
-impl Part {
+impl Attractor {
     /// Revolutions that the runs which end on it were followed for, all together.
     pub fn followed(&self) -> u64 {
         self.followed.iter().sum()
@@ -56,7 +56,7 @@ impl Part {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Ensemble {
     /// The motions, in the order of the first start of each.
-    pub parts: Vec<Part>,
+    pub attractors: Vec<Attractor>,
     /// The starts whose runs leave the cam for good.
     pub off_for_good: Vec<usize>,
     /// The runs that were waited for longest.
@@ -98,9 +98,9 @@ struct End {
 }
 
 /// The long-run motion of one start, judged within a budget, without a look at any other run.
-pub fn long_run(machine: &Machine, motion: Motion, budget: Budget) -> Result<Part, SimulateError> {
+pub fn long_run(machine: &Machine, motion: Motion, budget: Budget) -> Result<Attractor, SimulateError> {
     let found = attractors_of(&LongRuns::unaided(machine, budget), 1, |_| Ok(Some(motion)), &Unwatched);
-    let mut parts = found.map_err(|(_, error)| error)?.parts;
+    let mut parts = found.map_err(|(_, error)| error)?.attractors;
     // One start ends on one motion.
     Ok(parts.swap_remove(0))
 }
@@ -200,8 +200,8 @@ impl Ensemble {
     ) -> Result<(), SimulateError> {
         // Chaos is not what rests where it outlasts that.
         let is_same =
-            |part: &&mut Part| part.ending.is_same(&ending) && (part.ending.kind() == ending.kind() || !outlast);
-        match self.parts.iter_mut().find(is_same) {
+            |part: &&mut Attractor| part.ending.is_same(&ending) && (part.ending.kind() == ending.kind() || !outlast);
+        match self.attractors.iter_mut().find(is_same) {
             Some(part) => {
                 // That it rests is the later news.
                 if matches!((&part.ending, &ending), (LongRun::Chaotic(_), LongRun::Sticking(_))) {
@@ -210,7 +210,12 @@ impl Ensemble {
                 part.starts.push(index);
                 part.followed.push(followed);
             }
-            None => self.parts.push(Part { ending, starts: vec![index], followed: vec![followed], motion: motion()? }),
+            None => self.attractors.push(Attractor {
+                ending,
+                starts: vec![index],
+                followed: vec![followed],
+                motion: motion()?,
+            }),
         }
         Ok(())
     }

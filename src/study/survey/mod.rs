@@ -1,15 +1,41 @@
-//! What a machine does in the long run, from one start or from many.
+//! What a machine does in the long run, from one start or from many, at one value of its numbers or over a range of them.
+//!
+//! ```text
+//! start  ->  long_run, attractors_of  ->  at a value (Point, Attractor)  ->  over values (Survey; Sweep)
+//! ```
 //!
 //! | module | what it holds |
 //! |---|---|
 //! | `starts` | where runs begin: starts that are given, or a sample that stands for all |
 //! | `ensemble` | what one start comes to, and what several do |
 //! | `point` | what one start comes to, in numbers: a point of a chart, a row of a diagram |
+//! | `axis` | the values of a number that a survey goes through |
+//! | `over` | the machines over one number, at any value |
+//! | `grid` | the machines over one number or two, side by side |
+//! | `sweep` | what runs show over one number, recorded and not judged |
+//! | `pipeline` | the rows of a sweep, in order and in bounded memory |
+//! | `places` | where those rows lie, without all that they hold |
+//! | `threads` | the threads that all this runs on |
 
+mod axis;
 mod ensemble;
+mod grid;
+mod over;
+mod pipeline;
+mod places;
 mod point;
 mod starts;
+mod sweep;
+mod threads;
 
-pub use ensemble::{Ensemble, Failed, Part, Wandering, attractors_of, long_run};
+pub use axis::{Axis, Place, Spacing, Values, Varied};
+pub use ensemble::{Attractor, Ensemble, Failed, Wandering, attractors_of, long_run};
+pub use grid::{Found, RunError, Survey, SurveyError};
+pub use over::Over;
+pub use pipeline::{Block, Counted, Tally};
+pub use places::Places;
 pub use point::{Point, growth};
-pub use starts::{Sample, Starts};
+pub use starts::{Placed, Sample, Start, Starts};
+pub(crate) use sweep::recurrence;
+pub use sweep::{Beginning, Find, Following, Growth, Row, Section, Seen, Sweep, settled_impacts};
+pub use threads::{SweepError, threads};

@@ -5,6 +5,7 @@ use crate::orbit::long_run::{Budget, Kind, LongRun};
 use crate::simulate::{Machine, Met, Motion, SimulateError};
 
 use super::ensemble::long_run;
+use super::starts::Start;
 
 /// What a run comes to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,6 +28,12 @@ pub struct Point {
 }
 
 impl Point {
+    /// What a run from `start` comes to within a budget, or why there is none.
+    pub fn from(machine: &Machine, start: Start, budget: Budget) -> Result<Self, String> {
+        let run = start.motion(machine).and_then(|motion| Self::of(machine, motion, budget));
+        run.map_err(|error| error.to_string())
+    }
+
     /// What `motion` comes to within a budget.
     pub fn of(machine: &Machine, motion: Motion, budget: Budget) -> Result<Self, SimulateError> {
         let part = long_run(machine, motion, budget)?;

@@ -2,8 +2,36 @@
 
 use std::f64::consts::TAU;
 
-use crate::diagram::Start;
+use crate::flight::State;
 use crate::simulate::{Machine, Motion, SimulateError};
+
+/// The start of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Start {
+    /// Cam angle, rad, in `[0, 2 pi)`.
+    pub cam_angle: f64,
+    /// The follower there.
+    pub follower: Placed,
+}
+
+/// A follower at the start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Placed {
+    /// With this state.
+    At(State),
+    /// On the cam, leaving it at this velocity, m/s, zero or more.
+    OnCam(f64),
+}
+
+impl Start {
+    /// A motion of `machine` from here.
+    pub fn motion(&self, machine: &Machine) -> Result<Motion, SimulateError> {
+        match self.follower {
+            Placed::At(state) => machine.start(self.cam_angle, state),
+            Placed::OnCam(relative_velocity) => machine.start_on_cam(self.cam_angle, relative_velocity),
+        }
+    }
+}
 
 /// Where the runs of a survey begin, at each value of what varies.
 #[derive(Clone, Debug, PartialEq)]

@@ -12,6 +12,10 @@ use corner_impact::border_collision::LocalMap;
 use corner_impact::cam::Cam;
 use corner_impact::corner::SideMap;
 use corner_impact::model::{Model, OSORIO_2008};
+use corner_impact::progress::Watch;
+use corner_impact::study::attractors::{AttractorsError, Resolution, Step};
+use corner_impact::study::speeds::{self, SpeedSurvey};
+use corner_impact::study::survey::{Over, Spacing};
 use nalgebra::{Matrix2, RowVector2, Vector2};
 
 /// The project's folder.
@@ -150,4 +154,21 @@ pub fn normal_form(traces: [f64; 2], determinants: [f64; 2]) -> LocalMap {
 /// The map of the line `x -> slope x + mu`, minus where x < 0.
 pub fn of_the_line(slopes: [f64; 2]) -> LocalMap {
     map_from(slopes.map(|slope| SideMap { a: Matrix2::new(slope, 0.0, 0.0, 0.0), b: Vector2::new(1.0, 0.0) }))
+}
+
+/// What `speeds` finds over a range of speeds, rpm.
+pub fn speeds(
+    model: &Model,
+    range: [f64; 2],
+    resolution: &Resolution,
+    watch: &dyn Watch,
+) -> Result<SpeedSurvey, AttractorsError> {
+    // A range that is none is refused whatever the speed.
+    let over = Over::speed(model, if range[0] > 0.0 && range[0].is_finite() { range[0] } else { 1.0 }).unwrap();
+    speeds::speeds(&over, range, resolution, watch)
+}
+
+/// Speeds that are so far apart at most, rpm.
+pub fn step(longest: f64) -> Step {
+    Step::at_most(longest, Spacing::Linear)
 }

@@ -61,7 +61,7 @@ fn margin(report: &Report) -> Option<Words> {
 
 fn impacts(report: &Report) -> Option<Words> {
     let found = report.speeds.as_ref().ok()?;
-    let [low, high] = found.rpm;
+    let [low, high] = found.range;
     let open = match Measured::noisy(&found.measured) {
         Some(cam) => {
             let loads = if report.loads.is_some() { "; the loads below have their ±" } else { "" };

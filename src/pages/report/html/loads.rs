@@ -6,7 +6,7 @@ use crate::pages::report::html::plates::plate;
 use crate::report::Report;
 use crate::show::block::{Block, Section, Span, about, words};
 use crate::show::digits::Digits;
-use crate::study::speeds::Speeds;
+use crate::study::speeds::SpeedSurvey;
 
 /// How much harder a motion has to hit than those of a few starts to be told apart, as one hit of many varies.
 const SHARED: f64 = 1.1;
@@ -18,7 +18,7 @@ pub(crate) fn section(report: &Report) -> Result<Option<Section>, HtmlError> {
     let folded = Block::Details("The same in numbers".into(), vec![table]);
     let mut blocks = vec![plate(picture, report)?, folded];
     let most = found.loads.iter().map(|loads| loads.impact_speed).fold(0.0, f64::max);
-    let hardest = report.speeds.as_ref().ok().and_then(Speeds::hardest);
+    let hardest = report.speeds.as_ref().ok().and_then(SpeedSurvey::hardest);
     // More starts come to more motions, and a rare one may hit hardest.
     if let Some([speed, rpm]) = hardest.filter(|[speed, _]| *speed > SHARED * most) {
         let harder = words![

@@ -5,7 +5,7 @@ use crate::pages::report::html::plates::plate;
 use crate::pages::speeds::{cam, dangers, detachment, how, rests, table, together};
 use crate::report::Report;
 use crate::show::block::{self, Block, Section, Words, words};
-use crate::study::speeds::Speeds;
+use crate::study::speeds::SpeedSurvey;
 
 pub(crate) fn section(report: &Report) -> Result<Section, HtmlError> {
     let mut blocks = match &report.speeds {
@@ -18,7 +18,7 @@ pub(crate) fn section(report: &Report) -> Result<Section, HtmlError> {
     Ok(Section { id: "speeds", title: "At each speed".into(), blocks })
 }
 
-fn attractors(found: &Speeds) -> Vec<Block> {
+fn attractors(found: &SpeedSurvey) -> Vec<Block> {
     let together = match found.coexistence.is_empty() {
         true => Words::from("No two attractors were found at one speed."),
         false => {

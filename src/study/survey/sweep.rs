@@ -1,24 +1,19 @@
-//! Brute-force bifurcation diagrams: what a machine settles on, speed by speed.
+//! Brute-force bifurcation diagrams: what a machine settles on, value by value of one of its numbers.
 //!
-//! Each speed runs through a transient and is then recorded. From a fixed start the speeds are independent and run side by
-//! side; followed up or down, each starts where the one before ended. What is recorded leaves in the order of the speeds
+//! Each value runs through a transient and is then recorded. From a fixed start the values are independent and run side by
+//! side; followed up or down, each starts where the one before ended. What is recorded leaves in the order of the values
 //! whatever the number of threads, in blocks, so that memory does not grow with the length of a record.
-
-mod growth;
-mod pipeline;
-mod places;
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
+use super::grid::Survey;
+use super::starts::Start;
 use crate::cam::apart;
 use crate::estimate::Estimate;
 use crate::flight::State;
 use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError, Unobserved};
 use crate::tolerance;
-pub use growth::{Record, growth};
-pub use pipeline::{Block, Counted, Tally, threads};
-pub use places::Places;
 
 /// What is recorded.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,60 +24,32 @@ pub enum Section {
     Strobe(f64),
 }
 
-/// Where each speed starts.
+/// Where each value starts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Following {
     /// From the same start.
     Nothing,
-    /// From the end of the next lower speed.
+    /// From the end of the next lower value.
     Up,
-    /// From the end of the next higher speed.
+    /// From the end of the next higher value.
     Down,
-}
-
-/// The start of a run.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Start {
-    /// Cam angle, rad, in `[0, 2 pi)`.
-    pub cam_angle: f64,
-    /// The follower there.
-    pub follower: Placed,
-}
-
-/// A follower at the start.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Placed {
-    /// With this state.
-    At(State),
-    /// On the cam, leaving it at this velocity, m/s, zero or more.
-    OnCam(f64),
-}
-
-impl Start {
-    /// A motion of `machine` from here.
-    pub fn motion(&self, machine: &Machine) -> Result<Motion, SimulateError> {
-        match self.follower {
-            Placed::At(state) => machine.start(self.cam_angle, state),
-            Placed::OnCam(relative_velocity) => machine.start_on_cam(self.cam_angle, relative_velocity),
-        }
-    }
 }
 
 /// The motions of a machine that are looked at, each found before.
 pub type Find = Arc<dyn Fn(&Machine) -> Result<Vec<Motion>, SimulateError> + Send + Sync>;
 
-/// Where the runs of a speed begin.
+/// Where the runs of a value begin.
 #[derive(Clone)]
-pub enum Starts {
-    /// One run, from one start at every speed.
+pub enum Beginning {
+    /// One run, from one start at every value.
     One(Start),
-    /// A run from each motion that is found for the speed.
+    /// A run from each motion that is found for the value.
     Found(Find),
 }
 
-impl Starts {
+impl Beginning {
     /// The motions of `machine` to begin with.
-    fn motions(&self, machine: &Machine) -> Result<Vec<Motion>, SimulateError> {
+    pub(super) fn motions(&self, machine: &Machine) -> Result<Vec<Motion>, SimulateError> {
         match self {
             Self::One(start) => Ok(vec![start.motion(machine)?]),
             Self::Found(find) => find(machine),
@@ -90,44 +57,16 @@ impl Starts {
     }
 }
 
-/// Speeds, or values of another number, evenly spaced.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Speeds {
-    /// Lowest, rpm.
-    pub low: f64,
-    /// Highest, rpm.
-    pub high: f64,
-    /// How many, 1 or more.
-    pub count: usize,
-}
-
-impl Speeds {
-    /// The fastest that is turned, rpm: an angle keeps its digits only over times that a double resolves.
-    pub const FASTEST: f64 = 1e9;
-    /// The most speeds of one sweep.
-    pub const MOST: usize = 10_000_000;
-
-    /// The one of an index below `count`; the last is `high` exactly.
-    pub fn value(&self, index: usize) -> f64 {
-        if index + 1 >= self.count && self.count > 1 {
-            return self.high;
-        }
-        self.low + (self.high - self.low) * (index as f64 / (self.count.max(2) - 1) as f64)
-    }
-}
-
 /// How fast a small deviation of what a motion comes to grows in a revolution, a natural logarithm.
 pub type Growth = Arc<dyn Fn(&Machine, Motion) -> Result<Estimate, SimulateError> + Send + Sync>;
 
-/// A sweep over speeds.
+/// A sweep over the values of one number.
 #[derive(Clone)]
 pub struct Sweep {
-    /// The machine at the lowest speed: each has one of its own, over the same cam.
-    pub machine: Machine,
-    /// The speeds.
-    pub speeds: Speeds,
+    /// The machines.
+    pub over: Survey,
     /// Where each starts.
-    pub starts: Starts,
+    pub starts: Beginning,
     /// Whether each goes on from its neighbour.
     pub following: Following,
     /// Revolutions that are not recorded.
@@ -143,15 +82,15 @@ pub struct Sweep {
 /// What a record consists of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row {
-    /// Speed, rpm.
-    pub rpm: f64,
-    /// How often the cam has passed angle 0 since the start at this speed.
+    /// The value: of the speed, rpm.
+    pub value: f64,
+    /// How often the cam has passed angle 0 since the start at this value.
     pub revolution: u64,
-    /// Which of the motions found for this speed it belongs to.
+    /// Which of the motions found for this value it belongs to.
     pub motion: Option<usize>,
     /// What was seen.
     pub seen: Seen,
-    /// The growth of a small deviation at this speed per revolution, if asked for.
+    /// The growth of a small deviation at this value per revolution, if asked for.
     pub growth: Option<Estimate>,
 }
 
@@ -185,35 +124,19 @@ pub enum Seen {
     Section(State),
 }
 
-/// Why a sweep stopped.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[expect(missing_docs, reason = "the message says what each number is")]
-pub enum SweepError {
-    /// A run could not go on.
-    #[error("at {rpm} rpm: {error}")]
-    Simulate { rpm: f64, error: SimulateError },
-    /// The threads could not be started.
-    #[error("threads cannot be started: {0}")]
-    Threads(String),
-}
-
 impl Sweep {
-    fn machine_at(&self, rpm: f64) -> Machine {
-        self.machine.at_speed(crate::simulate::angular_velocity(rpm))
-    }
-
-    /// Records one speed from `motion`, row by row, and returns where it ended; stops early where `keep` breaks.
-    fn speed(
+    /// Records one value from `motion`, row by row, and returns where it ended; stops early where `keep` breaks.
+    pub(super) fn record(
         &self,
         machine: &Machine,
-        rpm: f64,
+        value: f64,
         mut motion: Motion,
         which: Option<usize>,
         mut keep: impl FnMut(Row) -> ControlFlow<()>,
     ) -> Result<(Motion, ControlFlow<()>), SimulateError> {
         let growth = self.growth.as_ref().map(|growth| growth(machine, motion)).transpose()?;
         machine.revolve(&mut motion, self.transient)?;
-        let row = |revolution, seen| Row { rpm, revolution, motion: which, seen, growth };
+        let row = |revolution, seen| Row { value, revolution, motion: which, seen, growth };
         let goal = motion.after(self.record);
         let flow = match self.section {
             Section::Impacts => machine

@@ -1,18 +1,19 @@
-//! Speeds side by side, their rows in order, in bounded memory.
+//! The values of a sweep side by side, their rows in order, in bounded memory.
 //!
-//! Each worker turns rows into blocks and sends the blocks to the calling thread, which takes them speed by speed. Where
-//! cores are few, a worker stands still whenever the calling thread wakes. So a worker runs a few neighbouring speeds in a
+//! Each worker turns rows into blocks and sends the blocks to the calling thread, which takes them value by value. Where
+//! cores are few, a worker stands still whenever the calling thread wakes. So a worker runs a few neighbouring values in a
 //! row and sends short blocks together. Queues are short: a worker that is ahead has to wait, but never the worker of the
-//! lowest speed that is not finished.
+//! lowest value that is not finished.
 
 use std::ops::{ControlFlow, Range};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
 use serde::Serialize;
 
-use super::{Following, Row, Seen, Starts, Sweep, SweepError};
+use super::grid::RunError;
+use super::sweep::{Beginning, Following, Row, Seen, Sweep};
+use super::threads::SweepError;
 use crate::simulate::EventKind;
-use crate::stop;
 
 /// A part of a record, made by a worker.
 pub trait Block: Default + Send {
@@ -22,8 +23,8 @@ pub trait Block: Default + Send {
     /// Whether it is time to send it on.
     fn is_full(&self) -> bool;
 
-    /// Takes note that the run at a speed could not go on, and says that the sweep goes on all the same; else it ends there.
-    fn fail(&mut self, _rpm: f64) -> bool {
+    /// Takes note that the run at a value could not go on, and says that the sweep goes on all the same; else it ends there.
+    fn fail(&mut self, _value: f64) -> bool {
         false
     }
 }
@@ -68,21 +69,12 @@ enum Message<B> {
 const QUEUE: usize = 4;
 /// Tasks that may be open, for each thread.
 const OPEN_PER_THREAD: usize = 4;
-/// Most speeds of a task, and the revolutions after which a task takes no further speed.
-const SPEEDS_PER_TASK: usize = 16;
+/// Most values of a task, and the revolutions after which a task takes no further value.
+const VALUES_PER_TASK: usize = 16;
 const REVOLUTIONS_PER_TASK: u64 = 10_000;
 
-/// Threads to run on: so many, or for `None` one for each core.
-pub fn threads(count: Option<usize>) -> Result<rayon::ThreadPool, SweepError> {
-    // Of 0 the builder makes as many as there are cores.
-    let builder = rayon::ThreadPoolBuilder::new().num_threads(count.unwrap_or(0));
-    let builder = builder
-        .spawn_handler(|thread| std::thread::Builder::new().spawn(stop::carried(move || thread.run())).map(drop));
-    builder.build().map_err(|error| SweepError::Threads(error.to_string()))
-}
-
 impl Sweep {
-    /// Runs on `threads` threads (all there are for `None`); `take` gets every block in order, and after each speed its
+    /// Runs on `threads` threads (all there are for `None`); `take` gets every block in order, and after each value its
     /// index with an empty block.
     pub fn run<B: Block, E: From<SweepError>>(
         &self,
@@ -91,10 +83,10 @@ impl Sweep {
     ) -> Result<Tally, E> {
         let mut tally = Tally::default();
         if self.following != Following::Nothing {
-            // Each speed waits for its neighbour: one after the other, here.
+            // Each value waits for its neighbour: one after the other, here.
             let mut from = None;
-            for step in 0..self.speeds.count {
-                let index = if self.following == Following::Up { step } else { self.speeds.count - 1 - step };
+            for step in 0..self.over.count() {
+                let index = if self.following == Following::Up { step } else { self.over.count() - 1 - step };
                 let mut failed = None;
                 let mut send = |block| match take(index, block) {
                     Ok(()) => ControlFlow::Continue(()),
@@ -114,15 +106,15 @@ impl Sweep {
             }
             return Ok(tally);
         }
-        let pool = self::threads(threads)?;
+        let pool = super::threads::threads(threads)?;
         let open = OPEN_PER_THREAD * pool.current_num_threads();
-        let each = self.speeds_per_task(open);
-        let count = self.speeds.count;
+        let each = self.values_per_task(open);
+        let count = self.over.count();
         pool.in_place_scope_fifo(|scope| {
             let spawn = |first: usize| {
                 let (sender, receiver) = sync_channel(QUEUE);
-                let speeds = first..count.min(first + each);
-                scope.spawn_fifo(move |_| self.work::<B>(speeds, &sender));
+                let values = first..count.min(first + each);
+                scope.spawn_fifo(move |_| self.work::<B>(values, &sender));
                 receiver
             };
             let mut waiting = std::collections::VecDeque::new();
@@ -139,17 +131,17 @@ impl Sweep {
         })
     }
 
-    /// How many neighbouring speeds make a task, where `open` tasks may be open: few enough for all threads to end together.
-    fn speeds_per_task(&self, open: usize) -> usize {
+    /// How many neighbouring values make a task, where `open` tasks may be open: few enough for all threads to end together.
+    fn values_per_task(&self, open: usize) -> usize {
         let revolutions = self.transient.saturating_add(self.record).max(1);
-        let by_length = usize::try_from(REVOLUTIONS_PER_TASK / revolutions).unwrap_or(SPEEDS_PER_TASK);
-        by_length.min(SPEEDS_PER_TASK).min(self.speeds.count / (4 * open)).max(1)
+        let by_length = usize::try_from(REVOLUTIONS_PER_TASK / revolutions).unwrap_or(VALUES_PER_TASK);
+        by_length.min(VALUES_PER_TASK).min(self.over.count() / (4 * open)).max(1)
     }
 
-    /// The runs of a few speeds on a worker; a receiver that is gone ends them.
-    fn work<B: Block>(&self, speeds: Range<usize>, sender: &SyncSender<Vec<Message<B>>>) {
+    /// The runs of a few values on a worker; a receiver that is gone ends them.
+    fn work<B: Block>(&self, values: Range<usize>, sender: &SyncSender<Vec<Message<B>>>) {
         let mut lot = Vec::new();
-        for index in speeds {
+        for index in values {
             let mut is_wanted = true;
             let mut send = |block: B| {
                 let is_full = block.is_full();
@@ -175,12 +167,7 @@ impl Sweep {
         from: Option<crate::simulate::Motion>,
         send: &mut dyn FnMut(B) -> ControlFlow<()>,
     ) -> Result<(Option<crate::simulate::Motion>, Tally), SweepError> {
-        let rpm = self.speeds.value(index);
-        let machine = self.machine_at(rpm);
-        let motions = match &from {
-            Some(motion) => machine.resume(motion).map(|motion| vec![motion]),
-            None => self.starts.motions(&machine),
-        };
+        let value = self.over.value(index);
         let mut tally = Tally::default();
         let mut block = B::default();
         let mut keep = |row: Row| {
@@ -190,21 +177,26 @@ impl Sweep {
             if block.is_full() { send(std::mem::take(&mut block)) } else { ControlFlow::Continue(()) }
         };
         let (mut end, mut runs) = (None, 0);
-        let run = motions.and_then(|motions| {
+        let mut run = || -> Result<(), RunError> {
+            let machine = self.over.machine(index)?;
+            let motions = match &from {
+                Some(motion) => vec![machine.resume(motion)?],
+                None => self.starts.motions(&machine)?,
+            };
             for motion in motions {
-                let which = matches!(self.starts, Starts::Found(_)).then_some(runs);
-                let (last, flow) = self.speed(&machine, rpm, motion, which, &mut keep)?;
+                let which = matches!(self.starts, Beginning::Found(_)).then_some(runs);
+                let (last, flow) = self.record(&machine, value, motion, which, &mut keep)?;
                 (end, runs) = (Some(last), runs + 1);
                 if flow.is_break() {
                     break;
                 }
             }
             Ok(())
-        });
-        if let Err(error) = run
-            && !block.fail(rpm)
+        };
+        if let Err(error) = run()
+            && !block.fail(value)
         {
-            return Err(SweepError::Simulate { rpm, error });
+            return Err(SweepError::Run { place: self.over.words(index), error: error.to_string() });
         }
         tally.revolutions = runs as u64 * (self.transient + self.record);
         // The caller that wants no more sees to it itself.
@@ -213,24 +205,24 @@ impl Sweep {
     }
 }
 
-/// Takes all blocks of a task's speeds.
+/// Takes all blocks of a task's values.
 fn drain<B: Block, E: From<SweepError>>(
-    mut speeds: Range<usize>,
+    mut values: Range<usize>,
     receiver: &Receiver<Vec<Message<B>>>,
     take: &mut impl FnMut(usize, B) -> Result<(), E>,
 ) -> Result<Tally, E> {
     let mut tally = Tally::default();
-    while !speeds.is_empty() {
+    while !values.is_empty() {
         let Ok(lot) = receiver.recv() else {
             return Err(SweepError::Threads("a worker is gone".into()).into());
         };
         for message in lot {
             match message {
-                Message::Block(block) => take(speeds.start, block)?,
+                Message::Block(block) => take(values.start, block)?,
                 Message::Done(result) => {
-                    take(speeds.start, B::default())?;
+                    take(values.start, B::default())?;
                     tally.add(result?);
-                    speeds.start += 1;
+                    values.start += 1;
                 }
             }
         }

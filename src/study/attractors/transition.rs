@@ -2,30 +2,33 @@
 
 use serde::Serialize;
 
-use crate::orbit::Course;
 use crate::orbit::branch::{BranchPoint, Kind};
+use crate::orbit::{Course, Parameter};
+use crate::study::survey::Place;
 
 /// Where an attractor begins or ends.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Change {
-    /// Where, rpm.
-    pub rpm: f64,
-    /// Between which speeds, rpm.
+pub struct Transition {
+    /// Where.
+    pub at: Place,
+    /// Between which values; of the speed, rpm.
     pub bracket: [f64; 2],
     /// Why.
     pub cause: Cause,
     /// The point of a branch that it is at, if it is.
     pub point: Option<Box<BranchPoint>>,
-    /// How far a measured cam may have moved it, rpm; none where the cam is not measured or that is not known.
+    /// How far a measured cam may have moved it, rpm; none where the cam is not measured, that is not known, or what varies is not the speed.
     pub error: Option<f64>,
 }
 
 // Located is where the equations of the event were solved, and not a bracket of runs.
-document!(Change as it {
+document!(Transition as it {
     cause: it.cause.name(),
-    speed_rpm: it.rpm,
+    speed_rpm: it.at.rpm,
+    value if_any: it.at.value,
     located: it.is_located(),
-    bracket_rpm: it.bracket,
+    bracket_rpm if_any: it.at.value.is_none().then_some(it.bracket),
+    bracket if_any: it.at.value.map(|_| it.bracket),
     error_rpm if_any: it.error,
     cam_angle_rad if_any: it.cause.corner().map(|(angle, _)| angle),
     jump_order if_any: it.cause.corner().map(|(_, order)| order),
@@ -81,11 +84,11 @@ impl Cause {
     }
 }
 
-impl Change {
-    /// At a special point of a branch.
-    pub fn of_point(point: &BranchPoint) -> Self {
-        let rpm = point.rpm;
-        let Some(special) = point.special else { return Self::by_runs([rpm; 2]) };
+impl Transition {
+    /// At a special point of a branch in `parameter`.
+    pub fn of_point(parameter: &Parameter, point: &BranchPoint) -> Self {
+        let at = parameter.place(point.value, point.rpm);
+        let Some(special) = point.special else { return Self::at(at, Cause::Runs) };
         let cause = match (special.kind, &point.orbit.course) {
             // Where another branch crosses, a multiplier passes 1 as well.
             (Kind::Fold | Kind::Branching, _) => Cause::Fold,
@@ -102,12 +105,23 @@ impl Change {
                 Cause::Runs
             }
         };
-        Self { rpm, bracket: special.bracket, cause, point: Some(Box::new(point.clone())), error: None }
+        Self { at, bracket: special.bracket, cause, point: Some(Box::new(point.clone())), error: None }
     }
 
-    /// Somewhere between two speeds, rpm.
-    pub fn by_runs([low, high]: [f64; 2]) -> Self {
-        Self { rpm: 0.5 * (low + high), bracket: [low, high], cause: Cause::Runs, point: None, error: None }
+    /// Right at a place, by an event's own equations or as far as runs tell.
+    pub fn at(at: Place, cause: Cause) -> Self {
+        Self { at, bracket: [at.across(); 2], cause, point: None, error: None }
+    }
+
+    /// Somewhere between two values of `parameter`, on machines that turn at `rpm` where it is not the speed.
+    pub fn by_runs(parameter: &Parameter, rpm: f64, bracket: [f64; 2]) -> Self {
+        let at = parameter.place(0.5 * (bracket[0] + bracket[1]), rpm);
+        Self { at, bracket, cause: Cause::Runs, point: None, error: None }
+    }
+
+    /// The value; of the speed, rpm.
+    pub fn value(&self) -> f64 {
+        self.at.across()
     }
 
     /// Whether the event's own equations were solved.

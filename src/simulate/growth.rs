@@ -4,9 +4,9 @@ use std::ops::ControlFlow;
 
 use nalgebra::{Matrix2, Vector2};
 
+use super::{Event, EventKind, Machine, Met, Motion, Observer, SimulateError, Variation};
 use crate::estimate::Estimate;
 use crate::flight::{Flight, State};
-use crate::simulate::{Event, EventKind, Machine, Met, Motion, Observer, SimulateError, Variation};
 
 /// The mean growth of a small deviation per revolution, as a natural logarithm: the largest Lyapunov exponent in the limit
 /// of many `revolutions`.

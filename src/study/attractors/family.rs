@@ -1,0 +1,429 @@
+//! Attractors over a range of values: what was found at one value matched with what was found at the next.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+
+use super::at_value::AttractorsAtValue;
+use super::by_runs;
+use super::stable_range::StableRange;
+use super::transition::{Cause, Transition};
+use crate::bracket::{Width, halve};
+use crate::orbit::branch::BranchPoint;
+use crate::orbit::long_run::{Budget, Kind, LongRun};
+use crate::orbit::near::close;
+use crate::orbit::{Course, PeriodicOrbit};
+use crate::simulate::{Machine, Motion, SimulateError, angular_velocity};
+use crate::study::survey::{Attractor, Over, RunError, Sample};
+
+/// What holds a motion together from one value to the next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Class {
+    /// The follower stays on the cam.
+    Stays,
+    /// Its revolutions and impacts.
+    Orbit(u64, u64),
+    /// It rests in every revolution, after as many impacts as it takes.
+    Rests,
+    /// It rests sooner or later, or bounces on: whether it is seen to repeat, and after how long, changes with every value.
+    Irregular,
+    /// What could not be told.
+    Undecided,
+}
+
+impl Class {
+    fn of(ending: &LongRun) -> Self {
+        match ending {
+            LongRun::PermanentContact => Self::Stays,
+            LongRun::Orbit(orbit) => Self::Orbit(orbit.revolutions, orbit.impacts().count() as u64),
+            LongRun::Sticking(resting) if resting.revolutions == 1 => Self::Rests,
+            LongRun::Sticking(_) | LongRun::Chaotic(_) => Self::Irregular,
+            LongRun::Undecided(_) => Self::Undecided,
+        }
+    }
+}
+
+/// An attractor over a range of values.
+#[derive(Clone, Debug)]
+pub struct AttractorFamily {
+    class: Class,
+    /// Which of the attractors it is at values of the grid, by their indices.
+    pub at: BTreeMap<usize, usize>,
+    /// What it begins and ends with, by rising value; nothing at the ends of the grid.
+    pub ends: [Option<Transition>; 2],
+    /// Its lowest and highest value.
+    pub range: [f64; 2],
+    stable: Option<StableRange>,
+}
+
+/// A value that was looked at.
+#[derive(Clone, Debug)]
+pub struct GridValue {
+    /// The value; of the speed, rpm.
+    pub value: f64,
+    /// What was found there, or why nothing was.
+    pub found: Result<AttractorsAtValue, RunError>,
+}
+
+/// The values that were looked at, from the lowest up.
+pub type Grid = [GridValue];
+
+/// Matches what was found over a grid of values, which are a `step` apart next to a value.
+pub fn families(
+    over: &Over<'_>,
+    grid: &Grid,
+    step: &(dyn Fn(f64) -> f64 + Sync),
+    runs: Asked<'_>,
+) -> Vec<AttractorFamily> {
+    let mut families = linked(over, grid);
+    let step = |family: &AttractorFamily| step(family.range[1]);
+    families.par_iter_mut().for_each(|family| family.follow(over, grid, step(family)));
+    let mut families = joined(over, families);
+    beyond(over, &mut families, &step);
+    let mut families = joined(over, families);
+    families.par_iter_mut().for_each(|family| family.narrow(over, grid, runs));
+    families.iter_mut().for_each(|family| family.reach(over, grid));
+    families.sort_by(|one, two| one.range[0].total_cmp(&two.range[0]).then(one.range[1].total_cmp(&two.range[1])));
+    families
+}
+
+/// Families by what one value and the next have in common.
+fn linked(over: &Over<'_>, grid: &Grid) -> Vec<AttractorFamily> {
+    let mut families: Vec<AttractorFamily> = Vec::new();
+    for (index, GridValue { value, found }) in grid.iter().enumerate() {
+        let (Ok(here), Ok(machine)) = (found, over.machine(*value)) else { continue };
+        for (place, attractor) in here.attractors.iter().enumerate() {
+            let class = Class::of(&attractor.ending);
+            let before = |family: &AttractorFamily| {
+                let before = index.checked_sub(1)?;
+                let attractor = *family.at.get(&before)?;
+                Some(&grid[before].found.as_ref().ok()?.attractors.get(attractor)?.ending)
+            };
+            let goes_on = |family: &AttractorFamily| {
+                let is_free = family.class == class && !family.at.contains_key(&index);
+                is_free && before(family).is_some_and(|before| is_next(&machine, before, &attractor.ending))
+            };
+            // Of several irregular motions those of one kind belong together.
+            let is_alike =
+                |family: &AttractorFamily| before(family).is_some_and(|it| it.kind() == attractor.ending.kind());
+            let open: Vec<usize> = (0..families.len()).filter(|family| goes_on(&families[*family])).collect();
+            let family = open.iter().find(|family| is_alike(&families[**family])).or(open.first()).copied();
+            match family.and_then(|family| families.get_mut(family)) {
+                Some(family) => {
+                    family.at.insert(index, place);
+                    family.range[1] = *value;
+                }
+                None => families.push(AttractorFamily {
+                    class,
+                    at: BTreeMap::from([(index, place)]),
+                    ends: [None, None],
+                    range: [*value; 2],
+                    stable: None,
+                }),
+            }
+        }
+    }
+    families
+}
+
+/// Whether Newton's method leads from an orbit of one value to that of the next; of other motions there is one of a class.
+fn is_next(machine: &Machine, before: &LongRun, now: &LongRun) -> bool {
+    match (before, now) {
+        (LongRun::Orbit(before), LongRun::Orbit(now)) => {
+            continued(machine, before).is_some_and(|orbit| orbit.is_same(now))
+        }
+        _ => true,
+    }
+}
+
+/// The orbit of this machine near that of a machine at a neighbouring value.
+fn continued(machine: &Machine, orbit: &PeriodicOrbit) -> Option<PeriodicOrbit> {
+    match &orbit.course {
+        Course::Impacts(cycle) => close(machine, cycle),
+        Course::Sticking(_) => None,
+        Course::Free => Some(orbit.clone()),
+    }
+}
+
+/// Adds the orbits that runs come to right beyond where another has ended, and those beyond their ends in turn: between two
+/// values of the grid there is room for several.
+fn beyond(over: &Over<'_>, families: &mut Vec<AttractorFamily>, step: &(dyn Fn(&AttractorFamily) -> f64 + Sync)) {
+    /// How often that is done.
+    const DEPTH: usize = 3;
+    let holds = |families: &[AttractorFamily], (value, orbit): &(f64, PeriodicOrbit)| {
+        families.iter().any(|family| family.holds(over, *value, orbit))
+    };
+    let mut fresh = 0;
+    for _ in 0..DEPTH {
+        let next = |ended: &AttractorFamily| {
+            let (mut found, step) = (Vec::<((f64, PeriodicOrbit), AttractorFamily)>::new(), step(ended));
+            for seen in ended.stable.iter().flat_map(|stable| stable.beyond(over, step)) {
+                if holds(families, &seen) || found.iter().any(|(_, it)| holds(std::slice::from_ref(it), &seen)) {
+                    continue;
+                }
+                let (class, range) = (Class::of(&LongRun::Orbit(seen.1.clone())), [seen.0; 2]);
+                let mut family =
+                    AttractorFamily { class, at: BTreeMap::new(), ends: [None, None], range, stable: None };
+                if let Ok(stable) = StableRange::all(over, seen.0, &seen.1, range, step) {
+                    family.take(stable);
+                    found.push((seen, family));
+                }
+            }
+            found
+        };
+        let found: Vec<_> = families[fresh..].par_iter().map(next).collect();
+        fresh = families.len();
+        // What is beyond the end of one may be beyond that of another.
+        for (seen, family) in found.into_iter().flatten() {
+            if !holds(&families[fresh..], &seen) {
+                families.push(family);
+            }
+        }
+        if fresh == families.len() {
+            return;
+        }
+    }
+}
+
+/// Families that are on one stable range of one branch, as one: they have its orbits in common. Newton's method leads from one to the same
+/// orbit on the other where that is on the same segments of the cam; over rows of a table it may be next to others alone.
+fn joined(over: &Over<'_>, families: Vec<AttractorFamily>) -> Vec<AttractorFamily> {
+    let mut joined: Vec<AttractorFamily> = Vec::new();
+    for family in families {
+        let middle = || family.stable.iter().flat_map(StableRange::middle);
+        // Two motions at one value are two.
+        let apart = |known: &AttractorFamily| known.at.keys().all(|index| !family.at.contains_key(index));
+        let same = |known: &&mut AttractorFamily| {
+            apart(known) && middle().any(|(value, orbit)| known.holds(over, value, orbit))
+        };
+        match joined.iter_mut().find(same) {
+            Some(known) => known.at.extend(family.at),
+            None => joined.push(family),
+        }
+    }
+    joined
+}
+
+impl AttractorFamily {
+    fn ending<'a>(&self, grid: &'a Grid, index: usize) -> Option<&'a LongRun> {
+        let here = grid.get(index)?.found.as_ref().ok()?;
+        Some(&here.attractors.get(*self.at.get(&index)?)?.ending)
+    }
+
+    /// Whether an orbit at a value is on its stable range.
+    fn holds(&self, over: &Over<'_>, value: f64, orbit: &PeriodicOrbit) -> bool {
+        let near = self.stable.as_ref().and_then(|stable| stable.near(value));
+        let known = near.and_then(|near| continued(&over.machine(value).ok()?, near));
+        known.is_some_and(|known| known.is_same(orbit))
+    }
+
+    /// Its orbits with an impact at a corner where the acceleration jumps, within a range of values.
+    pub fn corner_impacts(&self, [low, high]: [f64; 2]) -> impl Iterator<Item = &BranchPoint> {
+        let all = self.stable.iter().flat_map(StableRange::corner_impacts);
+        all.filter(move |point| low <= point.value && point.value <= high)
+    }
+
+    /// Follows the branch of an orbit to where it ceases to be stable.
+    fn follow(&mut self, over: &Over<'_>, grid: &Grid, step: f64) {
+        let middle = self.at.keys().nth(self.at.len() / 2).copied();
+        if let Some(index) = middle
+            && let Some(LongRun::Orbit(orbit)) = self.ending(grid, index)
+            && let Ok(stable) = StableRange::all(over, grid[index].value, orbit, self.range, step)
+        {
+            self.take(stable);
+        }
+    }
+
+    fn take(&mut self, stable: StableRange) {
+        (self.range, self.ends) = (stable.ends(), stable.ends.clone());
+        self.stable = Some(stable);
+    }
+
+    /// Makes its range that of the values at which runs have come to it, where the branch that it is on ends before: a run that has not left
+    /// what is lost beyond is on it still.
+    fn reach(&mut self, over: &Over<'_>, grid: &Grid) {
+        let [Some(first), Some(last)] =
+            [self.at.keys().next(), self.at.keys().last()].map(|index| index.map(|index| grid[*index].value))
+        else {
+            return;
+        };
+        let [low, high] = self.range;
+        for (end, own, reached, is_beyond) in [(0, low, first, first < low), (1, high, last, last > high)] {
+            if is_beyond {
+                (self.range[end], self.ends[end]) = (reached, Some(by_runs(over, [own, reached])));
+            }
+        }
+    }
+
+    /// Narrows down where a motion that is no orbit begins and ends, between two values of the grid.
+    fn narrow(&mut self, over: &Over<'_>, grid: &Grid, runs: Asked<'_>) {
+        if self.stable.is_some() {
+            return;
+        }
+        let [Some(first), Some(last)] = [self.at.keys().next().copied(), self.at.keys().last().copied()] else {
+            return;
+        };
+        let changed = |(side, index): (usize, usize)| {
+            let next = if side == 0 { index.checked_sub(1) } else { Some(index + 1) };
+            Some(self.ended((over, runs), grid, index, grid.get(next?)?.value))
+        };
+        let (lower, upper) = rayon::join(|| changed((0, first)), || changed((1, last)));
+        for ((end, own), change) in self.ends.iter_mut().zip(&mut self.range).zip([lower, upper]) {
+            if let Some(change) = change {
+                *own = change.value();
+                *end = Some(change);
+            }
+        }
+    }
+
+    /// Between the value of an index, at which it is there, and `gone`.
+    fn ended(&self, (over, runs): (&Over<'_>, Asked<'_>), grid: &Grid, index: usize, gone: f64) -> Transition {
+        /// Halvings of a step of the grid.
+        const HALVINGS: u32 = 8;
+        let ends = [grid[index].value, gone];
+        let found = self.wanted(grid, index, runs).map(|(wanted, attractor)| {
+            let mut motion = Some(attractor.motion);
+            halve(ends, Width::Halvings(HALVINGS), |value| Ok(!wanted.is_there(&over.machine(value)?, &mut motion)?))
+        });
+        by_runs(over, found.and_then(Result::<_, RunError>::ok).unwrap_or(ends))
+    }
+
+    /// The speed, rpm, at which an end that is known by runs is on another machine, whose cam differs by little, of a family over speeds;
+    /// none where it is not found near by.
+    pub fn moved(&self, other: &Machine, grid: &Grid, runs: Asked<'_>, side: usize) -> Option<f64> {
+        /// The first step, in brackets of the end: as narrow a bracket takes long, and steps are doubled.
+        const FIRST: f64 = 16.0;
+        /// How often.
+        const DOUBLED: usize = 7;
+        /// Halvings of the step that it is in.
+        const HALVINGS: u32 = 3;
+        let change = self.ends[side].as_ref().filter(|_| self.class != Class::Undecided)?;
+        let index = if side == 0 { self.at.keys().next() } else { self.at.keys().last() };
+        let (wanted, _) = self.wanted(grid, *index?, runs)?;
+        let mut motion = None;
+        let mut is_there = |rpm: f64| wanted.is_there(&other.at_speed(angular_velocity(rpm)), &mut motion);
+        let was_there = is_there(change.at.rpm).ok()?;
+        let outward = if side == 0 { -1.0 } else { 1.0 };
+        let mut step = (if was_there { outward } else { -outward }) * FIRST * (change.bracket[1] - change.bracket[0]);
+        let mut from = change.at.rpm;
+        for _ in 0..DOUBLED {
+            let next = from + step;
+            if is_there(next).ok()? != was_there {
+                let found =
+                    halve([from, next], Width::Halvings(HALVINGS), |rpm| is_there(rpm).map(|there| there != was_there));
+                return found.ok().map(|[one, two]| 0.5 * (one + two));
+            }
+            (from, step) = (next, 2.0 * step);
+        }
+        None
+    }
+
+    /// What it is at a value of the grid, to be looked for elsewhere.
+    fn wanted<'a>(&self, grid: &'a Grid, index: usize, (sample, budget): Asked<'_>) -> Option<(Wanted, &'a Attractor)> {
+        let here = grid.get(index)?.found.as_ref().ok()?;
+        let attractor = here.attractors.get(*self.at.get(&index)?)?;
+        let of_class = here.attractors.iter().filter(|it| Class::of(&it.ending) == self.class);
+        let sample = match sample {
+            Sample::Spread(_) => Sample::Spread(STARTS),
+            Sample::Given(_) => sample.clone(),
+        };
+        let wanted =
+            Wanted { class: self.class, kind: attractor.ending.kind(), both: of_class.count() > 1, sample, budget };
+        Some((wanted, attractor))
+    }
+
+    /// Turns of the cam and impacts of one period, where that is the same all along.
+    pub fn period(&self) -> Option<(u64, u64)> {
+        match self.class {
+            Class::Orbit(revolutions, impacts) => Some((revolutions, impacts)),
+            Class::Stays => Some((1, 0)),
+            Class::Rests | Class::Irregular | Class::Undecided => None,
+        }
+    }
+
+    /// Its kind: that of most of its values.
+    pub fn kind(&self, grid: &Grid) -> Kind {
+        let mut counts: BTreeMap<Kind, usize> = BTreeMap::new();
+        for index in self.at.keys() {
+            if let Some(ending) = self.ending(grid, *index) {
+                *counts.entry(ending.kind()).or_default() += 1;
+            }
+        }
+        // Between two values of the grid only orbits are known.
+        counts.into_iter().max_by_key(|(_, count)| *count).map_or(Kind::Periodic, |(kind, _)| kind)
+    }
+
+    /// Gives an end that is known by runs the value at which the follower leaves the cam, and its rounding, if that is in the bracket.
+    pub(super) fn detaches(&mut self, over: &Over<'_>, value: f64, error: f64) {
+        for (end, own) in self.ends.iter_mut().zip(&mut self.range) {
+            if let Some(change) = end
+                && change.cause == Cause::Runs
+                && change.bracket[0] <= value + error
+                && value - error <= change.bracket[1]
+            {
+                let bracket = [value - error, value + error];
+                *change = Transition { bracket, ..Transition::at(over.place(value), Cause::Detachment) };
+                *own = value;
+            }
+        }
+    }
+
+    /// Where runs alone tell that it ends, if it is the follower's rest on the cam for good.
+    pub(super) fn contact_ends(&self) -> impl Iterator<Item = [f64; 2]> {
+        let ends = self.ends.iter().flatten().filter(|end| self.class == Class::Stays && end.cause == Cause::Runs);
+        ends.map(|end| end.bracket)
+    }
+
+    /// Leaves what is inside of a range of values; false where nothing is.
+    pub(super) fn cut(&mut self, [low, high]: [f64; 2]) -> bool {
+        let is_inside = |value: f64| low < value && value < high;
+        for (end, own) in self.ends.iter_mut().zip(&mut self.range) {
+            if !is_inside(*own) {
+                (*end, *own) = (None, own.clamp(low, high));
+            }
+        }
+        self.range[0] < self.range[1]
+    }
+}
+
+/// A motion that runs are asked for at other values.
+struct Wanted {
+    class: Class,
+    kind: Kind,
+    /// Whether there are several of the class, of which another kind is another motion: one that is long may be chaotic at one value and
+    /// be seen to rest at the next.
+    both: bool,
+    /// Where runs begin at each value that is tried.
+    sample: Sample,
+    budget: Budget,
+}
+
+/// Where the runs of a survey begin, and for how long they are followed.
+pub type Asked<'a> = (&'a Sample, Budget);
+
+/// How many of a sample.
+const STARTS: usize = 12;
+
+impl Wanted {
+    /// Whether one of a few starts ends on it, or the `motion` of another value goes on as one; that is put in its place then.
+    fn is_there(&self, machine: &Machine, motion: &mut Option<Motion>) -> Result<bool, SimulateError> {
+        let here = AttractorsAtValue::new(machine, &self.sample, self.budget)?;
+        let of_class = |it: &Attractor| Class::of(&it.ending) == self.class;
+        let alike = |it: &&Attractor| of_class(it) && it.ending.kind() == self.kind;
+        let goes_on = |it: &Attractor| if self.both { alike(&it) } else { of_class(it) };
+        let there = match (here.attractors.iter().find(alike), *motion) {
+            (Some(attractor), _) => Some(attractor.motion),
+            (None, Some(before)) if matches!(self.sample, Sample::Spread(_)) => {
+                here.come_to(machine, &before)?.filter(goes_on).map(|it| it.motion)
+            }
+            (None, _) => here.attractors.iter().find(|it| goes_on(it)).map(|it| it.motion),
+        };
+        *motion = there.or(*motion);
+        Ok(there.is_some())
+    }
+}
+
+/// Whether runs have come to a motion of the same class as `ending`.
+pub(super) fn has_reached(here: &AttractorsAtValue, ending: &LongRun) -> bool {
+    here.attractors.iter().any(|it| Class::of(&it.ending) == Class::of(ending) && here.is_reached(it))
+}

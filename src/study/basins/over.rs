@@ -1,0 +1,110 @@
+//! The share of the starts that end on each motion, value by value of a number.
+
+use std::time::Instant;
+
+use super::{Basins, Section, SectionStarts, States};
+use crate::flight::State;
+use crate::orbit::long_run::Budget;
+use crate::progress::{Unwatched, Watch};
+use crate::study::StudyError;
+use crate::study::survey::{Axis, Over, Place, Varied};
+
+/// Where the starts are at each value.
+#[derive(Clone, Debug)]
+pub enum Begun {
+    /// In a grid of so many cells along the positions and the velocities, over these ranges, or over those of the value's own orbits.
+    Grid([usize; 2], [Option<[f64; 2]>; 2]),
+    /// These.
+    Given(Vec<State>),
+}
+
+/// What starts come to at each of several values: the document of `basins --over --summary`.
+#[derive(Clone, Debug)]
+pub struct BasinsOver {
+    /// The model's name.
+    pub model: String,
+    /// What varies.
+    pub over: Varied,
+    /// The lowest and the highest value.
+    pub range: [f64; 2],
+    /// The section, rad, in `[0, 2 pi)`.
+    pub cam_angle: f64,
+    /// For how long runs were followed.
+    pub budget: Budget,
+    /// What was found at each value.
+    pub at: Vec<BasinsAt>,
+    /// Seconds that the runs took.
+    pub wall_s: f64,
+}
+
+document!(BasinsOver as it {
+    schema: "corner-impact/basins/1",
+    model: it.model,
+    rpm if_any: it.over.rpm,
+    over: it.over.name,
+    range: it.range,
+    cam_angle_rad: it.cam_angle,
+    budget: it.budget,
+    values: it.at,
+    wall_s: it.wall_s,
+});
+
+/// What the starts of one value come to.
+#[derive(Clone, Debug)]
+pub struct BasinsAt {
+    /// Where.
+    pub place: Place,
+    /// What was found, or why nothing was.
+    pub found: Result<Basins, String>,
+}
+
+document!(BasinsAt as it {
+    speed_rpm: it.place.rpm,
+    value if_any: it.place.value,
+    starts: it.found.as_ref().map_or(0, |found| found.starts),
+    endings: it.found.as_ref().map_or(&[][..], |found| &found.parts),
+    failed: it.found.as_ref().map_or(0, |found| found.failed),
+    failure if_any: it.failure(),
+});
+
+impl BasinsAt {
+    /// Why nothing, or one of the starts, could be run.
+    pub fn failure(&self) -> Option<&str> {
+        match &self.found {
+            Ok(found) => found.failure.as_deref(),
+            Err(why) => Some(why),
+        }
+    }
+}
+
+impl BasinsOver {
+    /// What starts on the section at `cam_angle`, rad, come to at each value; `watch` is told value by value.
+    pub fn new(
+        over: &Over<'_>,
+        axis: &Axis,
+        (cam_angle, begun): (f64, &Begun),
+        budget: Budget,
+        threads: Option<usize>,
+        watch: &dyn Watch,
+    ) -> Self {
+        let (clock, total) = (Instant::now(), axis.values.len() as u64);
+        let one = |value: f64| -> Result<Basins, StudyError> {
+            let (model, _) = over.model(value)?;
+            let section = Section::new(&model, over.place(value).rpm, cam_angle)?;
+            let starts = match begun {
+                Begun::Grid(cells, [positions, velocities]) => {
+                    SectionStarts::Grid(section.grid(*cells, *positions, *velocities)?)
+                }
+                Begun::Given(states) => SectionStarts::Given(States { cam_angle, states: states.clone() }),
+            };
+            Ok(starts.basins(&section.map.machine, budget, threads, &Unwatched)?)
+        };
+        let at = |(index, value): (usize, &f64)| {
+            watch.at("", index as u64, total);
+            BasinsAt { place: over.place(*value), found: one(*value).map_err(|error| error.to_string()) }
+        };
+        let at = axis.values.iter().enumerate().map(at).collect();
+        let (model, varied) = (over.model.name.clone(), over.varied(axis.spacing));
+        Self { model, over: varied, range: axis.ends(), cam_angle, budget, at, wall_s: clock.elapsed().as_secs_f64() }
+    }
+}

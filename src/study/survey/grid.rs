@@ -1,0 +1,248 @@
+//! The machines of a model over one or two of its numbers, each point on its own.
+//!
+//! What is found at a point is the same to the last bit in whatever order, parts or threads the points are run.
+
+use std::ops::Range;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+use rayon::prelude::*;
+
+use super::axis::{Axis, Place};
+use super::threads::SweepError;
+use crate::model::Model;
+use crate::orbit::{Family, FamilyError, Parameter};
+use crate::progress::Watch;
+use crate::simulate::{Machine, SimulateError, angular_velocity};
+
+/// The machines of a model over the values of one or two of its numbers.
+#[derive(Clone, Debug)]
+pub struct Survey {
+    family: Family,
+    /// The speed of the family, rpm.
+    rpm: f64,
+    across: Axis,
+    up: Option<Axis>,
+}
+
+/// Why there is no survey.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SurveyError {
+    /// No speed is named.
+    #[error("{axes} rpm: --rpm says at which speed")]
+    NoSpeed {
+        /// That what varies is not.
+        axes: String,
+    },
+    /// Two speeds are named.
+    #[error("--rpm is for a survey of which no axis is rpm")]
+    TwoSpeeds,
+    /// Both axes are one number.
+    #[error("--x and --y are both {0}: a chart is over two numbers")]
+    OneNumber(String),
+    /// No points, or more than a survey may have.
+    #[error("{points} points: there must be 1 to {}", Survey::MOST)]
+    Points {
+        /// How many were asked for.
+        points: usize,
+    },
+    /// The machine cannot be.
+    #[error(transparent)]
+    Family(#[from] FamilyError),
+    /// The threads could not be started.
+    #[error(transparent)]
+    Threads(#[from] SweepError),
+}
+
+/// Why a point has no motion.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RunError {
+    /// The machine cannot be.
+    #[error(transparent)]
+    Family(#[from] FamilyError),
+    /// A run could not go on.
+    #[error(transparent)]
+    Simulate(#[from] SimulateError),
+}
+
+/// What is found at points, row by row, the first axis fastest; the reason where there is no machine.
+pub type Found<T> = Vec<Result<T, String>>;
+
+impl Survey {
+    /// The most points.
+    pub const MOST: usize = 100_000_000;
+
+    /// The machines of `model` over one axis or two; at `rpm` where none is the speed.
+    pub fn new(model: &Model, rpm: Option<f64>, across: Axis, up: Option<Axis>) -> Result<Self, SurveyError> {
+        if let Some(up) = up.as_ref().filter(|up| up.parameter == across.parameter) {
+            return Err(SurveyError::OneNumber(up.parameter.name().into()));
+        }
+        let points = across.values.len().saturating_mul(up.as_ref().map_or(1, |up| up.values.len()));
+        if !(1..=Self::MOST).contains(&points) {
+            return Err(SurveyError::Points { points });
+        }
+        let axes = || std::iter::once(&across).chain(&up);
+        let speed = axes().find(|axis| axis.parameter == Parameter::Speed);
+        let rpm = match (speed, rpm) {
+            // Where one of them cannot be turned at, that is told of its point.
+            (Some(axis), None) => axis.values.iter().copied().find(|rpm| *rpm > 0.0 && rpm.is_finite()).unwrap_or(1.0),
+            (None, Some(rpm)) => rpm,
+            (Some(_), Some(_)) => return Err(SurveyError::TwoSpeeds),
+            (None, None) => {
+                let alone = || format!("{} is not", across.parameter.name());
+                return Err(SurveyError::NoSpeed {
+                    axes: up.as_ref().map_or_else(alone, |_| "neither axis is".into()),
+                });
+            }
+        };
+        // What is wrong with the model itself is told at once, and not at every point.
+        let family = Family::new(model, rpm, axes().map(|axis| axis.parameter.clone()).collect())?;
+        Ok(Self { family, rpm, across, up })
+    }
+
+    /// What varies; of two numbers the one that runs fastest.
+    pub fn axis(&self) -> &Axis {
+        &self.across
+    }
+
+    /// The one speed, rpm; none where it varies.
+    pub fn speed(&self) -> Option<f64> {
+        let varies = std::iter::once(&self.across).chain(&self.up).any(|axis| axis.parameter == Parameter::Speed);
+        (!varies).then_some(self.rpm)
+    }
+
+    /// How many values the first axis has.
+    pub fn count(&self) -> usize {
+        self.across.values.len()
+    }
+
+    /// The value of an index.
+    pub fn value(&self, index: usize) -> f64 {
+        self.across.values[index]
+    }
+
+    /// Where the value of an index is.
+    pub fn place(&self, index: usize) -> Place {
+        self.across.parameter.place(self.value(index), self.rpm)
+    }
+
+    /// That value in words.
+    pub fn words(&self, index: usize) -> String {
+        self.across.parameter.words(self.value(index))
+    }
+
+    /// The machine with the value of an index, of a survey over one number.
+    pub fn machine(&self, index: usize) -> Result<Machine, FamilyError> {
+        Ok(self.family.machine(&[self.value(index)])?.0)
+    }
+
+    /// The model with the value of an index, of a survey over one number.
+    pub fn model(&self, index: usize) -> Result<Model, FamilyError> {
+        self.family.model(&[self.value(index)])
+    }
+
+    /// What `one` finds on the machine of each value, of a survey over one number, on `threads` threads (all there are for `None`).
+    pub fn run<T: Send>(
+        &self,
+        threads: Option<usize>,
+        watch: &dyn Watch,
+        one: impl Fn(usize, &Machine) -> Result<T, String> + Sync,
+    ) -> Result<Found<T>, SweepError> {
+        Ok(self.part([0..self.count(), 0..1], threads, watch, |[index, _], machine| one(index, machine))?.0)
+    }
+
+    /// What `one` finds on the machines of some columns and rows, told to `watch` row by row, or value by value; and the seconds of the
+    /// threads that ran them, and from the beginning to the end.
+    pub fn part<T: Send>(
+        &self,
+        [columns, rows]: [Range<usize>; 2],
+        threads: Option<usize>,
+        watch: &dyn Watch,
+        one: impl Fn([usize; 2], &Machine) -> Result<T, String> + Sync,
+    ) -> Result<(Found<T>, [f64; 2]), SweepError> {
+        let clock = Instant::now();
+        let pool = super::threads::threads(threads)?;
+        // Rows, or what there is of the only one.
+        let (lines, what) = if self.up.is_some() { (rows.clone(), "rows") } else { (columns.clone(), "") };
+        let height = (lines.len() / (8 * pool.current_num_threads())).clamp(1, STRIP);
+        let (done, last, total) = (AtomicU64::new(0), lines.end, lines.len() as u64);
+        let strips = lines.step_by(height).collect::<Vec<_>>().into_par_iter().map(|first| {
+            let clock = Processor::now();
+            let strip = first..last.min(first + height);
+            let count = strip.len() as u64;
+            let [columns, rows] = if self.up.is_some() { [columns.clone(), strip] } else { [strip, rows.clone()] };
+            let found = self.block(columns, rows, &one);
+            watch.at(what, done.fetch_add(count, Ordering::Relaxed) + count, total);
+            (found, clock.elapsed())
+        });
+        let strips: Vec<_> = pool.install(|| strips.collect());
+        let processor: Duration = strips.iter().map(|(_, elapsed)| *elapsed).sum();
+        let found = strips.into_iter().flat_map(|(found, _)| found).collect();
+        Ok((found, [processor.as_secs_f64(), clock.elapsed().as_secs_f64()]))
+    }
+
+    /// Some columns and rows, row by row.
+    fn block<T>(
+        &self,
+        columns: Range<usize>,
+        rows: Range<usize>,
+        one: &impl Fn([usize; 2], &Machine) -> Result<T, String>,
+    ) -> Found<T> {
+        // The speed is set below.
+        let value = |axis: &Axis, index: usize| match axis.parameter {
+            Parameter::Speed => self.rpm,
+            Parameter::Field(_) => axis.values[index],
+        };
+        let machine = |x: usize, y: usize| {
+            let up = self.up.as_ref().map(|up| value(up, y));
+            let values: Vec<f64> = std::iter::once(value(&self.across, x)).chain(up).collect();
+            self.family.machine(&values).map(|(machine, _)| machine).map_err(|error| error.to_string())
+        };
+        // A cam and what is known of it take as long to make as hundreds of revolutions; another speed is free.
+        let at = |machine: &Result<Machine, String>, rpm: f64, place: [usize; 2]| match machine {
+            Ok(machine) if rpm > 0.0 && rpm.is_finite() => one(place, &machine.at_speed(angular_velocity(rpm))),
+            Ok(_) => Err(FamilyError::Speed { rpm }.to_string()),
+            Err(error) => Err(error.clone()),
+        };
+        if let Some(up) = self.up.as_ref().filter(|up| up.parameter == Parameter::Speed) {
+            let machines: Vec<_> = columns.map(|x| (x, machine(x, rows.start))).collect();
+            return rows.flat_map(|y| machines.iter().map(move |(x, it)| at(it, up.values[y], [*x, y]))).collect();
+        }
+        let row = |y: usize| -> Vec<_> {
+            if self.across.parameter == Parameter::Speed {
+                let machine = machine(columns.start, y);
+                return columns.clone().map(|x| at(&machine, self.across.values[x], [x, y])).collect();
+            }
+            columns.clone().map(|x| one([x, y], &machine(x, y)?)).collect()
+        };
+        rows.flat_map(row).collect()
+    }
+}
+
+/// Rows that a thread takes at a time, at most.
+const STRIP: usize = 32;
+
+/// The time that a thread has had of a processor, where the system tells, else that of the day.
+enum Processor {
+    Thread(Duration),
+    Day(Instant),
+}
+
+impl Processor {
+    fn now() -> Self {
+        Self::of_thread().map_or_else(|| Self::Day(Instant::now()), Self::Thread)
+    }
+
+    /// Linux keeps it in nanoseconds, as the first number of a file.
+    fn of_thread() -> Option<Duration> {
+        let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+        told.split_whitespace().next()?.parse().ok().map(Duration::from_nanos)
+    }
+
+    fn elapsed(&self) -> Duration {
+        match self {
+            Self::Thread(begun) => Self::of_thread().unwrap_or(*begun).saturating_sub(*begun),
+            Self::Day(begun) => begun.elapsed(),
+        }
+    }
+}

@@ -1,0 +1,24 @@
+//! The threads that a survey runs on, and why it stops.
+
+use crate::stop;
+
+/// Why a sweep stopped.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the message says what each number is")]
+pub enum SweepError {
+    /// A run could not go on, or begin.
+    #[error("at {place}: {error}")]
+    Run { place: String, error: String },
+    /// The threads could not be started.
+    #[error("threads cannot be started: {0}")]
+    Threads(String),
+}
+
+/// Threads to run on: so many, or for `None` one for each core.
+pub fn threads(count: Option<usize>) -> Result<rayon::ThreadPool, SweepError> {
+    // Of 0 the builder makes as many as there are cores.
+    let builder = rayon::ThreadPoolBuilder::new().num_threads(count.unwrap_or(0));
+    let builder = builder
+        .spawn_handler(|thread| std::thread::Builder::new().spawn(stop::carried(move || thread.run())).map(drop));
+    builder.build().map_err(|error| SweepError::Threads(error.to_string()))
+}
