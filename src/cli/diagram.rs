@@ -202,7 +202,8 @@ fn loads(
         Parameter::Speed => "cam speed",
         Parameter::Field(path) => path,
     };
-    let title = format!("{}: {} against {over}", model.name, load.to_string().replace('-', " "));
+    let at = survey.speed().map_or(String::new(), |rpm| format!(" at {rpm} rpm"));
+    let title = format!("{}: {} against {over}{at}", model.name, load.to_string().replace('-', " "));
     target.fill(&model.units, table, || Ok(loads_diagram(&title, across, &found, load, &model.units)))?;
     Ok(Exit::Agrees)
 }
@@ -239,5 +240,6 @@ fn title(model: &str, sweep: &Sweep) -> String {
         Following::Up => "each value from the end of the next lower",
         Following::Down => "each value from the end of the next higher",
     };
-    format!("{model}: {what} of {} revolutions after {}, {how}", sweep.record, sweep.transient)
+    let at = sweep.over.speed().map_or(String::new(), |rpm| format!(", at {rpm} rpm"));
+    format!("{model}: {what} of {} revolutions after {}, {how}{at}", sweep.record, sweep.transient)
 }

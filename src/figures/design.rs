@@ -84,7 +84,8 @@ fn speeds(found: &Design) -> Figure {
         _ => format!("separation, {at:.1} rpm"),
     };
     let marks = (is_speed && range[0] <= at && at <= range[1]).then(|| Mark { at, label: label() });
-    let title = format!("{}: contact force and loads", found.model.name);
+    let at = found.over.as_ref().map_or(String::new(), |_| format!(" at {} rpm", found.rpm()));
+    let title = format!("{}: contact force and loads{at}", found.model.name);
     Figure { marks: marks.into_iter().collect(), ..Figure::new(&title, across.axis(), panels) }
 }
 

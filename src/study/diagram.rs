@@ -11,7 +11,7 @@ use crate::simulate::{Machine, Motion, SimulateError};
 use crate::study::attractors::AttractorsAtValue;
 use crate::study::design::loads::Loads;
 use crate::study::survey::{
-    Block, Following, Found, Places, Point, Sample, Section, Start, Survey, Sweep, SweepError, Tally,
+    Block, Following, Found, Places, Point, Sample, Section, Spacing, Start, Survey, Sweep, SweepError, Tally,
 };
 
 /// A motion on each of the attractors of `machine`, as they are found without a look at other machines.
@@ -97,30 +97,34 @@ impl Swept {
     }
 }
 
-/// What a picture shows of a sweep: where impacts are, in degrees, or positions at the section, m, and exponents.
+/// What a picture shows of a sweep: where impacts are, in degrees, or positions at the section, m, and exponents; across as the values
+/// are spaced.
 #[derive(Clone, Debug)]
 pub struct Shown {
     in_degrees: bool,
+    spacing: Spacing,
     cloud: Cloud,
-    /// The value, and the Lyapunov exponent per revolution, of each that has one.
+    /// Where the value is, and the Lyapunov exponent per revolution, of each that has one.
     pub exponents: Vec<[f64; 2]>,
 }
 
 impl Shown {
     /// Nothing of a sweep yet.
     pub fn new(sweep: &Sweep) -> Self {
-        let [low, high] = sweep.over.axis().ends();
+        let spacing = sweep.over.axis().spacing;
+        let [low, high] = sweep.over.axis().ends().map(|end| spacing.place(end));
         let cloud = Cloud::new(if high > low { [low, high] } else { [0.99 * low, 1.01 * low] });
-        Self { in_degrees: sweep.section == Section::Impacts, cloud, exponents: Vec::new() }
+        Self { in_degrees: sweep.section == Section::Impacts, spacing, cloud, exponents: Vec::new() }
     }
 
     /// Adds what was found.
     pub fn take(&mut self, found: &Places) {
         for [value, place] in &found.places {
-            self.cloud.push(*value, if self.in_degrees { place.to_degrees() } else { *place });
+            self.cloud.push(self.spacing.place(*value), if self.in_degrees { place.to_degrees() } else { *place });
         }
         let is_new = |new: &[f64; 2]| self.exponents.last().is_none_or(|last| last[0] != new[0]);
-        self.exponents.extend(found.exponent.filter(is_new));
+        let placed = |[value, exponent]: [f64; 2]| [self.spacing.place(value), exponent];
+        self.exponents.extend(found.exponent.map(placed).filter(is_new));
     }
 
     /// The places.

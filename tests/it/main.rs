@@ -67,6 +67,7 @@ mod orbit_closed_forms;
 mod orbit_commands;
 mod orbit_numbers;
 mod outside;
+mod over;
 mod page;
 mod physics;
 mod planted;

@@ -1,0 +1,272 @@
+//! Does a survey over any number say at each value what the model with that value says?
+
+use approx::assert_relative_eq;
+use corner_impact::model::Model;
+use corner_impact::orbit::Parameter;
+use corner_impact::orbit::long_run::{Budget, Kind};
+use corner_impact::progress::Unwatched;
+use corner_impact::study::attractors::{Cause, Resolution, Step};
+use corner_impact::study::basins::{BasinsOver, Begun};
+use corner_impact::study::design::{Asked, design};
+use corner_impact::study::diagram::one_row;
+use corner_impact::study::speeds::{SpeedSurvey, speeds};
+use corner_impact::study::survey::{Axis, Over, Placed, Spacing, Start, Survey, Values};
+
+use crate::common::{self, corner_impact, text};
+
+const MODEL: &str = "models/osorio-2008.toml";
+const REST: Start = Start { cam_angle: 0.0, follower: Placed::OnCam(0.0) };
+
+/// Lines of a table, and what was said on standard error.
+fn told(arguments: &[&str]) -> (String, String) {
+    let output = corner_impact(arguments);
+    (text(output.stdout), text(output.stderr))
+}
+
+/// What is refused, in words.
+fn refused(words: &str) -> String {
+    let arguments: Vec<&str> = words.split_whitespace().collect();
+    let output = corner_impact(&arguments);
+    assert_eq!(output.status.code(), Some(2), "{words}");
+    text(output.stderr)
+}
+
+fn axis(model: &Model, name: &str, low: f64, high: f64, count: usize, spacing: Spacing) -> Axis {
+    Axis::new(Parameter::named(model, name).unwrap(), &Values { low, high, count, spacing })
+}
+
+/// An oscillator whose rest position is a clearance above the middle of a table that goes up and down by 0.01 m: it touches the table's highest
+/// point where the clearance is that.
+fn wall() -> Model {
+    let text = "[follower]\nmass = 1.0\nrestitution = 0.7\ndamping = 0.4\nstiffness = 100.0\ngravity = 0.0\nrest_position = 0.005\n\
+                [cam]\nlaw = \"harmonic\"\noffset = 0.0\namplitudes = [0.01]\nphases_deg = [0.0]\n";
+    Model::parse("wall.toml", text).unwrap()
+}
+
+fn over(model: &Model, name: &str, range: [f64; 2], step: Step, starts: usize) -> SpeedSurvey {
+    let over = Over::new(model, Parameter::named(model, name).unwrap(), 700.0).unwrap();
+    speeds(&over, range, &Resolution::new(step, starts), &Unwatched).unwrap()
+}
+
+/// `--rpm LO:HI:N` is short for `--over rpm=LO:HI:N`.
+#[test]
+fn a_range_of_speeds_is_one_number_of_many() {
+    for options in [&["--one-row"][..], &["--record", "3"], &["--show", "gap", "--record", "3"]] {
+        let one = [&["diagram", MODEL, "--rpm", "660:740:3", "--out", "-"], options].concat();
+        let other = [&["diagram", MODEL, "--over", "rpm=660:740:3", "--out", "-"], options].concat();
+        assert_eq!(told(&one), told(&other));
+    }
+    let basins = ["--grid", "4x4", "--out", "-"];
+    let one = [&["basins", MODEL, "--rpm", "680:700:2"][..], &basins].concat();
+    let other = [&["basins", MODEL, "--over", "rpm=680:700:2"][..], &basins].concat();
+    assert_eq!(told(&one), told(&other));
+}
+
+/// At each value every command says what it says of the model that is given the value.
+#[test]
+fn each_value_is_a_model_of_its_own() {
+    for value in ["0.65", "0.8"] {
+        let (set, range) = (format!("restitution={value}"), format!("restitution={value}:{value}:1"));
+        for options in [
+            &["--one-row"][..],
+            &["--record", "3"],
+            &["--show", "energy", "--record", "3"],
+            &["--attractors", "--record", "2"],
+        ] {
+            let rows = |table: &str| -> Vec<String> {
+                table.lines().skip(1).map(|line| line.split_once(',').unwrap().1.to_owned()).collect()
+            };
+            let one = [&["diagram", MODEL, "--rpm", "700", "--over", &range, "--out", "-"], options].concat();
+            let other = [&["diagram", MODEL, "--rpm", "700:700:1", "--set", &set, "--out", "-"], options].concat();
+            let [one, other] = [told(&one).0, told(&other).0].map(|table| rows(&table));
+            assert!(!one.is_empty() && one == other, "{value} {options:?}: {one:?} {other:?}");
+        }
+        let starts = ["--grid", "5x5", "--summary"];
+        let one = [&["basins", MODEL, "--rpm", "700", "--over", &range][..], &starts].concat();
+        let other = [&["basins", MODEL, "--rpm", "700", "--set", &set][..], &starts].concat();
+        let [one, other]: [serde_json::Value; 2] = [one, other].map(|it| serde_json::from_str(&told(&it).0).unwrap());
+        assert_eq!(one["values"][0]["endings"], other["endings"]);
+        assert_eq!((&one["values"][0]["speed_rpm"], &one["over"]), (&700.0.into(), &"follower.restitution".into()));
+    }
+}
+
+/// The loads and the force of a design at each mass are those of the model with that mass; and a limit is passed between two of the values.
+#[test]
+fn a_design_goes_over_a_mass() {
+    let paper = common::osorio();
+    let over = Some(axis(&paper, "mass", 1.0, 2.0, 3, Spacing::Linear));
+    let asked = Asked { rpm: Some([200.0; 2]), over, ..Asked::default() };
+    let found = design(&paper, &asked, &Unwatched).unwrap();
+    for (index, mass) in [1.0, 1.5, 2.0].into_iter().enumerate() {
+        let of_mass = paper.with_number("follower.mass", mass).unwrap();
+        let alone = design(&of_mass, &Asked { rpm: Some([200.0; 2]), ..Asked::default() }, &Unwatched).unwrap();
+        assert_eq!(found.loads[index].numbers(), alone.loads[0].numbers());
+        assert_eq!(found.forces[index].least, alone.forces[0].least);
+        assert_eq!((found.loads[index].place.rpm, found.loads[index].place.value), (200.0, Some(mass)));
+    }
+    let [low, high] = [found.loads[0].impact_speed, found.loads[1].impact_speed];
+    let limits = vec![(corner_impact::study::design::loads::Load::ImpactSpeed, 0.5 * (low + high))];
+    let passed = design(&paper, &Asked { limits, ..asked.clone() }, &Unwatched).unwrap().limits[0].at.unwrap();
+    assert!(low < high && passed.rpm == 200.0 && (1.0..1.5).contains(&passed.value.unwrap()), "{passed:?}");
+    let several = Asked { rpm: Some([100.0, 200.0]), ..asked };
+    assert!(design(&paper, &several, &Unwatched).is_err());
+}
+
+/// The orbit of one impact at 700 rpm loses its stability at the restitution that `continue` finds, and shares of all attractors sum to 1 at
+/// every value; a part of the range has the answer of that part.
+#[test]
+fn attractors_are_matched_over_a_restitution() {
+    let paper = common::osorio();
+    let whole = over(&paper, "restitution", [0.3, 0.5], common::step(0.05), 6);
+    let part = over(&paper, "restitution", [0.35, 0.45], common::step(0.05), 6);
+    let mut sums = std::collections::BTreeMap::<u64, f64>::new();
+    for at in whole.attractors.iter().flat_map(|row| &row.at) {
+        assert_eq!(at.place.rpm, 700.0);
+        *sums.entry(at.value().to_bits()).or_default() += at.share.value;
+    }
+    assert!(sums.len() == 5 && sums.values().all(|sum| (sum - 1.0).abs() < 1e-12), "{sums:?}");
+    let kinds = |found: &SpeedSurvey, value: f64| -> Vec<(Kind, f64)> {
+        let at = found.attractors.iter().flat_map(|row| &row.at).filter(|at| at.value() == value);
+        at.map(|at| (at.ending.kind(), at.share.value)).collect()
+    };
+    for value in [0.35, 0.4, 0.45] {
+        assert_eq!(kinds(&whole, value), kinds(&part, value), "{value}");
+    }
+    let ends = |found: &SpeedSurvey| -> Vec<(Cause, f64)> {
+        let all = found.attractors.iter().flat_map(|row| row.birth.iter().chain(&row.death));
+        all.filter(|end| end.is_located()).map(|end| (end.cause, end.value())).collect()
+    };
+    for (cause, value) in ends(&part) {
+        assert!(
+            ends(&whole).iter().any(|(known, at)| *known == cause && (at - value).abs() < 1e-9),
+            "{cause:?} {value}"
+        );
+    }
+}
+
+/// Over a mass the follower leaves the cam where the speed of separation, as of the square root of the stiffness over the mass, passes the
+/// one that is turned at.
+#[test]
+fn a_follower_leaves_the_cam_at_a_stiffness() {
+    let ball = crate::attractors::ball();
+    let over = Over::new(&ball, Parameter::named(&ball, "gravity").unwrap(), 900.0).unwrap();
+    let omega = corner_impact::simulate::angular_velocity(900.0);
+    // A table of amplitude a lets go of what lies on it where a w^2 passes g.
+    let amplitude = (corner_impact::simulate::angular_velocity(1.0), common::cam(&ball));
+    let lift = amplitude.1.highest().value - amplitude.1.lowest().value;
+    let leaves = 0.5 * lift * omega * omega;
+    let range = [0.9 * leaves, 1.1 * leaves];
+    let found = speeds(&over, range, &Resolution::new(common::step(0.1 * leaves), 2), &Unwatched).unwrap();
+    assert_relative_eq!(found.detachment().unwrap()[0], leaves, max_relative = 1e-9);
+    assert!(found.separation.is_none());
+    let stays = found.attractors.iter().find(|row| row.kind == Kind::Stays).unwrap();
+    assert_eq!(stays.birth.as_ref().unwrap().cause, Cause::Detachment);
+}
+
+/// Nordmark's diagram over the clearance of a wall, on a logarithmic axis: no impact where the clearance is more than the wall moves, and some
+/// right below; values are each the same multiple of the one before.
+#[test]
+fn impacts_begin_where_the_clearance_is_taken_up() {
+    let wall = wall();
+    let axis = axis(&wall, "rest_position", 1e-3, 1e-1, 22, Spacing::Logarithmic);
+    for pair in axis.values.windows(2) {
+        assert_relative_eq!(pair[1] / pair[0], 10.0_f64.powf(2.0 / 21.0), max_relative = 1e-12);
+    }
+    assert_eq!(axis.ends(), [1e-3, 1e-1]);
+    let survey = Survey::new(&wall, Some(300.0), axis.clone(), None).unwrap();
+    let found = one_row(&survey, REST, Budget::CHART, Some(2), &Unwatched).unwrap();
+    for (clearance, point) in axis.values.iter().zip(&found) {
+        let rate = point.as_ref().unwrap().impact_rate;
+        assert_eq!(rate == 0.0, *clearance > 0.01, "{clearance}: {rate}");
+    }
+    // From next to it.
+    let near = self::axis(&wall, "rest_position", 0.0099, 0.0101, 2, Spacing::Logarithmic);
+    let near = Survey::new(&wall, Some(300.0), near, None).unwrap();
+    let near = one_row(&near, REST, Budget::CHART, None, &Unwatched).unwrap();
+    assert_eq!(near.iter().map(|point| point.as_ref().unwrap().impact_rate > 0.0).collect::<Vec<_>>(), [true, false]);
+}
+
+/// A logarithmic grid has powers of ten whose exponents are multiples of the step, whatever the range.
+#[test]
+fn a_logarithmic_grid_is_the_same_for_every_range() {
+    let wall = wall();
+    let over = Over::new(&wall, Parameter::named(&wall, "rest_position").unwrap(), 300.0).unwrap();
+    let step = Step::at_most(0.25, Spacing::Logarithmic);
+    assert_eq!((step.width(), Step::for_values([1e-3, 1e-1], 10, Spacing::Logarithmic).width()), (0.2, 0.2));
+    let values = |range: [f64; 2]| -> Vec<f64> {
+        let found = speeds(&over, range, &Resolution::new(step, 2), &Unwatched).unwrap();
+        let mut all: Vec<f64> = found.attractors.iter().flat_map(|row| row.at.iter().map(|at| at.value())).collect();
+        all.sort_by(f64::total_cmp);
+        all.dedup();
+        all
+    };
+    let (whole, part) = (values([0.005, 0.05]), values([0.01, 0.04]));
+    assert_eq!(
+        part,
+        [10.0_f64.powf(-2.0), 10.0_f64.powf(-1.8), 10.0_f64.powf(-1.6), 10.0_f64.powf(-1.4)][..part.len()]
+    );
+    assert!(part.len() >= 3 && part.iter().all(|value| whole.contains(value)), "{whole:?} {part:?}");
+}
+
+/// Shares sum to 1 at each value, at which starts may be given.
+#[test]
+fn shares_of_basins_sum_to_one_at_every_value() {
+    let paper = common::osorio();
+    let over = Over::new(&paper, Parameter::named(&paper, "restitution").unwrap(), 700.0).unwrap();
+    let axis = axis(&paper, "restitution", 0.6, 0.8, 3, Spacing::Linear);
+    let given = Begun::Given(vec![corner_impact::flight::State { position: 1.0, velocity: 0.0 }]);
+    for begun in [Begun::Grid([5, 4], [None; 2]), given] {
+        let found = BasinsOver::new(&over, &axis, (1.0, &begun), Budget::SURVEY, Some(2), &Unwatched);
+        assert_eq!(found.at.iter().map(|at| at.place.value.unwrap()).collect::<Vec<_>>(), axis.values.to_vec());
+        for at in &found.at {
+            let parts = &at.found.as_ref().unwrap().parts;
+            assert_relative_eq!(parts.iter().map(|part| part.share.value).sum::<f64>(), 1.0, max_relative = 1e-12);
+            assert_eq!(at.failure(), None);
+        }
+    }
+    // A start below the cam is one that cannot be run, at its value.
+    let below = Begun::Given(vec![corner_impact::flight::State { position: -1.0, velocity: 0.0 }]);
+    let found = BasinsOver::new(&over, &axis, (1.0, &below), Budget::SURVEY, Some(1), &Unwatched);
+    assert!(found.at.iter().all(|at| at.failure().is_some_and(|why| why.contains("below"))), "{found:?}");
+}
+
+/// An axis that cannot be is refused in a sentence that says why.
+#[test]
+fn axes_that_cannot_be_are_refused() {
+    let out = std::env::temp_dir().join("corner-impact-over.csv");
+    let out = out.display();
+    for (words, says) in [
+        (format!("diagram {MODEL} --rpm 700 --over friction=0:1:3 --out {out}"), "friction"),
+        (format!("diagram {MODEL} --rpm 700 --over restitution=0:1:3:log --out {out}"), "begins above 0"),
+        (format!("diagram {MODEL} --rpm 700 --over restitution=0.5:0.9:1 --out {out}"), "LO and HI to be the same"),
+        (format!("diagram {MODEL} --rpm 700 --over restitution=0.9:0.5:3 --out {out}"), "below the lowest"),
+        (format!("diagram {MODEL} --rpm 700 --over restitution=0.5:0.9:3:lin --out {out}"), "can only be log"),
+        (format!("diagram {MODEL} --over restitution=0.5:0.9:3 --out {out}"), "--rpm says at which speed"),
+        (format!("diagram {MODEL} --rpm 600:700:3 --over restitution=0.5:0.9:3 --out {out}"), "one number varies"),
+        (format!("diagram {MODEL} --rpm 700 --over rpm=600:700:3 --out {out}"), "no axis is rpm"),
+        (format!("diagram {MODEL} --rpm 700 --out {out}"), "is one speed"),
+        (format!("diagram {MODEL} --out {out}"), "says what varies"),
+        (
+            format!("diagram {MODEL} --rpm 700 --over restitution=0.5:2:3 --out {out}"),
+            "follower.restitution = 1.25: must be",
+        ),
+        (
+            format!("diagram {MODEL} --rpm 700 --set restitution=0.5 --over restitution=0.5:0.9:3 --out {out}"),
+            "no point would",
+        ),
+        (format!("speeds {MODEL} --rpm 600:700 --over restitution=0.5:0.9"), "--over needs the one speed"),
+        (format!("speeds {MODEL} --over restitution=0.5:0.9"), "--over needs the one speed"),
+        (format!("speeds {MODEL} --rpm 700"), "is one speed"),
+        (format!("speeds {MODEL} --rpm 700 --over restitution=0:0.9:log"), "begins above 0"),
+        (format!("speeds {MODEL} --rpm 700 --over restitution=0.5:0.5:3"), "is not below"),
+        (format!("basins {MODEL} --rpm 700 --over friction=0:1:3 --grid 2x2"), "friction"),
+        (format!("basins {MODEL} --over mass=1:2:3 --grid 2x2"), "--rpm says at which speed"),
+        (format!("design {MODEL} --rpm 100:200 --over mass=1:2:3"), "--over needs the one speed"),
+        (format!("design {MODEL} --over mass=1:2:3"), "--rpm"),
+        (format!("chart {MODEL} --x rpm=0:700:3:log --y mass=1:2:2 --out {out}"), "above 0"),
+    ] {
+        let complaint = refused(&words);
+        assert!(common::in_one_line(&complaint).contains(says), "{words}: {complaint}");
+        assert_eq!(complaint.matches("error:").count(), 1, "{complaint}");
+    }
+}
