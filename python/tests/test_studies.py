@@ -5,6 +5,7 @@ import venv
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from conftest import Command
 
@@ -76,3 +77,28 @@ def test_the_routes_run_in_this_interpreter(paper: Model, monkeypatch: pytest.Mo
 def test_no_corner_impact_is_an_error(paper: Model) -> None:
     with pytest.raises(ValueError, match="corner impact"):
         Model.parse(paper.text.replace("rpm_max = 760.0", "rpm_max = 610.0")).verify(external=False)
+
+
+def test_surveys_go_over_any_number(paper: Model) -> None:
+    name = "follower.restitution"
+    found = paper.diagram(700, over=("restitution", 0.65, 0.8, 2), record=2)
+    assert next(iter(found)) == name
+    for value in (0.65, 0.8):
+        alone = paper.with_number("restitution", value).diagram((700, 700, 1), record=2)
+        for column in ("cam_angle_rad", "velocity_before_m_s"):
+            assert np.array_equal(found[column][found[name] == value], alone[column])
+    logarithmic = paper.diagram(700, over=("mass", 0.1, 10, 3), log=True, record=1)
+    assert np.unique(logarithmic["follower.mass"]).tolist() == pytest.approx([0.1, 1, 10])
+    survey = paper.speeds(700, over=("restitution", 0.65, 0.75), step=0.05, starts=4)
+    assert (survey["over"], survey["range"], survey["rpm"]) == (name, [0.65, 0.75], [700, 700])
+    assert {at["value"] for row in survey["attractors"] for at in row["shares"]} == {0.65, 0.7, 0.75}
+    for call in (
+        lambda: paper.diagram(700),
+        lambda: paper.diagram((600, 700, 2), over=("mass", 1, 2, 2)),
+        lambda: paper.diagram(700, over=("mass", 2, 1, 2)),
+        lambda: paper.diagram(700, over=("restitution", 0, 1, 2), log=True),
+        lambda: paper.speeds((600, 700), over=("mass", 1, 2)),
+        lambda: paper.speeds(700),
+    ):
+        with pytest.raises(ValueError):
+            call()

@@ -332,6 +332,54 @@ fn a_symmetry_breaks_at_half_of_the_speed_of_the_flip_over_one_lobe() {
     assert_eq!(flips.len(), 1, "{:?}", found.attractors);
 }
 
+/// Over k equal lobes a follower does at n/k rpm what it does over one at n: each motion of so many impacts a lobe has the same share of the starts,
+/// all its copies together, and begins and ends at the same speeds, n/k. A flip over one lobe is a symmetry that breaks over two.
+#[test]
+#[ignore = "slow"]
+fn equal_lobes_have_the_answers_of_one() {
+    let survey = |count: usize, step: f64| {
+        let range = [354.0, 372.0].map(|rpm| rpm / count as f64);
+        common::speeds(&lobes(count), range, &Resolution::new(common::step(step), 48), &Unwatched).unwrap()
+    };
+    let one = survey(1, 3.0);
+    type Shares = std::collections::BTreeMap<(Kind, u64), [f64; 2]>;
+    // Impacts of a lobe in thousandths; of what does not repeat none.
+    let shares = |found: &corner_impact::study::speeds::SpeedSurvey, count: usize, rpm: f64| {
+        let mut shares = Shares::new();
+        for at in found.attractors.iter().flat_map(|row| &row.at).filter(|at| at.value() == rpm / count as f64) {
+            let orbit = at.ending.period().filter(|_| at.ending.kind() == Kind::Periodic);
+            let each = orbit.map_or(0, |(turns, impacts)| 1000 * impacts / (turns * count as u64));
+            let [share, square] = shares.entry((at.ending.kind(), each)).or_default();
+            (*share, *square) = (*share + at.share.value, *square + at.share.error.powi(2));
+        }
+        shares
+    };
+    for (count, step) in [(2, 3.0), (3, 2.0)] {
+        let several = survey(count, step);
+        for rpm in [354.0, 360.0, 366.0, 372.0] {
+            let [one, several] = [shares(&one, 1, rpm), shares(&several, count, rpm)];
+            assert!(!one.is_empty() && one.keys().eq(several.keys()), "{count} at {rpm}: {one:?} {several:?}");
+            for ([first, square], [second, other]) in one.values().zip(several.values()) {
+                assert!((first - second).abs() <= 4.0 * (square + other).sqrt(), "{count} at {rpm}: {first} {second}");
+            }
+        }
+        let ends: Vec<_> = several.attractors.iter().flat_map(|row| row.birth.iter().chain(&row.death)).collect();
+        let short = one.attractors.iter().filter(|row| row.revolutions.is_some_and(|turns| turns <= 4));
+        let mut compared = 0;
+        for end in short.flat_map(|row| row.birth.iter().chain(&row.death)).filter(|end| end.is_located()) {
+            let near = |other: &&&corner_impact::study::attractors::Transition| {
+                (other.value() * count as f64 / end.value() - 1.0).abs() < 1e-9
+            };
+            let there = ends.iter().find(near).unwrap_or_else(|| panic!("{count}: no {end:?}"));
+            let breaks = count == 2 && end.cause == Cause::Flip;
+            assert!(there.cause == end.cause || breaks && there.cause == Cause::SymmetryBreaking, "{there:?} {end:?}");
+            compared += 1;
+        }
+        assert!(compared >= 6, "{compared}");
+        all_of_each_speed(&several);
+    }
+}
+
 /// A row that no start reached hides no range: rows that overlap coexist, and one list has the headline.
 #[test]
 fn what_overlaps_coexists() {

@@ -48,8 +48,10 @@ class Model:
     ) -> _Columns: ...
     def diagram(
         self,
-        rpm: tuple[float, float, int],
+        rpm: float | tuple[float, float, int],
         *,
+        over: tuple[str, float, float, int] | None = None,
+        log: bool = False,
         transient: int = 300,
         record: int = 100,
         strobe: float | None = None,
@@ -91,8 +93,10 @@ class Model:
     def locate(self, rpm: tuple[float, float], revolutions: int = 1) -> _Document: ...
     def speeds(
         self,
-        rpm: tuple[float, float] | None = None,
+        rpm: float | tuple[float, float] | None = None,
         *,
+        over: tuple[str, float, float] | None = None,
+        log: bool = False,
         speeds: int = 300,
         step: float | None = None,
         starts: int = 64,

@@ -126,7 +126,7 @@ pub enum AttractorsError {
     TooFine { low: f64, high: f64, step: f64 },
     /// No value could be run.
     #[error("at {place}, and at every other value: {error}")]
-    Run { place: String, error: RunError },
+    Run { place: String, error: Box<RunError> },
 }
 
 /// How far beyond a range attractors are looked for, in steps.
@@ -159,7 +159,7 @@ pub fn attractors(
     if let Some(GridValue { value, found: Err(error) }) = grid.first()
         && grid.iter().all(|at| at.found.is_err())
     {
-        return Err(AttractorsError::Run { place: over.parameter.words(*value), error: error.clone() });
+        return Err(AttractorsError::Run { place: over.parameter.words(*value), error: Box::new(error.clone()) });
     }
     watch.at("what neighbouring values end on", 0, 0);
     // Starts that are given are all that is asked about.
