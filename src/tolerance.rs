@@ -175,6 +175,8 @@ table! {
     DISPLAYED_ZERO = 1e-12, "absolute, in the model's units: a thousand times the rounding of an orbit of size one";
     /// From which growth of a small deviation per revolution a motion counts as chaotic.
     CHAOTIC_GROWTH = 0.1, "absolute, a logarithm: sampling over thousands of revolutions leaves a few hundredths";
+    /// How slowly a number may change along a branch, of a radian of an impact's angle and of the number's range, to stay the same.
+    STANDING = 1e-8, "absolute: differences that steer the tangent leave 1e-9; next to a fold it is as much as the step to there, of 1e-4 and more";
     /// How closely a speed is found by halving a bracket in which runs change their kind, rpm.
     SPEED_FOUND = 1e-9, "rpm, absolute: ten thousand ulps of a speed, and what the rounding of an angle moves a contact by";
     /// The relative velocity after an impact from which on it counts as one that can be felt, m/s.

@@ -47,6 +47,9 @@ impl Paged for Swept {
             Block::Line(
                 format!("{model}: {turns} revolutions, {} rows, {} impacts", tally.points, tally.impacts).into(),
             ),
+            Block::Line(
+                format!("  each run followed for {}, and not judged", words::many(self.followed, "revolution")).into(),
+            ),
             Block::Line(format!("  {wall_s:.3} s on {threads}{each}").into()),
         ]
     }

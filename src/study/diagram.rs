@@ -67,6 +67,8 @@ pub struct Swept {
     /// Rows recorded, impacts among them, revolutions run.
     #[serde(flatten)]
     pub tally: Tally,
+    /// Revolutions that each run was followed for, recorded or not: what it comes to is not judged.
+    pub followed: u64,
     /// Threads used.
     pub threads: usize,
     /// Seconds that the sweep took, with writing what it found.
@@ -92,8 +94,9 @@ impl Swept {
             watch.at("", index as u64, sweep.over.count() as u64);
             take(block)
         })?;
+        let followed = sweep.transient + sweep.record;
         let (schema, wall_s) = ("corner-impact/diagram/1", clock.elapsed().as_secs_f64());
-        Ok(Self { schema, model: model.into(), tally, threads, wall_s })
+        Ok(Self { schema, model: model.into(), tally, followed, threads, wall_s })
     }
 }
 

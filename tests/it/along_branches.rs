@@ -656,3 +656,39 @@ fn a_cascade_of_touches_is_followed_to_two_dozen_impacts() {
     let counts: Vec<usize> = folds.map(|fold| fold.orbit.impacts().count()).take_while(|count| *count > 7).collect();
     assert_eq!(counts, (8..=24).rev().collect::<Vec<_>>());
 }
+
+/// A ball on a table that moves along parabolas is in a uniform field over each half of the turn: at the speed at which its orbit of one impact
+/// in a revolution flips, orbits of two impacts have every amplitude. That is one continuum, without a fold; of a sine's table the branch is none.
+#[test]
+fn orbits_of_every_amplitude_are_one_continuum() {
+    let text = |law: &str| {
+        format!(
+            "[follower]\nmass = 1.0\ndamping = 0.0\nstiffness = 0.0\ngravity = 2.0\nrest_position = 0.0\nrestitution = 0.85\n[cam]\n{law}"
+        )
+    };
+    let half = |rise: f64| format!("[[cam.segment]]\nmotion = \"parabolic\"\nspan_deg = 180.0\nrise = {rise}\n");
+    let parabolas = text(&format!("law = \"program\"\nbase = -0.01\n{}{}", half(0.02), half(-0.02)));
+    let sine = text("law = \"harmonic\"\noffset = 0.0\namplitudes = [0.01]\nphases_deg = [0.0]\n");
+    for (text, is_continuum) in [(parabolas, true), (sine, false)] {
+        let model = Model::parse("table.toml", &text).unwrap();
+        let wanted = Search { revolutions: 1, impacts: Some(1) };
+        let range = if is_continuum { [149.0, 152.0] } else { [120.0, 146.0] };
+        let along = following(&model, "rpm", range, 0.02);
+        let found = branches(&model, if is_continuum { 149.9 } else { 130.0 }, &wanted, along, 1, &Unwatched).unwrap();
+        let of_two: Vec<&Branch> =
+            found.branches.iter().filter(|it| it.points.iter().any(|it| it.orbit.revolutions == 2)).collect();
+        assert!(!of_two.is_empty(), "{}", found.branches.len());
+        for branch in of_two {
+            assert_eq!(branch.ends.contains(&End::Continuum), is_continuum, "{:?}", branch.ends);
+            let folds = branch
+                .points
+                .iter()
+                .filter(|it| matches!(it.special, Some(it) if matches!(it.kind, Kind::Fold | Kind::Branching)));
+            assert!(!is_continuum || folds.count() == 0);
+            if is_continuum {
+                assert!(branch.points.iter().all(|it| (it.rpm / branch.points[0].rpm - 1.0).abs() < 1e-9));
+                assert!(End::Continuum.words().contains("continuum"));
+            }
+        }
+    }
+}

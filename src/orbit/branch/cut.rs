@@ -76,6 +76,13 @@ impl Stride<'_> {
         unknowns[unknowns.len() - 1] * self.spans[self.spans.len() - 1]
     }
 
+    /// Whether the value stays the same all the way to `next`, as it does along a continuum of orbits: where one is folded it turns back at one
+    /// place, and changes on both sides.
+    pub(super) fn stands(&self, next: &CurvePoint) -> bool {
+        let slope = |point: &CurvePoint| point.tangent[point.tangent.len() - 1].abs();
+        self.held.is_none() && [&self.from, next].into_iter().all(|point| slope(point) <= tolerance::STANDING.value)
+    }
+
     /// The flip that a step to `next` passes, if the orbit is one of twice the period.
     pub(super) fn halved(
         &self,

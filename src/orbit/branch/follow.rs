@@ -49,7 +49,7 @@ impl<'a> Stride<'a> {
         };
         let ahead = tangent[tangent.len() - 1] * direction >= 0.0;
         self.from.tangent = if ahead { tangent } else { -tangent };
-        Walk { stride: self, fresh: None, signs: Vec::new(), points: Vec::new() }.run()
+        Walk { stride: self, fresh: None, signs: Vec::new(), standing: 0, points: Vec::new() }.run()
     }
 
     /// Why there is no way from the start: the model may allow a step to neither side, for two reasons.
@@ -92,7 +92,7 @@ pub(super) fn from_touch(family: &Family, start: &Start<'_>, following: &Followi
     };
     stride.from.tangent = tangent;
     let fresh = Some(Exit::Touch { impact: 0, turned: 0.0 });
-    Walk { stride, fresh, signs: Vec::new(), points: Vec::new() }.run()
+    Walk { stride, fresh, signs: Vec::new(), standing: 0, points: Vec::new() }.run()
 }
 
 /// The curve of what is held, in both directions from what is there at the last number's first value: the point there, if there
@@ -126,8 +126,13 @@ struct Walk<'a> {
     fresh: Option<Exit>,
     /// Of what may be passed, the signs on the side that a smooth corner was come to from.
     signs: Vec<bool>,
+    /// Steps in a row at which the value has stayed where it was.
+    standing: usize,
     points: Vec<BranchPoint>,
 }
+
+/// So many make a continuum.
+const CONTINUUM: usize = 5;
 
 impl Walk<'_> {
     fn run(mut self) -> Result<HalfBranch, OrbitError> {
@@ -308,7 +313,10 @@ impl Walk<'_> {
         let mut points = Vec::new();
         let mut folds = false;
         let mut signs = Vec::new();
-        for (index, cut) in self.stride.passed().into_iter().enumerate() {
+        // Along a continuum of orbits multipliers are on the unit circle, but for rounding: none passes anything.
+        let stands = first.is_none() && self.stride.stands(&end_point);
+        let passed = if stands { Vec::new() } else { self.stride.passed() };
+        for (index, cut) in passed.into_iter().enumerate() {
             let at = |point: &CurvePoint| self.stride.measure(&problem, cut, point);
             let (end, reach) = match &first {
                 // No multiplier is -1 there: one that passes -1 shortly before is told as well.
@@ -367,6 +375,10 @@ impl Walk<'_> {
             self.points.push(last);
         }
         self.stride.from = end_point;
+        self.standing = if stands { self.standing + 1 } else { 0 };
+        if self.standing == CONTINUUM {
+            return Ok(Some(End::Continuum));
+        }
         self.signs = if smooth { signs } else { Vec::new() };
         match first {
             Some(Located { cut: Cut::Range(_), .. }) => Ok(Some(End::Range)),

@@ -124,6 +124,8 @@ pub enum End {
     OtherWay,
     /// A touch at which the gap does not open again.
     Degenerate,
+    /// Orbits of every amplitude at one value: as far as steps show, the value changes no more.
+    Continuum,
     /// As many points as were asked for.
     MostPoints,
     /// Impacts without number: the follower begins to chatter there, or ceases to.
@@ -163,6 +165,7 @@ impl End {
             Self::Kink => "an impact on the way to the rest at a corner, from where it is not followed on".into(),
             Self::OtherWay => "a place from which the follower goes another way".into(),
             Self::Degenerate => "a degenerate graze: the flight that touches does not leave the cam again".into(),
+            Self::Continuum => "a continuum of orbits: all along the branch the value stays the same, and amplitudes differ".into(),
             Self::MostPoints => "the number of points that was asked for".into(),
             Self::Chatter => "the onset of chattering".into(),
             Self::Clear => {

@@ -229,7 +229,7 @@ fn walk<'a>(
     taken.extend(pending.cloned());
     match (pending, end) {
         (Some(point), _) => Some(of_point(point)),
-        (None, End::Range | End::Clear | End::Closed | End::MostPoints) => None,
+        (None, End::Range | End::Clear | End::Closed | End::Continuum | End::MostPoints) => None,
         (None, _) => Some(Transition::at(over.place(last), Cause::Runs)),
     }
 }
