@@ -19,7 +19,7 @@ use crate::study::survey::{Axis, Values};
     \x20 corner-impact design\n\
     \x20 corner-impact design models/laws/program.toml --need \"no separation to 600 rpm\"\n\
     \x20 corner-impact design models/laws/program.toml --rpm 300 --out force.svg\n\
-    \x20 corner-impact design --rpm 200 --over preload=100:300:5\n\
+    \x20 corner-impact design --rpm 200 --over mass=1:2:5\n\
     \n\
     Where runs are looked at, it is those from four starts at each speed: another motion may do worse.\n\
     Exit code: 0 done, 2 bad model file, usage or file, or a run that cannot go on.")]
