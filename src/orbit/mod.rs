@@ -12,7 +12,7 @@
 //! | [`near`] | the orbit near a guess or near a run |
 //! | [`long_run`] | what a run comes to: an orbit, rest again and again, chaos; and for how long it is followed |
 //! | [`runs`] | the runs of one machine: where they settle, and what follows when the cam lets go of a follower |
-//! | `symmetry` | where an orbit over equal lobes loses its symmetry |
+//! | [`symmetry`] | where an orbit over equal lobes loses its symmetry |
 //! | `family` | machines that differ in a speed or a number of the model |
 //! | `curve` | pseudo-arclength steps along the solutions of one equation fewer than unknowns |
 //! | [`branch`] | branches of orbits through corners, folds, flips and grazes, with those points located |
@@ -32,7 +32,7 @@ pub mod runs;
 pub mod search;
 pub mod stability;
 pub(crate) mod sticking;
-pub(crate) mod symmetry;
+pub mod symmetry;
 
 use nalgebra::Matrix2;
 

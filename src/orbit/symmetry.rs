@@ -22,11 +22,7 @@ use crate::tolerance;
 /// The value near `begun` with whose `machine` the symmetric orbit near `near` has the multiplier -1 of a p-th of its period; and that orbit
 /// right beside it, as the equations of the whole period do not determine it there. `None` where the cam has no such lobes, or the orbit is
 /// not symmetric near by, and where the value is 0.
-pub(crate) fn breaking(
-    machine: impl Fn(f64) -> Option<Machine>,
-    begun: f64,
-    near: &Cycle,
-) -> Option<(f64, PeriodicOrbit)> {
+pub fn breaking(machine: impl Fn(f64) -> Option<Machine>, begun: f64, near: &Cycle) -> Option<(f64, PeriodicOrbit)> {
     /// Where the orbit is asked, over the value: far enough from where it is not determined, and so near that a cubic through these errs by
     /// less than rounding.
     const BESIDE: [f64; 4] = [-2e-4, -1e-4, 1e-4, 2e-4];
@@ -142,7 +138,7 @@ fn step(machine: &Machine, cycle: &Cycle, parts: usize) -> Matrix2<f64> {
 
 impl PeriodicOrbit {
     /// Its impacts as a cycle; none where it rests on the cam or never meets it.
-    pub(crate) fn cycle(&self) -> Option<&Cycle> {
+    pub fn cycle(&self) -> Option<&Cycle> {
         if let Course::Impacts(cycle) = &self.course { Some(cycle) } else { None }
     }
 }

@@ -333,3 +333,244 @@ fn the_curve_of_a_graze_of_a_follower_at_rest_is_straight() {
         assert!((found.0 - wanted.0).abs() < 1e-12 && found.1 == wanted.1, "{specials:?}");
     }
 }
+
+/// A program of motions, each with its span, degrees, and rise, m, from a base below the follower.
+fn program(base: f64, motions: &[(&str, f64, f64)]) -> String {
+    let motion = |(motion, span, rise): &(&str, f64, f64)| {
+        format!("[[cam.segment]]\nmotion = \"{motion}\"\nspan_deg = {span:?}\nrise = {rise:?}\n")
+    };
+    format!("law = \"program\"\nbase = {base:?}\n{}", motions.iter().map(motion).collect::<String>())
+}
+
+/// `c = offset + sum a_k cos(k theta)`.
+fn cosines(offset: f64, amplitudes: &[f64]) -> String {
+    let phases = vec![0.0; amplitudes.len()];
+    format!("law = \"harmonic\"\noffset = {offset:?}\namplitudes = {amplitudes:?}\nphases_deg = {phases:?}")
+}
+
+/// The touch where this number of the cam is 0.01 m, times the size, larger.
+fn touched(model: &Model, rpm: f64, name: &str, size: f64) -> FirstTouch {
+    let own = model.numbers().find(|(path, _)| path.ends_with(name)).unwrap().1;
+    let parameter = Parameter::named(model, name).unwrap();
+    // In one step over the graze, and a few beyond.
+    let following = Following { parameter, range: [own, own + 0.011 * size], longest_step: 1.0, most_points: 3 };
+    let branch = Branch::through(model, rpm, &free(model, rpm), &following).unwrap();
+    let (point, first) = graze(&branch);
+    assert!((point.value - own - 0.01 * size).abs() < 1e-12, "{name}: {}", point.value);
+    first
+}
+
+/// `(1 + r)^2 2 a s(n T)^2` with a follower of mass 1 and stiffness 1, damping 0.1, where the top has this second derivative, m/rad^2, so many
+/// times in a revolution.
+fn depth_of(rpm: f64, bend: f64, tops: u64) -> (u64, f64) {
+    let oscillation = f64::sqrt(1.0 - 0.0025);
+    let response = |n: u64| {
+        let time = n as f64 * 60.0 / rpm / tops as f64;
+        (-0.05 * time).exp() * (oscillation * time).sin() / oscillation
+    };
+    let passages = (1..).find(|n| response(*n) < 0.0).unwrap();
+    (passages, (1.8 * response(passages)).powi(2) * 2.0 * bend * angular_velocity(rpm).powi(2))
+}
+
+/// The follower meets the cam before its top: of two second derivatives there that of the rise counts, wherever angle 0 is.
+#[test]
+fn the_depth_of_a_jump_goes_by_the_rise_to_the_top() {
+    let (rise, fall) = (("harmonic", 90.0, 1.0), ("harmonic", 270.0, -1.0));
+    let dwell = ("dwell", 60.0, 0.0);
+    let cams: [(String, f64); 4] = [
+        (program(-1.01, &[rise, fall]), 90.0),
+        (program(-0.01, &[fall, rise]), 90.0),
+        (program(-1.01, &[dwell, rise, ("harmonic", 210.0, -1.0)]), 90.0),
+        (program(-1.01, &[("harmonic", 120.0, 1.0), ("harmonic", 240.0, -1.0)]), 120.0),
+    ];
+    for (index, (cam, span)) in cams.iter().enumerate() {
+        for rpm in [20.0, 50.0] {
+            let first = touched(&on_cam(0.1, 1.0, cam), rpm, "base", 1.0);
+            let (passages, deep) = first.back.unwrap();
+            let wanted = depth_of(rpm, 0.5 * (180.0 / span).powi(2), 1);
+            assert!(passages == wanted.0 && (deep / wanted.1 - 1.0).abs() < 1e-6, "{index}: {deep} {wanted:?}");
+        }
+    }
+}
+
+/// `cos - b cos 2` falls away from 0 as a fourth power at b = 1/4, and as a parabola below.
+#[test]
+fn a_top_is_flat_where_its_second_derivative_is_0() {
+    for size in [1.0, 1e-3, 50.0] {
+        let model = |part: f64| {
+            let top = size * (1.0 - part);
+            on_cam(0.1, 1.0, &cosines(-top - 0.01 * size, &[size, -size * part]))
+        };
+        let first = touched(&model(0.25), 20.0, "offset", size);
+        assert_eq!((first.class, first.doubt), (GrazeClass::Undecided, Some(Doubt::Flat)), "{size}");
+        let first = touched(&model(0.2499), 20.0, "offset", size);
+        let (passages, deep) = first.back.unwrap();
+        let wanted = depth_of(20.0, size * (1.0 - 4.0 * 0.2499), 1);
+        assert!(passages == wanted.0 && (deep / wanted.1 - 1.0).abs() < 1e-6, "{size}: {deep} {wanted:?}");
+    }
+}
+
+/// Three tops that are alike and as far from each other are a cam of one that turns three times as fast; not so where the one or the other fails.
+#[test]
+fn tops_count_as_one_where_they_are_alike_and_evenly_apart() {
+    let (up, down) = (("harmonic", 60.0, 1.0), ("harmonic", 60.0, -1.0));
+    let waves = program(-1.01, &[up, down, up, down, up, down]);
+    let three = on_cam(0.1, 1.0, &waves);
+    for rpm in [7.0, 20.0] {
+        let first = touched(&three, rpm, "base", 1.0);
+        let (passages, deep) = first.back.unwrap_or_else(|| panic!("{rpm}: {first:?}"));
+        let wanted = depth_of(rpm, 4.5, 3);
+        assert!(passages == wanted.0 && (deep / wanted.1 - 1.0).abs() < 1e-9, "{rpm}: {passages} {deep} {wanted:?}");
+    }
+    let three = on_cam(3.0, 1.0, &waves);
+    for (lambda, class) in [(0.24, GrazeClass::PeriodAdding), (0.26, GrazeClass::PeriodAddingChaos)] {
+        assert_eq!(touched(&three, rpm_of(3.0, lambda) / 3.0, "base", 1.0).class, class, "{lambda}");
+    }
+    let dwell = |span: f64| ("dwell", span, 0.0);
+    let uneven = [up, down, dwell(30.0), up, down, dwell(90.0)];
+    let unlike = [up, down, dwell(80.0), ("harmonic", 40.0, 1.0), down, dwell(60.0)];
+    let alike = [up, down, dwell(60.0), up, down, dwell(60.0)];
+    for (motions, doubt) in [(uneven, Some(Doubt::Places)), (unlike, Some(Doubt::Places)), (alike, None)] {
+        let first = touched(&on_cam(0.1, 1.0, &program(-1.01, &motions)), 20.0, "base", 1.0);
+        assert_eq!(first.doubt, doubt, "{motions:?}");
+    }
+}
+
+/// At 2 pi j + pi/n of its oscillation the follower is back at its equilibrium after n passages, as far as the angle is known.
+#[test]
+fn a_follower_that_comes_back_to_its_equilibrium_is_in_resonance() {
+    let oscillation = (1.0 - 0.0025_f64).sqrt();
+    let doubt = |angle: f64| touched(&wall(0.1, 1.0, -1.01), oscillation * 60.0 / angle, "offset", 1.0).doubt;
+    for turn in [0.0, 1.0, 3.0] {
+        let part = [0.0, PI, PI / 2.0, PI / 3.0, PI / 5.0, TAU].map(|part| turn * TAU + part);
+        for angle in part.into_iter().filter(|angle| *angle > 0.0) {
+            for off in [0.0, 1e-11, -1e-11] {
+                assert_eq!(doubt(angle * (1.0 + off)), Some(Doubt::Resonance), "{angle} {off}");
+            }
+            for off in [1.3e-6, -1.3e-6] {
+                assert_eq!(doubt(angle * (1.0 + off)), None, "{angle} {off}");
+            }
+        }
+    }
+    // The error of an angle is a part of it.
+    let angle = 200.0 * TAU + 1.0;
+    assert_eq!(
+        (doubt(angle), doubt(200.0 * TAU + PI + 1e-8), doubt(200.0 * TAU + 1e-8)),
+        (None, Some(Doubt::Resonance), Some(Doubt::Resonance))
+    );
+    // One without damping turns with the cam to the last bit.
+    for (stiffness, omega) in [(1.0, 1.0), (4.0, 2.0), (16.0, 4.0), (4.0, 1.0)] {
+        let rpm = omega * 60.0 / TAU;
+        assert_eq!(touched(&wall(0.0, stiffness, -1.01), rpm, "offset", 1.0).doubt, Some(Doubt::Resonance));
+    }
+}
+
+/// Without a spring or gravity a follower stays where it is, and nothing returns it.
+#[test]
+fn nothing_holds_a_follower_without_a_spring() {
+    for damping in [0.1, 3.0] {
+        let model = wall(damping, 0.0, -1.02);
+        let orbit = free(&wall(damping, 1.0, -1.02), 20.0);
+        let branch = follow(&model, 20.0, &orbit, "offset", [-1.05, -0.95]);
+        let (point, first) = graze(&branch);
+        assert!((point.value + 1.0).abs() < 1e-12);
+        assert_eq!((first.class, first.back, first.doubt), (GrazeClass::Undecided, None, Some(Doubt::Unheld)));
+        assert_eq!(branch.ends, [End::Range, End::Graze]);
+    }
+}
+
+/// A part of the range after the other to its ends, or as many as were asked for.
+#[test]
+fn orbits_at_rest_are_told_as_far_apart_as_was_asked_for() {
+    let model = wall(0.1, 1.0, -1.02);
+    let orbit = free(&model, 20.0);
+    for (name, [low, high], step, ends) in [
+        ("offset", [-1.1, -1.005], 0.05, [End::Range, End::Range]),
+        ("rpm", [12.0, 25.0], 0.03, [End::Clear, End::Clear]),
+        ("rest_position", [-0.01, 0.3], 0.01, [End::Range, End::Range]),
+    ] {
+        let parameter = Parameter::named(&model, name).unwrap();
+        let own = parameter.value(&model, 20.0).unwrap();
+        let mut following = Following { parameter, range: [low, high], longest_step: step, most_points: 100 };
+        let found = Branch::through(&model, 20.0, &orbit, &following).unwrap();
+        assert_eq!(found.ends, ends, "{name}");
+        let values: Vec<f64> = found.points.iter().map(|point| point.value).collect();
+        assert!(found.points.iter().all(|it| it.special.is_none() && it.orbit.course == Course::Free));
+        assert_eq!([values[0], values[values.len() - 1]], [low, high], "{name}");
+        let longest = step * (high - low);
+        let steps = |span: f64| (span / longest - 1e-9).ceil() as usize;
+        assert_eq!(values.len(), 1 + steps(own - low) + steps(high - own), "{name}");
+        let apart: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let inner = &apart[1..apart.len() - 1];
+        assert!(inner.iter().all(|apart| (apart / longest - 1.0).abs() < 1e-9), "{name}: {apart:?}");
+        following.most_points = 3;
+        let found = Branch::through(&model, 20.0, &orbit, &following).unwrap();
+        assert_eq!((found.points.len(), found.ends), (7, [End::MostPoints, End::MostPoints]), "{name}");
+    }
+}
+
+/// No speed is 0, and without a spring gravity takes the follower away.
+#[test]
+fn orbits_at_rest_end_where_there_are_none() {
+    let model = wall(0.1, 1.0, -1.02);
+    let branch = follow(&model, 20.0, &free(&model, 20.0), "rpm", [0.0, 30.0]);
+    let [End::Edge { largest: false, .. }, End::Clear] = branch.ends else { panic!("{:?}", branch.ends) };
+    assert!(branch.points[0].value > 0.0 && branch.points[0].value < 1e-6, "{:?}", branch.points[0]);
+    // Gravity that lifts it.
+    let lifted = model.with_number("follower.gravity", -1.0).unwrap();
+    let orbit = free(&lifted, 20.0);
+    assert!((orbit.state.position - 1.0).abs() < 1e-12);
+    let branch = follow(&lifted, 20.0, &orbit, "stiffness", [0.0, 1.5]);
+    assert_eq!(branch.ends, [End::Falls, End::Range]);
+    for point in &branch.points {
+        assert!((point.orbit.state.position * point.value - 1.0).abs() < 1e-9, "{point:?}");
+    }
+}
+
+/// Of the borders between classes those of the range are told, and no other.
+#[test]
+fn the_curve_of_a_graze_has_the_borders_between_its_speeds() {
+    let found = |model: &Model, rpm: [f64; 2]| -> Vec<(f64, Border)> {
+        let parameter = Parameter::named(model, "offset").unwrap();
+        let following = Following { parameter, range: [-1.03, -0.95], longest_step: 0.5, most_points: 100 };
+        let wanted = Search { revolutions: 1, impacts: Some(0) };
+        let mut found = curves(model, rpm, &wanted, &[Bifurcation::Graze], &following, &Unwatched).unwrap().curves;
+        assert_eq!(found.len(), 1);
+        let points = found.remove(0).points;
+        let regular: Vec<f64> = points.iter().filter(|point| point.special.is_none()).map(|point| point.rpm).collect();
+        let wanted = [rpm[0], 0.5 * (rpm[0] + rpm[1]), rpm[1]];
+        assert!(regular.len() == 3 && regular.iter().zip(wanted).all(|(one, other)| (one / other - 1.0).abs() < 1e-12));
+        let border = |kind: Kind| if let Kind::Class(border) = kind { border } else { panic!("{kind:?}") };
+        points.iter().filter_map(|point| Some((point.rpm, border(point.special?.kind)))).collect()
+    };
+    let [quarter, thirds] = [0.25, 2.0 / 3.0].map(|lambda| (rpm_of(3.0, lambda), Border::Eigenvalue(lambda)));
+    let model = wall(3.0, 1.0, -1.02);
+    for (rpm, wanted) in [
+        ([0.9 * quarter.0, 1.1 * quarter.0], vec![quarter]),
+        ([0.9 * thirds.0, 1.1 * thirds.0], vec![thirds]),
+        ([1.01 * quarter.0, 0.99 * thirds.0], vec![]),
+        ([0.5 * quarter.0, 2.0 * thirds.0], vec![quarter, thirds]),
+    ] {
+        let found = found(&model, rpm);
+        assert_eq!(found.len(), wanted.len(), "{rpm:?}: {found:?}");
+        for (one, other) in found.iter().zip(wanted) {
+            assert!((one.0 / other.0 - 1.0).abs() < 1e-12 && one.1 == other.1, "{rpm:?}: {found:?}");
+        }
+    }
+    let oscillation = (1.0 - 0.0025_f64).sqrt();
+    let at = |halves: f64| oscillation * 60.0 / (halves * PI);
+    let model = wall(0.1, 1.0, -1.02);
+    for (halves, wanted) in [
+        ([2.6, 2.1], vec![(2.5, 2), (7.0 / 3.0, 3), (2.25, 4)]),
+        ([2.4, 2.3], vec![(7.0 / 3.0, 3)]),
+        ([4.6, 4.4], vec![(4.5, 2)]),
+        ([4.1, 1.9], vec![(4.0, 1), (3.0, 1), (2.5, 2), (7.0 / 3.0, 3), (2.25, 4), (2.0, 1)]),
+        ([0.9, 0.6], vec![]),
+    ] {
+        let found = found(&model, halves.map(at));
+        assert_eq!(found.len(), wanted.len(), "{halves:?}: {found:?}");
+        for (one, (halves, passages)) in found.iter().zip(wanted) {
+            assert!((one.0 / at(halves) - 1.0).abs() < 1e-12 && one.1 == Border::Resonance(passages), "{found:?}");
+        }
+    }
+}

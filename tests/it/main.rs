@@ -102,6 +102,7 @@ mod stopped;
 mod study_answers;
 mod study_findings;
 mod study_numbers;
+mod symmetry;
 mod targets;
 mod tolerance;
 mod trapping;
