@@ -39,7 +39,7 @@ impl Cam {
     }
 
     /// The places that are as high as the highest but for rounding, each once, by rising angle; of a dwell its ends.
-    pub(crate) fn tops(&self) -> Vec<Least> {
+    pub fn tops(&self) -> Vec<Least> {
         let segments = self.segments().iter().enumerate();
         let all: Vec<Least> = segments.flat_map(|(index, segment)| places(index, segment, UPSIDE_DOWN)).collect();
         let highest = self.highest().value;

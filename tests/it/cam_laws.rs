@@ -362,6 +362,63 @@ fn the_least_is_that_of_a_scan() {
     }
 }
 
+/// Each place that is as high as the highest is a top, once: every wave of a cosine, both ends of a dwell, one of two lobes that is higher than
+/// the other by more than rounding; in whatever unit, and below 0 as well.
+#[test]
+fn tops_are_the_highest_places_each_once() {
+    let angles = |cam: &Cam| cam.tops().iter().map(|top| top.angle.to_degrees()).collect::<Vec<f64>>();
+    for power in [0, -40, 20] {
+        let unit = 2.0_f64.powi(power);
+        let waves = |offset: f64, amplitudes: &[f64], phases: &[f64]| {
+            let amplitudes: Vec<f64> = amplitudes.iter().map(|amplitude| unit * amplitude).collect();
+            let offset = unit * offset;
+            cam_of(&format!(
+                "law = \"harmonic\"\noffset = {offset:?}\namplitudes = {amplitudes:?}\nphases_deg = {phases:?}\n"
+            ))
+        };
+        let two_lobes = |drop: f64| {
+            let dwell = "[[cam.segment]]\nmotion = \"dwell\"\nspan_deg = 30.0\nrise = 0.0\n";
+            let moves = |rise: f64| {
+                let rise = unit * rise;
+                format!("[[cam.segment]]\nmotion = \"cycloidal\"\nspan_deg = 60.0\nrise = {rise:?}\n")
+            };
+            let lobe = |rise: f64, fall: f64| [&moves(rise), dwell, &moves(-fall), dwell].map(str::to_owned).concat();
+            let base = 0.5 * unit;
+            cam_of(&format!(
+                "law = \"program\"\nbase = {base:?}\n{}{}",
+                lobe(0.25, 0.25),
+                lobe(0.25 - drop, 0.25 - drop)
+            ))
+        };
+        for (cam, tops, highest) in [
+            (waves(-2.0, &[1.0], &[-90.0]), vec![90.0], -1.0),
+            (waves(1.0, &[0.0, 0.0, 0.25], &[0.0, 0.0, -90.0]), vec![30.0, 150.0, 270.0], 1.25),
+            (two_lobes(0.0), vec![60.0, 90.0, 240.0, 270.0], 0.75),
+            (two_lobes(1e-6), vec![60.0, 90.0], 0.75),
+        ] {
+            let found = angles(&cam);
+            assert_eq!(found.len(), tops.len(), "2^{power}: {found:?}, and {tops:?}");
+            for (one, other) in found.iter().zip(&tops) {
+                assert_abs_diff_eq!(one, other, epsilon = 1e-5);
+            }
+            for top in cam.tops().into_iter().chain([cam.highest()]) {
+                assert_relative_eq!(top.value, unit * highest, max_relative = 1e-14);
+            }
+        }
+    }
+}
+
+/// A cosine of so high an order that 1440 angles of a turn meet each half wave at its middle is as low and as high as any.
+#[test]
+fn the_least_of_a_fast_cosine_is_found() {
+    let (mut amplitudes, mut phases) = (vec![0.0; 720], vec![0.0; 720]);
+    (amplitudes[719], phases[719]) = (0.01, 90.0);
+    let cam =
+        cam_of(&format!("law = \"harmonic\"\noffset = 0.1\namplitudes = {amplitudes:?}\nphases_deg = {phases:?}\n"));
+    assert_relative_eq!(cam.lowest().value, 0.09, max_relative = 1e-12);
+    assert_relative_eq!(cam.highest().value, 0.11, max_relative = 1e-12);
+}
+
 /// Peak velocity (in rise/span) and acceleration (in rise/span^2) as the handbooks give them, to four digits.
 #[test]
 fn motions_have_the_peaks_of_the_handbooks() {

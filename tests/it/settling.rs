@@ -111,7 +111,7 @@ fn a_follower_that_creeps_down_to_the_cam_over_thousands_of_revolutions_has_no_o
 }
 
 /// The paper's machine, whose spring has no unit of length, with all its lengths times a power of two, which doubles hold exactly.
-fn enlarged(power: i32) -> Model {
+pub fn enlarged(power: i32) -> Model {
     let lengths = [("rest_position", 0.3), ("base_radius", 0.4), ("flank_radius", 0.85), ("nose_radius", 0.15)];
     let lengths = lengths.map(|(name, length)| (name, format!("{:?}", length * 2.0_f64.powi(power))));
     common::osorio_with(&lengths.each_ref().map(|(name, length)| (*name, length.as_str())))
