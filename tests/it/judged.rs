@@ -209,6 +209,7 @@ fn starts_that_leave_for_good_are_told_by_their_values() {
 #[test]
 fn the_speed_of_detachment_is_told_in_the_range_alone() {
     let found = common::speeds(&model("laws/polynomial"), [420.0, 420.5], resolution(0.5, 1), &Unwatched).unwrap();
+    assert!(found.off.is_empty() && found.off_for_good().is_none());
     for (rpm, is_told) in [(419.0, false), (420.0, true), (420.2, true), (420.5, true), (421.0, false)] {
         let separation = Some(Separation::At { rpm, error: 1e-9, cam_angle: 1.0, angle_error: None });
         let told = SpeedSurvey { separation, attractors: Vec::new(), ..found.clone() }.detachment();
@@ -228,17 +229,31 @@ fn a_row_has_the_fastest_impact_of_its_motion() {
         }
     }
     assert!(rests >= 3, "{rests}");
+    // Of an orbit by what the impacts leave of it: r u.
+    let found = common::speeds(&common::osorio(), [700.0, 701.0], resolution(1.0, 1), &Unwatched).unwrap();
+    let mut orbits = 0;
+    for at in found.attractors.iter().flat_map(|row| &row.at) {
+        if let LongRun::Orbit(orbit) = &at.ending {
+            let left = orbit.impacts().map(|impact| impact.velocity_after - impact.cam_velocity).fold(0.0, f64::max);
+            assert_relative_eq!(0.8 * at.impact_speed.unwrap(), left, max_relative = 1e-9);
+            orbits += 1;
+        }
+    }
+    assert!(orbits > 0);
 }
 
 /// An attractor is of the kind that it has at most speeds, of those that it has at any.
 #[test]
 fn a_row_is_of_the_kind_of_most_of_its_speeds() {
-    let found = common::speeds(&common::osorio(), [410.0, 440.0], resolution(3.0, 1), &Unwatched).unwrap();
     let mut mixed = 0;
-    for row in &found.attractors {
-        let count = |kind: Kind| row.at.iter().filter(|at| at.ending.kind() == kind).count();
-        assert!(row.at.iter().all(|at| count(at.ending.kind()) <= count(row.kind)), "{:?}", row.kind);
-        mixed += usize::from(row.at.iter().any(|at| at.ending.kind() != row.kind));
+    // Of the second range the speeds alone, and none beside it.
+    for range in [[410.0, 440.0], [411.0, 418.0]] {
+        let found = common::speeds(&common::osorio(), range, resolution(3.0, 1), &Unwatched).unwrap();
+        for row in &found.attractors {
+            let count = |kind: Kind| row.at.iter().filter(|at| at.ending.kind() == kind).count();
+            assert!(row.at.iter().all(|at| count(at.ending.kind()) <= count(row.kind)), "{:?}", row.kind);
+            mixed += usize::from(row.at.iter().any(|at| at.ending.kind() != row.kind));
+        }
     }
     assert!(mixed > 0);
 }
@@ -273,6 +288,9 @@ fn a_detachment_is_told_with_its_rounding() {
             assert!(low < high && low <= end.at.rpm && end.at.rpm <= high, "{low} {high}: {}", end.at.rpm);
             assert!(low <= leaves && leaves <= high && high - low < 1e-9, "{low} {high}: {leaves}");
             told += 1;
+            // Where the force between them tells no speed, by that end, and half of what it is open by.
+            let found = SpeedSurvey { separation: None, ..found.clone() };
+            assert_eq!(found.detachment(), Some([end.at.rpm, 0.5 * (high - low)]));
         }
     }
     assert!(told > 0);
