@@ -173,7 +173,7 @@ impl LocalMap {
     }
 
     /// The motions that diverge at mu = 0, if any do.
-    fn divergence(&self) -> Option<Divergence> {
+    pub fn divergence(&self) -> Option<Divergence> {
         /// Directions that motions start in.
         const SAMPLED: u32 = 64;
         let scales = self.scales();

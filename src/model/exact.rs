@@ -13,7 +13,7 @@ impl Model {
     ///
     /// A preload is there in the place of the rest position where the file has it. A number that no field of the file has, such as a lift of
     /// another table, is the shortest decimal that reads back as its double.
-    pub(crate) fn exact(&self) -> Item {
+    pub fn exact(&self) -> Item {
         let it = &self.follower;
         let spring = match self.preload {
             Some(preload) => ("preload", preload),

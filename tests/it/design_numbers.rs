@@ -447,6 +447,23 @@ fn a_preload_that_is_next_to_nothing_is_found() {
     assert_eq!((found.other, found.note.as_str()), (None, ""));
 }
 
+/// A machine that is lighter as a whole moves as before, and needs a preload as much smaller.
+#[test]
+fn a_preload_is_as_light_as_the_machine() {
+    for heavy in [1e-9_f64, 1e9] {
+        let (stiffness, mass, beyond) = (2000.0 * heavy, 0.5 * heavy, 1e-8_f64);
+        let text = format!(
+            "name = \"light\"\n[follower]\nmass = {mass:?}\ndamping = 0.0\nstiffness = {stiffness:?}\ngravity = 0.0\nrestitution = 0.5\n\
+             preload = {heavy:?}\n[cam]\nlaw = \"harmonic\"\noffset = {HEIGHT:?}\namplitudes = [{HEIGHT:?}]\nphases_deg = [0.0]\n"
+        );
+        let model = Model::parse("light.toml", &text).unwrap();
+        let need = format!("no separation to {:?} rpm", rpm((2.0 * stiffness / mass * (1.0 + beyond)).sqrt()));
+        let found = answers(&model, &need).into_iter().find(|it| it.lever == Lever::Preload).unwrap();
+        assert_relative_eq!(found.value.unwrap(), 2.0 * stiffness * HEIGHT * beyond, max_relative = 1e-6);
+        assert_eq!((found.other, found.note.as_str()), (None, ""));
+    }
+}
+
 /// The jerk of a rounded cam is told by its size: of thirds of a turn with second derivatives k, 0 and -k that of the jump by 2 k, up or down.
 #[test]
 fn the_jerk_of_a_rounded_cam_is_its_size_in_either_direction() {

@@ -1,0 +1,137 @@
+//! Do proofs get the decimals that are written, with all their digits and in the units that they are in?
+
+use corner_impact::model::{Model, Numeral};
+use serde_json::{Value, json};
+
+const FOLLOWER: &str =
+    "mass = 1.0\ndamping = 0.0\nstiffness = 100.0\ngravity = 9.81\nrest_position = 0.3\nrestitution = 0.5\n";
+const CAM: &str = "law = \"harmonic\"\noffset = 0.1\namplitudes = [0.02]\nphases_deg = [0.0]\n";
+
+fn exact(head: &str, follower: &str, cam: &str) -> Value {
+    let text = format!("name = \"exact\"\n{head}[follower]\n{follower}[cam]\n{cam}");
+    Model::parse("exact.toml", &text).unwrap().exact()
+}
+
+/// Numbers in lists and in tables of a list have more digits than a double has, and keep them.
+#[test]
+fn numbers_in_lists_keep_all_their_digits() {
+    let (one, two, phase) =
+        ("0.0200000000000000000000012345", "-0.00100000000000000000000678", "30.00000000000000000000009");
+    let cam = format!(
+        "law = \"harmonic\"\noffset = 0.1000000000000000000000321\namplitudes = [{one}, {two}]\nphases_deg = [{phase}, 0.0]\n"
+    );
+    let told = exact("", FOLLOWER, &cam);
+    assert_eq!(told["cam"]["amplitudes"], json!([one, two]));
+    assert_eq!(told["cam"]["phases_deg"], json!([phase, "0.0"]));
+    assert_eq!(told["cam"]["offset"], "0.1000000000000000000000321");
+    assert_eq!(told["cam"]["law"], "harmonic");
+    let segment = |start: &str, coefficients: &str| {
+        format!("[[cam.segment]]\nstart_deg = {start}\ncoefficients = [{coefficients}]\n")
+    };
+    let (first, second) = ("0.03000000000000000000000077", "1e-22");
+    let segments = segment("0", first) + &segment("90.0000000000000000000000004", &format!("{first}, 0, {second}"));
+    let told = exact("", FOLLOWER, &format!("law = \"polynomial\"\n{segments}"));
+    assert_eq!(told["cam"]["segment"][0]["coefficients"], json!([first]));
+    assert_eq!(told["cam"]["segment"][1]["coefficients"], json!([first, "0", second]));
+    assert_eq!(told["cam"]["segment"][1]["start_deg"], "90.0000000000000000000000004");
+}
+
+/// TOML allows a sign and marks between digits, and whole numbers to other bases, which no decimal has.
+#[test]
+fn numbers_are_decimals_however_toml_has_them() {
+    for (written, decimal) in [
+        ("1_430.800_000_000_000_000_000_01", "1430.80000000000000000001"),
+        ("+1430.8", "1430.8"),
+        ("0x10", "16.0"),
+        ("0b101", "5.0"),
+        ("1.4308e3", "1.4308e3"),
+        ("1431", "1431"),
+    ] {
+        let told = exact("", &FOLLOWER.replace("stiffness = 100.0", &format!("stiffness = {written}")), CAM);
+        assert_eq!(told["follower"]["stiffness"], decimal);
+    }
+}
+
+/// The quotient of whole numbers takes each number to kg, N/m and the file's unit of length: a pound is 0.45359237 kg, and 1 kN is 10^6 kg mm/s^2.
+#[test]
+fn numbers_in_other_units_are_decimals_times_a_quotient() {
+    let units = "[units]\nlength = \"mm\"\nmass = \"lb\"\nstiffness = \"N/mm\"\nforce = \"kN\"\n";
+    let follower = FOLLOWER.replace("rest_position = 0.3", "preload = 0.14308000000000000000001");
+    let cam = CAM.replace("0.02", "20.00000000000000000000003");
+    let told = exact(units, &follower.replace("mass = 1.0", "mass = 1.22100000000000000000000123"), &cam);
+    let follower = &told["follower"];
+    assert_eq!(follower["mass"], "1.22100000000000000000000123 * 45359237/100000000");
+    assert_eq!(follower["restitution"], "0.5");
+    assert_eq!(follower["rest_position"], Value::Null);
+    for (name, decimal, quotient) in [("stiffness", "100.0", 1e3), ("preload", "0.14308000000000000000001", 1e6)] {
+        let (number, by) = follower[name].as_str().unwrap().split_once(" * ").unwrap();
+        let (above, below) = by.split_once('/').unwrap();
+        assert_eq!(number, decimal);
+        assert_eq!(above.parse::<f64>().unwrap() / below.parse::<f64>().unwrap(), quotient, "{name}");
+    }
+    // Lengths stay in the file's unit.
+    assert_eq!(told["cam"]["amplitudes"], json!(["20.00000000000000000000003"]));
+}
+
+/// Beside a number that is another one its text says nothing.
+#[test]
+fn a_number_that_is_set_has_the_digits_that_it_is_set_with() {
+    let model = Model::parse("exact.toml", &format!("name = \"exact\"\n[follower]\n{FOLLOWER}[cam]\n{CAM}")).unwrap();
+    for (number, text, decimal) in [
+        (1.221, "1.22100000000000000000000123", "1.22100000000000000000000123"),
+        (2.5, "3.75", "2.5"),
+        (2.5, "much", "2.5"),
+        (2.5, " +2.50 ", "2.50"),
+    ] {
+        let changed = model.changed(&[("mass".to_owned(), Numeral { number, text: text.into() })]).unwrap();
+        assert_eq!(changed.exact()["follower"]["mass"], decimal);
+        assert_eq!(changed.exact()["cam"], model.exact()["cam"]);
+    }
+    let changed = model.changed(&[("mass".to_owned(), 0.1 + 0.2)]).unwrap();
+    assert_eq!(changed.exact()["follower"]["mass"], "0.30000000000000004");
+    // In digits as long as these can be counted.
+    let text = |number: f64| Numeral::from(number).text;
+    assert_eq!(
+        [1e6, 0.25, 1e23, 1e24, 1e-30].map(text),
+        ["1000000", "0.25", "100000000000000000000000", "1e24", "1e-30"]
+    );
+}
+
+/// Rows of measured lifts, in the model's unit of length or in another one.
+#[test]
+fn rows_of_a_table_keep_their_digits() {
+    let lifts = [
+        "0.00000000000000000000000",
+        "1.00000000000000000000002",
+        "2.00000000000000000000003",
+        "1.00000000000000000000005",
+    ];
+    let rows = |by: &str| {
+        let rows =
+            lifts.iter().enumerate().map(|(index, lift)| format!("[{}.000000000000000000007, {lift}]", 90 * index));
+        format!("law = \"table\"\n{by}spline = \"cubic\"\nrows = [{}]\n", rows.collect::<Vec<_>>().join(", "))
+    };
+    let head = "[units]\nlength = \"mm\"\n";
+    let told = exact(head, FOLLOWER, &rows(""));
+    let angle = |index: usize| format!("{}.000000000000000000007", 90 * index);
+    let expected: Vec<Value> =
+        lifts.iter().enumerate().map(|(index, lift)| json!({ "angle_deg": angle(index), "lift": lift })).collect();
+    assert_eq!(told["cam"]["rows"], json!(expected));
+    // An inch is 25.4 mm.
+    let told = exact(head, FOLLOWER, &rows("unit = \"in\"\n"));
+    for (row, lift) in told["cam"]["rows"].as_array().unwrap().iter().zip(lifts) {
+        let (number, by) = row["lift"].as_str().unwrap().split_once(" * ").unwrap();
+        let (above, below) = by.split_once('/').unwrap();
+        assert_eq!((number, above.parse::<f64>().unwrap() / below.parse::<f64>().unwrap()), (lift, 25.4));
+    }
+    assert_eq!(told["cam"]["rows"].as_array().unwrap().len(), 4);
+    // Of angles in radians no row is written in degrees: the doubles are there as they are.
+    let turned = "law = \"table\"\nangle_unit = \"rad\"\nspline = \"cubic\"\nrows = [[0.0, 0.25], [1.6, 1.0], [3.2, 2.0], [4.8, 1.0]]\n";
+    let told = exact(head, FOLLOWER, turned);
+    let lift = |row: &Value| -> f64 {
+        let lift = &row["lift"];
+        lift.as_f64().or_else(|| lift.as_str()?.parse().ok()).unwrap()
+    };
+    let lifts: Vec<f64> = told["cam"]["rows"].as_array().unwrap().iter().map(lift).collect();
+    assert_eq!(lifts, [0.25, 1.0, 2.0, 1.0]);
+}

@@ -1,0 +1,196 @@
+//! Is the speed of separation that of closed forms with little pressure and much damping, above another speed, and in every unit?
+
+use std::f64::consts::{PI, TAU};
+
+use approx::assert_relative_eq;
+use corner_impact::cam::Cam;
+use corner_impact::model::Model;
+use corner_impact::study::design::contact::{Contact, Separation};
+
+use crate::design::separation;
+use crate::design_numbers::rpm;
+
+fn machine([mass, damping, stiffness]: [f64; 3], lines: &str, cam: &str) -> Model {
+    let text = format!(
+        "[follower]\nmass = {mass:?}\ndamping = {damping:?}\nstiffness = {stiffness:?}\nrestitution = 0.5\n{lines}\n[cam]\n{cam}"
+    );
+    Model::parse("pressed.toml", &text).unwrap()
+}
+
+/// Before a bottom `c = a x^2` it is `N = P + a (k x^2 - 2 b w x + 2 m w^2)`, 0 first at `a w^2 (b^2 - 2 k m) = k P`, where `x = b w/k`.
+#[test]
+fn a_damped_follower_that_little_presses_on_leaves_before_the_bottom() {
+    let (height, span) = (0.02, 0.5 * PI);
+    let [mass, stiffness] = [0.5, 1000.0];
+    let a = 2.0 * height / (span * span);
+    let segment = |motion: &str, degrees: f64, rise: f64| {
+        format!("[[cam.segment]]\nmotion = \"{motion}\"\nspan_deg = {degrees:?}\nrise = {rise:?}\n")
+    };
+    let cam = "law = \"program\"\nbase = 0.0\n".to_owned()
+        + &segment("parabolic", 90.0, height)
+        + &segment("dwell", 60.0, 0.0)
+        + &segment("parabolic", 90.0, -height)
+        + &segment("dwell", 120.0, 0.0);
+    for damping in [33.0_f64, 40.0, 80.0] {
+        for (preload, within) in [(0.1, 1e-9), (1e-3, 1e-9), (1e-5, 1e-8), (1e-8, 1e-5)] {
+            let lines = format!("preload = {preload:?}\ngravity = 0.0");
+            let found = separation(&machine([mass, damping, stiffness], &lines, &cam));
+            let omega = (stiffness * preload / (a * (damping * damping - 2.0 * stiffness * mass))).sqrt();
+            let Separation::At { rpm: at, cam_angle, .. } = found else { panic!("{damping} {preload}: {found:?}") };
+            assert_relative_eq!(at, rpm(omega), max_relative = within);
+            let x = damping * omega / stiffness;
+            assert!(
+                (240.0_f64.to_radians() - cam_angle - x).abs() < 100.0 * within.sqrt() * x,
+                "{damping} {preload} {x}"
+            );
+        }
+    }
+}
+
+/// A cam that falls to its dwell as `x^2/2 + g x^4`: a damper with `b^2 = 2.4 k m` pulls where `c'^2/(c'' c) > 5/3`, which is next to the
+/// dwell alone, and then again far up. The speeds at which it does are apart.
+struct Narrow {
+    g: f64,
+    mass: f64,
+    damping: f64,
+    stiffness: f64,
+}
+
+impl Narrow {
+    /// Of the last piece, rad: less than between any two angles that are looked at all round.
+    const LAST: f64 = 0.2 * PI / 180.0;
+
+    fn new() -> Self {
+        let (mass, stiffness) = (0.5, 1000.0);
+        // The pull is deepest where x sqrt(g) = 0.14: two thirds of the last piece.
+        Self {
+            g: (0.14 / (2.0 / 3.0 * Self::LAST)).powi(2),
+            mass,
+            damping: f64::sqrt(2.4 * stiffness * mass),
+            stiffness,
+        }
+    }
+
+    /// Lift and derivatives by x.
+    fn lift(&self, x: f64) -> [f64; 5] {
+        let g = self.g;
+        [0.5 * x * x + g * x.powi(4), x + 4.0 * g * x.powi(3), 1.0 + 12.0 * g * x * x, 24.0 * g * x, 24.0 * g]
+    }
+
+    fn cam(&self) -> String {
+        let piece = |start: f64, coefficients: &[f64]| {
+            format!("[[cam.segment]]\nstart_deg = {:?}\ncoefficients = {coefficients:?}\n", start.to_degrees())
+        };
+        // By u from the start, where x is this.
+        let quartic = |x: f64| {
+            let [c, slope, bend, third, fourth] = self.lift(x);
+            piece(TAU - x, &[c, -slope, bend / 2.0, -third / 6.0, fourth / 24.0])
+        };
+        // From a level to a level with a slope, over a span.
+        let cubic = |start: f64, span: f64, from: f64, [to, slope]: [f64; 2]| {
+            let rise = to - from;
+            let second = 3.0 * rise / (span * span) - slope / span;
+            let third = slope / (span * span) - 2.0 * rise / span.powi(3);
+            piece(start, &[from, 0.0, second, third])
+        };
+        let first = 1.2 / self.g.sqrt();
+        let [c, slope, ..] = self.lift(first);
+        let [up, down, high] = [120.0_f64.to_radians(), 220.0_f64.to_radians(), 0.2];
+        "law = \"polynomial\"\n".to_owned()
+            + &piece(0.0, &[0.0])
+            + &cubic(up, down - up, 0.0, [high, 0.0])
+            + &cubic(down, TAU - first - down, high, [c, -slope])
+            + &quartic(first)
+            + &quartic(Self::LAST)
+    }
+
+    /// How deep the damper pulls at x, N, at the speed at which it does most; negative where it does not.
+    fn pull(&self, x: f64) -> f64 {
+        let [c, slope, bend, ..] = self.lift(x);
+        (self.damping * slope).powi(2) / (4.0 * self.mass * bend) - self.stiffness * c
+    }
+
+    /// The least angular velocity at which `P + k c - b w c' + m w^2 c''` is 0 on the last piece, over many x.
+    fn leaves(&self, preload: f64) -> f64 {
+        const MANY: u32 = 400_000;
+        let at = |index: u32| {
+            let x = Self::LAST * (-16.0 * f64::from(index) / f64::from(MANY)).exp();
+            let [c, slope, bend, ..] = self.lift(x);
+            let (b, still) = (self.damping * slope, preload + self.stiffness * c);
+            let square = b * b - 4.0 * self.mass * bend * still;
+            if square >= 0.0 { 2.0 * still / (b + square.sqrt()) } else { f64::INFINITY }
+        };
+        (0..MANY).map(at).fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// Below that speed the follower stays, and from it on the damper holds it back, although faster it is on the cam again.
+#[test]
+fn a_damper_that_pulls_over_a_narrow_range_is_found() {
+    let it = Narrow::new();
+    let cam = it.cam();
+    let deepest = it.pull(2.0 / 3.0 * Narrow::LAST);
+    for part in [0.97, 0.9, 0.5, 0.1, 1e-3] {
+        let preload = part * deepest;
+        let model =
+            machine([it.mass, it.damping, it.stiffness], &format!("preload = {preload:?}\ngravity = 0.0"), &cam);
+        let omega = it.leaves(preload);
+        assert_relative_eq!(separation(&model).speed(), rpm(omega), max_relative = 1e-7);
+        let cam = Cam::new(&model).unwrap();
+        let least = |part: f64| Contact::new(&cam, model.follower).least(part * rpm(omega)).value;
+        assert!(least(1.0 - 1e-4) > 0.0 && least(1.0 + 1e-4) < 0.0, "{part}");
+        // Between the two ranges of speeds, whatever the damper does.
+        let faster = Contact::new(&cam, model.follower).least(rpm(0.13)).value;
+        assert!(faster > 0.0, "{faster}");
+    }
+}
+
+/// A mass on an eccentric `c = r (1 + cos)`, held up by its weight: `k r - m g = r |k - m w^2 + i b w|` at two speeds, and between them it is on
+/// the cam. `m^2 x^2 + (b^2 - 2 k m) x + k^2 - (k - m g/r)^2 = 0` of x = w^2.
+#[test]
+fn above_a_speed_a_damped_follower_leaves_where_its_closed_form_says() {
+    let [mass, stiffness, radius, up] = [0.5, 1000.0, 0.02, 4.0];
+    let cam = "law = \"harmonic\"\noffset = 0.02\namplitudes = [0.02]\nphases_deg = [25.0]\n";
+    for damping in [0.0, 4.0, 15.0, 22.0] {
+        let model = machine([mass, damping, stiffness], &format!("preload = 0.0\ngravity = {:?}", -up), cam);
+        let cam = Cam::new(&model).unwrap();
+        let contact = Contact::new(&cam, model.follower);
+        let (a, b) = (mass * mass, damping * damping - 2.0 * stiffness * mass);
+        let c = stiffness * stiffness - (stiffness - mass * up / radius).powi(2);
+        let [on, off] = [-1.0, 1.0].map(|sign| rpm(((-b + sign * (b * b - 4.0 * a * c).sqrt()) / (2.0 * a)).sqrt()));
+        assert!(matches!(contact.separation(), Separation::NotPressed { .. }));
+        for (low, speed) in [(0.99, 0.0), (1.01, off), (0.99 * off / on, off), (1.01 * off / on, 0.0)] {
+            assert_relative_eq!(contact.separation_above(low * on).speed(), speed, max_relative = 1e-11);
+        }
+        assert_eq!(contact.separation_above(0.0), contact.separation());
+    }
+}
+
+/// The force is told from 0 next to the speed of separation, whatever the unit of length, and however heavy the machine is as a whole.
+#[test]
+fn the_force_next_to_separation_is_no_rounding_in_any_unit() {
+    for (unit, length) in [("m", 1.0), ("cm", 1e2), ("mm", 1e3), ("um", 1e6), ("ft", 1250.0 / 381.0)] {
+        for heavy in [1.0, 1e-9, 1e9] {
+            for (gravity, damping) in [(9.81, 4.0), (9.81, 0.0), (1e-9, 4.0), (0.0, 4.0)] {
+                let text = format!(
+                    "[units]\nlength = \"{unit}\"\n[follower]\nmass = {:?}\ndamping = {:?}\nstiffness = {:?}\nrestitution = 0.5\n\
+                     gravity = {:?}\nrest_position = {:?}\n[cam]\nlaw = \"harmonic\"\noffset = {:?}\namplitudes = [{:?}]\nphases_deg = [0.0]\n",
+                    0.5 * heavy,
+                    damping * heavy,
+                    2000.0 * heavy,
+                    gravity * length,
+                    0.05 * length,
+                    0.1 * length,
+                    0.02 * length
+                );
+                let model = Model::parse("units.toml", &text).unwrap();
+                let cam = Cam::new(&model).unwrap();
+                let contact = Contact::new(&cam, model.follower);
+                let at = contact.separation().speed();
+                let [below, here, above] = [-1e-11, 0.0, 1e-11].map(|off| contact.least(at * (1.0 + off)).value);
+                assert!(below > 0.0 && above < 0.0, "{unit} {heavy} {gravity} {damping}: {below} {above}");
+                assert_eq!(here, 0.0, "{unit} {heavy} {gravity} {damping}");
+            }
+        }
+    }
+}
