@@ -249,9 +249,9 @@ impl Model {
         in_units(alone(py, run)?.or_raise()?.columns(py)?, &self.model.units)
     }
 
-    /// What happens at each of evenly spaced speeds, (lowest, highest, how many) rpm, in `record` revolutions after `transient`; or at the one
-    /// speed `rpm` at each value of another number, `over` (name, lowest, highest, how many), whose name the first column has then. With `log`
-    /// values are spaced by their logarithm.
+    /// Events, or states at a section, over a range of speeds: `record` revolutions after `transient` at each of `rpm`, (lowest, highest, how
+    /// many). With `over`, (name, lowest, highest, how many), another number varies at the one speed `rpm`, and the first column has its
+    /// name. With `log` values are spaced by their logarithm.
     ///
     /// Each starts at `cam_angle` on the cam or as for `simulate`, or, with `follow` "up" or "down", where its neighbour ended. With
     /// `strobe`, an angle in rad, the states there are recorded instead of events. `lyapunov` adds the growth of a small deviation a
@@ -486,10 +486,10 @@ impl Model {
     ) -> PyResult<Bound<'py, PyDict>> {
         let (parameter, rpm, range) = match (rpm, over) {
             (Some(Rpm::One(rpm)), Some((name, low, high))) => {
-                (Parameter::named(&self.model, &name).or_raise()?, values::speed(rpm)?, [low, high])
+                (Parameter::named(&self.model, &name).or_raise()?, Some(values::speed(rpm)?), [low, high])
             }
-            (None, None) => (Parameter::Speed, 1.0, usual_range(&self.model).or_raise()?),
-            (Some(Rpm::Range(range)), None) => (Parameter::Speed, 1.0, values::speed_range(range)?),
+            (None, None) => (Parameter::Speed, None, usual_range(&self.model).or_raise()?),
+            (Some(Rpm::Range(range)), None) => (Parameter::Speed, None, values::speed_range(range)?),
             _ => return refused("rpm is a range of speeds, and with over one speed".into()),
         };
         let spacing = values::spacing(log, range[0])?;

@@ -14,7 +14,7 @@ use crate::model::Model;
 use crate::orbit::long_run::Budget;
 use crate::show::csv;
 use crate::study::basins::{BasinsOver, Begun, Grid, Section, SectionStarts, States, Summary};
-use crate::study::survey::{Over, Survey, Values};
+use crate::study::survey::{Over, Values};
 
 /// Runs a grid of starts at one speed and says what each ends on, as a table or a picture; or over a number, and says how many end on what.
 #[derive(clap::Args)]
@@ -140,9 +140,7 @@ fn shares(
     session: &mut Session<'_>,
 ) -> Result<Exit, CommandError> {
     let (rpm, axis) = over((&arguments.model, model), arguments.rpm, arguments.over.as_ref())?;
-    // Asked for here, so that what is wrong with the axis or the speed is told before anything is run.
-    Survey::new(model, rpm, axis.clone(), None)?;
-    let over = Over::new(model, axis.parameter.clone(), rpm.unwrap_or(axis.values[0]))?;
+    let over = Over::new(model, axis.parameter.clone(), rpm)?;
     let begun = match arguments.grid {
         Some(Cells(cells)) => Begun::Grid(cells, [arguments.position, arguments.velocity]),
         None => Begun::Given(arguments.state.clone()),

@@ -30,7 +30,7 @@ use crate::study::survey::{Axis, Values};
 pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
-    /// What varies across: rpm, or a number of the model; from where to where, at how many values, and whether these are spaced by their logarithm.
+    /// The horizontal axis: rpm or a number of the model, its lowest and highest value, and how many; with :log spaced by their logarithm.
     #[arg(long, value_name = "NAME=LO:HI:N[:log]", value_parser = axis, required_unless_present = "status")]
     x: Option<(String, Values)>,
     /// What varies upwards, alike.

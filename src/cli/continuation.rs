@@ -6,7 +6,7 @@ use super::picture::{PictureArguments, Target, picture_or_table};
 use super::start::{parameter, positive, rpm};
 use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::cam::Cam;
-use crate::figures::{branches_figure, corner_marks, unit_of};
+use crate::figures::{branches_figure, corner_marks};
 use crate::orbit::branch::Following;
 use crate::orbit::{Parameter, Search};
 use crate::pages;
@@ -83,7 +83,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         let settled = watched("", |watch| found.settled(arguments.runs, watch))?;
         Ok(branches_figure(
             &found.title(),
-            (name, &unit_of(name, &model.units), *range),
+            (name, &model.units.of_number(name), *range),
             &found.branches,
             &settled,
             &corners,

@@ -6,7 +6,7 @@ use super::picture::{PictureArguments, Target, picture_or_table};
 use super::start::{parameter, positive, rpm_range};
 use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::draw::{extent, layout::widened};
-use crate::figures::{curve_figure, unit_of};
+use crate::figures::curve_figure;
 use crate::orbit::branch::{Bifurcation, Following};
 use crate::orbit::{Parameter, Search};
 use crate::pages;
@@ -90,7 +90,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         let speeds = curves.iter().flat_map(|found| &found.points).map(|point| point.rpm);
         let found = extent(speeds);
         let shown = if found[0] < found[1] { widened(found, 0.04) } else { arguments.rpm };
-        Ok(curve_figure(&title, (name, &unit_of(name, &model.units), *range, own), shown, &curves))
+        Ok(curve_figure(&title, (name, &model.units.of_number(name), *range, own), shown, &curves))
     })?;
     Ok(Exit::Agrees)
 }

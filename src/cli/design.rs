@@ -32,7 +32,7 @@ pub(super) struct Arguments {
     rpm: Option<[f64; 2]>,
     /// A number of the model that the table goes over in place of the speed, at the one of --rpm: from where to where, at how many values, and whether
     /// these are spaced by their logarithm.
-    #[arg(long, value_name = "NAME=LO:HI:N[:log]", value_parser = axis, requires = "rpm", allow_hyphen_values = true)]
+    #[arg(long, value_name = "NAME=LO:HI:N[:log]", value_parser = axis, allow_hyphen_values = true)]
     over: Option<(String, Values)>,
     /// Speeds of a range.
     #[arg(long, value_name = "N", default_value_t = 21, value_parser = clap::value_parser!(u32).range(2..=10_000))]

@@ -1,4 +1,4 @@
-//! What a survey goes over: the speed, or a number of the model.
+//! The axis that --rpm or --over names, and the one speed of a survey over another number.
 
 use super::start::Rpm;
 use super::{CommandError, ModelArgument};

@@ -66,10 +66,11 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let model = arguments.model.read(session)?;
     let corners = corner_marks(&Cam::new(&model)?);
     let (parameter, rpm, range, count, spacing) = match (&arguments.over, arguments.rpm) {
-        (Some((name, range, count, spacing)), Some([rpm, other])) if rpm == other => {
-            (arguments.model.varied(&model, name, "--over")?, rpm, *range, *count, *spacing)
+        (Some(_), Some([low, high])) if low < high => return Err(StudyError::RangeAndNumber { low, high }.into()),
+        (Some((name, range, count, spacing)), rpm) => {
+            let parameter = arguments.model.varied(&model, name, "--over")?;
+            (parameter, rpm.map(|[rpm, _]| rpm), *range, *count, *spacing)
         }
-        (Some(_), _) => return Err(StudyError::OneSpeed.into()),
         (None, Some([rpm, other])) if rpm == other => {
             let words =
                 format!("--rpm {rpm} is one speed: LO:HI is from where to where, or --over NAME=LO:HI is what varies");
@@ -77,7 +78,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         }
         (None, rpm) => {
             let range = rpm.map_or_else(|| usual_range(&model), Ok)?;
-            (Parameter::Speed, range[0], range, None, Spacing::Linear)
+            (Parameter::Speed, None, range, None, Spacing::Linear)
         }
     };
     let count = count.unwrap_or(arguments.speeds);

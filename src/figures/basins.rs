@@ -3,9 +3,8 @@
 use crate::draw::{Axis, BREAK, Colour, Data, Density, Figure, Marker, Panel, Series, Stroke};
 use crate::figures::{Across, position};
 use crate::flight::State;
-use crate::orbit::long_run::LongRun;
 use crate::show::words;
-use crate::study::basins::{Basins, BasinsOver, Border, Grid};
+use crate::study::basins::{Basins, BasinsOver, Border, Grid, SharesOf};
 
 /// Colours of the parts and how much of them, in order, so that each is a grey of its own; further ones share the last.
 const COLOURS: [(Colour, f64); 5] =
@@ -41,41 +40,26 @@ pub fn basins_figure(title: &str, grid: &Grid, basins: &Basins, border: &Border)
     Figure::new(&title, position().over(x), vec![Panel::new(Axis::new("velocity q'", "m/s").over(y), 0.66, series)])
 }
 
-/// The share of the starts that end on each motion, against what varies: those of one kind and period as one.
+/// The share of the starts that end on each kind of motion, against what varies: those of most starts.
 pub fn shares_figure(found: &BasinsOver) -> Figure {
+    const STROKES: [Stroke; 5] = [Stroke::Solid, Stroke::Dashed, Stroke::Dotted, Stroke::Thick, Stroke::Thin];
     let across = Across::named(&found.over.name, &found.over.unit, found.over.spacing, found.range);
-    let mut labels: Vec<(String, f64)> = Vec::new();
-    for part in found.at.iter().flat_map(|at| &at.found).flat_map(|found| &found.parts) {
-        let label = words::ending(&part.ending);
-        match labels.iter_mut().find(|(known, _)| *known == label) {
-            Some((_, share)) => *share += part.share.value,
-            None => labels.push((label, part.share.value)),
-        }
-    }
-    // Stable: among motions of one share the first found comes first.
-    labels.sort_by(|(_, one), (_, other)| other.total_cmp(one));
-    let rest = labels.split_off(labels.len().min(COLOURS.len() - 1));
-    let is_of = |ending: &LongRun, label: &str| match rest.is_empty() || label != OTHERS {
-        true => words::ending(ending) == label,
-        false => rest.iter().any(|(known, _)| *known == words::ending(ending)),
+    let all = found.shares();
+    let label = |it: &SharesOf| match it.motion {
+        (kind, Some((revolutions, impacts))) => words::motion(kind, Some(revolutions), Some(impacts)),
+        (kind, None) => words::motion(kind, None, None),
     };
-    let others = (!rest.is_empty()).then(|| OTHERS.to_owned());
-    let names = labels.iter().map(|(label, _)| label.clone()).chain(others);
-    let line = |(label, (colour, _)): (String, (Colour, f64))| {
-        let points = found.at.iter().filter_map(|at| {
-            let parts = &at.found.as_ref().ok()?.parts;
-            let share: f64 = parts.iter().filter(|part| is_of(&part.ending, &label)).map(|part| part.share.value).sum();
-            Some([across.place(at.place.across()), 100.0 * share])
-        });
-        let stroke = [Stroke::Solid, Stroke::Dashed, Stroke::Dotted, Stroke::Thick, Stroke::Thin];
-        let at = COLOURS.iter().position(|(known, _)| *known == colour).unwrap_or(0);
-        Series::line(&label, colour, stroke[at], points)
-    };
-    let series = names.zip(COLOURS).map(line).collect();
+    let styled = all.iter().zip(COLOURS.into_iter().zip(STROKES));
+    let series = styled.map(|(it, ((colour, _), stroke))| {
+        let points = it.shares.iter().map(|[value, share]| [across.place(*value), 100.0 * share]);
+        Series::line(&label(it), colour, stroke, points)
+    });
     let title = format!("{}: what starts end on, {}", found.model, found.over.range(found.range));
     let shares = Axis::new("share of starts", "%").over([-5.0, 105.0]);
-    Figure::new(&title, across.axis(), vec![Panel::new(shares, 0.5, series)])
+    let panel = Panel::new(shares, 0.5, series.collect());
+    let note = match all.len().saturating_sub(COLOURS.len()) {
+        0 => String::new(),
+        more => format!("{more} more kinds of motion have smaller shares and are not drawn"),
+    };
+    Figure { note, ..Figure::new(&title, across.axis(), vec![panel]) }
 }
-
-/// Motions that have no colour of their own.
-const OTHERS: &str = "others";

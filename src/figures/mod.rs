@@ -169,12 +169,7 @@ impl Entry {
 /// Name and unit of the axis of speeds.
 const SPEED: [&str; 2] = ["cam speed ω", "rpm"];
 
-/// The unit of what changes: of the speed, or of a number of a model.
-pub fn unit_of(name: &str, units: &Units) -> String {
-    units.of_number(name)
-}
-
-/// What a diagram goes over, as it is drawn: the speed or another number, or the decimal logarithm of it.
+/// The horizontal axis of a survey: its number, or the decimal logarithm of that, and where values are drawn.
 #[derive(Clone, Debug)]
 pub struct Across {
     axis: Axis,
@@ -184,7 +179,7 @@ pub struct Across {
 impl Across {
     /// The number of this name, in the units of a model, from one value to another.
     pub fn new(name: &str, spacing: Spacing, ends: [f64; 2], units: &Units) -> Self {
-        Self::named(name, &unit_of(name, units), spacing, ends)
+        Self::named(name, &units.of_number(name), spacing, ends)
     }
 
     /// The number of this name in this unit, from one value to another.
@@ -195,7 +190,7 @@ impl Across {
         Self { axis: Axis { spacing: ticks, ..axis }, spacing }
     }
 
-    /// What a survey goes over.
+    /// The axis of a survey, in the units of a model.
     pub fn of(axis: &survey::Axis, units: &Units) -> Self {
         Self::new(axis.parameter.name(), axis.spacing, axis.ends(), units)
     }

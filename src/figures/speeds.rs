@@ -110,7 +110,7 @@ pub fn impacts_by_speed(found: &SpeedSurvey, corners: &[CornerMark]) -> Figure {
     Figure { title: format!("{}: impacts from {}", found.model, found.over.range(found.range)), ..figure }
 }
 
-/// What was gone over, as it is drawn.
+/// The horizontal axis of a survey.
 fn over(found: &SpeedSurvey) -> Across {
     Across::named(&found.over.name, &found.over.unit, found.over.spacing, found.range)
 }

@@ -160,9 +160,12 @@ pub(crate) fn speeds(found: &Design) -> Vec<Block> {
         "least force: between follower and cam as long as they touch, where it is below 0 they part; computed.".into(),
     ));
     if !found.loads.is_empty() {
-        let words = "The other columns are the most of what four starts come to: over 8 revolutions after up to 200; sampled. \
-                     Energy is what impacts take, force that between them.";
-        blocks.push(Block::Note(words.into()));
+        let transient = found.budget.transient;
+        let words = format!(
+            "The other columns are the most of what the starts come to, four unless they are given: over 8 revolutions after up to {transient}; \
+             sampled. Energy is what impacts take, force that between them."
+        );
+        blocks.push(Block::Note(words.as_str().into()));
         if found.loads.iter().any(|loads| loads.errors.is_some()) {
             let words = "± is what the cam leaves open, by what cams that are as likely come to. A load that may be as little as none is told \
                          as what it is less than; the last three columns have no more digits than are left them, and --json has the ± of each.";

@@ -14,7 +14,8 @@ impl Paged for SpeedSurvey {
     fn blocks(&self) -> Vec<Block> {
         let heading = |text: String| Block::Line((Mark::Heading, text.as_str()).into());
         let mut page = vec![heading(format!("{}, {}", self.model, self.over.range(self.range))), Block::Gap];
-        page.push(Block::Line(words!["  leaves the cam first at  ", detachment(self)]));
+        let leaves = if self.over.is_speed() { "  leaves the cam first at  " } else { "  on the cam or off from   " };
+        page.push(Block::Line(words![leaves, detachment(self)]));
         let together = together(self);
         let together =
             if together.is_empty() { "nowhere".into() } else { words![Words::joined(together, ", "), unit(self)] };
@@ -86,7 +87,7 @@ pub(crate) fn detachment(found: &SpeedSurvey) -> Words {
     let Some(separation) = found.separation else {
         return match found.detachment() {
             Some([value, _]) => words![(value, Digits::Significant(9)), unit(found)],
-            None => "no value in between".into(),
+            None => "no value that was located".into(),
         };
     };
     match found.detachment() {

@@ -226,7 +226,7 @@ impl Report {
         let range = rpm.map_or_else(|| usual_range(model), Ok)?;
         let (count, starts) = if is_paper { PAPERS_SPEEDS } else { SPEEDS };
         let resolution = Resolution::new(Step::for_values(range, count, Spacing::Linear), starts);
-        let surveyed = Over::speed(model, range[0]).map_err(AttractorsError::from);
+        let surveyed = Over::speed(model).map_err(AttractorsError::from);
         let surveyed = surveyed.and_then(|over| speeds(&over, range, &resolution, &part(HELD, SURVEYED)));
         let speeds = surveyed.map_err(|error| error.to_string());
         let overview = speeds.as_ref().ok().map(|found| overview(model, &cam, found));

@@ -370,7 +370,7 @@ pub(crate) fn many(count: u64, what: &str) -> String {
 }
 
 /// A motion with its period: turns of the cam and impacts.
-fn motion(kind: Kind, revolutions: Option<u64>, impacts: Option<u64>) -> String {
+pub(crate) fn motion(kind: Kind, revolutions: Option<u64>, impacts: Option<u64>) -> String {
     let turns = |n: u64| if n == 1 { "a revolution".to_owned() } else { many(n, "revolution") };
     match (kind, revolutions, impacts) {
         (Kind::Periodic, Some(_), Some(0)) => "never meets the cam".into(),

@@ -82,9 +82,17 @@ pub enum StudyError {
         cam_angle.to_degrees()
     )]
     NoImpact { waited: u64, impacts: u64, cam_angle: f64, revolution: u64 },
-    /// What varies is not the speed, and no one speed was named.
-    #[error("--over needs the one speed at which the number varies: give --rpm")]
-    OneSpeed,
+    /// Nothing can be gone over.
+    #[error(transparent)]
+    Over(#[from] survey::OverError),
+    /// A range of speeds beside another number that varies.
+    #[error("--rpm {low}:{high} and --over are two ranges: with --over, --rpm is one speed")]
+    RangeAndNumber {
+        /// Lowest, rpm.
+        low: f64,
+        /// Highest, rpm.
+        high: f64,
+    },
     /// No speeds were named, and the machine has none of its own.
     #[error(
         "no range of speeds: the follower leaves the cam at every speed or at none, and the model has no [study]; give --rpm"

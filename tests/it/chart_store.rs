@@ -11,7 +11,7 @@ use corner_impact::study::chaos::chaos;
 use corner_impact::study::chart::store::{CLASSES, Shard, Store, StoreError, VARIABLES, blocks_of, status};
 use corner_impact::study::chart::{Blocks, Chart};
 use corner_impact::study::survey::Point;
-use corner_impact::study::survey::{Axis, Placed, Start, SurveyError, Values};
+use corner_impact::study::survey::{Axis, OverError, Placed, Start, SurveyError, Values};
 use serde_json::{Value, json};
 
 use crate::common;
@@ -185,11 +185,8 @@ fn charts_that_cannot_be_are_refused_and_speeds_that_cannot_are_points() {
     let damping = axis(&paper, "damping", 0.0, 1.0, 2);
     let told = |found: Result<Chart, SurveyError>| found.map(|_| ()).unwrap_err();
     assert_eq!(told(new(None, [speed.clone(), speed.clone()])), SurveyError::OneNumber("rpm".into()));
-    assert_eq!(
-        told(new(None, [damping.clone(), mass.clone()])),
-        SurveyError::NoSpeed { axes: "neither axis is".into() }
-    );
-    assert_eq!(told(new(Some(700.0), [speed.clone(), mass.clone()])), SurveyError::TwoSpeeds);
+    assert_eq!(told(new(None, [damping.clone(), mass.clone()])), SurveyError::Over(OverError::NoSpeed(None)));
+    assert_eq!(told(new(Some(700.0), [speed.clone(), mass.clone()])), SurveyError::Over(OverError::TwoSpeeds));
     let none = Axis { values: [].into(), ..mass.clone() };
     assert_eq!(told(new(None, [speed.clone(), none.clone()])), SurveyError::Points { points: 0 });
     assert!(none.ends().iter().all(|end| end.is_nan()) && speed.ends() == [100.0, 180.0]);

@@ -11,7 +11,7 @@ use corner_impact::cam::Side;
 use corner_impact::cli::{Exit, run};
 use corner_impact::draw::layout::{Layout, WIDTH};
 use corner_impact::draw::{Data, Figure, Look, Series, svg};
-use corner_impact::figures::{Effort, Neighbour, Outline, Plate, Subject, listed, plate, plates, unit_of};
+use corner_impact::figures::{Effort, Neighbour, Outline, Plate, Subject, listed, plate, plates};
 use corner_impact::flight::State;
 use corner_impact::model::{Model, OSORIO_2008};
 use corner_impact::orbit::Stability;
@@ -563,7 +563,7 @@ fn axes_have_the_units_of_the_model() {
         ("follower.rest_position", "m", "m"),
         ("restitution", "", ""),
     ] {
-        assert_eq!((unit_of(name, &si).as_str(), unit_of(name, &units).as_str()), (is, there), "{name}");
+        assert_eq!((si.of_number(name).as_str(), units.of_number(name).as_str()), (is, there), "{name}");
     }
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("chart.svg");

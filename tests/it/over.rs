@@ -44,7 +44,7 @@ fn wall() -> Model {
 }
 
 fn over(model: &Model, name: &str, range: [f64; 2], step: Step, starts: usize) -> SpeedSurvey {
-    let over = Over::new(model, Parameter::named(model, name).unwrap(), 700.0).unwrap();
+    let over = Over::new(model, Parameter::named(model, name).unwrap(), Some(700.0)).unwrap();
     speeds(&over, range, &Resolution::new(step, starts), &Unwatched).unwrap()
 }
 
@@ -56,6 +56,13 @@ fn a_range_of_speeds_is_one_number_of_many() {
         let other = [&["diagram", MODEL, "--over", "rpm=660:740:3", "--out", "-"], options].concat();
         assert_eq!(told(&one), told(&other));
     }
+    let survey = ["--step", "5", "--starts", "4", "--json"];
+    let one = [&["speeds", MODEL, "--rpm", "690:700"][..], &survey].concat();
+    let other = [&["speeds", MODEL, "--over", "rpm=690:700"][..], &survey].concat();
+    assert_eq!(told(&one), told(&other));
+    let one = [&["design", MODEL, "--rpm", "150:160", "--speeds", "3", "--json"][..]].concat();
+    let other = [&["design", MODEL, "--over", "rpm=150:160:3", "--json"][..]].concat();
+    assert_eq!(told(&one), told(&other));
     let basins = ["--grid", "4x4", "--out", "-"];
     let one = [&["basins", MODEL, "--rpm", "680:700:2"][..], &basins].concat();
     let other = [&["basins", MODEL, "--over", "rpm=680:700:2"][..], &basins].concat();
@@ -149,7 +156,7 @@ fn attractors_are_matched_over_a_restitution() {
 #[test]
 fn a_follower_leaves_the_cam_at_a_stiffness() {
     let ball = crate::attractors::ball();
-    let over = Over::new(&ball, Parameter::named(&ball, "gravity").unwrap(), 900.0).unwrap();
+    let over = Over::new(&ball, Parameter::named(&ball, "gravity").unwrap(), Some(900.0)).unwrap();
     let omega = corner_impact::simulate::angular_velocity(900.0);
     // A table of amplitude a lets go of what lies on it where a w^2 passes g.
     let amplitude = (corner_impact::simulate::angular_velocity(1.0), common::cam(&ball));
@@ -190,7 +197,7 @@ fn impacts_begin_where_the_clearance_is_taken_up() {
 #[test]
 fn a_logarithmic_grid_is_the_same_for_every_range() {
     let wall = wall();
-    let over = Over::new(&wall, Parameter::named(&wall, "rest_position").unwrap(), 300.0).unwrap();
+    let over = Over::new(&wall, Parameter::named(&wall, "rest_position").unwrap(), Some(300.0)).unwrap();
     let step = Step::at_most(0.25, Spacing::Logarithmic);
     assert_eq!((step.width(), Step::for_values([1e-3, 1e-1], 10, Spacing::Logarithmic).width()), (0.2, 0.2));
     let values = |range: [f64; 2]| -> Vec<f64> {
@@ -212,7 +219,7 @@ fn a_logarithmic_grid_is_the_same_for_every_range() {
 #[test]
 fn shares_of_basins_sum_to_one_at_every_value() {
     let paper = common::osorio();
-    let over = Over::new(&paper, Parameter::named(&paper, "restitution").unwrap(), 700.0).unwrap();
+    let over = Over::new(&paper, Parameter::named(&paper, "restitution").unwrap(), Some(700.0)).unwrap();
     let axis = axis(&paper, "restitution", 0.6, 0.8, 3, Spacing::Linear);
     let given = Begun::Given(vec![corner_impact::flight::State { position: 1.0, velocity: 0.0 }]);
     for begun in [Begun::Grid([5, 4], [None; 2]), given] {
@@ -223,6 +230,14 @@ fn shares_of_basins_sum_to_one_at_every_value() {
             assert_relative_eq!(parts.iter().map(|part| part.share.value).sum::<f64>(), 1.0, max_relative = 1e-12);
             assert_eq!(at.failure(), None);
         }
+        // By motions, too: each has a share at each value, and that of most starts comes first.
+        let shares = found.shares();
+        for index in 0..axis.values.len() {
+            let all: f64 = shares.iter().map(|it| it.shares[index][1]).sum();
+            assert_relative_eq!(all, 1.0, max_relative = 1e-12);
+        }
+        let sums: Vec<f64> = shares.iter().map(|it| it.shares.iter().map(|[_, share]| share).sum()).collect();
+        assert!(sums.is_sorted_by(|one, other| one >= other), "{sums:?}");
     }
     // A start below the cam is one that cannot be run, at its value.
     let below = Begun::Given(vec![corner_impact::flight::State { position: -1.0, velocity: 0.0 }]);
@@ -254,14 +269,16 @@ fn axes_that_cannot_be_are_refused() {
             format!("diagram {MODEL} --rpm 700 --set restitution=0.5 --over restitution=0.5:0.9:3 --out {out}"),
             "no point would",
         ),
-        (format!("speeds {MODEL} --rpm 600:700 --over restitution=0.5:0.9"), "--over needs the one speed"),
-        (format!("speeds {MODEL} --over restitution=0.5:0.9"), "--over needs the one speed"),
+        (format!("speeds {MODEL} --rpm 600:700 --over restitution=0.5:0.9"), "with --over, --rpm is one speed"),
+        (format!("speeds {MODEL} --over restitution=0.5:0.9"), "--rpm says at which speed"),
+        (format!("speeds {MODEL} --rpm 700 --over rpm=600:700"), "no axis is rpm"),
+        (format!("design {MODEL} --rpm 700 --over rpm=600:700:2"), "no axis is rpm"),
         (format!("speeds {MODEL} --rpm 700"), "is one speed"),
         (format!("speeds {MODEL} --rpm 700 --over restitution=0:0.9:log"), "begins above 0"),
         (format!("speeds {MODEL} --rpm 700 --over restitution=0.5:0.5:3"), "is not below"),
         (format!("basins {MODEL} --rpm 700 --over friction=0:1:3 --grid 2x2"), "friction"),
         (format!("basins {MODEL} --over mass=1:2:3 --grid 2x2"), "--rpm says at which speed"),
-        (format!("design {MODEL} --rpm 100:200 --over mass=1:2:3"), "--over needs the one speed"),
+        (format!("design {MODEL} --rpm 100:200 --over mass=1:2:3"), "with --over, --rpm is one speed"),
         (format!("design {MODEL} --over mass=1:2:3"), "--rpm"),
         (format!("chart {MODEL} --x rpm=0:700:3:log --y mass=1:2:2 --out {out}"), "above 0"),
     ] {

@@ -75,8 +75,7 @@ fn the_hardest_impact_and_the_smallest_basin_are_told() {
 }
 
 fn over(model: &Model, range: [f64; 2], step: f64, starts: usize) -> Result<Attractors, AttractorsError> {
-    let first = if range[0] > 0.0 && range[0].is_finite() { range[0] } else { 1.0 };
-    attractors(&Over::speed(model, first).unwrap(), range, resolution(step, starts), &Unwatched)
+    attractors(&Over::speed(model).unwrap(), range, resolution(step, starts), &Unwatched)
 }
 
 /// Few speeds are no too many however high they are, but a step that rounding takes.
@@ -166,7 +165,7 @@ type Motions = Vec<(Option<(u64, u64)>, [f64; 2], [Option<Cause>; 2])>;
 fn motions(grid: &[f64], power: i32, unseen: Option<usize>) -> Motions {
     let (ball, scale) = (ball(), 2.0_f64.powi(power));
     let ball = ball.with_number("follower.gravity", ball.follower.gravity * scale * scale).unwrap();
-    let over = Over::speed(&ball, grid[0] * scale).unwrap();
+    let over = Over::speed(&ball).unwrap();
     let at = |rpm: &f64| {
         let value = rpm * scale;
         let found = AttractorsAtValue::new(&over.machine(value).unwrap(), &Sample::Spread(2), Budget::SURVEY);

@@ -144,7 +144,7 @@ fn a_grid_is_the_range_and_its_margin() {
     let paper = common::osorio();
     let grid = |range: [f64; 2], step: f64| -> Vec<f64> {
         let Attractors { grid, range: told, .. } =
-            attractors(&Over::speed(&paper, range[0]).unwrap(), range, resolution(step, 1), &Unwatched).unwrap();
+            attractors(&Over::speed(&paper).unwrap(), range, resolution(step, 1), &Unwatched).unwrap();
         assert_eq!(told, range);
         grid.iter().map(|it| it.value).collect()
     };
@@ -344,8 +344,7 @@ fn a_point_of_a_branch_is_a_cause() {
 fn an_end_by_runs_moves_with_the_machine() {
     let text = |stiffness: f64| model("laws/polynomial").with_number("follower.stiffness", stiffness).unwrap();
     let ends = |of: &Model| {
-        let found =
-            attractors(&Over::speed(of, 420.0).unwrap(), [420.0, 422.0], resolution(0.5, 3), &Unwatched).unwrap();
+        let found = attractors(&Over::speed(of).unwrap(), [420.0, 422.0], resolution(0.5, 3), &Unwatched).unwrap();
         let row =
             found.families.iter().position(|row| row.kind(&found.grid) == Kind::Resting && row.period().is_none());
         (row.unwrap(), found)
@@ -372,7 +371,7 @@ fn an_end_by_runs_moves_with_the_machine() {
 #[test]
 fn a_range_may_begin_at_next_to_nothing() {
     let resolution = Resolution::new(common::step(0.02), 1);
-    let found = attractors(&Over::speed(&ball(), 1e-5).unwrap(), [1e-5, 1.0], &resolution, &Unwatched).unwrap();
+    let found = attractors(&Over::speed(&ball()).unwrap(), [1e-5, 1.0], &resolution, &Unwatched).unwrap();
     let [row] = &found.families[..] else { panic!("{:?}", found.families) };
     assert_eq!((row.range, row.ends.each_ref().map(Option::is_some)), ([1e-5, 1.0], [false, false]));
 }

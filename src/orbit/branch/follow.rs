@@ -313,7 +313,7 @@ impl Walk<'_> {
         let mut points = Vec::new();
         let mut folds = false;
         let mut signs = Vec::new();
-        // Along a continuum of orbits multipliers are on the unit circle, but for rounding: none passes anything.
+        // Along a continuum of orbits a multiplier is 1 but for rounding, whose signs tell nothing.
         let stands = first.is_none() && self.stride.stands(&end_point);
         let passed = if stands { Vec::new() } else { self.stride.passed() };
         for (index, cut) in passed.into_iter().enumerate() {

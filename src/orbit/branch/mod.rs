@@ -124,7 +124,7 @@ pub enum End {
     OtherWay,
     /// A touch at which the gap does not open again.
     Degenerate,
-    /// Orbits of every amplitude at one value: as far as steps show, the value changes no more.
+    /// As far as a few steps show, orbits of many amplitudes at one value: it changes no more than rounding.
     Continuum,
     /// As many points as were asked for.
     MostPoints,
@@ -165,7 +165,7 @@ impl End {
             Self::Kink => "an impact on the way to the rest at a corner, from where it is not followed on".into(),
             Self::OtherWay => "a place from which the follower goes another way".into(),
             Self::Degenerate => "a degenerate graze: the flight that touches does not leave the cam again".into(),
-            Self::Continuum => "a continuum of orbits: all along the branch the value stays the same, and amplitudes differ".into(),
+            Self::Continuum => "what looks like a continuum of orbits: over the last steps amplitudes change and the value stays the same".into(),
             Self::MostPoints => "the number of points that was asked for".into(),
             Self::Chatter => "the onset of chattering".into(),
             Self::Clear => {

@@ -31,7 +31,7 @@ use crate::orbit::long_run::Budget;
 use crate::progress::Watch;
 use crate::stop;
 use crate::study::design::contact::{Contact, Separation};
-use crate::study::survey::{Attractor, Over, RunError, Sample, Spacing};
+use crate::study::survey::{Attractor, Over, OverError, RunError, Sample, Spacing};
 use crate::tolerance;
 pub use at_value::AttractorsAtValue;
 pub use detachment::detachment;
@@ -115,6 +115,9 @@ pub enum AttractorsError {
     /// What varies is no number of the model, or none that it could have.
     #[error(transparent)]
     Family(#[from] FamilyError),
+    /// Nothing can be gone over.
+    #[error(transparent)]
+    Over(#[from] OverError),
     /// Ends that are no range.
     #[error("{low}:{high} rpm: a range goes from a speed above 0 to a higher one")]
     NoRange { low: f64, high: f64 },
@@ -260,6 +263,7 @@ fn coexistence(families: &[AttractorFamily], range: [f64; 2]) -> Vec<Coexistence
     let open = |end: &Option<Transition>| end.as_ref().map_or(0.0, |end| end.bracket[1] - end.bracket[0]);
     let mut ends: Vec<(f64, f64)> = ends.map(|(value, end)| (value, open(end))).collect();
     ends.sort_by(|one, other| one.0.total_cmp(&other.0));
+    // Of a speed, rpm; of a number with a range below 1 as much of that.
     let rounding = tolerance::SPEED_FOUND.value * (range[1] - range[0]).min(1.0);
     let mut found: Vec<Coexistence> = Vec::new();
     for pair in ends.windows(2) {

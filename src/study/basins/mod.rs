@@ -16,5 +16,5 @@ mod section;
 
 pub use grid::{Basin, Basins, Grid, GridError, SectionStarts, States};
 pub use manifold::{Curve, Extent, Reversed, Saddle};
-pub use over::{BasinsAt, BasinsOver, Begun};
+pub use over::{BasinsAt, BasinsOver, Begun, SharesOf};
 pub use section::{Border, Section, Summary};

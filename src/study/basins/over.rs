@@ -2,9 +2,9 @@
 
 use std::time::Instant;
 
-use super::{Basins, Section, SectionStarts, States};
+use super::{Basin, Basins, Section, SectionStarts, States};
 use crate::flight::State;
-use crate::orbit::long_run::Budget;
+use crate::orbit::long_run::{Budget, Kind};
 use crate::progress::{Unwatched, Watch};
 use crate::study::StudyError;
 use crate::study::survey::{Axis, Over, Place, Varied};
@@ -77,7 +77,38 @@ impl BasinsAt {
     }
 }
 
+/// A kind of motion, with its revolutions and impacts where it repeats.
+pub type Motion = (Kind, Option<(u64, u64)>);
+
+/// The share of the starts that end on motions of one kind and period, at each value: none where nothing was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SharesOf {
+    /// The motion.
+    pub motion: Motion,
+    /// The value, and the share.
+    pub shares: Vec<[f64; 2]>,
+}
+
 impl BasinsOver {
+    /// The shares by kind and period, that of most starts first; 0 where no start ends on such a motion.
+    pub fn shares(&self) -> Vec<SharesOf> {
+        let found = || self.at.iter().filter_map(|at| Some((at.place.across(), &at.found.as_ref().ok()?.parts)));
+        let of = |part: &Basin| (part.ending.kind(), part.ending.period());
+        let mut motions: Vec<Motion> = found().flat_map(|(_, parts)| parts.iter().map(of)).collect();
+        motions.sort_unstable();
+        motions.dedup();
+        let shares = |motion: Motion| {
+            let share = |parts: &[Basin]| -> f64 {
+                parts.iter().filter(|part| of(part) == motion).map(|part| part.share.value).sum()
+            };
+            SharesOf { motion, shares: found().map(|(value, parts)| [value, share(parts)]).collect() }
+        };
+        let mut all: Vec<SharesOf> = motions.into_iter().map(shares).collect();
+        let sum = |it: &SharesOf| it.shares.iter().map(|[_, share]| share).sum::<f64>();
+        all.sort_by(|one, other| sum(other).total_cmp(&sum(one)));
+        all
+    }
+
     /// What starts on the section at `cam_angle`, rad, come to at each value; `watch` is told value by value.
     pub fn new(
         over: &Over<'_>,

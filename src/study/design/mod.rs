@@ -318,14 +318,12 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
         _ => model.study.map(|study| [study.rpm_min, study.rpm_max]),
     });
     let (over, values): (Over<'_>, Vec<f64>) = match (&asked.over, asked.rpm) {
-        (Some(axis), Some([rpm, other])) if rpm == other => {
-            (Over::new(model, axis.parameter.clone(), rpm)?, axis.values.to_vec())
-        }
-        (Some(_), _) => return Err(StudyError::OneSpeed),
+        (Some(_), Some([low, high])) if low < high => return Err(StudyError::RangeAndNumber { low, high }),
+        (Some(axis), rpm) => (Over::new(model, axis.parameter.clone(), rpm.map(|[rpm, _]| rpm))?, axis.values.to_vec()),
         (None, _) => {
             let [low, high] = range.ok_or(StudyError::NoSpeeds)?;
             let speeds = Values::linear(low, high, if low == high { 1 } else { asked.speeds.max(2) as usize });
-            (Over::speed(model, low)?, speeds.all().collect())
+            (Over::speed(model)?, speeds.all().collect())
         }
     };
     // By another number the loads move along with the cam: how far is not known.

@@ -1,4 +1,4 @@
-//! What a survey goes through: values of one number of the model.
+//! Axes of a survey: the values of one number of the model.
 
 use std::fmt::Display;
 use std::sync::Arc;
@@ -6,10 +6,9 @@ use std::sync::Arc;
 use crate::orbit::Parameter;
 
 /// How values lie between the lowest and the highest.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Spacing {
     /// Evenly.
-    #[default]
     Linear,
     /// Evenly in their logarithm: each is the same multiple of the one before.
     Logarithmic,

@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 
 use super::axis::{Axis, Place};
+use super::over::{self, OverError};
 use super::threads::SweepError;
 use crate::model::Model;
 use crate::orbit::{Family, FamilyError, Parameter};
@@ -28,15 +29,9 @@ pub struct Survey {
 /// Why there is no survey.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SurveyError {
-    /// No speed is named.
-    #[error("{axes} rpm: --rpm says at which speed")]
-    NoSpeed {
-        /// That what varies is not.
-        axes: String,
-    },
-    /// Two speeds are named.
-    #[error("--rpm is for a survey of which no axis is rpm")]
-    TwoSpeeds,
+    /// The speed is named twice, or never, or the machine cannot be.
+    #[error(transparent)]
+    Over(#[from] OverError),
     /// Both axes are one number.
     #[error("--x and --y are both {0}: a chart is over two numbers")]
     OneNumber(String),
@@ -46,9 +41,6 @@ pub enum SurveyError {
         /// How many were asked for.
         points: usize,
     },
-    /// The machine cannot be.
-    #[error(transparent)]
-    Family(#[from] FamilyError),
     /// The threads could not be started.
     #[error(transparent)]
     Threads(#[from] SweepError),
@@ -81,22 +73,10 @@ impl Survey {
         if !(1..=Self::MOST).contains(&points) {
             return Err(SurveyError::Points { points });
         }
-        let axes = || std::iter::once(&across).chain(&up);
-        let speed = axes().find(|axis| axis.parameter == Parameter::Speed);
-        let rpm = match (speed, rpm) {
-            // Where one of them cannot be turned at, that is told of its point.
-            (Some(axis), None) => axis.values.iter().copied().find(|rpm| *rpm > 0.0 && rpm.is_finite()).unwrap_or(1.0),
-            (None, Some(rpm)) => rpm,
-            (Some(_), Some(_)) => return Err(SurveyError::TwoSpeeds),
-            (None, None) => {
-                let alone = || format!("{} is not", across.parameter.name());
-                return Err(SurveyError::NoSpeed {
-                    axes: up.as_ref().map_or_else(alone, |_| "neither axis is".into()),
-                });
-            }
-        };
-        // What is wrong with the model itself is told at once, and not at every point.
-        let family = Family::new(model, rpm, axes().map(|axis| axis.parameter.clone()).collect())?;
+        let free: Vec<Parameter> = std::iter::once(&across).chain(&up).map(|axis| axis.parameter.clone()).collect();
+        let rpm = over::speed(&free, rpm)?;
+        // What is wrong with the model itself is told at once, and not at every point; of a speed that cannot be turned at, at its point.
+        let family = Family::new(model, rpm, free).map_err(OverError::from)?;
         Ok(Self { family, rpm, across, up })
     }
 

@@ -31,7 +31,7 @@ mod threads;
 pub use axis::{Axis, Place, Spacing, Values, Varied};
 pub use ensemble::{Attractor, Ensemble, Failed, Wandering, attractors_of, long_run};
 pub use grid::{Found, RunError, Survey, SurveyError};
-pub use over::Over;
+pub use over::{Over, OverError};
 pub use pipeline::{Block, Counted, Tally};
 pub use places::Places;
 pub use point::{Point, growth};

@@ -19,16 +19,47 @@ pub struct Over<'a> {
     pub rpm: f64,
 }
 
+/// Why nothing can be gone over.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum OverError {
+    /// No speed is named, and what varies is none.
+    #[error("{} rpm: --rpm says at which speed", .0.as_ref().map_or("neither axis is".into(), |name| format!("{name} is not")))]
+    NoSpeed(Option<String>),
+    /// A speed is named, and what varies is the speed.
+    #[error("--rpm R is for a survey of which no axis is rpm")]
+    TwoSpeeds,
+    /// The machine cannot be.
+    #[error(transparent)]
+    Family(#[from] FamilyError),
+}
+
+/// The speed, rpm, of a survey over these numbers, of which `rpm` is named: any, where the speed varies.
+pub(super) fn speed(free: &[Parameter], rpm: Option<f64>) -> Result<f64, OverError> {
+    /// Where it varies, each machine has another.
+    const ANY: f64 = 1.0;
+    match (free.contains(&Parameter::Speed), rpm) {
+        (true, None) => Ok(ANY),
+        (true, Some(_)) => Err(OverError::TwoSpeeds),
+        (false, Some(rpm)) => Ok(rpm),
+        (false, None) => {
+            let alone = if let [one] = free { Some(one.name().to_owned()) } else { None };
+            Err(OverError::NoSpeed(alone))
+        }
+    }
+}
+
 impl<'a> Over<'a> {
-    /// The machines of `model` over a number, at `rpm` where that is not the speed.
-    pub fn new(model: &'a Model, parameter: Parameter, rpm: f64) -> Result<Self, FamilyError> {
-        let family = Family::new(model, rpm, vec![parameter.clone()])?;
+    /// The machines of `model` over a number, at `rpm`, which is named where that is not the speed.
+    pub fn new(model: &'a Model, parameter: Parameter, rpm: Option<f64>) -> Result<Self, OverError> {
+        let free = vec![parameter.clone()];
+        let rpm = speed(&free, rpm)?;
+        let family = Family::new(model, rpm, free)?;
         Ok(Self { model, parameter, family, rpm })
     }
 
-    /// The machines of `model` over its speed; `rpm` is one of them.
-    pub fn speed(model: &'a Model, rpm: f64) -> Result<Self, FamilyError> {
-        Self::new(model, Parameter::Speed, rpm)
+    /// The machines of `model` over its speed.
+    pub fn speed(model: &'a Model) -> Result<Self, OverError> {
+        Self::new(model, Parameter::Speed, None)
     }
 
     /// Whether the speed varies.

@@ -163,9 +163,7 @@ pub fn speeds(
     resolution: &Resolution,
     watch: &dyn Watch,
 ) -> Result<SpeedSurvey, AttractorsError> {
-    // A range that is none is refused whatever the speed.
-    let over = Over::speed(model, if range[0] > 0.0 && range[0].is_finite() { range[0] } else { 1.0 }).unwrap();
-    speeds::speeds(&over, range, resolution, watch)
+    speeds::speeds(&Over::speed(model).unwrap(), range, resolution, watch)
 }
 
 /// Speeds that are so far apart at most, rpm.
