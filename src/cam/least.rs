@@ -43,7 +43,7 @@ impl Cam {
         let segments = self.segments().iter().enumerate();
         let all: Vec<Least> = segments.flat_map(|(index, segment)| places(index, segment, UPSIDE_DOWN)).collect();
         let highest = self.highest().value;
-        let size = all.iter().fold(0.0_f64, |size, place| size.max(place.value.abs()));
+        let size = highest.abs().max(self.lowest().value.abs());
         let mut tops: Vec<Least> = Vec::new();
         for place in all.into_iter().map(|place| Least { value: -place.value, ..place }) {
             let is_new = |known: &Least| apart(known.angle, place.angle) > tolerance::CORNER_ANGLE.value;

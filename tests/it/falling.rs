@@ -55,6 +55,22 @@ fn a_swing_reaches_its_highest_point_and_nothing_below_its_lowest() {
     assert_eq!(swing.fall_to(0.0, at(0.0, 0.0)), None);
 }
 
+/// With negative damping, which is a flight backwards in time, a follower that begins at rest at `q0` has
+/// `q = q0 (r2 exp(r1 t) - r1 exp(r2 t))/(r2 - r1)`, for the roots of `r^2 + 2 zeta r + w0^2`: it goes through its equilibrium once.
+#[test]
+fn a_follower_at_rest_comes_down_through_an_equilibrium_that_repels() {
+    for (r1, r2) in [(1.0, 5.0), (0.2, 0.3), (0.01, 7.0)] {
+        let flight = flight(-0.5 * (r1 + r2), r1 * r2, 0.0);
+        let (time, state) = flight.fall_to(0.0, at(0.4, 0.0)).unwrap();
+        assert_relative_eq!(time, (r2 / r1 as f64).ln() / (r2 - r1), max_relative = 1e-12);
+        assert_relative_eq!(state.velocity, 0.4 * r1 * r2 * ((r1 * time).exp() - (r2 * time).exp()) / (r2 - r1), max_relative = 1e-11);
+        let deeper = flight.fall_to(-3.0, at(0.4, 0.0)).unwrap();
+        assert_relative_eq!(flight.fly(at(0.4, 0.0), deeper.0).1.position, -3.0, max_relative = 1e-11);
+        // In its equilibrium it stays.
+        assert_eq!(flight.fall_to(-0.1, at(0.0, 0.0)), None);
+    }
+}
+
 /// `q = v (1 - exp(-2 zeta t))/(2 zeta)`: damping alone stops a follower after `v/(2 zeta)`, and it comes down to all that is nearer.
 #[test]
 fn damping_alone_stops_a_follower_after_its_way() {
