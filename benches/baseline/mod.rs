@@ -11,6 +11,8 @@
 //! the start of the flight on, and bisecting the first change of sign. What it cannot do: see the follower dip into the cam
 //! and out again between two points of the grid, and follow impacts that accumulate, which it ends with a cut-off.
 
+#![allow(clippy::disallowed_methods, reason = "what is timed beside the project uses the standard library")]
+
 use std::f64::consts::TAU;
 
 use corner_impact::cam::{Cam, Law};

@@ -1,5 +1,7 @@
 //! The pieces of work that are timed, each done by the baseline and by the project's own simulator.
 
+#![allow(clippy::disallowed_methods, reason = "what is timed beside the project uses the standard library")]
+
 use std::f64::consts::{PI, TAU};
 use std::hint::black_box;
 use std::ops::ControlFlow;

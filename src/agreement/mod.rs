@@ -9,6 +9,7 @@ use serde::{Serialize, Serializer};
 
 use crate::cam::Side;
 use crate::corner::map::{Eigenvalue, Route, RouteName};
+use crate::elementary;
 use crate::tolerance::{Bound, Comparison, agreement_bound};
 
 /// What is compared. The letters are the paper's, and a hat is its own estimate.
@@ -287,5 +288,5 @@ pub(crate) fn fewest_shared_decimals(comparisons: &[Agreement]) -> Option<u32> {
 ///
 /// `None` when they are equal to the last digit; at least 0.
 pub fn shared_decimals(diff: f64) -> Option<u32> {
-    (diff != 0.0).then(|| if diff.is_finite() { (-(2.0 * diff).log10()).floor().max(0.0) as u32 } else { 0 })
+    (diff != 0.0).then(|| if diff.is_finite() { (-elementary::log10(2.0 * diff)).floor().max(0.0) as u32 } else { 0 })
 }

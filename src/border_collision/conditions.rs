@@ -10,6 +10,7 @@ use serde::Serialize;
 use super::local_map::{LocalMap, characteristic};
 use super::word::Word;
 use crate::corner::SideMap;
+use crate::elementary;
 use crate::tolerance::{self, Tolerance};
 
 /// What rests on a condition.
@@ -142,7 +143,7 @@ fn continuity(map: &LocalMap) -> (f64, f64) {
 
 /// The eigenvalue nearest to the unit circle.
 fn modulus(side: &SideMap) -> (f64, f64) {
-    let off = side.eigenvalues().map(|value| value.re.hypot(value.im) - 1.0);
+    let off = side.eigenvalues().map(|value| elementary::hypot(value.re, value.im) - 1.0);
     let nearest = if off[0].abs() <= off[1].abs() { off[0] } else { off[1] };
     (nearest, nearest.abs())
 }

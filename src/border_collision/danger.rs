@@ -20,6 +20,7 @@ use super::long_run::{End, Escape};
 use super::outcome::LocalOutcome;
 use super::word::Word;
 use crate::bracket::{Width, halve};
+use crate::elementary;
 use crate::known::Known;
 use crate::tolerance;
 
@@ -180,7 +181,7 @@ impl LocalMap {
         let end = |index: u32| {
             // Off the axes, which can be invariant.
             let angle = TAU * (f64::from(index) + 0.3) / f64::from(SAMPLED);
-            self.end(Vector2::new(angle.cos() * scales[0], angle.sin() * scales[1]), 0.0)
+            self.end(Vector2::new(elementary::cos(angle) * scales[0], elementary::sin(angle) * scales[1]), 0.0)
         };
         let escapes: Vec<Escape> = (0..SAMPLED)
             .filter_map(|index| match end(index) {
@@ -214,7 +215,7 @@ impl LocalMap {
         let omega = TAU / period;
         let around = |index: u32| {
             let angle = TAU * f64::from(index) / f64::from(DIRECTIONS);
-            Vector2::new(angle.cos(), angle.sin() * omega)
+            Vector2::new(elementary::cos(angle), elementary::sin(angle) * omega)
         };
         let around: Vec<_> = (0..DIRECTIONS).map(around).collect();
         Returns {

@@ -18,6 +18,7 @@ use nalgebra::Vector2;
 
 use super::local_map::LocalMap;
 use crate::cam::Side;
+use crate::elementary;
 use crate::interval::Interval;
 
 /// Sectors on half an edge of the square; the proof is tried with few first. Powers of two: the points between sectors are exact.
@@ -50,7 +51,7 @@ impl Homogeneous {
     /// From the matrices by rows, minus first, and e, in coordinates with about these units.
     pub fn new(matrices: [[[Interval; 2]; 2]; 2], border: [Interval; 2], units: Vector2<f64>) -> Self {
         // Powers of two, so that the change of units is exact.
-        let [one, two] = [units[0], units[1]].map(|unit| 2.0_f64.powi(unit.log2().round() as i32));
+        let [one, two] = [units[0], units[1]].map(|unit| 2.0_f64.powi(elementary::log2(unit).round() as i32));
         let matrices = matrices.map(|[[a, b], [c, d]]| [[a, b * (two / one)], [c * (one / two), d]]);
         Self { matrices, border: [border[0] * one, border[1] * two] }
     }

@@ -12,6 +12,7 @@ use super::conditions::{Condition, Decides, conditions};
 use super::local_map::{LocalMap, stability};
 use crate::cam::Side;
 use crate::corner::map::{CornerMap, Eigenvalue, SideMap, Sides};
+use crate::elementary;
 use crate::orbit::{Stability, eigenvalues};
 use crate::tolerance;
 
@@ -143,7 +144,7 @@ pub fn scenario([minus, plus]: &[Matrix2<f64>; 2]) -> Result<Scenario, Degenerat
 fn counts(side: Side, eigenvalues: &[Eigenvalue; 2]) -> Result<[usize; 2], Degenerate> {
     for Eigenvalue { re, im } in *eigenvalues {
         for boundary in [1.0, -1.0] {
-            if !((re - boundary).hypot(im) > tolerance::UNIT_EIGENVALUE.value) {
+            if !(elementary::hypot(re - boundary, im) > tolerance::UNIT_EIGENVALUE.value) {
                 return Err(Degenerate::EigenvalueOnBoundary { side, value: re, boundary });
             }
         }

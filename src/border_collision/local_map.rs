@@ -8,6 +8,7 @@ use nalgebra::{Matrix2, RowVector2, Vector2};
 use super::word::Word;
 use crate::cam::Side;
 use crate::corner::map::{CornerMap, Eigenvalue, SideMap};
+use crate::elementary;
 use crate::orbit::Stability;
 use crate::tolerance;
 
@@ -132,7 +133,7 @@ impl LocalMap {
 
 /// What becomes of small deviations under a matrix with these eigenvalues.
 pub(super) fn stability(eigenvalues: &[Eigenvalue; 2]) -> Stability {
-    let [one, two] = eigenvalues.map(|value| value.re.hypot(value.im));
+    let [one, two] = eigenvalues.map(|value| elementary::hypot(value.re, value.im));
     let modulus = if one > two { one } else { two };
     Stability::of_modulus(modulus, tolerance::UNIT_EIGENVALUE.value)
 }

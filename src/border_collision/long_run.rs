@@ -12,6 +12,7 @@ use super::trapping::Region;
 use super::word::Word;
 use crate::cam::Side;
 use crate::corner::map::Eigenvalue;
+use crate::elementary;
 use crate::estimate::Estimate;
 use crate::tolerance;
 
@@ -207,7 +208,7 @@ impl Tangent {
     fn carry(&mut self, a: &Matrix2<f64>) {
         let carried = (a * self.direction.component_mul(&self.scales)).component_div(&self.scales);
         let stretch = carried.norm();
-        self.growth += stretch.ln();
+        self.growth += elementary::ln(stretch);
         if stretch > 0.0 {
             self.direction = carried / stretch;
         }

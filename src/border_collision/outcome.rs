@@ -9,6 +9,7 @@ use super::robust_chaos::RobustChaos;
 use super::trapping::Region;
 use super::word::Word;
 use crate::cam::Side;
+use crate::elementary;
 use crate::estimate::Estimate;
 use crate::tolerance;
 
@@ -89,7 +90,7 @@ impl LocalMap {
             (0..DIRECTIONS).map(move |index| {
                 // Off the axes, which can be invariant.
                 let angle = std::f64::consts::TAU * (f64::from(index) + 0.3) / f64::from(DIRECTIONS);
-                Vector2::new(angle.cos() * scales[0], angle.sin() * scales[1]) * *radius
+                Vector2::new(elementary::cos(angle) * scales[0], elementary::sin(angle) * scales[1]) * *radius
             })
         });
         let center = (mu != 0.0).then(Vector2::zeros);
@@ -129,7 +130,8 @@ impl End {
     pub fn basis(&self) -> String {
         match self {
             Self::Periodic(orbit) => {
-                let largest = orbit.multipliers.iter().map(|value| value.re.hypot(value.im)).fold(0.0, f64::max);
+                let largest =
+                    orbit.multipliers.iter().map(|value| elementary::hypot(value.re, value.im)).fold(0.0, f64::max);
                 format!(
                     "the motion repeats {}, whose orbit lies on its own sides and has multipliers up to {largest:.6}",
                     orbit.word
@@ -170,7 +172,7 @@ impl End {
             (Self::Periodic(one), Self::Periodic(other)) => one.word == other.word,
             (Self::Chaotic(Chaos { exponent: one, .. }), Self::Chaotic(Chaos { exponent: other, .. })) => {
                 let apart = (one.value - other.value).abs() * tolerance::CHAOTIC_EXPONENT.value;
-                apart <= one.error.hypot(other.error).max(tolerance::DEGENERATE.value)
+                apart <= elementary::hypot(one.error, other.error).max(tolerance::DEGENERATE.value)
             }
             _ => self.name() == other.name(),
         }

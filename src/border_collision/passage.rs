@@ -14,6 +14,7 @@ use nalgebra::Vector2;
 
 use super::LocalMap;
 use crate::cam::Side;
+use crate::elementary;
 use crate::flight::State;
 use crate::section::StroboscopicMap;
 use crate::simulate::SimulateError;
@@ -52,7 +53,7 @@ pub fn revolutions_per_decade(map: &LocalMap) -> Option<f64> {
         (Some(multiplier), None) | (None, Some(multiplier)) => multiplier,
         _ => return None,
     };
-    Some(std::f64::consts::LN_10 / multiplier.ln())
+    Some(std::f64::consts::LN_10 / elementary::ln(multiplier))
 }
 
 /// Whether both left, and after about as many revolutions.

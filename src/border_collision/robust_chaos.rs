@@ -23,6 +23,7 @@ use super::local_map::LocalMap;
 use super::word::Word;
 use crate::cam::Side;
 use crate::corner::SideMap;
+use crate::elementary;
 use crate::interval::{Interval, Number};
 use crate::known::Known;
 use crate::orbit::Eigenvalue;
@@ -110,7 +111,7 @@ impl LocalMap {
             (is_there && hypotheses.iter().take(4).all(Condition::holds)).then(|| RobustChaos {
                 saddle,
                 hypotheses,
-                least_exponent: l.min(-minus_k).ln(),
+                least_exponent: elementary::ln(l.min(-minus_k)),
                 known: Known::Computed,
             })
         })

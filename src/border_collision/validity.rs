@@ -19,6 +19,7 @@ use crate::cam::{Cam, Side};
 use crate::corner::CornerImpact;
 use crate::corner::map::Sides;
 use crate::corner::second_order::CurvedMap;
+use crate::elementary;
 use crate::flight::State;
 use crate::model::Model;
 use crate::section::StroboscopicMap;
@@ -148,7 +149,7 @@ impl Real<'_> {
 
     fn difference(&self, real: Vector2<f64>, predicted: Vector2<f64>) -> Difference {
         let omega = TAU / self.at.period;
-        let size = |x: Vector2<f64>| x[0].hypot(x[1] / omega);
+        let size = |x: Vector2<f64>| elementary::hypot(x[0], x[1] / omega);
         let relative = size(real - predicted) / size(predicted);
         relative.is_finite().then_some((real, relative))
     }

@@ -4,6 +4,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::jet::{Jet, square_root};
 use super::lift::Lift;
+use crate::elementary;
 use crate::interval::Number;
 use crate::tolerance;
 
@@ -60,8 +61,8 @@ impl Arc {
     pub fn climb(&self, from: f64, turn: f64) -> (f64, Lift) {
         let half = 0.5 * turn;
         let kappa = self.distance;
-        let (half_sin, half_cos) = half.sin_cos();
-        let (sin, cos) = (from - self.direction + half).sin_cos();
+        let (half_sin, half_cos) = elementary::sin_cos(half);
+        let (sin, cos) = elementary::sin_cos(from - self.direction + half);
         // cos(phi + d) - cos phi = -2 sin(phi + d/2) sin(d/2)
         let shift = -2.0 * kappa * sin * half_sin;
         // w1 - w0 = (u1 - u0)/(w1 + w0),  u1 - u0 = -kappa^2 sin(2 phi + d) sin d
@@ -89,8 +90,8 @@ impl Arc {
     #[inline]
     fn high_bounds(&self, start: f64, end: f64) -> [f64; 2] {
         let (middle, reach) = (0.5 * (start + end), 0.5 * (end - start));
-        let (sin, cos) = (middle - self.direction).sin_cos();
-        let turn = reach.sin_cos();
+        let (sin, cos) = elementary::sin_cos(middle - self.direction);
+        let turn = elementary::sin_cos(reach);
         let kappa = self.distance.abs();
         let largest = largest_sine((sin, cos), turn, reach);
         // The smallest w decides whether the ray reaches the circle all the way.
@@ -120,7 +121,7 @@ impl Arc {
 
     /// Lift and high derivatives at `angle`, rad.
     pub fn jet(&self, angle: f64) -> Jet {
-        let (sin, cos) = (angle - self.direction).sin_cos();
+        let (sin, cos) = elementary::sin_cos(angle - self.direction);
         let kappa = self.distance;
         // c = kappa cos(phi + t) + w,  w^2 = rho^2 - kappa^2/2 + kappa^2/2 cos(2 phi + 2 t)
         let half_square = 0.5 * kappa * kappa;

@@ -10,6 +10,7 @@ use std::f64::consts::{PI, TAU};
 use super::arc::Arc;
 use super::law::Law;
 use super::{Cam, Joint};
+use crate::elementary;
 use crate::model::{ArcsProfile, Model, ModelError};
 
 /// The cam of an `arcs` profile, or which field keeps its circles from touching.
@@ -31,7 +32,7 @@ pub(super) fn build(model: &Model, profile: &ArcsProfile) -> Result<Cam, ModelEr
         return Err(model.reject("cam.nose_radius", words));
     }
     let (flank_start, nose_end) = (flank_start_deg.to_radians(), nose_end_deg.to_radians());
-    let (span_sin, span_cos) = (nose_end - flank_start).sin_cos();
+    let (span_sin, span_cos) = elementary::sin_cos(nose_end - flank_start);
     // kappa1 = rho1 - rho0 puts O1 opposite R; |O1 O2| = rho1 - rho2 gives kappa2 by the law of cosines.
     let flank_distance = flank_radius - base_radius;
     let centres = flank_radius - nose_radius;
@@ -49,7 +50,7 @@ pub(super) fn build(model: &Model, profile: &ArcsProfile) -> Result<Cam, ModelEr
     let (nose_x, nose_y) = (nose_distance * span_cos, nose_distance * span_sin);
     let stretch = flank_radius / centres;
     let (x, y) = (stretch * (nose_x + flank_distance) - flank_distance, stretch * nose_y);
-    let meeting = flank_start + y.atan2(x);
+    let meeting = flank_start + elementary::atan2(y, x);
     let flank = Arc { distance: flank_distance, direction: flank_start + PI, radius: flank_radius };
     let nose = Arc { distance: nose_distance, direction: nose_end, radius: nose_radius };
     let base = Law::Dwell(base_radius);

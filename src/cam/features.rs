@@ -13,6 +13,7 @@ use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
 pub(super) use super::smoothing::Features;
+use crate::elementary;
 use crate::model::{Row, Smoothing, TableProfile};
 use crate::tolerance;
 
@@ -204,7 +205,7 @@ impl<'a> Rows<'a> {
             if end - row + 1 >= FEWEST && hidden <= tolerance::HIDDEN_CURVATURE.value * self.curvature {
                 // What leaves at a corner is off by the room after c'' x^2/2 = 2 room, what leaves smoothly after c''' x^3/6.
                 let sudden = (4.0 * room / self.curvature).sqrt();
-                let smooth = (12.0 * room * RISE / self.curvature).cbrt().max(sudden);
+                let smooth = elementary::cbrt(12.0 * room * RISE / self.curvature).max(sudden);
                 let snap = |end: f64, inward: f64| {
                     let near = |corner: &f64| {
                         let away = (corner - end + 0.5 * TAU).rem_euclid(TAU) - 0.5 * TAU;

@@ -15,6 +15,7 @@ use super::features::{self, Features};
 use super::smoothing::{Fitted, Layout, Smoothed};
 use super::{Cam, Joint};
 use crate::bracket::{Width, halve};
+use crate::elementary;
 use crate::model::{Model, ModelError, Smoothing, TableProfile, Tolerance};
 
 /// A smoothing spline fitted to a table.
@@ -65,7 +66,7 @@ pub(crate) fn fitted(model: &Model) -> Result<Option<Fitted>, ModelError> {
     let smoothed = model.table().and_then(|table| Some((table, table.spline.smoothing()?)));
     let fitted = smoothed.map(|(table, smoothing)| {
         let fit = fit(model, table, smoothing)?;
-        Ok(fit.layout.fitted(10.0_f64.powf(fit.weight)))
+        Ok(fit.layout.fitted(elementary::powf(10.0_f64, fit.weight)))
     });
     fitted.transpose()
 }
@@ -85,7 +86,9 @@ pub(crate) fn fit(model: &Model, profile: &TableProfile, smoothing: &Smoothing) 
         Layout::new(&angles, features).ok_or_else(too_few)
     };
     let weighed = |layout: &Layout| {
-        weight(model, profile, smoothing.tolerance, &|weight| layout.smoothed(&lifts, 10.0_f64.powf(weight)))
+        weight(model, profile, smoothing.tolerance, &|weight| {
+            layout.smoothed(&lifts, elementary::powf(10.0_f64, weight))
+        })
     };
     // Dwells that were found and leave no motion between them are none: the rows are so rough that all of them look alike.
     if smoothing.dwells_deg.is_none() && layout(&features).is_err() {
@@ -95,12 +98,12 @@ pub(crate) fn fit(model: &Model, profile: &TableProfile, smoothing: &Smoothing) 
     let mut weight = weighed(&laid)?;
     if (smoothing.corners_deg.is_none() || smoothing.are_near) && !features.corners.is_empty() {
         features = polished(features, TAU / angles.len() as f64, |features| {
-            layout(features).ok()?.smoothed(&lifts, 10.0_f64.powf(weight)).map(|spline| spline.least)
+            layout(features).ok()?.smoothed(&lifts, elementary::powf(10.0_f64, weight)).map(|spline| spline.least)
         });
         laid = layout(&features)?;
         weight = weighed(&laid)?;
     }
-    let spline = laid.smoothed(&lifts, 10.0_f64.powf(weight)).ok_or_else(|| overflow(model, profile))?;
+    let spline = laid.smoothed(&lifts, elementary::powf(10.0_f64, weight)).ok_or_else(|| overflow(model, profile))?;
     let noise = (spline.squares / (spline.moving - spline.freedom)).sqrt();
     Ok(Fit { layout: laid, weight, noise, spline, features })
 }

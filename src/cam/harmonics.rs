@@ -2,6 +2,7 @@
 
 use super::jet::Jet;
 use super::lift::Lift;
+use crate::elementary;
 use crate::interval::Number;
 use crate::model::HarmonicProfile;
 use crate::tolerance;
@@ -32,13 +33,14 @@ impl Harmonics {
     /// From the amplitudes and phases of `offset + sum a_k cos(k theta + p_k)`.
     pub fn new(profile: &HarmonicProfile) -> Self {
         let of_phase = |(amplitude, phase_deg): (&f64, &f64)| {
-            let (sin, cos) = phase_deg.to_radians().sin_cos();
+            let (sin, cos) = elementary::sin_cos(phase_deg.to_radians());
             // a cos(x + p) = a cos p cos x - a sin p sin x
             Term { cosine: amplitude * cos, sine: -amplitude * sin }
         };
         let terms: Box<[Term]> = profile.amplitudes.iter().zip(&profile.phases_deg).map(of_phase).collect();
         let sum = |power: i32| {
-            let term = |(k, term): (usize, &Term)| (k as f64 + 1.0).powi(power) * term.cosine.hypot(term.sine);
+            let term =
+                |(k, term): (usize, &Term)| (k as f64 + 1.0).powi(power) * elementary::hypot(term.cosine, term.sine);
             terms.iter().enumerate().map(term).sum()
         };
         let bounds = [sum(3), sum(4)];

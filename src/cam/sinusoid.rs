@@ -2,6 +2,7 @@
 
 use super::jet::Jet;
 use super::lift::Lift;
+use crate::elementary;
 use crate::interval::Number;
 use crate::tolerance;
 
@@ -71,7 +72,7 @@ impl Sinusoid {
     #[inline]
     pub fn third_bound(&self, start: f64, end: f64) -> f64 {
         let frequency = self.frequency.abs();
-        let everywhere = frequency.powi(3) * self.sine.hypot(self.cosine);
+        let everywhere = frequency.powi(3) * elementary::hypot(self.sine, self.cosine);
         let from_middle = self.lift(0.5 * (start + end)).third.abs() + 0.5 * (end - start) * frequency * everywhere;
         // Rounding of the phase and of the sum.
         let rounding = tolerance::JET_ROUNDING.value * (1.0 + frequency) * everywhere;
@@ -80,7 +81,7 @@ impl Sinusoid {
 
     /// A bound on `|c''''|` anywhere: `w^4 |(A, B)|`.
     pub fn fourth_bound(&self, _start: f64, _end: f64) -> f64 {
-        self.frequency.powi(4) * self.sine.hypot(self.cosine) * (1.0 + tolerance::JET_ROUNDING.value)
+        self.frequency.powi(4) * elementary::hypot(self.sine, self.cosine) * (1.0 + tolerance::JET_ROUNDING.value)
     }
 
     /// Lift and high derivatives at `angle`, rad.

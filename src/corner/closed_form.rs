@@ -12,6 +12,7 @@ use super::corner_impact::CornerImpact;
 use super::map::{CornerMap, Line, Own, Route, RouteName, SideMap};
 use crate::bracket::secants;
 use crate::cam::Lift;
+use crate::elementary;
 use crate::model::{Follower, Model};
 use crate::tolerance;
 
@@ -104,16 +105,17 @@ pub(super) fn propagator(zeta: f64, omega0_squared: f64, t: f64) -> Matrix2<f64>
     let square = omega0_squared - zeta * zeta;
     let omega = square.abs().sqrt();
     // cos = e^{-zeta t} cos(ws t), sin = e^{-zeta t} sin(ws t)/ws
-    let decay = (-zeta * t).exp();
+    let decay = elementary::exp(-zeta * t);
     let x = omega * t;
     let (cos, sin) = if square > 0.0 {
-        (decay * x.cos(), decay * x.sin() / omega)
+        (decay * elementary::cos(x), decay * elementary::sin(x) / omega)
     } else if x < 1.0 {
-        let ratio = if x == 0.0 { 1.0 } else { x.sinh() / x };
-        (decay * x.cosh(), decay * t * ratio)
+        let ratio = if x == 0.0 { 1.0 } else { elementary::sinh(x) / x };
+        (decay * elementary::cosh(x), decay * t * ratio)
     } else {
         // e^{-zeta t} and cosh one by one would under- and overflow.
-        let (slow, fast) = ((-omega0_squared / (zeta + omega) * t).exp(), (-(zeta + omega) * t).exp());
+        let (slow, fast) =
+            (elementary::exp(-omega0_squared / (zeta + omega) * t), elementary::exp(-(zeta + omega) * t));
         (0.5 * (slow + fast), (slow - fast) / (2.0 * omega))
     };
     Matrix2::new(cos + zeta * sin, sin, -omega0_squared * sin, cos - zeta * sin)

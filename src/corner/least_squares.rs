@@ -15,6 +15,7 @@ use super::map::{Own, Route, RouteName, SideMap, Sides, Uncertainty};
 use super::one_sided::{OneSidedMap, SampleError};
 use super::varied::Varied;
 use crate::cam::Cam;
+use crate::elementary;
 use crate::model::Model;
 use crate::tolerance;
 
@@ -127,7 +128,8 @@ fn in_scales(map: &SideMap, scales: &Vector3<f64>) -> f64 {
 fn design_points() -> Vec<Vector3<f64>> {
     // Fractional parts of n/g, n/g^2, n/g^3 with g^4 = g + 1 fill the cube evenly.
     const G: f64 = 1.2207440846057596;
-    let coordinate = |n: usize, power: i32| (std::f64::consts::PI * (0.5 + n as f64 / G.powi(power)).fract()).cos();
+    let coordinate =
+        |n: usize, power: i32| elementary::cos(std::f64::consts::PI * (0.5 + n as f64 / G.powi(power)).fract());
     (0..POINTS).map(|n| Vector3::new(coordinate(n, 1), coordinate(n, 2), coordinate(n, 3))).collect()
 }
 

@@ -17,6 +17,7 @@ use super::confirm::Candidate;
 use super::corner_impact::Way;
 use super::period_equation::at_corner;
 use crate::cam::{Cam, Corner, Side, apart};
+use crate::elementary;
 use crate::flight::State;
 use crate::model::{Model, Study};
 use crate::orbit::branch::Event as OnCorner;
@@ -47,11 +48,11 @@ pub fn shots(
     watch: &dyn Watch,
 ) -> Vec<Candidate> {
     let machine = Machine::new(cam.clone(), &model.follower, angular_velocity(1.0));
-    let step = |rpm: f64| rpm.ln() / SHOT_RATIO.ln();
+    let step = |rpm: f64| elementary::ln(rpm) / elementary::ln(SHOT_RATIO);
     let first = step(range.rpm_min / REACH).floor() as i32;
     let speeds = first..=step(range.rpm_max * REACH).ceil() as i32;
     let at = |index: i32| {
-        let rpm = SHOT_RATIO.powf(f64::from(index) + 0.5);
+        let rpm = elementary::powf(SHOT_RATIO, f64::from(index) + 0.5);
         let machine = machine.at_speed(angular_velocity(rpm));
         let (fastest, size) = (velocity_scale(&machine) / machine.angular_velocity(), lift_size(&machine));
         let of_corner = |corner: &Corner| {

@@ -14,6 +14,7 @@ use super::map::ImpactMap;
 use super::prove::{Covered, Refused, Relation, covered, loses, stands};
 use super::sample::{Crossing, Line, MOST_IMPACTS};
 use super::{HSet, Strip, entropy};
+use crate::elementary;
 use crate::progress::Watch;
 use crate::simulate::{Machine, SimulateError, angular_velocity};
 
@@ -152,7 +153,7 @@ fn lengths(part: f64) -> Vec<f64> {
 /// Lengths about one, from the next shorter to the next longer.
 fn near(length: f64) -> Vec<f64> {
     const STEPS: i32 = 4;
-    (-STEPS..=STEPS).map(|step| length * SHORTER.powf(f64::from(step) / f64::from(STEPS))).collect()
+    (-STEPS..=STEPS).map(|step| length * elementary::powf(SHORTER, f64::from(step) / f64::from(STEPS))).collect()
 }
 
 /// For a saddle the sizes of N, of some lengths to either side, that have most motions for heights of many sizes, with strips as they

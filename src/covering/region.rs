@@ -17,6 +17,7 @@ use serde::Serialize;
 
 use super::frame::{angular_velocities, stretched};
 use super::map::{Impact, ImpactMap, Unproved};
+use crate::elementary;
 use crate::interval::centred::Centred;
 use crate::interval::{Interval, Number};
 use crate::orbit::search::velocity_scale;
@@ -168,7 +169,7 @@ pub fn trap(
     let squares_per_degree = squares_per_degree.next_power_of_two();
     /// So many squares on top of each other reach to what few impacts are faster than.
     const SQUARES: f64 = 512.0;
-    let height = (velocity_scale(machine) / SQUARES).log2().floor().exp2() / f64::from(squares_per_degree);
+    let height = elementary::log2(velocity_scale(machine) / SQUARES).floor().exp2() / f64::from(squares_per_degree);
     let omega = angular_velocities([rpm; 2]);
     let plane = Plane { map: ImpactMap::new(machine), omega, per_degree: squares_per_degree, height };
     let mut cover = Cover { known: HashMap::new(), pending: HashMap::new(), turn: 360 * i64::from(squares_per_degree) };

@@ -1,5 +1,6 @@
 //! Points counted on a grid finer than print: any number of them in bounded memory.
 
+use crate::elementary;
 use serde::{Serialize, Serializer};
 
 use super::layout::{LARGEST, widened};
@@ -131,7 +132,7 @@ impl Density {
         });
         let full = full.unwrap_or(1) as f64;
         let shade = |count: usize| {
-            let share = (count as f64).ln_1p() / full.max(2.0).ln_1p();
+            let share = elementary::ln_1p(count as f64) / elementary::ln_1p(full.max(2.0));
             if count == 0 { 0 } else { ((share * f64::from(SHADES)) as u8).clamp(1, SHADES) }
         };
         let by_count: Vec<u8> = (0..=usize::from(most)).map(shade).collect();

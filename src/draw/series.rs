@@ -1,5 +1,6 @@
 //! The inside of a frame: each series as SVG, with no more bytes than print can show.
 
+use crate::elementary;
 use std::fmt::{self, Write};
 
 use super::density::{Density, SHADES, Shades};
@@ -93,9 +94,9 @@ impl Page {
             let Some(tip) = run.last() else { continue };
             let away = |place: &[f64; 2]| [tip[0] - place[0], tip[1] - place[1]];
             // The direction of the last stretch that is as long as the head.
-            let along = run.iter().rev().map(away).find(|[x, y]| x.hypot(*y) >= 0.7 * LENGTH);
+            let along = run.iter().rev().map(away).find(|[x, y]| elementary::hypot(*x, *y) >= 0.7 * LENGTH);
             let Some([x, y]) = along.or_else(|| run.first().map(away)) else { continue };
-            let length = x.hypot(y);
+            let length = elementary::hypot(x, y);
             if length > 0.0 {
                 let ([x, y], [back, side]) = ([x / length, y / length], [LENGTH, HALF]);
                 let foot = [tip[0] - back * x, tip[1] - back * y];

@@ -1,5 +1,7 @@
 //! Lines with no more points than print can show.
 
+use crate::elementary;
+
 /// How far a thinned line may be from the points left out, in units of the page: a thirtieth of a thin line.
 const CLOSE: f64 = 0.03;
 /// Half a unit of the page: of a line that is still too long, each such column keeps the first, lowest, highest and last.
@@ -65,22 +67,22 @@ struct Sleeve {
 impl Sleeve {
     fn towards(anchor: [f64; 2], point: [f64; 2]) -> Option<Self> {
         let along = [point[0] - anchor[0], point[1] - anchor[1]];
-        let reach = along[0].hypot(along[1]);
-        let open = (CLOSE / reach).min(1.0).asin();
+        let reach = elementary::hypot(along[0], along[1]);
+        let open = elementary::asin((CLOSE / reach).min(1.0));
         (reach > CLOSE).then_some(Self { along, gate: [-open, open], reach })
     }
 
     fn admits(&mut self, anchor: [f64; 2], point: [f64; 2]) -> bool {
         let to = [point[0] - anchor[0], point[1] - anchor[1]];
-        let distance = to[0].hypot(to[1]);
+        let distance = elementary::hypot(to[0], to[1]);
         let cross = self.along[0] * to[1] - self.along[1] * to[0];
-        let angle = cross.atan2(self.along[0] * to[0] + self.along[1] * to[1]);
+        let angle = elementary::atan2(cross, self.along[0] * to[0] + self.along[1] * to[1]);
         let [low, high] = self.gate;
         // A line that turns back leaves its farthest point.
         if distance < self.reach || angle < low || angle > high {
             return false;
         }
-        let open = (CLOSE / distance).min(1.0).asin();
+        let open = elementary::asin((CLOSE / distance).min(1.0));
         self.gate = [low.max(angle - open), high.min(angle + open)];
         self.reach = distance;
         true

@@ -1,5 +1,6 @@
 //! Where ticks stand: at 1, 2 or 5 times a power of ten, at the usual parts of a circle, or at powers of ten and their multiples.
 
+use crate::elementary;
 use serde::Serialize;
 
 /// Where ticks may stand.
@@ -81,11 +82,11 @@ fn powers([low, high]: [f64; 2], most: usize, fits: impl Fn(&[Tick]) -> bool) ->
         let powers = decades.clone().filter(|power| power.rem_euclid(every as i32) == 0);
         let all = powers.flat_map(|power| multiples.iter().map(move |digit| (*digit, power)));
         let tick = |(digit, power): (i32, i32)| {
-            let at = f64::from(power) + f64::from(digit).log10();
+            let at = f64::from(power) + elementary::log10(f64::from(digit));
             Tick { at: at.clamp(low, high), label: label(digit, power) }
         };
         let is_inside = |(digit, power): &(i32, i32)| {
-            let at = f64::from(*power) + f64::from(*digit).log10();
+            let at = f64::from(*power) + elementary::log10(f64::from(*digit));
             (low - ROUNDING..=high + ROUNDING).contains(&at)
         };
         all.filter(is_inside).map(tick).collect()
@@ -97,11 +98,11 @@ fn powers([low, high]: [f64; 2], most: usize, fits: impl Fn(&[Tick]) -> bool) ->
 
 fn exponent(largest: f64) -> i32 {
     let plain = (SMALL..LARGE).contains(&largest) || largest == 0.0;
-    if plain { 0 } else { (largest.log10() / 3.0).floor() as i32 * 3 }
+    if plain { 0 } else { (elementary::log10(largest) / 3.0).floor() as i32 * 3 }
 }
 
 fn first_step(least: f64, spacing: Spacing) -> f64 {
-    let power = 10_f64.powf(least.log10().floor());
+    let power = elementary::powf(10_f64, elementary::log10(least).floor());
     let decimal = [1.0, 2.0, 5.0, 10.0].into_iter().map(|part| part * power).find(|step| *step >= least);
     let step = decimal.unwrap_or(10.0 * power);
     match spacing {
@@ -135,7 +136,7 @@ fn multiples(low: f64, high: f64, step: f64, exponent: i32) -> Vec<Tick> {
 
 /// Decimals that show a step of 1, 2 or 5 times a power of ten, or of whole degrees.
 fn decimals(step: f64) -> usize {
-    (-(step.log10() + ROUNDING).floor()).clamp(0.0, 17.0) as usize
+    (-(elementary::log10(step) + ROUNDING).floor()).clamp(0.0, 17.0) as usize
 }
 
 /// `exponent` in raised digits after a ten, with the unit: what stands in brackets beside an axis's name.

@@ -7,6 +7,7 @@ use std::f64::consts::TAU;
 
 use crate::cam::{Arc, Cam, Corner, Law, Segment};
 use crate::draw::{Axis, BREAK, Beside, Colour, Figure, Marker, Panel, Series, Stroke, Word, extent};
+use crate::elementary;
 use crate::figures::cam::{corner_marks, corners_in_words, of_circles};
 use crate::figures::{Entry, drawn};
 
@@ -74,7 +75,7 @@ pub struct Piece {
 
 /// The place of a radius at a cam angle, rad.
 fn place(angle: f64, radius: f64) -> [f64; 2] {
-    [radius * angle.sin(), radius * angle.cos()]
+    [radius * elementary::sin(angle), radius * elementary::cos(angle)]
 }
 
 impl Outline {
@@ -105,7 +106,10 @@ impl Outline {
 
     /// The distance from the axis of the point farthest from it.
     fn farthest(&self) -> f64 {
-        self.pieces.iter().flat_map(|piece| &piece.points).fold(0.0_f64, |far, [x, y]| far.max(x.hypot(*y)))
+        self.pieces
+            .iter()
+            .flat_map(|piece| &piece.points)
+            .fold(0.0_f64, |far, [x, y]| far.max(elementary::hypot(*x, *y)))
     }
 }
 
@@ -118,7 +122,8 @@ fn figure(title: &str, cam: &Cam, outline: &Outline) -> Figure {
     // Of labels that would cover one another the first stays.
     let mut apart: Vec<Word> = Vec::new();
     for word in letters {
-        let near = |other: &Word| (other.at[0] - word.at[0]).hypot(other.at[1] - word.at[1]) < NEAR * farthest;
+        let near =
+            |other: &Word| elementary::hypot(other.at[0] - word.at[0], other.at[1] - word.at[1]) < NEAR * farthest;
         if !apart.iter().any(near) {
             apart.push(word);
         }
@@ -129,7 +134,7 @@ fn figure(title: &str, cam: &Cam, outline: &Outline) -> Figure {
     let follower = [[0.0, first], [0.0, first + 0.45 * farthest]];
     let turn = (0..=24).map(|step| {
         let angle = -0.5 + f64::from(step) / 24.0;
-        [-0.25 * farthest * angle.sin(), 0.25 * farthest * angle.cos()]
+        [-0.25 * farthest * elementary::sin(angle), 0.25 * farthest * elementary::cos(angle)]
     });
     series.extend([
         Series::points("", Colour::Ink, Marker::Disc, [[0.0, 0.0]]),

@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 use crate::border_collision::feigin::{Scenario, Speeds};
 use crate::cam::Cam;
 use crate::corner::CornerImpact;
+use crate::elementary;
 use crate::model::{Model, ModelError};
 use crate::orbit::branch::Branch;
 use crate::simulate::{Machine, angular_velocity};
@@ -126,7 +127,7 @@ pub(crate) const NO_STUDY: &str =
 
 /// Four digits, as a person would choose a speed.
 fn rounded(rpm: f64) -> f64 {
-    let scale = 10_f64.powi(3 - rpm.abs().log10().floor() as i32);
+    let scale = 10_f64.powi(3 - elementary::log10(rpm.abs()).floor() as i32);
     let round = (rpm * scale).round() / scale;
     if round.is_finite() { round } else { rpm }
 }

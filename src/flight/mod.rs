@@ -16,6 +16,7 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::Matrix2;
 
+use crate::elementary;
 use crate::interval::Number;
 use crate::model::Follower;
 use crate::tolerance;
@@ -33,7 +34,7 @@ pub struct State {
 impl State {
     /// How far two states are from each other, m: velocities count over `omega`, rad/s.
     pub(crate) fn apart(self, other: Self, omega: f64) -> f64 {
-        (self.position - other.position).hypot((self.velocity - other.velocity) / omega)
+        elementary::hypot(self.position - other.position, (self.velocity - other.velocity) / omega)
     }
 }
 
@@ -166,7 +167,7 @@ impl Flight {
     fn never_above(&self, value: f64, rate: f64) -> f64 {
         let bound = (rate * rate + self.omega0_squared * value * value).sqrt();
         // Squares leave a double's range long before their root does.
-        if bound.is_normal() { bound } else { rate.hypot(self.omega0_squared.sqrt() * value) }
+        if bound.is_normal() { bound } else { elementary::hypot(rate, self.omega0_squared.sqrt() * value) }
     }
 
     /// Displacement `q(t) - q0` and the state after flying for `t` from `start`.
@@ -211,7 +212,7 @@ impl Flight {
                 if across == 0.0 {
                     return if force == 0.0 { f64::INFINITY } else { PI / omega };
                 }
-                across.atan2(if velocity > 0.0 { along } else { -along }) / omega
+                elementary::atan2(across, if velocity > 0.0 { along } else { -along }) / omega
             }
             Regime::Monotone { slow, fast } => {
                 // s'/s = -f0/v0 =: x, and s'/s falls from infinity to -l1: e^{-(l2 - l1) t} = 1 - (l2 - l1)/(l2 + x).
@@ -221,7 +222,7 @@ impl Flight {
                     return f64::INFINITY;
                 }
                 let part = (fast - slow) / (fast + ratio);
-                let stretch = if part == 0.0 { 1.0 } else { -(-part).ln_1p() / part };
+                let stretch = if part == 0.0 { 1.0 } else { -elementary::ln_1p(-part) / part };
                 stretch / (fast + ratio)
             }
         }
@@ -259,7 +260,7 @@ impl Flight {
         } else {
             y * l + x * height
         };
-        let angle = sine.atan2(x * l - y * height);
+        let angle = elementary::atan2(sine, x * l - y * height);
         let time = if angle < 0.0 { angle + TAU } else { angle } / omega;
         Some((time, State { position: level, velocity: -omega * height }))
     }

@@ -1,6 +1,7 @@
 //! The follower's responses to a unit impulse and a unit step: over a time in doubles, over a range of times in intervals.
 
 use super::{Flight, Regime};
+use crate::elementary;
 use crate::interval::{Interval, Number};
 use crate::tolerance;
 
@@ -21,7 +22,7 @@ impl Flight {
     pub fn response(&self, t: f64) -> Response {
         match self.regime {
             Regime::Undamped { omega } => {
-                let (sin, cos) = (omega * t).sin_cos();
+                let (sin, cos) = elementary::sin_cos(omega * t);
                 let impulse = sin / omega;
                 // p = (1 - cos)/w^2 = s^2/(1 + cos), whichever does not cancel.
                 let step = if cos > 0.0 { impulse * impulse / (1.0 + cos) } else { (1.0 - cos) / self.omega0_squared };
@@ -42,8 +43,8 @@ impl Flight {
         }
         match self.regime {
             Regime::Undamped { omega } | Regime::Underdamped { omega } => {
-                let decay = (-zeta * t).exp();
-                let (sin, cos) = (omega * t).sin_cos();
+                let decay = elementary::exp(-zeta * t);
+                let (sin, cos) = elementary::sin_cos(omega * t);
                 // s = e^{-zeta t} sin(w t)/w
                 let impulse = decay * sin / omega;
                 // s' = e^{-zeta t} cos(w t) - zeta s
@@ -54,9 +55,9 @@ impl Flight {
             Regime::Monotone { slow, fast } => {
                 let gap = fast - slow;
                 // s = e^{-l1 t} (1 - e^{-(l2 - l1) t})/(l2 - l1)
-                let impulse = (-slow * t).exp() * t * mean_decay(gap * t);
+                let impulse = elementary::exp(-slow * t) * t * mean_decay(gap * t);
                 // s' = e^{-l2 t} - l1 s
-                let impulse_rate = (-fast * t).exp() - slow * impulse;
+                let impulse_rate = elementary::exp(-fast * t) - slow * impulse;
                 let step = if angle_squared < 0.25 {
                     // p = t (E(l1 t) - E(l2 t))/(l2 - l1),  E(x) = (1 - e^{-x})/x
                     t * (mean_decay(slow * t) - mean_decay(fast * t)) / gap
@@ -150,5 +151,5 @@ impl Flight {
 
 /// `(1 - e^{-x})/x`, 1 at 0: the mean of `e^{-y}` over `0..x`.
 fn mean_decay(x: f64) -> f64 {
-    if x == 0.0 { 1.0 } else { -(-x).exp_m1() / x }
+    if x == 0.0 { 1.0 } else { -elementary::exp_m1(-x) / x }
 }

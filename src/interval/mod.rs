@@ -11,6 +11,7 @@ pub mod varied;
 use std::f64::consts::FRAC_PI_2;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+use crate::elementary;
 use crate::tolerance;
 
 /// What a formula may be fed with: a double, or all doubles and what lies between them from one to another.
@@ -40,7 +41,7 @@ pub trait Number:
 impl Number for f64 {
     #[inline]
     fn sin_cos(self) -> (Self, Self) {
-        self.sin_cos()
+        elementary::sin_cos(self)
     }
 
     #[inline]

@@ -17,6 +17,7 @@ use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
 use super::chain::{self, Link};
 use crate::cam::{Lift, apart};
+use crate::elementary;
 use crate::flight::State;
 use crate::impact::{ImpactRates, rebound};
 use crate::simulate::{Event, EventKind, Machine};
@@ -153,7 +154,7 @@ impl Cycle {
             }
             for row in 0..2 {
                 let (from, to) = (leaving.row(row), coming.row(row));
-                let length = if is_alone { (from + to).norm() } else { from.norm().hypot(to.norm()) };
+                let length = if is_alone { (from + to).norm() } else { elementary::hypot(from.norm(), to.norm()) };
                 leaving.row_mut(row).unscale_mut(length);
                 coming.row_mut(row).unscale_mut(length);
             }
@@ -271,7 +272,7 @@ impl Cycle {
     pub fn determinant(&self, machine: &Machine) -> f64 {
         let period = self.revolutions as f64 * TAU / machine.angular_velocity();
         let struck = machine.restitution().powi(2 * self.impacts.len() as i32);
-        struck * (-2.0 * machine.flight().zeta() * period).exp()
+        struck * elementary::exp(-2.0 * machine.flight().zeta() * period)
     }
 
     /// `det(mu I - M) = mu^2 - mu tr M + det M` of that matrix M, for the multiplier `mu` 1 or -1: 0 where the orbit has it.

@@ -8,6 +8,7 @@ use std::f64::consts::LN_2;
 use serde::Serialize;
 
 use super::PeriodicOrbit;
+use crate::elementary;
 use crate::estimate::{ErrorIs, Estimate};
 use crate::simulate::Met;
 use crate::simulate::Record;
@@ -252,7 +253,7 @@ impl StickingOrbit {
 
     /// Whether it rests so seldom that rounding decides when: in between it is chaos, and its period is that of the rounded run.
     pub fn is_long(&self) -> bool {
-        self.growth > (tolerance::SAME_ORBIT.value / tolerance::ULP.value).ln()
+        self.growth > elementary::ln(tolerance::SAME_ORBIT.value / tolerance::ULP.value)
     }
 
     /// Whether two of them have a release in common: one motion at most goes on from there.

@@ -37,6 +37,7 @@ pub mod symmetry;
 use nalgebra::Matrix2;
 
 use crate::cam::apart;
+use crate::elementary;
 use crate::flight::State;
 use crate::known::Known;
 use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError};
@@ -169,7 +170,7 @@ impl PeriodicOrbit {
     /// The growth of a small deviation a revolution, by the largest multiplier, a natural logarithm.
     pub fn growth(&self) -> f64 {
         let modulus = self.multipliers().iter().fold(0.0_f64, |largest, one| largest.max(one.modulus()));
-        modulus.ln() / self.revolutions as f64
+        elementary::ln(modulus) / self.revolutions as f64
     }
 
     /// Whether two orbits are the same motion.

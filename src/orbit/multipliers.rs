@@ -1,5 +1,6 @@
 //! Eigenvalues of the matrix that carries a small deviation once around an orbit.
 
+use crate::elementary;
 use nalgebra::Matrix2;
 use serde::Serialize;
 
@@ -15,7 +16,7 @@ pub struct Eigenvalue {
 impl Eigenvalue {
     /// Its distance from 0.
     pub fn modulus(self) -> f64 {
-        self.re.hypot(self.im)
+        elementary::hypot(self.re, self.im)
     }
 }
 

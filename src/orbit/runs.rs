@@ -10,6 +10,7 @@ use super::cycle::lift_size;
 use super::long_run::{Budget, LongRun, Recorded, StickingOrbit, is_same_release};
 use super::near::{close, free, near_run};
 use super::{Course, PeriodicOrbit};
+use crate::elementary;
 use crate::flight::State;
 use crate::progress::Unwatched;
 use crate::simulate::Record;
@@ -220,12 +221,12 @@ impl<'a> LongRuns<'a> {
         }
         let modulus = orbit.multipliers().iter().fold(0.0_f64, |largest, one| largest.max(one.modulus()));
         // As many periods as leave a tenth, or as can be waited for.
-        let periods = (0.1_f64.ln() / modulus.ln()).ceil().clamp(1.0, MOST);
+        let periods = (elementary::ln(0.1_f64) / elementary::ln(modulus)).ceil().clamp(1.0, MOST);
         let goal = motion.after(periods as u64 * orbit.revolutions);
         if self.to_release(&mut motion, goal, &mut Met::default())?.is_some() {
             return Ok(false);
         }
-        let shrunk = 0.5 * (1.0 + modulus.powf(periods)) * first;
+        let shrunk = 0.5 * (1.0 + elementary::powf(modulus, periods)) * first;
         Ok(distance(&motion) <= shrunk.max(tolerance::ORBIT_CLOSURE.value * size))
     }
 

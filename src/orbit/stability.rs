@@ -16,6 +16,7 @@ use serde::Serialize;
 
 use super::cycle::{Cycle, lift_size};
 use super::multipliers::eigenvalues;
+use crate::elementary;
 use crate::flight::Flight;
 use crate::impact::{ImpactRates, rebound};
 use crate::interval::Interval;
@@ -152,7 +153,7 @@ fn multipliers_error(matrix: &Matrix2<f64>, (trace, error): (f64, f64), determin
     let pair = eigenvalues(matrix);
     let terms = (matrix[(0, 0)] * matrix[(1, 1)]).abs() + (matrix[(0, 1)] * matrix[(1, 0)]).abs();
     let off = (matrix.determinant() - determinant).abs() + 2.0 * tolerance::ULP.value * terms;
-    let gap = (pair[0].re - pair[1].re).hypot(pair[0].im - pair[1].im);
+    let gap = elementary::hypot(pair[0].re - pair[1].re, pair[0].im - pair[1].im);
     let of_one = |modulus: f64| {
         let missed = modulus * ((matrix.trace() - trace).abs() + error) + off;
         missed.sqrt().min(2.0 * missed / gap)
@@ -197,7 +198,7 @@ impl Judgement {
         let (flight, omega) = (machine.flight(), machine.angular_velocity());
         let time = Interval::TURN / Interval::from(omega);
         // det M = e^{-b T/m}
-        let determinant = (-2.0 * flight.zeta() * std::f64::consts::TAU / omega).exp();
+        let determinant = elementary::exp(-2.0 * flight.zeta() * std::f64::consts::TAU / omega);
         Self::of(&[propagator(flight, time)], determinant, flight.zeta() > 0.0, matrix)
     }
 

@@ -1,5 +1,6 @@
 //! The page of `speeds`: the short answer first, then every attractor with where it begins and ends.
 
+use crate::elementary;
 use crate::measured::Measured;
 use crate::orbit::long_run::Budget;
 use crate::show::Paged;
@@ -243,7 +244,7 @@ fn end(found: &SpeedSurvey, value: f64, change: Option<&Transition>) -> Words {
         Some((digits, error)) if change.error.is_some() => return words![(value, digits), " ± ", (error, digits)],
         Some((digits, _)) => return words![(value, digits), " ± ?"],
         None if change.is_located() => return words![(value, digits(found))],
-        None => (-(change.bracket[1] - change.bracket[0]).log10()).ceil().clamp(0.0, most),
+        None => (-elementary::log10(change.bracket[1] - change.bracket[0])).ceil().clamp(0.0, most),
     };
     words![(value, Digits::Fixed(places as usize))]
 }

@@ -8,6 +8,7 @@ use serde::Deserialize;
 use super::context::{Context, Decision, decide};
 use super::statements::Shown;
 use crate::agreement::worse;
+use crate::elementary;
 use crate::model::{ArcsProfile, CamProfile};
 use crate::published::Verdict;
 use crate::tolerance;
@@ -43,7 +44,7 @@ impl DrawnArc {
     }
 
     fn at(self, degrees: f64) -> Vector2<f64> {
-        let (sin, cos) = degrees.to_radians().sin_cos();
+        let (sin, cos) = elementary::sin_cos(degrees.to_radians());
         self.centre() + self.2 * Vector2::new(cos, sin)
     }
 }
@@ -81,7 +82,7 @@ impl Drawing {
 
 /// Polar angle of a point, deg, in (-180, 180].
 fn polar(point: Vector2<f64>) -> f64 {
-    point[1].atan2(point[0]).to_degrees()
+    elementary::atan2(point[1], point[0]).to_degrees()
 }
 
 fn with_places(numbers: &[f64], places: usize) -> String {
@@ -95,7 +96,7 @@ fn computed_with(context: &Context<'_>) -> Result<([f64; 6], [f64; 3]), &'static
     else {
         return Err("the cam is not one of arcs");
     };
-    let (sin, cos) = (nose_end_deg - flank_start_deg).to_radians().sin_cos();
+    let (sin, cos) = elementary::sin_cos((nose_end_deg - flank_start_deg).to_radians());
     // kappa1 = rho1 - rho0 and |O1 O2| = rho1 - rho2, by the law of cosines.
     let kappa1 = flank_radius - base_radius;
     let kappa2 = ((flank_radius - nose_radius).powi(2) - (kappa1 * sin).powi(2)).sqrt() - kappa1 * cos;
@@ -207,7 +208,7 @@ fn printed_lift(lengths: [f64; 6], [theta1, theta2, theta3]: [f64; 3], angle: f6
     let [r, p, q] = [theta1, theta2, theta3].map(|theta| PI / 2.0 - theta);
     // c_1 = -kappa1 sin(theta + theta1) + (rho1^2 - kappa1^2 cos(theta + theta1)^2)^(1/2), c_2 likewise
     let circle = |kappa: f64, rho: f64, turned: f64| {
-        let (sin, cos) = turned.sin_cos();
+        let (sin, cos) = elementary::sin_cos(turned);
         kappa * sin + (rho * rho - (kappa * cos).powi(2)).sqrt()
     };
     let pieces = [
@@ -255,7 +256,7 @@ pub(super) fn label_of_the_lift(context: &Context<'_>) -> Decision {
     let follower = context.model.follower;
     let omega0_squared = follower.stiffness / follower.mass;
     // q + g/omega0^2 = h phi_{T/2} x* = x1* cos(omega0 T/2) at the corner, without damping and with x2* = 0
-    let first = x_star * (omega0_squared.sqrt() * 0.5 * period).cos();
+    let first = x_star * elementary::cos(omega0_squared.sqrt() * 0.5 * period);
     let lift = context.findings.at.corner.minus.value;
     let gravity = |from: f64| omega0_squared * (first - (lift - from));
     let [labelled, from_axis] = [context.cam.lift(0.0).value, 0.0].map(gravity);

@@ -11,6 +11,7 @@ use crate::border_collision::feigin::{Scenario, Speeds, classify};
 use crate::border_collision::{Classification, Refusal};
 use crate::corner::map::RouteName;
 use crate::corner::{self, CornerImpact, LocateError};
+use crate::elementary;
 use crate::flight::{Flight, State};
 use crate::model::{Model, Study};
 use crate::published::{PrintedNumber, Verdict};
@@ -27,7 +28,7 @@ impl fmt::Display for Shown {
         if value.abs() <= tolerance::DISPLAYED_ZERO.value {
             return write!(f, "0");
         }
-        let places = (9.0 - value.abs().log10().floor()).clamp(0.0, 15.0) as usize;
+        let places = (9.0 - elementary::log10(value.abs()).floor()).clamp(0.0, 15.0) as usize;
         let text = format!("{value:.places$}");
         write!(f, "{}", if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text })
     }

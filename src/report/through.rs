@@ -6,6 +6,7 @@ use serde::Serialize;
 use crate::cam::{Cam, Lift};
 use crate::draw::ticks::{ticks, unit};
 use crate::draw::{Spacing, extent};
+use crate::elementary;
 use crate::figures::through_corner::{Moment, Place, Shown, profile};
 use crate::figures::{CornerMark, Outline, corner_marks};
 use crate::model::Units;
@@ -161,7 +162,7 @@ fn of_extent(extent: f64, digits: i32) -> i32 {
     if !(extent > 0.0 && extent.is_finite()) {
         return digits;
     }
-    (digits - 1 - extent.log10().floor() as i32).clamp(0, MOST)
+    (digits - 1 - elementary::log10(extent).floor() as i32).clamp(0, MOST)
 }
 
 fn rounded(value: f64, places: i32) -> f64 {

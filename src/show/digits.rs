@@ -2,6 +2,7 @@
 
 use maud::{Markup, html};
 
+use crate::elementary;
 use crate::tolerance;
 
 /// How many digits of a number are shown.
@@ -71,8 +72,8 @@ pub(crate) fn with_error(error: f64) -> (Digits, f64) {
     if !(error > 0.0 && error.is_finite()) {
         return (Digits::Significant(9), error);
     }
-    let place = 1.0 - error.log10().floor();
-    let unit = 10.0_f64.powf(place);
+    let place = 1.0 - elementary::log10(error).floor();
+    let unit = elementary::powf(10.0_f64, place);
     (Digits::Fixed(place.clamp(0.0, 12.0) as usize), (error * unit).ceil() / unit)
 }
 
@@ -89,12 +90,12 @@ pub(crate) fn typeset(text: &str) -> Markup {
 
 /// Whether a number is written without a power of ten: few zeros stand before or behind its digits.
 fn is_plain(value: f64) -> bool {
-    (-4.0..9.0).contains(&value.abs().log10())
+    (-4.0..9.0).contains(&elementary::log10(value.abs()))
 }
 
 /// The places after the point at which a number has so many significant digits.
 fn places(value: f64, digits: usize) -> usize {
-    if value == 0.0 { 0 } else { (digits as f64 - 1.0 - value.abs().log10().floor()).max(0.0) as usize }
+    if value == 0.0 { 0 } else { (digits as f64 - 1.0 - elementary::log10(value.abs()).floor()).max(0.0) as usize }
 }
 
 fn trimmed(text: &str) -> String {

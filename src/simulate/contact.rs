@@ -125,6 +125,7 @@ mod tests {
     use std::cell::Cell;
 
     use super::*;
+    use crate::elementary;
 
     /// Damping stops a follower within 1e-12 s of an impact, far above the cam by its digits, and the cam comes up to it in the end.
     #[test]
@@ -133,12 +134,13 @@ mod tests {
         let looks = Cell::new(0);
         let gap_at = |time: f64| {
             looks.set(looks.get() + 1);
-            let left = (-stops * time).exp();
-            let (value, third) = (-rate * (-stops * time).exp_m1() / stops - cam * time, rate * stops * stops * left);
+            let left = elementary::exp(-stops * time);
+            let (value, third) =
+                (-rate * elementary::exp_m1(-stops * time) / stops - cam * time, rate * stops * stops * left);
             let (rate, curvature) = (rate * left - cam, -rate * stops * left);
             Gap { value, rounding: 1e-25, rate, rate_rounding: 1e-14, curvature, third }
         };
-        let third_bound = |time: f64, _| rate * stops * stops * (-stops * time).exp();
+        let third_bound = |time: f64, _| rate * stops * stops * elementary::exp(-stops * time);
         let Outcome::Contact(time) = first_contact(gap_at, third_bound, 0.1) else { panic!("no contact") };
         approx::assert_relative_eq!(time, rate / stops / cam, max_relative = 1e-12);
         assert!(looks.get() < 200, "{}", looks.get());

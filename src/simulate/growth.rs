@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use nalgebra::{Matrix2, Vector2};
 
 use super::{Event, EventKind, Machine, Met, Motion, Observer, SimulateError, Variation};
+use crate::elementary;
 use crate::estimate::Estimate;
 use crate::flight::{Flight, State};
 
@@ -148,7 +149,7 @@ fn stretches(
             matrix[(1, 0)] / omega * direction[0] + matrix[(1, 1)] * direction[1],
         );
         let stretch = carried.norm();
-        keep(stretch.ln());
+        keep(elementary::ln(stretch));
         if stretch == 0.0 {
             return Ok(());
         }

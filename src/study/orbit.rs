@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::{StudyError, hypotheses, machine};
 use crate::cam::{Cam, apart};
+use crate::elementary;
 use crate::flight::State;
 use crate::known::{Complete, Known};
 use crate::measured::{Likely, Measured};
@@ -130,7 +131,7 @@ fn error(likely: &Likely, machine: &Machine, orbit: &PeriodicOrbit) -> Option<Or
         of_events.chunks(OF_EVENT).map(of_one).fold(0.0, f64::max)
     };
     Some(OrbitError {
-        multiplier: of_orbit[0].hypot(of_orbit[1]).max(of_orbit[2].hypot(of_orbit[3])),
+        multiplier: elementary::hypot(of_orbit[0], of_orbit[1]).max(elementary::hypot(of_orbit[2], of_orbit[3])),
         state: [of_orbit[4], of_orbit[5]],
         cam_angle_rad: most(&[0]),
         velocity_m_s: most(&[1, 2]),

@@ -10,6 +10,7 @@ use crate::border_collision::Danger;
 use crate::cam::Cam;
 use crate::corner::CornerImpact;
 use crate::corner::candidates::on_branch;
+use crate::elementary;
 use crate::estimate::Estimate;
 use crate::known::Known;
 use crate::measured::{Likely, Measured};
@@ -355,7 +356,7 @@ const FALLBACK: f64 = 100.0;
 
 /// A speed as a person would choose it.
 fn two_digits(rpm: f64, towards: fn(f64) -> f64) -> f64 {
-    let scale = 10_f64.powf(1.0 - rpm.log10().floor());
+    let scale = elementary::powf(10_f64, 1.0 - elementary::log10(rpm).floor());
     towards(rpm * scale) / scale
 }
 

@@ -7,6 +7,7 @@ use crate::corner::locate;
 use crate::covering::region::{Escape, Region, parted, trap};
 use crate::covering::sample::impacts;
 use crate::covering::{Frame, HSet};
+use crate::elementary;
 use crate::interval::Interval;
 use crate::model::Model;
 use crate::progress::Watch;
@@ -63,7 +64,7 @@ pub(super) fn trapping(model: &Model, rpm: f64, set: Option<&HSet>, watch: &dyn 
         const ACROSS: [f64; 3] = [32.0, 64.0, 128.0];
         const FINEST: f64 = 1_048_576.0;
         for across in ACROSS {
-            let squares = (across / (angles[1] - angles[0])).log2().ceil().exp2();
+            let squares = elementary::log2(across / (angles[1] - angles[0])).ceil().exp2();
             if (1.0..=FINEST).contains(&squares)
                 && let Ok(trapped) = closed(&run, squares as u32, false)
             {

@@ -95,7 +95,7 @@ fn sine_and_cosine_are_held_at_a_million_angles() {
 
 /// Asks a program of Python's how many lines hold what is true; all must.
 #[track_caller]
-fn held(by: &str, lines: &str) {
+pub fn held(by: &str, lines: &str) {
     use std::io::Write;
     let python = std::path::Path::new(common::ROOT).join(".venv/bin/python");
     let piped = std::process::Stdio::piped;
@@ -414,7 +414,7 @@ proptest! {
 }
 
 /// Numbers from 0 to 1 that are the same in every run.
-fn parts(count: usize) -> impl Iterator<Item = f64> {
+pub fn parts(count: usize) -> impl Iterator<Item = f64> {
     (1..=count).map(|index| (index as f64 * 0.618_033_988_749_894_9).fract())
 }
 

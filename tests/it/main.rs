@@ -1,6 +1,7 @@
 //! Every question that is asked of the library and of the program, one module each, in one binary: linking is what
 //! tests wait for.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+#![allow(clippy::disallowed_methods, reason = "what is held against the project is computed by another library")]
 
 mod adversary;
 mod along_branches;
@@ -46,6 +47,7 @@ mod digits;
 mod directions;
 mod drawing;
 mod dynamics;
+mod elementary;
 mod exact_numbers;
 mod explain;
 mod falling;

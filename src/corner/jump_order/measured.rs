@@ -15,6 +15,7 @@ use crate::cam::{Cam, Side};
 use crate::corner::extrapolation::{Powers, extrapolate};
 use crate::corner::least_squares::Solver;
 use crate::corner::one_sided::SampleError;
+use crate::elementary;
 use crate::estimate::{ErrorIs, Estimate};
 use crate::flight::{Flight, State};
 use crate::model::{Follower, Model};
@@ -318,10 +319,10 @@ fn exponent(ladder: &[Sample], component: usize, rounding: f64) -> Result<Estima
     }
     let design = Mat::from_fn(resolved.len(), columns, |row, column| match (resolved[row].0, column) {
         (_, 0) => 1.0,
-        (distance, 1) => distance.abs().ln(),
+        (distance, 1) => elementary::ln(distance.abs()),
         (distance, column) => distance.powi(column as i32 - 1),
     });
-    let response = Mat::from_fn(resolved.len(), 1, |row, _| resolved[row].1.ln());
+    let response = Mat::from_fn(resolved.len(), 1, |row, _| elementary::ln(resolved[row].1));
     let fit = Solver::new(&design)?.fit(&response);
     let (value, error) = (fit.coefficients[(1, 0)], fit.standard_errors[(1, 0)]);
     Ok(Estimate { value, error, error_is: ErrorIs::Standard })

@@ -12,6 +12,7 @@ use rayon::prelude::*;
 
 use super::{Branch, BranchPoint, Following, Kind, crossing, doubled};
 use crate::cam::Cam;
+use crate::elementary;
 use crate::model::Model;
 use crate::orbit::{Family, FamilyError, OrbitError, Parameter, PeriodicOrbit, Search, search};
 use crate::progress::{Pieces, Unwatched, Watch};
@@ -79,12 +80,12 @@ pub struct MetPoints {
 
 /// Where the step `index` of the grid begins, rpm; its speed is half-way to the next one.
 fn grid(index: f64) -> f64 {
-    GRID_RATIO.powf(index)
+    elementary::powf(GRID_RATIO, index)
 }
 
 /// The step of the grid that a speed, rpm, is in.
 fn step_at(rpm: f64) -> i32 {
-    (rpm.ln() / GRID_RATIO.ln()).floor() as i32
+    (elementary::ln(rpm) / elementary::ln(GRID_RATIO)).floor() as i32
 }
 
 /// What a search at one speed came to.

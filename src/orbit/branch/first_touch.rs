@@ -30,6 +30,7 @@ use std::f64::consts::{PI, TAU};
 use serde::Serialize;
 
 use crate::cam::Least;
+use crate::elementary;
 use crate::orbit::cycle::lift_size;
 use crate::simulate::{Machine, angular_velocity};
 use crate::tolerance;
@@ -113,7 +114,7 @@ fn classified(machine: &Machine, tops: &[Least]) -> Result<(GrazeClass, u64, f64
     }
     let slow = flight.slowest_rate().filter(|rate| *rate > 0.0).ok_or(Doubt::Unheld)?;
     // lambda = e^(-slow T)
-    let eigenvalue = (-slow * time).exp();
+    let eigenvalue = elementary::exp(-slow * time);
     if CHAOS_BETWEEN.iter().any(|bound| (eigenvalue - bound).abs() <= tolerance::UNIT_EIGENVALUE.value) {
         return Err(Doubt::Boundary);
     }
@@ -177,7 +178,7 @@ pub(super) fn borders(machine: &Machine, tops: usize, [low, high]: [f64; 2], mos
     let speed = |time: f64| TAU / time / tops as f64 / per_rpm;
     let is_inside = |(rpm, _): &(f64, Border)| low < *rpm && *rpm < high;
     if let Some(slow) = machine.flight().slowest_rate() {
-        let at = |bound: f64| (speed(-bound.ln() / slow), Border::Eigenvalue(bound));
+        let at = |bound: f64| (speed(-elementary::ln(bound) / slow), Border::Eigenvalue(bound));
         return CHAOS_BETWEEN.into_iter().map(at).filter(is_inside).collect();
     }
     let Some(oscillation) = machine.flight().damped_frequency() else { return Vec::new() };

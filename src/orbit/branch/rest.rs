@@ -8,6 +8,7 @@ use super::contact::{Contact, MANY_IMPACTS, Nowhere, Reached, Rest, contact};
 use super::{BranchPoint, End, Following, HalfBranch, Kind, OnCurve, Special};
 use crate::bracket::{Width, halve};
 use crate::cam::{Corner, apart};
+use crate::elementary;
 use crate::flight::State;
 use crate::known::Known;
 use crate::orbit::curve::{self, CurvePoint, NoPoint};
@@ -175,7 +176,7 @@ impl Walk<'_> {
         // Where it came from, in a straight line from the last point outside of the circle.
         let back = self.points.iter().rev().map(away).find(|away| away.norm() >= radius)?.normalize();
         let direction = |turn: f64| {
-            let (sin, cos) = turn.sin_cos();
+            let (sin, cos) = elementary::sin_cos(turn);
             DVector::from_vec(vec![cos * back[0] - sin * back[1], sin * back[0] + cos * back[1]])
         };
         let off = |turn: f64| self.rest.reached(&(kink + direction(turn) * radius)).ok().map(|reached| reached.off);

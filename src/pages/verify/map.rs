@@ -3,6 +3,7 @@
 use crate::agreement::{Agreement, Quantity, by_quantity, shared_decimals, worse};
 use crate::cam::Side;
 use crate::corner::map::{CornerMap, Route, Uncertainty};
+use crate::elementary;
 use crate::show::block::{Block, Column, Mark, Span, Table, Words, about, words};
 use crate::show::digits::Digits;
 use crate::show::words;
@@ -83,7 +84,7 @@ fn digits(entries: impl Iterator<Item = f64>) -> Digits {
     let largest = entries.fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
     match largest {
         0.0 => Digits::Fixed(9),
-        _ if (0.001..1e9).contains(&largest) => Digits::Fixed((9.0 - largest.log10().floor()) as usize),
+        _ if (0.001..1e9).contains(&largest) => Digits::Fixed((9.0 - elementary::log10(largest).floor()) as usize),
         _ => Digits::Power(6),
     }
 }

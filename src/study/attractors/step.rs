@@ -2,6 +2,7 @@
 
 use std::ops::RangeInclusive;
 
+use crate::elementary;
 use crate::study::survey::Spacing;
 use crate::tolerance;
 
@@ -25,8 +26,8 @@ impl Step {
 
     /// The longest step that is no longer than so much: of a logarithmic grid in decades.
     pub fn at_most(longest: f64, spacing: Spacing) -> Self {
-        let power = longest.log10().floor();
-        let digits = longest / 10.0_f64.powf(power);
+        let power = elementary::log10(longest).floor();
+        let digits = longest / elementary::powf(10.0_f64, power);
         // A step of exactly one of them is not to be lost to rounding.
         let digit = [5, 3, 2]
             .into_iter()
@@ -44,7 +45,7 @@ impl Step {
     pub(super) fn near(self, value: f64) -> f64 {
         match self.spacing {
             Spacing::Linear => self.width(),
-            Spacing::Logarithmic => value * (10.0_f64.powf(self.width()) - 1.0),
+            Spacing::Logarithmic => value * (elementary::powf(10.0_f64, self.width()) - 1.0),
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::{Curve, Saddle};
 use crate::bracket::{Width, halve};
+use crate::elementary;
 use crate::flight::State;
 use crate::orbit::long_run::{Budget, LongRun};
 use crate::orbit::runs::LongRuns;
@@ -63,11 +64,11 @@ pub fn approach(
     /// Where a start is, of `away`: the manifold is straight there to the square of it.
     const FIRST: f64 = 1e-5;
     let (multiplier, along) = saddle.unstable;
-    let leaving = (-FIRST.ln() / multiplier.ln()).ceil() as u32;
+    let leaving = (-elementary::ln(FIRST) / elementary::ln(multiplier)).ceil() as u32;
     let bounds = curve.bounds();
     let mut found = Approach { distance: f64::INFINITY, nearest: saddle.state };
     for sample in 0..samples {
-        let from = sign * FIRST * away * multiplier.powf(f64::from(sample) / f64::from(samples));
+        let from = sign * FIRST * away * elementary::powf(multiplier, f64::from(sample) / f64::from(samples));
         let mut state = State {
             position: saddle.state.position + from * along[0],
             velocity: saddle.state.velocity + from * along[1],

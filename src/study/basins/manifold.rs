@@ -9,6 +9,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Matrix2, Vector2};
 
+use crate::elementary;
 use crate::flight::State;
 use crate::model::Follower;
 use crate::orbit::cycle::lift_size;
@@ -51,7 +52,7 @@ fn direction(matrix: &Matrix2<f64>, multiplier: f64, omega: f64) -> Vector2<f64>
         Vector2::new(matrix[(0, 1)], multiplier - matrix[(0, 0)]),
         Vector2::new(multiplier - matrix[(1, 1)], matrix[(1, 0)]),
     ];
-    let size = |row: &Vector2<f64>| row[0].hypot(row[1] / omega);
+    let size = |row: &Vector2<f64>| elementary::hypot(row[0], row[1] / omega);
     let longer = if size(&rows[0]) >= size(&rows[1]) { rows[0] } else { rows[1] };
     longer / size(&longer)
 }
@@ -102,7 +103,7 @@ impl Reversed {
 
 /// The size of a state, m: velocities count over omega.
 fn size(state: State, omega: f64) -> f64 {
-    state.position.hypot(state.velocity / omega)
+    elementary::hypot(state.position, state.velocity / omega)
 }
 
 /// How far a curve is followed, and how finely.
@@ -166,7 +167,7 @@ impl Curve {
         /// Halvings after which two neighbours that stay apart are on either side of a break.
         const HALVINGS: u32 = 16;
         let at = |s: f64| -> Option<State> {
-            let from = extent.first * multiplier.powf(s.fract());
+            let from = extent.first * elementary::powf(multiplier, s.fract());
             let first =
                 State { position: saddle.position + from * along[0], velocity: saddle.velocity + from * along[1] };
             let carried = (0..s as u32).try_fold(first, |state, _| carry(state))?;
@@ -268,6 +269,9 @@ impl Bounds {
     /// The distance of a state from it, m; 0 inside.
     pub fn distance(&self, state: State) -> f64 {
         let beyond = |value: f64, [low, high]: [f64; 2]| (low - value).max(value - high).max(0.0);
-        beyond(state.position, self.positions).hypot(beyond(state.velocity / self.omega, self.scaled_velocities))
+        elementary::hypot(
+            beyond(state.position, self.positions),
+            beyond(state.velocity / self.omega, self.scaled_velocities),
+        )
     }
 }

@@ -3,6 +3,7 @@
 use std::fmt::Display;
 use std::sync::Arc;
 
+use crate::elementary;
 use crate::orbit::Parameter;
 
 /// How values lie between the lowest and the highest.
@@ -19,7 +20,7 @@ impl Spacing {
     pub fn place(self, value: f64) -> f64 {
         match self {
             Self::Linear => value,
-            Self::Logarithmic => value.log10(),
+            Self::Logarithmic => elementary::log10(value),
         }
     }
 
@@ -27,7 +28,7 @@ impl Spacing {
     pub fn value(self, place: f64) -> f64 {
         match self {
             Self::Linear => place,
-            Self::Logarithmic => 10.0_f64.powf(place),
+            Self::Logarithmic => elementary::powf(10.0_f64, place),
         }
     }
 }
@@ -70,7 +71,7 @@ impl Values {
         match self.spacing {
             Spacing::Linear => self.low + (self.high - self.low) * part,
             // The first is `low` exactly.
-            Spacing::Logarithmic => self.low * (self.high / self.low).powf(part),
+            Spacing::Logarithmic => self.low * elementary::powf(self.high / self.low, part),
         }
     }
 }

@@ -1,0 +1,102 @@
+//! Sine, exponential and their kind, with the same bits on every processor.
+//!
+//! Those of the standard library are the C library's, and glibc's round differently with and without fused multiply-add. These are
+//! compiled from plain Rust, by the crate `libm`: sums, products and quotients of doubles, which IEEE 754 rounds in one way. Chaos
+//! would make another motion of another last bit. A lint (`clippy.toml`) keeps the others out of `src`; square roots, remainders
+//! and powers of whole numbers are the standard library's, since there is one way to round them.
+
+/// Sine and cosine of an angle, rad, each within an ulp.
+#[inline]
+pub fn sin_cos(angle: f64) -> (f64, f64) {
+    libm::sincos(angle)
+}
+
+/// The sine of an angle, rad.
+#[inline]
+pub fn sin(angle: f64) -> f64 {
+    libm::sin(angle)
+}
+
+/// The cosine of an angle, rad.
+#[inline]
+pub fn cos(angle: f64) -> f64 {
+    libm::cos(angle)
+}
+
+/// The angle of a point, rad, from -pi to pi.
+#[inline]
+pub fn atan2(y: f64, x: f64) -> f64 {
+    libm::atan2(y, x)
+}
+
+/// The angle whose sine it is, rad, from -pi/2 to pi/2.
+#[inline]
+pub fn asin(sine: f64) -> f64 {
+    libm::asin(sine)
+}
+
+/// `e^x`.
+#[inline]
+pub fn exp(x: f64) -> f64 {
+    libm::exp(x)
+}
+
+/// `e^x - 1`, of which nothing is lost near 0.
+#[inline]
+pub fn exp_m1(x: f64) -> f64 {
+    libm::expm1(x)
+}
+
+/// `(e^x - e^-x)/2`.
+#[inline]
+pub fn sinh(x: f64) -> f64 {
+    libm::sinh(x)
+}
+
+/// `(e^x + e^-x)/2`.
+#[inline]
+pub fn cosh(x: f64) -> f64 {
+    libm::cosh(x)
+}
+
+/// The natural logarithm.
+#[inline]
+pub fn ln(x: f64) -> f64 {
+    libm::log(x)
+}
+
+/// The natural logarithm of `1 + x`, of which nothing is lost near 0.
+#[inline]
+pub fn ln_1p(x: f64) -> f64 {
+    libm::log1p(x)
+}
+
+/// The logarithm to the base 2.
+#[inline]
+pub fn log2(x: f64) -> f64 {
+    libm::log2(x)
+}
+
+/// The logarithm to the base 10.
+#[inline]
+pub fn log10(x: f64) -> f64 {
+    libm::log10(x)
+}
+
+/// `base^exponent`.
+#[inline]
+pub fn powf(base: f64, exponent: f64) -> f64 {
+    libm::pow(base, exponent)
+}
+
+/// The cube root.
+#[inline]
+pub fn cbrt(x: f64) -> f64 {
+    libm::cbrt(x)
+}
+
+/// `sqrt(x^2 + y^2)`, which neither overflows nor underflows on the way.
+#[inline]
+pub fn hypot(x: f64, y: f64) -> f64 {
+    libm::hypot(x, y)
+}
