@@ -102,18 +102,20 @@ pub(crate) fn regula_falsi<P: Clone, E>(
     }
     let mut sure = |end: &Seen<P>, direction: f64| -> Result<Seen<P>, E> {
         let mut reach = 0.5 * width;
-        let mut nearer: Option<Seen<P>> = None;
+        // The last two: one alone is twice the other by chance where both are an ulp or two.
+        let mut nearer: [Option<Seen<P>>; 2] = [None, None];
         loop {
             let at = best.at + direction * reach;
             let is_inside = (at - end.at) * direction < 0.0;
             let Some((value, with)) = (if is_inside { value(at)? } else { None }) else { return Ok(end.clone()) };
-            let is_seen = |nearer: &Seen<P>| {
-                (nearer.value < 0.0) == (end.value < 0.0) && LARGER.contains(&(value / nearer.value))
+            let here = Seen { at, value, with };
+            let is_seen = |nearer: &Seen<P>, further: &Seen<P>| {
+                (nearer.value < 0.0) == (end.value < 0.0) && LARGER.contains(&(further.value / nearer.value))
             };
-            match nearer.filter(is_seen) {
-                Some(nearer) => return Ok(nearer),
-                None => nearer = Some(Seen { at, value, with }),
-            }
+            nearer = match nearer {
+                [Some(first), Some(second)] if is_seen(&first, &second) && is_seen(&second, &here) => return Ok(first),
+                [_, second] => [second, Some(here)],
+            };
             reach *= 2.0;
         }
     };
@@ -121,7 +123,7 @@ pub(crate) fn regula_falsi<P: Clone, E>(
 }
 
 /// Secants from two guesses and their values, at most `steps` of them: up to a root, or to a step of less than the part `width`
-/// of where it begins. The last two points, of which the second is the nearer, and whether it has come so far.
+/// of where it begins. The last two points, of which the second is the nearer, or what is a root twice; and whether it has come so far.
 pub(crate) fn secants<E>(
     [mut last, mut here]: [(f64, f64); 2],
     steps: usize,
@@ -130,8 +132,11 @@ pub(crate) fn secants<E>(
 ) -> Result<([(f64, f64); 2], bool), E> {
     for _ in 0..steps {
         let next = here.0 - here.1 * (here.0 - last.0) / (here.1 - last.1);
-        if here.1 == 0.0 || next == here.0 || !next.is_finite() {
-            return Ok(([last, here], next.is_finite()));
+        if here.1 == 0.0 || next == here.0 {
+            return Ok(([here, here], true));
+        }
+        if !next.is_finite() {
+            return Ok(([last, here], false));
         }
         let is_last = (next - here.0).abs() <= width * here.0.abs();
         (last, here) = (here, (next, value(next)?));

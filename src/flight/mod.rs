@@ -302,8 +302,7 @@ impl Flight {
                 // Towards an equilibrium that is not below the level; or with no force but the damping's, which stops it after v/(2 zeta).
                 false => {
                     let is_stopped = self.omega0_squared > 0.0 || drop >= -begin.velocity / (2.0 * self.zeta);
-                    let falls = begin.velocity < 0.0 || self.force(begin.position) < 0.0;
-                    falls && !(self.zeta > 0.0 && is_stopped)
+                    !(self.zeta > 0.0 && is_stopped)
                 }
             };
         if !comes_down {

@@ -102,14 +102,14 @@ fn a_ball_on_a_table_has_the_motions_of_the_textbook_from_any_range() {
     }
 }
 
-/// At 550 rpm some starts bounce on without a rest, beside those that rest now and then; of 4000 starts none does at 549 and at 551 rpm.
-/// From there what bounced on at 550 rpm comes to rest, too: it does not go on in the other motion.
+/// Up to 481 rpm some starts bounce on without a rest, beside those that rest now and then. From there these come to rest, too: what bounced
+/// on does not go on in the other motion, and ends before the next speed.
 #[test]
 fn chaos_beside_a_long_motion_ends_before_the_next_speed() {
-    let found = found(&common::osorio(), [547.0, 553.0], 2.0, 64);
+    let found = found(&common::osorio(), [479.0, 485.0], 2.0, 64);
     let chaotic: Vec<&AttractorRow> = found.attractors.iter().filter(|one| one.kind == Kind::Chaotic).collect();
     let [chaotic] = chaotic[..] else { panic!("{found:?}") };
-    assert!(549.0 < chaotic.range()[0] && chaotic.range()[1] < 551.0, "{:?}", chaotic.range());
+    assert!(chaotic.range()[0] == 479.0 && (481.0..482.0).contains(&chaotic.range()[1]), "{:?}", chaotic.range());
     assert_eq!(found.coexistence.len(), 1, "{:?}", found.coexistence);
 }
 
@@ -604,19 +604,19 @@ fn chaos_that_is_seen_to_rest_is_no_other_motion_than_what_rests() {
     }
 }
 
-/// The growth of deviations is averaged over the runs that wander: one of two is too short to tell that by itself.
+/// The growth of deviations is averaged over the runs that wander: what is too short to tell it by itself counts with the others.
 #[test]
 fn runs_that_wander_are_told_together() {
     let here = from_starts(&ball().with_number("follower.restitution", 0.5).unwrap(), 2155.0);
     let kinds: Vec<Kind> = here.attractors.iter().map(|part| part.ending.kind()).collect();
     assert_eq!(kinds, [Kind::Resting, Kind::Chaotic], "{here:?}");
-    assert_eq!(here.attractors[1].starts.len(), 2);
+    assert_eq!(here.attractors[1].starts.len(), 3);
 }
 
 /// Whatever rests goes on as the cam lets go of it. Where all that is repeats, each run that wandered until it rested has left what it was on.
 #[test]
 fn what_wanders_and_rests_where_all_repeats_has_left() {
-    for rpm in [304.8, 333.7, 334.0] {
+    for rpm in [304.8, 333.4, 334.0] {
         let here = from_starts(&common::osorio(), rpm);
         assert!(here.attractors.iter().all(|part| part.ending.period().is_some()), "{rpm}: {:?}", here.attractors);
         assert!(

@@ -15,7 +15,7 @@ ctx.prec = 200
 true = {
     'sin': lambda x, y: x.sin(), 'cos': lambda x, y: x.cos(), 'exp': lambda x, y: x.exp(), 'exp_m1': lambda x, y: x.expm1(),
     'ln': lambda x, y: x.log(), 'ln_1p': lambda x, y: x.log1p(), 'atan2': arb.atan2, 'asin': lambda x, y: x.asin(),
-    'powf': lambda x, y: x ** y, 'hypot': lambda x, y: (x * x + y * y).sqrt(), 'cbrt': lambda x, y: x.root(3),
+    'powf': lambda x, y: x ** y, 'hypot': lambda x, y: (x * x + y * y).sqrt(), 'cbrt': lambda x, y: x.root(3) if x > 0 else -(-x).root(3),
     'sinh': lambda x, y: x.sinh(), 'cosh': lambda x, y: x.cosh(), 'log2': lambda x, y: x.log() / arb(2).log(),
     'log10': lambda x, y: x.log() / arb(10).log(),
 }
@@ -42,13 +42,13 @@ const OF_ONE: [Named<fn(f64) -> f64>; 12] = [
     ("cbrt", elementary::cbrt, 1.0),
     ("sinh", elementary::sinh, 2.0),
     ("cosh", elementary::cosh, 2.0),
-    ("log2", elementary::log2, 2.0),
-    ("log10", elementary::log10, 2.0),
+    ("log2", elementary::log2, 1.0),
+    ("log10", elementary::log10, 1.0),
 ];
 const OF_TWO: [Named<fn(f64, f64) -> f64>; 3] =
-    [("atan2", elementary::atan2, 1.0), ("powf", elementary::powf, 1.0), ("hypot", elementary::hypot, 1.0)];
+    [("atan2", elementary::atan2, 2.0), ("powf", elementary::powf, 1.0), ("hypot", elementary::hypot, 1.0)];
 
-/// A line of what 200 bits are asked, if the result is a normal double.
+/// A line of what is asked of 200 bits, if the result is a normal double.
 fn line(name: &str, x: f64, y: f64, result: f64, ulps: f64) -> Option<String> {
     let ulp = result.abs().next_up() - result.abs();
     result.is_normal().then(|| format!("{name} {x:?} {y:?} {result:?} {:?}\n", ulps * ulp))
@@ -126,13 +126,13 @@ fn bits_are_those_of_every_processor() {
         };
         let (x, y, large) = (20.0 * part() - 10.0, 8.0 * part() - 4.0, 1e6 * part());
         for (_, function, _) in OF_ONE {
-            [x, part(), large].map(|x| take(function(x)));
+            [x, part(), large].into_iter().for_each(|x| take(function(x)));
         }
         for (_, function, _) in OF_TWO {
-            [(x, y), (large, y), (part(), x)].map(|(x, y)| take(function(x, y)));
+            [(x, y), (large, y), (part(), x)].into_iter().for_each(|(x, y)| take(function(x, y)));
         }
     }
-    assert_eq!(format!("{hash:016x}"), "0");
+    assert_eq!(format!("{hash:016x}"), "e4cb9582744d2070");
 }
 
 /// The flights of a day: with and without fused multiply-add in the C library, tables and pages are the same to the last byte.
@@ -143,7 +143,7 @@ fn fused_multiply_add_changes_no_byte() {
     const WITHOUT: &str = "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX512F,-FMA_Usable,-FMA4_Usable,-AVX2_Usable";
     for words in [
         "simulate models/damped-heavy.toml --rpm 700 --revolutions 300 --events -",
-        "simulate models/osorio-2008.toml --rpm 670 --revolutions 300 --lyapunov --json",
+        "simulate models/osorio-2008.toml --rpm 670 --revolutions 300 --lyapunov",
         "diagram models/ballistic.toml --rpm 400:700:4 --record 40 --out -",
         "diagram models/damped-heavy.toml --rpm 600:700:3 --one-row --out -",
         "chart models/damped-heavy.toml --x rpm=600:760:4 --y restitution=0.5:0.9:4 --out -",
@@ -158,7 +158,12 @@ fn fused_multiply_add_changes_no_byte() {
             }
             let output = program.output().unwrap();
             assert!(output.status.success(), "{words:?}: {}", text(output.stderr));
+            // But for the clock.
             text(output.stdout)
+                .lines()
+                .filter(|line| !line.ends_with(" ns a revolution"))
+                .collect::<Vec<_>>()
+                .join("\n")
         });
         assert!(with == without, "{words:?}");
         assert!(!with.is_empty());

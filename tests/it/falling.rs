@@ -63,7 +63,11 @@ fn a_follower_at_rest_comes_down_through_an_equilibrium_that_repels() {
         let flight = flight(-0.5 * (r1 + r2), r1 * r2, 0.0);
         let (time, state) = flight.fall_to(0.0, at(0.4, 0.0)).unwrap();
         assert_relative_eq!(time, (r2 / r1 as f64).ln() / (r2 - r1), max_relative = 1e-12);
-        assert_relative_eq!(state.velocity, 0.4 * r1 * r2 * ((r1 * time).exp() - (r2 * time).exp()) / (r2 - r1), max_relative = 1e-11);
+        assert_relative_eq!(
+            state.velocity,
+            0.4 * r1 * r2 * ((r1 * time).exp() - (r2 * time).exp()) / (r2 - r1),
+            max_relative = 1e-11
+        );
         let deeper = flight.fall_to(-3.0, at(0.4, 0.0)).unwrap();
         assert_relative_eq!(flight.fly(at(0.4, 0.0), deeper.0).1.position, -3.0, max_relative = 1e-11);
         // In its equilibrium it stays.

@@ -179,7 +179,7 @@ fn the_commands_say_it_too() {
 /// with the revolutions in which it did not.
 #[test]
 fn a_longer_budget_turns_chaos_into_rests() {
-    for rpm in [640.0, 655.0, 662.0, 664.0, 666.0, 668.0] {
+    for rpm in [640.0, 655.0, 662.0, 664.0, 666.0, 669.0] {
         let machine = machine(&common::osorio(), rpm);
         let motion = machine.start_on_cam(0.0, 0.0).unwrap();
         let [short, long] = [Budget::CHART, Budget::SURVEY].map(|budget| long_run(&machine, motion, budget).unwrap());

@@ -32,11 +32,11 @@ fn runs_that_wander_share_a_hundred_thousand_revolutions() {
     }
 }
 
-/// Of 64 starts 39 rest sooner or later, and where the last seven do not in a hundred thousand revolutions that is chance: it is one
+/// Of 64 starts 37 rest sooner or later, and where the last few do not in a hundred thousand revolutions that is chance: it is one
 /// motion, which no run has left by resting.
 #[test]
 fn what_rests_as_seldom_as_it_did_at_first_is_one_motion() {
-    for (rpm, rested) in [(524.0, 39), (643.0, 25), (307.0, 9)] {
+    for (rpm, rested) in [(524.0, 37), (643.0, 34), (307.0, 15)] {
         let (parts, wandering) = parts(&common::osorio(), rpm, 64);
         assert_eq!(parts, [(Kind::Resting, true, 64)], "{rpm}");
         assert_eq!((wandering.left, wandering.rested), (0, rested), "{rpm}");
