@@ -151,14 +151,57 @@ fn attractors_are_matched_over_a_restitution() {
     }
 }
 
-/// Over a mass the follower leaves the cam where the speed of separation, as of the square root of the stiffness over the mass, passes the
-/// one that is turned at.
+/// Two halves of a range have what the whole has: the kinds of motion and their shares at each value, and the located events. So it is over
+/// every number: one of the spring, the damper, gravity, the rest position or the cam.
 #[test]
-fn a_follower_leaves_the_cam_at_a_stiffness() {
+#[ignore = "slow"]
+fn parts_of_a_range_of_any_number_have_their_part_of_the_answer() {
+    let wall = wall();
+    for (name, low, middle, high, step) in [
+        ("damping", 0.2, 0.6, 1.0, 0.2),
+        ("stiffness", 60.0, 100.0, 140.0, 20.0),
+        ("gravity", 0.0, 1.0, 2.0, 0.5),
+        ("rest_position", -0.006, -0.002, 0.002, 0.002),
+        ("offset", -0.002, 0.002, 0.006, 0.002),
+    ] {
+        let over = Over::new(&wall, Parameter::named(&wall, name).unwrap(), Some(250.0)).unwrap();
+        let found = |range| speeds(&over, range, &Resolution::new(common::step(step), 2), &Unwatched).unwrap();
+        let [whole, lower, upper] = [[low, high], [low, middle], [middle, high]].map(found);
+        let here = |found: &SpeedSurvey, value: f64| -> Vec<(Kind, f64)> {
+            let at = found.attractors.iter().flat_map(|row| &row.at).filter(|at| at.value() == value);
+            at.map(|at| (at.ending.kind(), at.share.value)).collect()
+        };
+        let mut values: Vec<f64> = whole.attractors.iter().flat_map(|row| row.at.iter().map(|at| at.value())).collect();
+        values.sort_by(f64::total_cmp);
+        values.dedup();
+        assert!(values.len() >= 5, "{name}: {values:?}");
+        for value in values {
+            for part in [&lower, &upper].into_iter().filter(|part| part.range[0] <= value && value <= part.range[1]) {
+                assert_eq!(here(part, value), here(&whole, value), "{name} {value}");
+            }
+        }
+        let events = |surveys: &[&SpeedSurvey]| -> Vec<(Cause, f64)> {
+            let rows = surveys.iter().flat_map(|found| &found.attractors);
+            let all = rows.flat_map(|row| row.birth.iter().chain(&row.death)).filter(|end| end.is_located());
+            all.map(|end| (end.cause, end.value())).collect()
+        };
+        let [of_whole, of_parts] = [events(&[&whole]), events(&[&lower, &upper])];
+        assert!(!of_whole.is_empty(), "{name}");
+        for (one, other) in [(&of_whole, &of_parts), (&of_parts, &of_whole)] {
+            for (cause, value) in one {
+                let is_same = |(known, at): &(Cause, f64)| known == cause && (at - value).abs() < 1e-9 * (high - low);
+                assert!(other.iter().any(is_same), "{name}: {cause:?} at {value}");
+            }
+        }
+    }
+}
+
+/// A table of amplitude a lets go of a ball that lies on it where gravity falls below `a w^2`.
+#[test]
+fn a_follower_leaves_the_cam_at_a_gravity() {
     let ball = crate::attractors::ball();
     let over = Over::new(&ball, Parameter::named(&ball, "gravity").unwrap(), Some(900.0)).unwrap();
     let omega = corner_impact::simulate::angular_velocity(900.0);
-    // A table of amplitude a lets go of what lies on it where a w^2 passes g.
     let amplitude = (corner_impact::simulate::angular_velocity(1.0), common::cam(&ball));
     let lift = amplitude.1.highest().value - amplitude.1.lowest().value;
     let leaves = 0.5 * lift * omega * omega;

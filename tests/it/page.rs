@@ -418,6 +418,7 @@ fn drawn_orbits_are_those_of_the_simulator() {
     for moment in &moments[..at_corner] {
         assert!(moment.orbits.is_empty(), "{}", moment.rpm);
         let near = findings.at.speed_rpm() - moment.rpm < 1.0;
-        assert!(near || moment.slowing.impacts_deg.len() > 24, "{}", moment.rpm);
+        let last = moment.slowing.impacts_deg.last().unwrap();
+        assert!(near || moment.slowing.impacts_deg.iter().any(|angle| (angle - last).abs() > 10.0), "{}", moment.rpm);
     }
 }

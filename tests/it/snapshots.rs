@@ -1,7 +1,7 @@
 //! Have the numbers moved? Snapshots under `golden/snapshots`; after a change to a model, `cargo insta review`.
 //!
-//! Values are kept to ten significant digits of their quantity's largest entry: the closed form holds them on every
-//! machine, while the last digits belong to the machine's sine. The page keeps its estimators' values, which are good to the
+//! Values are kept to ten significant digits of their quantity's largest entry: the closed form holds them, while the last
+//! digits are rounding. The page keeps its estimators' values, which are good to the
 //! places shown, and masks differences and errors, which are rounding.
 
 use crate::common;

@@ -121,7 +121,7 @@ pub(in crate::paper) fn chaos_below(context: &Context<'_>) -> Decision {
     const BLOCKS: (u32, u64) = (20, 250);
     /// How many standard errors the exponent must be above 0.
     const SIGNIFICANT: f64 = 10.0;
-    // A chaotic mean moves in its second digit with the machine's sine: the evidence says what it is compared with.
+    // A chaotic mean moves in its second digit with the last bits: the evidence says what it is compared with.
     let threshold = tolerance::CHAOTIC_GROWTH.value;
     let chaotic = machine(context, 670.0);
     let mut below = Record::over(BLOCKS.1);
