@@ -694,3 +694,40 @@ fn orbits_of_every_amplitude_are_one_continuum() {
         }
     }
 }
+
+/// A rise of `h` over 60 degrees has `c'' = -4.5 h` at its top, where `m w^2 c'' = k (rest - c) - m g`. It lets go there and not on the dwell below, on which the
+/// spring is slack, or carries the weight alone; and where the spring carries more, the follower hangs above the dwell at any speed.
+#[test]
+fn a_dwell_lets_go_where_the_spring_carries_more_than_the_weight() {
+    let (stiffness, rise) = (400.0, 0.02);
+    let with = |base: f64, gravity: f64, rest: f64| {
+        let motion = |motion: &str, span: f64, rise: f64| {
+            format!("[[cam.segment]]\nmotion = \"{motion}\"\nspan_deg = {span:?}\nrise = {rise:?}\n")
+        };
+        let program = [motion("harmonic", 60.0, rise), motion("harmonic", 60.0, -rise), motion("dwell", 240.0, 0.0)];
+        let text = format!(
+            "[follower]\nmass = 1.0\ndamping = 0.0\nstiffness = {stiffness:?}\ngravity = {gravity:?}\nrest_position = {rest:?}\n\
+             restitution = 0.3\n[cam]\nlaw = \"program\"\nbase = {base:?}\n{}",
+            program.concat()
+        );
+        Model::parse("dwell.toml", &text).unwrap()
+    };
+    let rpm = |pressed: f64| (stiffness * pressed / (4.5 * rise)).sqrt() * 60.0 / TAU;
+    for (base, gravity) in [(0.0, 0.0), (0.3, 0.0), (0.1, 9.81)] {
+        let slack = base + gravity / stiffness;
+        let speeds = [0.7 * rpm(rise), 1.4 * rpm(rise)];
+        let (_, leaves) = resting(&with(base, gravity, slack), 0.8 * rpm(rise), speeds, Kind::Detachment);
+        assert!((leaves.rpm / rpm(rise) - 1.0).abs() < 1e-9, "{base} {gravity}: {}", leaves.rpm);
+        let pressed = with(base, gravity, slack - 0.2 * rise);
+        let (_, leaves) = resting(&pressed, 0.8 * rpm(rise), speeds, Kind::Detachment);
+        assert!((leaves.rpm / rpm(1.2 * rise) - 1.0).abs() < 1e-9, "{base} {gravity}: {}", leaves.rpm);
+        let number = following(&pressed, "rest_position", [slack - 0.4 * rise, slack + 0.4 * rise], 0.1);
+        let curve = curve(&pressed, &leaves, speeds, &number);
+        let last = curve.points.last().unwrap();
+        println!("{:?} {:?}", curve.ends, curve.points.iter().map(|it| (it.value - slack, it.rpm / rpm(slack + rise - it.value) - 1.0)).collect::<Vec<_>>());
+        assert!(curve.ends == [End::Range, End::OtherWay] && (last.value - slack).abs() < 1e-6 * rise, "{:?}", curve.ends);
+        for point in &curve.points {
+            assert!((point.rpm / rpm(slack + rise - point.value) - 1.0).abs() < 1e-9, "{base} {gravity}: {point:?}");
+        }
+    }
+}

@@ -1,6 +1,6 @@
 //! Is a danger the same one in any coordinates and at any scale, and are attractors of every kind told?
 
-use corner_impact::border_collision::LocalMap;
+use corner_impact::border_collision::{LocalMap, LocalOutcome};
 use corner_impact::border_collision::danger::{Danger, DangerKind, Divergence, LocalAttractor, Returns};
 use corner_impact::border_collision::feigin::Speeds;
 use corner_impact::corner::SideMap;
@@ -117,4 +117,22 @@ fn a_divergence_that_is_slow_is_computed() {
     };
     assert_eq!(turned(1.002), Some(Divergence { share: 1.0, known: Known::Computed, follows: None }));
     assert_eq!((turned(1.0), turned(0.99)), (None, None));
+}
+
+/// What motions end on is an attractor whether or not its orbit is among those that are listed, whose words are short.
+#[test]
+fn an_orbit_that_motions_end_on_is_an_attractor_without_being_listed() {
+    let map = common::normal_form([0.19, -1.28], [0.64, 0.87]);
+    let own = map.outcome(1.0);
+    let told = |outcome: LocalOutcome| {
+        let told = |it: &LocalAttractor| (it.word().map(ToString::to_string), it.known, it.returns.is_some());
+        let danger = map.danger(&[outcome], PERIOD).unwrap();
+        let mut told: Vec<_> = danger.attractors.iter().map(told).collect();
+        told.sort();
+        (danger.kind, danger.known, told)
+    };
+    let unlisted = LocalOutcome { orbits: Vec::new(), ..own.clone() };
+    let listed = told(own);
+    assert_eq!((listed.0, listed.2.len()), (DangerKind::MultipleAttractors, 2));
+    assert_eq!(told(unlisted), listed);
 }

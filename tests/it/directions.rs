@@ -112,3 +112,18 @@ fn a_small_growth_takes_narrow_sectors() {
         }
     }
 }
+
+/// Turned and doubled every motion grows, in sectors of whatever width, and with whichever of the matrices that are as near as a part of a wide
+/// sector: wide ones are all that is looked at.
+#[test]
+fn matrices_that_are_known_to_a_part_of_a_sector_are_enough() {
+    let around = |entry: f64| Interval::new(entry - 0.002, entry + 0.002);
+    for [cos, sin] in [[0.6, 0.8], [0.6, -0.8], [-0.28, 0.96], [0.8, 0.6], [-0.96, -0.28]] {
+        let rows = [[cos, -sin], [sin, cos]].map(|row| row.map(|entry| around(2.0 * entry)));
+        let border = [1.0, 0.3].map(Interval::from);
+        for is_likely in [true, false] {
+            let share = Homogeneous::new([rows, rows], border, Vector2::new(1.0, 1.0)).diverging(is_likely);
+            assert_eq!(share, 1.0, "{cos} {sin} {is_likely}");
+        }
+    }
+}

@@ -11,7 +11,7 @@ use corner_impact::orbit::long_run::{Budget, LongRun};
 use corner_impact::orbit::{Course, Parameter, PeriodicOrbit, Search, search};
 use corner_impact::progress::Unwatched;
 use corner_impact::simulate::{Machine, angular_velocity};
-use corner_impact::study::curve::curves;
+use corner_impact::study::curve::{Curves, curves};
 use corner_impact::study::survey::long_run;
 
 /// An oscillator of mass 1 at 0, and a wall that is moved harmonically by 1 about an offset.
@@ -571,6 +571,138 @@ fn the_curve_of_a_graze_has_the_borders_between_its_speeds() {
         assert_eq!(found.len(), wanted.len(), "{halves:?}: {found:?}");
         for (one, (halves, passages)) in found.iter().zip(wanted) {
             assert!((one.0 / at(halves) - 1.0).abs() < 1e-12 && one.1 == Border::Resonance(passages), "{found:?}");
+        }
+    }
+}
+
+/// The curves of the touches of a follower at rest, over a range of a number and of speeds, rpm.
+fn touches(model: &Model, name: &str, range: [f64; 2], rpm: [f64; 2]) -> Curves {
+    let following =
+        Following { parameter: Parameter::named(model, name).unwrap(), range, longest_step: 0.1, most_points: 100 };
+    let wanted = Search { revolutions: 1, impacts: Some(0) };
+    curves(model, rpm, &wanted, &[Bifurcation::Graze], &following, &Unwatched).unwrap()
+}
+
+/// With so many tops that are alike the cam passes as many times as often, and a follower that is slower by a factor meets the same at speeds that
+/// are lower by it.
+#[test]
+fn the_borders_of_a_graze_go_by_passages_and_by_the_followers_time() {
+    let at = |halves: f64| (1.0 - 0.0025_f64).sqrt() * 60.0 / (halves * PI);
+    for (tops, slower) in [(1, 100.0), (3, 1.0), (2, 0.01)] {
+        let mut amplitudes = vec![0.0; tops];
+        amplitudes[tops - 1] = 1.0;
+        let own = |rpm: f64| rpm / slower / tops as f64;
+        let found = |damping: f64, rpm: [f64; 2]| -> Vec<(f64, Border)> {
+            let model = on_cam(damping / slower, slower.powi(-2), &cosines(-1.02, &amplitudes));
+            let [curve] = &touches(&model, "offset", [-1.03, -0.95], rpm.map(own)).curves[..] else { panic!("{tops}") };
+            let border = |kind: Kind| if let Kind::Class(border) = kind { border } else { panic!("{kind:?}") };
+            curve.points.iter().filter_map(|point| Some((point.rpm, border(point.special?.kind)))).collect()
+        };
+        let oscillating = [(2.5, 2), (7.0 / 3.0, 3), (2.25, 4)].map(|(halves, n)| (at(halves), Border::Resonance(n)));
+        let real = [0.25, 2.0 / 3.0].map(|lambda| (rpm_of(3.0, lambda), Border::Eigenvalue(lambda)));
+        for (found, wanted) in
+            [(found(0.1, [2.6, 2.1].map(at)), &oscillating[..]), (found(3.0, [10.0, 80.0]), &real[..])]
+        {
+            assert_eq!(found.len(), wanted.len(), "{tops} {slower}: {found:?}");
+            for (one, other) in found.iter().zip(wanted) {
+                assert!((one.0 / own(other.0) - 1.0).abs() < 1e-12 && one.1 == other.1, "{tops} {slower}: {found:?}");
+            }
+        }
+    }
+}
+
+/// Where the wall reaches the follower on both sides of a range there are two touches, and none where it does on no side or where nothing holds
+/// the follower.
+#[test]
+fn each_touch_in_a_range_has_a_curve_and_no_other() {
+    let model = wall(0.1, 1.0, -1.02);
+    for (name, range, wanted) in [
+        ("offset", [-1.05, -0.95], vec![(-1.0, true)]),
+        ("rest_position", [-0.05, 0.05], vec![(-0.02, false)]),
+        ("cam.amplitudes[0]", [-1.1, 1.1], vec![(-1.02, false), (1.02, true)]),
+        ("offset", [-1.2, -1.1], vec![]),
+    ] {
+        let found: Vec<(f64, bool)> = touches(&model, name, range, [20.0, 22.0])
+            .curves
+            .iter()
+            .map(|curve| match curve.kind {
+                Kind::Graze { first: Some(first), .. } => (curve.points[0].value, first.larger),
+                kind => panic!("{kind:?}"),
+            })
+            .collect();
+        assert_eq!(found.len(), wanted.len(), "{name}: {found:?}");
+        for (one, other) in found.iter().zip(wanted) {
+            assert!((one.0 - other.0).abs() < 1e-15 && one.1 == other.1, "{name}: {found:?}");
+        }
+    }
+    assert_eq!(touches(&wall(0.1, 0.0, -1.02), "offset", [-0.05, 0.95], [20.0, 22.0]).curves.len(), 0);
+}
+
+/// What loses its only impact is at rest from there on up to where the wall reaches it the other way round, whatever the unit of length.
+#[test]
+fn a_branch_goes_on_at_rest_from_one_touch_to_the_other() {
+    for size in [1.0, 2.0_f64.powi(-13), 2.0_f64.powi(20)] {
+        let model = |amplitude: f64| on_cam(0.1, 1.0, &cosines(-size, &[amplitude]));
+        let name = "cam.amplitudes[0]";
+        let range = [-1.1 * size, 1.1 * size];
+        let there = follow(&model(0.99 * size), 20.0, &free(&model(0.99 * size), 20.0), name, range);
+        let is_struck = |point: &&BranchPoint| point.value > 1.01 * size && point.orbit.impacts().count() == 1;
+        let struck = there.points.iter().find(is_struck).unwrap();
+        let back = follow(&model(struck.value), 20.0, &struck.orbit, name, range);
+        let grazes: Vec<(f64, bool)> = back
+            .points
+            .iter()
+            .filter_map(|point| match point.special?.kind {
+                Kind::Graze { first: Some(first), .. } => Some((point.value / size, first.larger)),
+                _ => None,
+            })
+            .collect();
+        let [(one, false), (other, true)] = grazes[..] else { panic!("{size}: {grazes:?} {:?}", back.ends) };
+        assert!((one + 1.0).abs() < 1e-9 && (other - 1.0).abs() < 1e-9, "{size}: {grazes:?}");
+        let at_rest = back.points.iter().filter(|point| point.orbit.course == Course::Free);
+        assert!(at_rest.clone().count() > 15 && at_rest.clone().all(|point| point.value.abs() < size * (1.0 + 1e-9)));
+    }
+}
+
+/// Without damping and in resonance with the cam a follower swings from touch to touch, and is not at rest: a branch of one impact ends there.
+#[test]
+fn a_follower_that_swings_from_touch_to_touch_is_not_at_rest() {
+    let model = wall(0.0, 1.0, -1.5);
+    let found = search(&machine(&model, 12.0), &Search { revolutions: 1, impacts: Some(1) }).unwrap();
+    assert!(!found.is_empty());
+    for orbit in found {
+        let branch = follow(&model, 12.0, &orbit, "rpm", [9.0, 13.0]);
+        let ends = |at: &BranchPoint| (at.value / (60.0 / TAU) - 1.0).abs() < 1e-4;
+        println!("{:?} {:?}", branch.ends, branch.points.iter().map(|it| (it.value, it.special.map(|s| s.kind))).collect::<Vec<_>>());
+        assert!(branch.points.first().is_some_and(ends) && branch.ends[0] == End::Graze, "{:?}", branch.ends);
+        assert!(branch.points.iter().all(|point| point.orbit.course != Course::Free), "{:?}", branch.ends);
+    }
+}
+
+/// Two tops that are 150 degrees apart, the way round by 210, strike a follower without damping with impulses that are alike. It comes to the second
+/// one rising, and to the first one falling, and meets that on the far side of its top: with a half swing of `p` rad in a revolution the cam's
+/// velocity is `1/(1 + r) - 1/2 - sin(p/6)/(2 sin p)` of the impulse, and of the second with a plus.
+#[test]
+fn a_follower_may_meet_the_cam_behind_its_top() {
+    let (up, down) = (("harmonic", 60.0, 1.0), ("harmonic", 90.0, -1.0));
+    for dwell in [0.0_f64, 40.0] {
+        // Angle 0 in the dwell, or at its end.
+        let mut motions = vec![up, down, up, down, ("dwell", 60.0 - dwell, 0.0)];
+        if dwell > 0.0 {
+            motions.insert(0, ("dwell", dwell, 0.0));
+        }
+        let model = on_cam(1e-3, 1.0, &program(-1.01, &motions));
+        let branch = follow(&model, 20.0, &free(&model, 20.0), "base", [-1.02, -0.98]);
+        println!("{:?} {:?}", branch.ends, branch.points.iter().map(|it| (it.value, it.orbit.impacts().map(|i| i.cam_angle.to_degrees()).collect::<Vec<_>>(), it.special.map(|s| s.kind))).collect::<Vec<_>>());
+        let struck: Vec<Vec<f64>> = branch
+            .points
+            .iter()
+            .filter(|point| (1e-9..1e-3).contains(&(point.value + 1.0)))
+            .map(|point| point.orbit.impacts().map(|impact| impact.cam_angle.to_degrees() - dwell).collect())
+            .collect();
+        assert!(struck.len() > 1, "{:?}", branch.ends);
+        for angles in struck {
+            assert!(angles.len() == 2 && angles[0] > 60.0 && angles[1] < 210.0, "{angles:?}");
         }
     }
 }
