@@ -5,12 +5,12 @@ use corner_impact::model::Model;
 use corner_impact::orbit::Parameter;
 use corner_impact::orbit::long_run::{Budget, Kind};
 use corner_impact::progress::Unwatched;
-use corner_impact::study::attractors::{Cause, Resolution, Step};
+use corner_impact::study::attractors::{AttractorsError, Cause, Resolution, Step, attractors};
 use corner_impact::study::basins::{BasinsOver, Begun};
 use corner_impact::study::design::{Asked, design};
 use corner_impact::study::diagram::one_row;
 use corner_impact::study::speeds::{SpeedSurvey, speeds};
-use corner_impact::study::survey::{Axis, Over, Placed, Spacing, Start, Survey, Values};
+use corner_impact::study::survey::{Axis, Over, Placed, RunError, Sample, Spacing, Start, Survey, Values};
 
 use crate::common::{self, corner_impact, text};
 
@@ -256,6 +256,162 @@ fn a_logarithmic_grid_is_the_same_for_every_range() {
         [10.0_f64.powf(-2.0), 10.0_f64.powf(-1.8), 10.0_f64.powf(-1.6), 10.0_f64.powf(-1.4)][..part.len()]
     );
     assert!(part.len() >= 3 && part.iter().all(|value| whole.contains(value)), "{whole:?} {part:?}");
+}
+
+/// A run from rest on the cam at each value, which stays there at a low speed.
+fn at_rest(step: Step) -> Resolution {
+    Resolution { sample: Sample::Given(vec![REST]), ..Resolution::new(step, 1) }
+}
+
+/// The values of a grid, and whether there is a machine at each.
+fn grid(over: &Over<'_>, range: [f64; 2], step: Step) -> Result<Vec<(f64, bool)>, AttractorsError> {
+    let found = attractors(over, range, &at_rest(step), &Unwatched)?;
+    assert_eq!(found.range, range);
+    let is_machine = |found: &Result<_, RunError>| !matches!(found, Err(RunError::Family(_)));
+    Ok(found.grid.iter().map(|at| (at.value, is_machine(&at.found))).collect())
+}
+
+/// A grid goes on for eight steps beyond either end of a range, below 0 as above; but to no value beyond them at which there is no machine. Those of
+/// the range itself are told all the same.
+#[test]
+fn a_grid_of_any_number_is_the_range_and_its_margin() {
+    let pressed = wall().with_number("follower.rest_position", -0.02).unwrap();
+    let over = |name: &str| Over::new(&pressed, Parameter::named(&pressed, name).unwrap(), Some(1.0)).unwrap();
+    let tenths = |range: std::ops::RangeInclusive<i32>| range.map(|tenth| f64::from(tenth) / 10.0);
+    let all = |range| tenths(range).map(|value| (value, true)).collect::<Vec<_>>();
+    let rest = over("rest_position");
+    for [low, high] in [[-1, 1], [-3, 0], [0, 2], [-5, -4], [4, 7]] {
+        let range = [low, high].map(|end| f64::from(end) / 10.0);
+        assert_eq!(grid(&rest, range, common::step(0.1)).unwrap(), all(low - 8..=high + 8), "{range:?}");
+    }
+    // Of a restitution there are machines from 0 to 1.
+    let restitution = over("restitution");
+    let found = grid(&restitution, [0.3, 0.5], common::step(0.1)).unwrap();
+    assert_eq!(found, all(0..=10));
+    let told = grid(&restitution, [-0.2, 1.2], common::step(0.1)).unwrap();
+    let expected: Vec<_> = tenths(-2..=12).map(|value| (value, (0.0..=1.0).contains(&value))).collect();
+    assert_eq!(told, expected);
+}
+
+/// So does one of powers of ten, of any number above 0, and of a speed below 1 rpm, too.
+#[test]
+fn a_grid_of_powers_of_ten_is_the_range_and_its_margin() {
+    let pressed = wall().with_number("follower.rest_position", -0.02).unwrap();
+    let stiffness = Over::new(&pressed, Parameter::named(&pressed, "stiffness").unwrap(), Some(1.0)).unwrap();
+    let speed = Over::speed(&pressed).unwrap();
+    for over in [&stiffness, &speed] {
+        let found = grid(over, [0.1, 0.4], Step::at_most(0.2, Spacing::Logarithmic)).unwrap();
+        let expected: Vec<f64> = (-13..=6).map(|fifth| 10.0_f64.powf(f64::from(fifth) / 5.0)).collect();
+        assert_eq!(found.len(), expected.len(), "{found:?}");
+        for ((value, is_machine), expected) in found.into_iter().zip(expected) {
+            assert_relative_eq!(value, expected, max_relative = 1e-12);
+            assert!(is_machine);
+        }
+    }
+}
+
+/// A range goes up, as far as a double does, and has logarithms where these are asked for.
+#[test]
+fn a_range_that_is_none_of_a_number_is_refused() {
+    let wall = wall();
+    let over = Over::new(&wall, Parameter::named(&wall, "rest_position").unwrap(), Some(1.0)).unwrap();
+    let (linear, decades) = (common::step(0.5), Step::at_most(0.5, Spacing::Logarithmic));
+    let ends = [
+        (linear, [0.5, 0.5]),
+        (linear, [0.5, -0.5]),
+        (linear, [-1e308, 1e308]),
+        (linear, [0.0, f64::INFINITY]),
+        (decades, [0.0, 1.0]),
+        (decades, [-1.0, 1.0]),
+        (decades, [1.0, 1.0]),
+    ];
+    for (step, range) in ends {
+        let found = grid(&over, range, step);
+        let is_refused = match &found {
+            Err(AttractorsError::NoRangeOf { name, low, high, of_logarithms }) => {
+                name == "follower.rest_position"
+                    && [*low, *high] == range
+                    && *of_logarithms == (step.spacing == Spacing::Logarithmic)
+            }
+            _ => false,
+        };
+        assert!(is_refused, "{range:?}: {found:?}");
+    }
+    for (step, range) in [(linear, [-0.5, 0.5]), (linear, [0.0, 0.5]), (decades, [1e-3, 1e-2])] {
+        assert!(grid(&over, range, step).is_ok(), "{range:?}");
+    }
+}
+
+/// An oscillator over a table, both moved up by as much: nothing but their heights is another.
+fn moved_up(by: f64) -> Model {
+    wall().with_number("cam.offset", by).unwrap()
+}
+
+/// The follower leaves where `k (offset - rest) = a |k - m w^2 + i b w|`, at a rest position below 0, above it or of 0 itself; and with a bracket of
+/// a few roundings.
+#[test]
+fn a_follower_leaves_the_cam_at_a_rest_position() {
+    let omega = corner_impact::simulate::angular_velocity(60.0);
+    let below = 0.01 * (100.0 - omega * omega).hypot(0.4 * omega) / 100.0;
+    for offset in [0.0, below, 0.02, 1.0] {
+        let table = moved_up(offset);
+        let over = Over::new(&table, Parameter::named(&table, "rest_position").unwrap(), Some(60.0)).unwrap();
+        let leaves = offset - below;
+        let range = [leaves - 2e-3, leaves + 1e-3];
+        let found = speeds(&over, range, &at_rest(common::step(1e-3)), &Unwatched).unwrap();
+        let [at, error] = found.detachment().unwrap();
+        assert!((at - leaves).abs() < 1e-14 && (0.0..1e-14).contains(&error), "{offset}: {at} {leaves} {error}");
+        let stays = found.attractors.iter().find(|row| row.kind == Kind::Stays).unwrap();
+        let death = stays.death.as_ref().unwrap();
+        assert_eq!((death.cause, stays.range()), (Cause::Detachment, [range[0], at]));
+        assert!(death.bracket[0] <= at && at <= death.bracket[1] && death.bracket[1] - death.bracket[0] < 1e-14);
+    }
+}
+
+/// Attractors over a rest position, their periods, what they begin and end with and where: all that moves with the offset of the cam is that.
+#[test]
+fn attractors_over_a_rest_position_move_with_the_offset() {
+    let rows = |by: f64| -> Vec<_> {
+        let table = moved_up(by);
+        let over = Over::new(&table, Parameter::named(&table, "rest_position").unwrap(), Some(300.0)).unwrap();
+        let range = [-0.018, -0.0165].map(|end| end + by);
+        let found = speeds(&over, range, &Resolution::new(common::step(5e-4), 1), &Unwatched).unwrap();
+        let cause = |end: &Option<corner_impact::study::attractors::Transition>| end.as_ref().map(|end| end.cause);
+        let row = |it: &corner_impact::study::speeds::AttractorRow| {
+            ((it.revolutions, it.impacts), [cause(&it.birth), cause(&it.death)], it.range().map(|end| end - by))
+        };
+        found.attractors.iter().map(row).collect()
+    };
+    let own = rows(0.0);
+    let [one, two] = &own[..] else { panic!("{own:?}") };
+    assert_eq!((one.0, two.0), ((Some(1), Some(1)), (Some(2), Some(2))), "{own:?}");
+    assert_eq!((one.1[1], two.1[0]), (Some(Cause::Flip), Some(Cause::Flip)), "{own:?}");
+    assert_relative_eq!(one.2[1], two.2[0], max_relative = 1e-9);
+    // Among them one that puts the first value at which the second is found at 0.
+    for by in [0.0175, 0.018, 0.1, 1.0, -1.0] {
+        let found = rows(by);
+        assert_eq!(found.len(), own.len(), "{by}: {found:?}");
+        for (found, own) in found.iter().zip(&own) {
+            assert_eq!((found.0, found.1), (own.0, own.1), "{by}");
+            for (end, own) in found.2.into_iter().zip(own.2) {
+                assert!((end - own).abs() < 1e-10, "{by}: {end} {own}");
+            }
+        }
+    }
+}
+
+/// A ball lies on a table whose acceleration is less than gravity, or bounces where it is more than a part of that: over a range of gravities between
+/// them, however narrow, both are there all along.
+#[test]
+fn two_attractors_are_told_of_a_narrow_range() {
+    let ball = crate::attractors::ball();
+    let over = Over::new(&ball, Parameter::named(&ball, "gravity").unwrap(), Some(700.0)).unwrap();
+    for width in [1e-2, 1e-6, 4e-10] {
+        let range = [9.81, 9.81 + width];
+        let found = attractors(&over, range, &Resolution::new(common::step(width), 2), &Unwatched).unwrap();
+        let both = found.coexistence.iter().find(|it| it.range == range && it.families.len() >= 2);
+        assert!(both.is_some(), "{width}: {:?}", found.coexistence);
+    }
 }
 
 /// Shares sum to 1 at each value, at which starts may be given.

@@ -143,6 +143,17 @@ fn a_damper_that_pulls_over_a_narrow_range_is_found() {
         let faster = Contact::new(&cam, model.follower).least(rpm(0.13)).value;
         assert!(faster > 0.0, "{faster}");
     }
+    // Without a preload it is held back however slow the cam turns, and faster it leaves where it does with next to none.
+    let [without, with] = [0.0, 1e-9 * deepest].map(|preload| {
+        let lines = format!("preload = {preload:?}\ngravity = 0.0");
+        let model = machine([it.mass, it.damping, it.stiffness], &lines, &cam);
+        let cam = Cam::new(&model).unwrap();
+        let contact = Contact::new(&cam, model.follower);
+        (contact.separation(), contact.separation_above(rpm(0.13)).speed())
+    });
+    assert!(matches!(without.0, Separation::NotPressed { .. }), "{without:?}");
+    assert!(without.1 > rpm(0.13));
+    assert_relative_eq!(without.1, with.1, max_relative = 1e-6);
 }
 
 /// A mass on an eccentric `c = r (1 + cos)`, held up by its weight: `k r - m g = r |k - m w^2 + i b w|` at two speeds, and between them it is on
@@ -166,10 +177,137 @@ fn above_a_speed_a_damped_follower_leaves_where_its_closed_form_says() {
     }
 }
 
+/// Cosines that make a lift with a bottom of an order, in the unit of half of its height or so: `(1 + cos)^(order/2)`, turned by an angle.
+fn flat_bottom(order: usize, size: f64) -> String {
+    let turned = 25.0;
+    let amplitudes: &[f64] = match order {
+        2 => &[1.0, 1.0],
+        4 => &[1.5, 2.0, 0.5],
+        _ => &[2.5, 3.75, 1.5, 0.25],
+    };
+    let of_cosines: Vec<f64> = amplitudes[1..].iter().map(|it| it * size).collect();
+    let phases: Vec<f64> = (1..amplitudes.len()).map(|number| turned * number as f64).collect();
+    format!(
+        "law = \"harmonic\"\noffset = {:?}\namplitudes = {of_cosines:?}\nphases_deg = {phases:?}\n",
+        amplitudes[0] * size
+    )
+}
+
+/// On the way down to a bottom `c = a x^n` that nothing presses on, the damper holds the follower back at every speed where `n b^2 > 4 (n - 1) k m`,
+/// and else at no slow one: of a cam of any size, and whether a dwell follows or not.
+#[test]
+fn a_damper_holds_back_by_the_order_of_the_bottom() {
+    let [mass, stiffness] = [0.5, 1000.0];
+    let is_held = |cam: &str, square: f64| {
+        let damping = (square * stiffness * mass).sqrt();
+        let model = machine([mass, damping, stiffness], "preload = 0.0\ngravity = 0.0", cam);
+        matches!(separation(&model), Separation::NotPressed { .. })
+    };
+    for (order, critical) in [(2, 2.0), (4, 3.0), (6, 10.0 / 3.0)] {
+        for size in [1e-12, 1e-9, 0.01, 1.0, 1e9, 1e16] {
+            let cam = flat_bottom(order, size);
+            let found = [0.99, 1.01].map(|part| is_held(&cam, part * critical));
+            assert_eq!(found, [false, true], "{order} {size}");
+        }
+    }
+    // A cycloid comes down as x^3.
+    let segment =
+        |motion: &str, rise: f64| format!("[[cam.segment]]\nmotion = \"{motion}\"\nspan_deg = 90.0\nrise = {rise:?}\n");
+    for (motion, critical) in [("parabolic", 2.0), ("cycloidal", 8.0 / 3.0)] {
+        let segments =
+            segment(motion, 0.02) + &segment("dwell", 0.0) + &segment(motion, -0.02) + &segment("dwell", 0.0);
+        let cam = format!("law = \"program\"\nbase = 0.0\n{segments}");
+        assert_eq!([0.99, 1.01].map(|part| is_held(&cam, part * critical)), [false, true], "{motion}");
+    }
+}
+
+/// Nothing presses on a mass without a spring and a weight: its inertia alone holds it back where the cam turns down most, and a damper, however
+/// slow the cam turns, where that falls fastest; on a cam that stands still nothing does.
+#[test]
+fn a_mass_that_nothing_presses_on_is_held_back_at_the_top_or_on_the_way_down() {
+    let eccentric = "law = \"harmonic\"\noffset = 0.02\namplitudes = [0.02]\nphases_deg = [0.0]\n";
+    let free = "rest_position = 0.0\ngravity = 0.0";
+    for (damping, turned) in [(0.0, 0.0), (4.0, 0.5 * PI)] {
+        let found = separation(&machine([0.5, damping, 0.0], free, eccentric));
+        let Separation::NotPressed { cam_angle } = found else { panic!("{found:?}") };
+        let off = (cam_angle - turned + PI).rem_euclid(TAU) - PI;
+        assert!(off.abs() < 1e-6, "{damping}: {cam_angle}");
+    }
+    let still = "law = \"program\"\nbase = 1.0\n[[cam.segment]]\nmotion = \"dwell\"\nspan_deg = 360.0\nrise = 0.0\n";
+    for damping in [0.0, 4.0] {
+        assert_eq!(separation(&machine([0.5, damping, 0.0], free, still)), Separation::Never, "{damping}");
+    }
+}
+
+/// A weight that hangs on the spring as far as the lowest lift: what presses there is the difference of two large forces, whose rounding holds back
+/// nothing. The follower of an eccentric leaves at `m w^2 = 2 k`, whatever the weight.
+#[test]
+fn a_weight_that_the_spring_just_holds_up_is_none() {
+    let [mass, stiffness, radius] = [0.7, 1.3, 0.02];
+    let cam = "law = \"harmonic\"\noffset = 0.02\namplitudes = [0.02]\nphases_deg = [25.0]\n";
+    for step in 1..40 {
+        let gravity = 1.1 * f64::from(step) * if step % 2 == 0 { 100.0 } else { 1.0 };
+        let rest = mass * gravity / stiffness;
+        let lines = format!("rest_position = {rest:?}\ngravity = {gravity:?}");
+        let model = machine([mass, 0.0, stiffness], &lines, cam);
+        let cam = Cam::new(&model).unwrap();
+        let contact = Contact::new(&cam, model.follower);
+        let least = contact.least(1.0).value;
+        assert_eq!(least, 0.0, "{gravity}");
+        assert_relative_eq!(contact.separation().speed(), rpm((2.0 * stiffness / mass).sqrt()), max_relative = 1e-9);
+        assert_relative_eq!(contact.largest(1.0), 2.0 * radius * stiffness, max_relative = 1e-9);
+    }
+}
+
+/// At the speed of separation the force is 0 but for its rounding, which counts as 0: of a light follower that a strong spring presses on and a damper
+/// holds back alone, `k (r + p) = r |k + i b w|` with a preload `k p`, and of a heavy one on a cam whose valley is narrow.
+#[test]
+fn the_force_at_the_separation_is_rounding_alone() {
+    let least = |model: &Model| {
+        let cam = Cam::new(model).unwrap();
+        let contact = Contact::new(&cam, model.follower);
+        let at = contact.separation().speed();
+        (at, contact.least(at).value)
+    };
+    let (stiffness, radius) = (1000.0, 0.02_f64);
+    for step in 0..30 {
+        let (phase, damping) = (12.3 * f64::from(step), 3.0 + 0.7 * f64::from(step));
+        let cam =
+            format!("law = \"harmonic\"\noffset = {radius:?}\namplitudes = [{radius:?}]\nphases_deg = [{phase:?}]\n");
+        let rest = -9.0 * radius;
+        let lines = format!("rest_position = {rest:?}\ngravity = 0.0");
+        let (at, force) = least(&machine([1e-12, damping, stiffness], &lines, &cam));
+        assert_relative_eq!(at, rpm(stiffness / damping * 99.0_f64.sqrt()), max_relative = 1e-9);
+        assert_eq!(force, 0.0, "{phase} {damping}");
+    }
+    // -sum q^n cos(n theta) of a radius.
+    for step in 0..30 {
+        let phase = 7.9 * f64::from(step);
+        let amplitudes: Vec<f64> = (1..30).map(|number| radius * 0.7_f64.powi(number)).collect();
+        let phases: Vec<f64> = (1..30).map(|number| 180.0 + phase * f64::from(number)).collect();
+        let cam = format!("law = \"harmonic\"\noffset = 0.1\namplitudes = {amplitudes:?}\nphases_deg = {phases:?}\n");
+        let (at, force) = least(&machine([0.5, 0.0, stiffness], "preload = 10.0\ngravity = 0.0", &cam));
+        assert!(at > 0.0 && at.is_finite() && force == 0.0, "{phase}: {at} {force}");
+    }
+}
+
+/// The place where an undamped follower leaves an eccentric is the top itself, and no angle next to it where the force differs by less than its rounding.
+#[test]
+fn an_undamped_follower_leaves_at_the_top_itself() {
+    for turned in [25.0, 25.0 + 3e-6, 25.0 - 2e-6] {
+        let cam = format!("law = \"harmonic\"\noffset = 0.02\namplitudes = [0.02]\nphases_deg = [{turned:?}]\n");
+        let model = machine([0.5, 0.0, 1000.0], "preload = 10.0\ngravity = 9.81", &cam);
+        let Separation::At { cam_angle, .. } = separation(&model) else { panic!("{turned}") };
+        let top = Cam::new(&model).unwrap().highest().angle;
+        assert!((cam_angle - top).abs() < 1e-12, "{turned}: {cam_angle} {top}");
+    }
+}
+
 /// The force is told from 0 next to the speed of separation, whatever the unit of length, and however heavy the machine is as a whole.
 #[test]
 fn the_force_next_to_separation_is_no_rounding_in_any_unit() {
-    for (unit, length) in [("m", 1.0), ("cm", 1e2), ("mm", 1e3), ("um", 1e6), ("ft", 1250.0 / 381.0)] {
+    // The last is a machine of a micrometre.
+    for (unit, length) in [("m", 1.0), ("cm", 1e2), ("mm", 1e3), ("um", 1e6), ("ft", 1250.0 / 381.0), ("m", 1e-6)] {
         for heavy in [1.0, 1e-9, 1e9] {
             for (gravity, damping) in [(9.81, 4.0), (9.81, 0.0), (1e-9, 4.0), (0.0, 4.0)] {
                 let text = format!(

@@ -16,7 +16,7 @@ use corner_impact::study::attractors::{
     Attractors, AttractorsAtValue, Cause, Resolution, Step, Transition, attractors, detachment,
 };
 use corner_impact::study::speeds::At;
-use corner_impact::study::survey::{Attractor, Over, Starts, Wandering};
+use corner_impact::study::survey::{Attractor, Over, Placed, Sample, Start, Starts, Wandering};
 
 use crate::attractors::ball;
 use crate::common;
@@ -374,4 +374,42 @@ fn a_range_may_begin_at_next_to_nothing() {
     let found = attractors(&Over::speed(&ball()).unwrap(), [1e-5, 1.0], &resolution, &Unwatched).unwrap();
     let [row] = &found.families[..] else { panic!("{:?}", found.families) };
     assert_eq!((row.range, row.ends.each_ref().map(Option::is_some)), ([1e-5, 1.0], [false, false]));
+}
+
+/// Where one start comes to the follower's rest on the cam, and not to the bounce that is there as well, is what is told of that start alone: at one
+/// end of each bracket it comes there, and at the other it does not.
+#[test]
+fn ends_are_those_of_the_starts_that_are_given() {
+    let ball = ball();
+    let over = Over::speed(&ball).unwrap();
+    let sample = Sample::Given(vec![Start { cam_angle: 1.0, follower: Placed::OnCam(0.3) }]);
+    let resolution = Resolution { sample: sample.clone(), ..Resolution::new(common::step(20.0), 1) };
+    let found = attractors(&over, [580.0, 800.0], &resolution, &Unwatched).unwrap();
+    let stays = |rpm: f64| {
+        let here = AttractorsAtValue::new(&over.machine(rpm).unwrap(), &sample, Budget::SURVEY).unwrap();
+        here.attractors.iter().any(|it| it.ending.kind() == Kind::Stays)
+    };
+    let rows = found.families.iter().filter(|row| row.kind(&found.grid) == Kind::Stays);
+    let ends: Vec<&Transition> = rows.flat_map(|row| row.ends.iter().flatten()).collect();
+    assert!(!ends.is_empty());
+    for end in ends {
+        assert_eq!(end.cause, Cause::Runs);
+        let told = end.bracket.map(stays);
+        assert!(told[0] != told[1] && end.bracket[1] - end.bracket[0] < 0.1, "{told:?} {end:?}");
+    }
+}
+
+/// An orbit that goes on from speed to speed is come to at each from its neighbour, where no start of the sample does.
+#[test]
+fn an_orbit_is_reached_from_the_next_speed() {
+    let found = attractors(&Over::speed(&ball()).unwrap(), [600.0, 640.0], resolution(20.0, 1), &Unwatched).unwrap();
+    let row = found.families.iter().find(|row| row.period() == Some((1, 1))).unwrap();
+    let mut by_neighbours = 0;
+    for (index, part) in &row.at {
+        let here = found.grid[*index].found.as_ref().unwrap();
+        let attractor = &here.attractors[*part];
+        assert!(here.is_reached(attractor), "{}", found.grid[*index].value);
+        by_neighbours += usize::from(here.count(attractor) == 0);
+    }
+    assert!(row.at.len() > 4 && by_neighbours > 0);
 }

@@ -368,9 +368,9 @@ impl AttractorFamily {
         }
     }
 
-    /// Where runs alone tell that it ends, if it is the follower's rest on the cam for good.
+    /// Where it ends, if it is the follower's rest on the cam for good: as runs alone tell.
     pub(super) fn contact_ends(&self) -> impl Iterator<Item = [f64; 2]> {
-        let ends = self.ends.iter().flatten().filter(|end| self.class == Class::Stays && end.cause == Cause::Runs);
+        let ends = self.ends.iter().flatten().filter(|_| self.class == Class::Stays);
         ends.map(|end| end.bracket)
     }
 

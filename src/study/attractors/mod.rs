@@ -213,10 +213,9 @@ fn values(over: &Over<'_>, [low, high]: [f64; 2], resolution: &Resolution) -> Re
     }
     // What lives between two values of the grid is found from attractors next to it, which may lie outside of the range.
     let around = MARGIN * step.width();
-    let from = if over.is_speed() && !of_logarithms { (from - around).max(0.0) } else { from - around };
-    let mut values: Vec<f64> = step.over([from, to + around]).collect();
+    let mut values: Vec<f64> = step.over([from - around, to + around]).collect();
     if over.is_speed() {
-        // Nothing turns at speed 0.
+        // Nothing turns at speed 0, and below it the cam turns the other way.
         values.retain(|rpm| *rpm > 0.0);
         if values.first().is_some_and(|first| low < *first) {
             values.insert(0, low);

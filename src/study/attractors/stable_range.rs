@@ -93,12 +93,9 @@ impl StableRange {
         let points = self.ends.iter().flatten().filter_map(|change| change.point.as_deref());
         let at = |point: &BranchPoint| {
             let alone = Branch { points: vec![point.clone()], ends: [End::Range, End::Range] };
-            let range = match point.value {
-                0.0 => [-step, step],
-                value if value < 0.0 => [1.0 + BEYOND.0, 1.0 - BEYOND.0].map(|part| part * value),
-                value => [1.0 - BEYOND.0, 1.0 + BEYOND.0].map(|part| part * value),
-            };
-            branch::doubled(&over.family, &following(over, range), &[alone])
+            // For one step its width alone counts; at a value of 0, that of the grid's steps.
+            let far = BEYOND.0 * point.value.abs().max(step);
+            branch::doubled(&over.family, &following(over, [-far, far]), &[alone])
         };
         points.flat_map(at).filter(|(_, orbit)| !is_unstable(orbit)).collect()
     }
