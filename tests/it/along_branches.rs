@@ -724,8 +724,20 @@ fn a_dwell_lets_go_where_the_spring_carries_more_than_the_weight() {
         let number = following(&pressed, "rest_position", [slack - 0.4 * rise, slack + 0.4 * rise], 0.1);
         let curve = curve(&pressed, &leaves, speeds, &number);
         let last = curve.points.last().unwrap();
-        println!("{:?} {:?}", curve.ends, curve.points.iter().map(|it| (it.value - slack, it.rpm / rpm(slack + rise - it.value) - 1.0)).collect::<Vec<_>>());
-        assert!(curve.ends == [End::Range, End::OtherWay] && (last.value - slack).abs() < 1e-6 * rise, "{:?}", curve.ends);
+        println!(
+            "{:?} {:?}",
+            curve.ends,
+            curve
+                .points
+                .iter()
+                .map(|it| (it.value - slack, it.rpm / rpm(slack + rise - it.value) - 1.0))
+                .collect::<Vec<_>>()
+        );
+        assert!(
+            curve.ends == [End::Range, End::OtherWay] && (last.value - slack).abs() < 1e-6 * rise,
+            "{:?}",
+            curve.ends
+        );
         for point in &curve.points {
             assert!((point.rpm / rpm(slack + rise - point.value) - 1.0).abs() < 1e-9, "{base} {gravity}: {point:?}");
         }

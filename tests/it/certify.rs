@@ -9,7 +9,8 @@ use crate::common::{self, corner_impact, in_one_line, text};
 use corner_impact::corner::range::find_corner_impacts;
 use corner_impact::model::{Model, Study};
 use corner_impact::progress::Unwatched;
-use corner_impact::study::certify::{BITS, Certificate, ProvedResting, certify};
+use corner_impact::study::ModelLabel;
+use corner_impact::study::certify::{BITS, Certificate, Certified, ProvedCounts, ProvedOrbits, ProvedResting, certify};
 use serde_json::{Value, json};
 
 /// The paper's corner impact, as doubles have it.
@@ -538,4 +539,60 @@ fn a_proof_is_of_the_numbers_that_are_written() {
     let in_file = period(&[("mass = 1.221", &format!("mass = {long}"))], "672:675", &[]);
     assert_eq!(in_file, period(&[], "672:675", &["--set", &format!("mass={long}")]));
     assert_ne!(in_file, right);
+}
+
+/// A document has the hypotheses of its proofs: the decimals, the mechanics, the cam where its pieces are typed, and of motions that rest that
+/// impacts without end put them there. Where nothing is proved there are none.
+#[test]
+fn a_document_has_the_hypotheses_of_its_proofs() {
+    let ball = || json!({ "mid": "1.0", "rad": "1e-30" });
+    let side = json!({
+        "A": [[ball(), ball()], [ball(), ball()]],
+        "B": [ball(), ball()],
+        "eigenvalues": [{ "re": ball(), "im": ball() }, { "re": ball(), "im": ball() }],
+        "fixed_point_exists_for": "faster",
+        "stable": true,
+        "followed": null,
+    });
+    let certified = |impacts: Vec<Certificate>| Certified {
+        model: ModelLabel { name: "model".into(), source: "nowhere".into() },
+        range: Study { rpm_min: 600.0, rpm_max: 700.0 },
+        bits: BITS,
+        corner_impacts: impacts,
+        refused: Vec::new(),
+    };
+    for assumed in [Value::Null, json!({ "lift_m": 2.5e-9, "slope_m_rad": 7.5e-8 })] {
+        let certificate: Certificate = serde_json::from_value(json!({
+            "speed_rpm": ball(), "period_s": ball(), "cam_angle_rad": ball(), "alone_within": 1e-3, "revolutions": 1,
+            "section_angle_rad": ball(), "state": [ball(), ball()], "state_origin_m": ball(), "impacts": [],
+            "minus": side, "plus": side, "C": [ball(), ball()], "D": ball(), "border": [ball(), ball(), ball()],
+            "conditions": [], "verdict": "persistence", "assumed": assumed, "proved": true,
+        }))
+        .unwrap();
+        let orbits = json!({ "orbits": [], "complete": [1], "undecided": [], "assumed": assumed });
+        let counts = json!({ "counts": [], "undecided": [], "events": [], "assumed": assumed });
+        let resting = json!({ "bits": 128, "pressed_rad": [], "releases": [], "looked_at": 9, "periodic": [], "assumed": assumed });
+        let documents = [
+            serde_json::to_value(certified(vec![certificate])),
+            serde_json::to_value(serde_json::from_value::<ProvedOrbits>(orbits).unwrap()),
+            serde_json::to_value(serde_json::from_value::<ProvedCounts>(counts).unwrap()),
+            serde_json::to_value(serde_json::from_value::<ProvedResting>(resting).unwrap()),
+        ];
+        for (index, document) in documents.into_iter().enumerate() {
+            let document = document.unwrap();
+            let mut told = document["hypotheses"].as_array().unwrap().iter().map(|it| it.as_str().unwrap());
+            let mut says =
+                |words: &str| assert!(told.next().is_some_and(|it| it.contains(words)), "{words}: {document}");
+            says("the machine's numbers are the decimals of its model file");
+            says("free flight follows the equation of motion");
+            if !assumed.is_null() {
+                says("the steps of up to 2.5e-9 m and 7.5e-8 m/rad");
+            }
+            if index == 3 {
+                says("impacts that follow each other without end put the follower to rest");
+            }
+            assert_eq!(told.next(), None);
+        }
+    }
+    assert_eq!(serde_json::to_value(certified(Vec::new())).unwrap()["hypotheses"], json!([]));
 }

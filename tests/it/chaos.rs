@@ -13,7 +13,8 @@ use corner_impact::interval::Interval;
 use corner_impact::model::Model;
 use corner_impact::progress::Unwatched;
 use corner_impact::simulate::{Event, EventKind, Machine, angular_velocity};
-use corner_impact::study::chaos::{chaos, portrait};
+use corner_impact::study::chaos::{Chaos, chaos, portrait};
+use corner_impact::study::trapping::{Trapped, Trapping};
 
 use crate::common;
 
@@ -425,4 +426,18 @@ fn a_run_that_leaves_the_corner_impact_has_no_region_beside_it() {
     assert!(locate(&model, &common::cam(&model)).is_ok());
     let found = chaos(&model, [1200.0; 2], true, &Unwatched).unwrap().trapping.unwrap();
     assert_eq!((found.regions.len(), found.escapes.len()), (1, 0), "{found:?}");
+}
+
+/// Something is proved where there is a region that traps, be there no chaos; of nothing that was found nothing is.
+#[test]
+fn a_region_that_traps_is_something_that_is_proved() {
+    let region = region(&common::osorio(), 700.0, [155.3, 72.0], 1, 20_000).unwrap();
+    let trapped =
+        Trapping { regions: vec![Trapped { region, holds_chaos: false, parted: None }], ..Trapping::default() };
+    for (trapping, known) in [(None, "sampled"), (Some(Trapping::default()), "sampled"), (Some(trapped), "proved")] {
+        let (model, rpm) = ("osorio-2008".to_owned(), [700.0; 2]);
+        let found = Chaos { model, rpm, hypotheses: Vec::new(), theorems: Vec::new(), open: Vec::new(), trapping };
+        assert_eq!(found.proves_something(), known == "proved");
+        assert_eq!(serde_json::to_value(&found).unwrap()["known"], known);
+    }
 }

@@ -282,3 +282,13 @@ fn seconds_of_threads_are_those_of_processors() {
     let [processor, clock] = chart.run(Some(8 * processors), &Unwatched).unwrap().times;
     assert!(processor > 0.0 && processor < 1.2 * processors as f64 * clock, "{processor} {clock}");
 }
+
+/// What a chart says that its runs were followed for is the sum over its points.
+#[test]
+fn runs_of_a_chart_are_followed_for_the_sum_of_its_points() {
+    let found = chart(&common::osorio(), 8).run(Some(1), &Unwatched).unwrap();
+    let sum: u64 = found.points.iter().flatten().map(|point| point.followed).sum();
+    assert_eq!((found.points.len(), found.followed()), (20, sum));
+    assert!(sum >= 20, "{sum}");
+    assert_eq!(serde_json::to_value(&found).unwrap()["followed"], sum);
+}

@@ -303,3 +303,29 @@ fn a_curve_is_the_same_from_either_end() {
         assert_eq!(other.is_same(&other), other.points.len() > 1, "{change}");
     }
 }
+
+/// A follower that rests where its spring has it touches the cam's top at any speed once it rests there. That is a curve of grazes of the orbit
+/// without impacts, which is told where such orbits are looked for, and grazes.
+#[test]
+fn an_orbit_without_impacts_grazes_at_every_speed() {
+    let text = "[follower]\nmass = 1.0\nrestitution = 0.7\ndamping = 0.4\nstiffness = 100.0\ngravity = 0.0\nrest_position = 0.02\n\
+                [cam]\nlaw = \"harmonic\"\noffset = 0.0\namplitudes = [0.01]\nphases_deg = [0.0]\n";
+    let model = Model::parse("wall.toml", text).unwrap();
+    let parameter = Parameter::named(&model, "rest_position").unwrap();
+    let following = Following { parameter, range: [0.005, 0.02], longest_step: 0.2, most_points: 50 };
+    for (revolutions, impacts, event, is_told) in [
+        (1, None, Bifurcation::Graze, true),
+        (1, Some(0), Bifurcation::Graze, true),
+        (1, Some(1), Bifurcation::Graze, false),
+        (2, Some(0), Bifurcation::Graze, false),
+        (1, Some(0), Bifurcation::Fold, false),
+    ] {
+        let wanted = Search { revolutions, impacts };
+        let found = curves(&model, [300.0, 301.0], &wanted, &[event], &following, &Unwatched).unwrap().curves;
+        let touches: Vec<_> = found.iter().filter(|it| matches!(it.kind, Kind::Graze { before: 0, .. })).collect();
+        assert_eq!(touches.len(), usize::from(is_told), "{revolutions} {impacts:?} {event}");
+        for point in touches.iter().flat_map(|curve| &curve.points) {
+            assert!((point.value - 0.01).abs() < 1e-12 && (300.0..=301.0).contains(&point.rpm), "{point:?}");
+        }
+    }
+}

@@ -128,10 +128,45 @@ fn rows_of_a_table_keep_their_digits() {
     // Of angles in radians no row is written in degrees: the doubles are there as they are.
     let turned = "law = \"table\"\nangle_unit = \"rad\"\nspline = \"cubic\"\nrows = [[0.0, 0.25], [1.6, 1.0], [3.2, 2.0], [4.8, 1.0]]\n";
     let told = exact(head, FOLLOWER, turned);
-    let lift = |row: &Value| -> f64 {
-        let lift = &row["lift"];
-        lift.as_f64().or_else(|| lift.as_str()?.parse().ok()).unwrap()
+    let numbers = |of: &str| -> Vec<f64> {
+        let number = |row: &Value| row[of].as_f64().or_else(|| row[of].as_str()?.parse().ok()).unwrap();
+        told["cam"]["rows"].as_array().unwrap().iter().map(number).collect()
     };
-    let lifts: Vec<f64> = told["cam"]["rows"].as_array().unwrap().iter().map(lift).collect();
-    assert_eq!(lifts, [0.25, 1.0, 2.0, 1.0]);
+    assert_eq!(numbers("lift"), [0.25, 1.0, 2.0, 1.0]);
+    assert_eq!(numbers("angle_deg"), [0.0, 1.6, 3.2, 4.8].map(f64::to_degrees));
+}
+
+/// A table in a file of its own keeps the decimals of its rows as well, whatever its columns are parted by and its decimals are written with.
+#[test]
+fn rows_of_a_file_keep_their_digits() {
+    let folder = tempfile::tempdir().unwrap();
+    let lifts = ["0.10000000000000000000001", "0.20000000000000000000003", "0.30000000000000000000007"];
+    let angle = |index: usize| format!("{}.000000000000000000009", 120 * index);
+    for (separator, point) in [(",", "."), (";", "."), (";", ",")] {
+        let row = |(index, lift): (usize, &&str)| format!("{}{separator}{lift}\n", angle(index)).replace('.', point);
+        let rows: String = lifts.iter().enumerate().map(row).collect();
+        std::fs::write(folder.path().join("lift.csv"), format!("angle_deg{separator}lift\n{rows}")).unwrap();
+        let file = folder.path().join("exact.toml");
+        let cam = "law = \"table\"\nspline = \"cubic\"\nfile = \"lift.csv\"\n";
+        std::fs::write(&file, format!("name = \"exact\"\n[follower]\n{FOLLOWER}[cam]\n{cam}")).unwrap();
+        let told = Model::read(&file).unwrap().exact();
+        let expected: Vec<Value> =
+            lifts.iter().enumerate().map(|(index, lift)| json!({ "angle_deg": angle(index), "lift": lift })).collect();
+        assert_eq!(told["cam"]["rows"], json!(expected), "{separator} {point}");
+    }
+}
+
+/// A table of as many rows as proofs are of keeps its digits, with the first row told again at the end of the turn.
+#[test]
+fn a_thousand_rows_and_the_first_again_keep_their_digits() {
+    let row = |index: u32| {
+        let (angle, lift) = (36 * index, index.min(1000 - index));
+        (format!("{}.{:02}", angle / 100, angle % 100), format!("0.1{lift:03}0000000000000000000001"))
+    };
+    let rows: Vec<String> = (0..=1000).map(row).map(|(angle, lift)| format!("[{angle}, {lift}]")).collect();
+    let cam = format!("law = \"table\"\nspline = \"cubic\"\nrows = [{}]\n", rows.join(", "));
+    let told = exact("", FOLLOWER, &cam);
+    let expected: Vec<Value> =
+        (0..1000).map(row).map(|(angle, lift)| json!({ "angle_deg": angle, "lift": lift })).collect();
+    assert_eq!(told["cam"]["rows"], json!(expected));
 }

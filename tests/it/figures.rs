@@ -1,7 +1,7 @@
 //! Are the report's figures there, in the paper's order, for any model; are their numbers the paper's; and does
 //! `corner-impact figure` list them, draw one, and say why there is none?
 
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,7 @@ use corner_impact::cam::Side;
 use corner_impact::cli::{Exit, run};
 use corner_impact::draw::layout::{Layout, WIDTH};
 use corner_impact::draw::{Data, Figure, Look, Series, svg};
-use corner_impact::figures::{Effort, Neighbour, Outline, Plate, Subject, listed, plate, plates};
+use corner_impact::figures::{Effort, Neighbour, Outline, Plate, Subject, branches_figure, listed, plate, plates};
 use corner_impact::flight::State;
 use corner_impact::model::{Model, OSORIO_2008};
 use corner_impact::orbit::Stability;
@@ -595,4 +595,33 @@ fn what_cannot_be_drawn_is_said() {
     let document: serde_json::Value = serde_json::from_str(&document).unwrap();
     assert_eq!(exit, Exit::Agrees);
     assert!(document["figure"].is_null() && document["absent"].as_str().unwrap().contains("[study]"));
+}
+
+/// Of a run whose impacts recur each place is drawn once; one that recurs less than twice is told as any other run.
+#[test]
+fn impacts_that_recur_are_drawn_once() {
+    let repeats: &[(f64, &[f64], usize)] = &[
+        (600.0, &[1.0, 1.0], 1),
+        (610.0, &[1.0, 2.0, 1.0, 2.0, 1.0], 2),
+        (620.0, &[1.0, 1.0, 2.0, 1.0, 1.0, 2.0], 3),
+        // A thousandth of a degree is none that a picture shows, and neither is the zero of the cam.
+        (630.0, &[0.00001, TAU - 0.000005, 0.00001], 1),
+    ];
+    let others: &[(f64, &[f64])] =
+        &[(640.0, &[1.0]), (650.0, &[1.0, 2.0]), (660.0, &[1.0, 2.0, 1.0]), (670.0, &[1.0, 1.001, 1.0, 1.002])];
+    let impacts = |rpm: f64, angles: &[f64]| angles.iter().map(|angle| [rpm, *angle]).collect::<Vec<_>>();
+    let settled: Vec<_> = repeats.iter().flat_map(|(rpm, angles, _)| impacts(*rpm, angles)).collect();
+    let drawn = |settled: &[[f64; 2]]| branches_figure("runs", ("rpm", "rpm", [600.0, 700.0]), &[], settled, &[]);
+    let once: Vec<[f64; 2]> =
+        repeats.iter().flat_map(|(rpm, angles, count)| impacts(*rpm, &angles[..*count])).collect();
+    let once: Vec<[f64; 2]> = once.into_iter().map(|[rpm, angle]| [rpm, angle.to_degrees()]).collect();
+    assert_eq!(series(&drawn(&settled), 0, "runs that repeat"), once);
+    for (rpm, angles) in others {
+        let figure = drawn(&impacts(*rpm, angles));
+        assert_eq!(
+            figure.panels[0].series.iter().map(|it| it.label.as_str()).collect::<Vec<_>>(),
+            ["other runs"],
+            "{rpm}"
+        );
+    }
 }

@@ -6,7 +6,7 @@ use corner_impact::orbit::Parameter;
 use corner_impact::orbit::long_run::{Budget, Kind};
 use corner_impact::progress::Unwatched;
 use corner_impact::study::attractors::{AttractorsError, Cause, Resolution, Step, attractors};
-use corner_impact::study::basins::{BasinsOver, Begun};
+use corner_impact::study::basins::{Basin, BasinsOver, Begun};
 use corner_impact::study::design::{Asked, design};
 use corner_impact::study::diagram::one_row;
 use corner_impact::study::speeds::{SpeedSurvey, speeds};
@@ -434,6 +434,13 @@ fn shares_of_basins_sum_to_one_at_every_value() {
         for index in 0..axis.values.len() {
             let all: f64 = shares.iter().map(|it| it.shares[index][1]).sum();
             assert_relative_eq!(all, 1.0, max_relative = 1e-12);
+        }
+        for it in &shares {
+            for (at, [_, share]) in found.at.iter().zip(&it.shares) {
+                let ends = |part: &&Basin| (part.ending.kind(), part.ending.period()) == it.motion;
+                let parts = at.found.as_ref().unwrap().parts.iter().filter(ends);
+                assert_eq!(*share, parts.map(|part| part.share.value).sum::<f64>(), "{:?}", it.motion);
+            }
         }
         let sums: Vec<f64> = shares.iter().map(|it| it.shares.iter().map(|[_, share]| share).sum()).collect();
         assert!(sums.is_sorted_by(|one, other| one >= other), "{sums:?}");

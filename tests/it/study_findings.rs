@@ -97,7 +97,7 @@ fn the_next_impact_is_waited_for_from_the_last_one_on() {
     assert!((1..4).contains(&impacts) && (111_600..116_500).contains(&revolution), "{impacts} {revolution}");
 }
 
-fn sweep(model: &Model, low: f64, high: f64, count: usize, section: Shows) -> Sweep {
+pub fn sweep(model: &Model, low: f64, high: f64, count: usize, section: Shows) -> Sweep {
     let speeds = Axis::new(Parameter::Speed, &Values::linear(low, high, count));
     Sweep {
         over: Survey::new(model, None, speeds, None).unwrap(),
