@@ -4,7 +4,6 @@ use std::f64::consts::TAU;
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use corner_impact::model::{Model, Units};
-use corner_impact::orbit::long_run::Budget;
 use corner_impact::orbit::{Search, search};
 use corner_impact::progress::Unwatched;
 use corner_impact::simulate::Machine;
@@ -15,30 +14,6 @@ use corner_impact::study::design::{Asked, design};
 use crate::design::separation;
 use crate::design_numbers::{Eccentric, GRAVITY, OWN, answers, asked, ball, rpm};
 use crate::orbit_numbers::machine;
-
-/// A motion that never repeats is looked at for eight revolutions of each start that comes to it: the hardest impact of all is the load.
-#[test]
-fn chaos_is_looked_at_for_as_long_as_its_starts() {
-    let mut told = 0;
-    for rpm in [990.0, 1030.0, 1070.0, 1110.0] {
-        let model = ball("");
-        let machine = machine(&model, rpm);
-        let budget = Budget { record: 0, ..Budget::DESIGN };
-        let (found, attractors) = Loads::among(&model, &machine, None, budget).unwrap();
-        let [one] = &attractors[..] else { continue };
-        if one.ending.period().is_some() || one.starts.len() != 4 {
-            continue;
-        }
-        let hardest = |revolutions: u64| {
-            let all = Loads::recorded(&model, &machine, one.motion, revolutions).unwrap();
-            all.iter().map(|loads| loads.impact_speed).fold(0.0, f64::max)
-        };
-        let all = hardest(4 * Loads::RECORD);
-        assert_relative_eq!(found.impact_speed, all, max_relative = 1e-6);
-        told += usize::from(hardest(Loads::RECORD + 4) < 0.999 * all);
-    }
-    assert!(told > 0);
-}
 
 /// Of one impact a revolution with `v- = -g T/2` and `v+ = g T/2`: `u (1 + r) = g T`. And of a ball that stays: `m (g + a w^2)`.
 #[test]

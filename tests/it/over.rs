@@ -301,7 +301,7 @@ fn a_grid_of_powers_of_ten_is_the_range_and_its_margin() {
     let speed = Over::speed(&pressed).unwrap();
     for over in [&stiffness, &speed] {
         let found = grid(over, [0.1, 0.4], Step::at_most(0.2, Spacing::Logarithmic)).unwrap();
-        let expected: Vec<f64> = (-13..=6).map(|fifth| 10.0_f64.powf(f64::from(fifth) / 5.0)).collect();
+        let expected: Vec<f64> = (-13..=7).map(|fifth| 10.0_f64.powf(f64::from(fifth) / 5.0)).collect();
         assert_eq!(found.len(), expected.len(), "{found:?}");
         for ((value, is_machine), expected) in found.into_iter().zip(expected) {
             assert_relative_eq!(value, expected, max_relative = 1e-12);
@@ -345,27 +345,6 @@ fn a_range_that_is_none_of_a_number_is_refused() {
 /// An oscillator over a table, both moved up by as much: nothing but their heights is another.
 fn moved_up(by: f64) -> Model {
     wall().with_number("cam.offset", by).unwrap()
-}
-
-/// The follower leaves where `k (offset - rest) = a |k - m w^2 + i b w|`, at a rest position below 0, above it or of 0 itself; and with a bracket of
-/// a few roundings.
-#[test]
-fn a_follower_leaves_the_cam_at_a_rest_position() {
-    let omega = corner_impact::simulate::angular_velocity(60.0);
-    let below = 0.01 * (100.0 - omega * omega).hypot(0.4 * omega) / 100.0;
-    for offset in [0.0, below, 0.02, 1.0] {
-        let table = moved_up(offset);
-        let over = Over::new(&table, Parameter::named(&table, "rest_position").unwrap(), Some(60.0)).unwrap();
-        let leaves = offset - below;
-        let range = [leaves - 2e-3, leaves + 1e-3];
-        let found = speeds(&over, range, &at_rest(common::step(1e-3)), &Unwatched).unwrap();
-        let [at, error] = found.detachment().unwrap();
-        assert!((at - leaves).abs() < 1e-14 && (0.0..1e-14).contains(&error), "{offset}: {at} {leaves} {error}");
-        let stays = found.attractors.iter().find(|row| row.kind == Kind::Stays).unwrap();
-        let death = stays.death.as_ref().unwrap();
-        assert_eq!((death.cause, stays.range()), (Cause::Detachment, [range[0], at]));
-        assert!(death.bracket[0] <= at && at <= death.bracket[1] && death.bracket[1] - death.bracket[0] < 1e-14);
-    }
 }
 
 /// Attractors over a rest position, their periods, what they begin and end with and where: all that moves with the offset of the cam is that.

