@@ -115,6 +115,7 @@ fn a_design_goes_over_a_mass() {
     let limits = vec![(corner_impact::study::design::loads::Load::ImpactSpeed, 0.5 * (low + high))];
     let passed = design(&paper, &Asked { limits, ..asked.clone() }, &Unwatched).unwrap().limits[0].at.unwrap();
     assert!(low < high && passed.rpm == 200.0 && (1.0..1.5).contains(&passed.value.unwrap()), "{passed:?}");
+    assert_eq!(found.rpm(), 200.0);
     let several = Asked { rpm: Some([100.0, 200.0]), ..asked };
     assert!(design(&paper, &several, &Unwatched).is_err());
 }
@@ -208,6 +209,7 @@ fn a_follower_leaves_the_cam_at_a_gravity() {
     let range = [0.9 * leaves, 1.1 * leaves];
     let found = speeds(&over, range, &Resolution::new(common::step(0.1 * leaves), 2), &Unwatched).unwrap();
     assert_relative_eq!(found.detachment().unwrap()[0], leaves, max_relative = 1e-9);
+    assert!(found.detachment().unwrap()[1] <= 1e-9 * leaves);
     assert!(found.separation.is_none());
     let stays = found.attractors.iter().find(|row| row.kind == Kind::Stays).unwrap();
     assert_eq!(stays.birth.as_ref().unwrap().cause, Cause::Detachment);
