@@ -1,8 +1,8 @@
 //! Is a danger the same one in any coordinates and at any scale, and are attractors of every kind told?
 
-use corner_impact::border_collision::{LocalMap, LocalOutcome};
 use corner_impact::border_collision::danger::{Danger, DangerKind, Divergence, LocalAttractor, Returns};
 use corner_impact::border_collision::feigin::Speeds;
+use corner_impact::border_collision::{LocalMap, LocalOutcome};
 use corner_impact::corner::SideMap;
 use corner_impact::known::Known;
 use nalgebra::{Matrix2, RowVector2, Vector2};
