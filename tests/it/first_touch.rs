@@ -673,11 +673,6 @@ fn a_follower_that_swings_from_touch_to_touch_is_not_at_rest() {
     for orbit in found {
         let branch = follow(&model, 12.0, &orbit, "rpm", [9.0, 13.0]);
         let ends = |at: &BranchPoint| (at.value / (60.0 / TAU) - 1.0).abs() < 1e-4;
-        println!(
-            "{:?} {:?}",
-            branch.ends,
-            branch.points.iter().map(|it| (it.value, it.special.map(|s| s.kind))).collect::<Vec<_>>()
-        );
         assert!(branch.points.first().is_some_and(ends) && branch.ends[0] == End::Graze, "{:?}", branch.ends);
         assert!(branch.points.iter().all(|point| point.orbit.course != Course::Free), "{:?}", branch.ends);
     }
@@ -697,19 +692,6 @@ fn a_follower_may_meet_the_cam_behind_its_top() {
         }
         let model = on_cam(1e-3, 1.0, &program(-1.01, &motions));
         let branch = follow(&model, 20.0, &free(&model, 20.0), "base", [-1.02, -0.98]);
-        println!(
-            "{:?} {:?}",
-            branch.ends,
-            branch
-                .points
-                .iter()
-                .map(|it| (
-                    it.value,
-                    it.orbit.impacts().map(|i| i.cam_angle.to_degrees()).collect::<Vec<_>>(),
-                    it.special.map(|s| s.kind)
-                ))
-                .collect::<Vec<_>>()
-        );
         let struck: Vec<Vec<f64>> = branch
             .points
             .iter()
