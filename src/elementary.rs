@@ -41,6 +41,12 @@ pub fn exp(x: f64) -> f64 {
     libm::exp(x)
 }
 
+/// `2^x`, exact where x is whole.
+#[inline]
+pub fn exp2(x: f64) -> f64 {
+    libm::exp2(x)
+}
+
 /// `e^x - 1`, of which nothing is lost near 0.
 #[inline]
 pub fn exp_m1(x: f64) -> f64 {

@@ -169,7 +169,8 @@ pub fn trap(
     let squares_per_degree = squares_per_degree.next_power_of_two();
     /// So many squares on top of each other reach to what few impacts are faster than.
     const SQUARES: f64 = 512.0;
-    let height = elementary::log2(velocity_scale(machine) / SQUARES).floor().exp2() / f64::from(squares_per_degree);
+    let height =
+        elementary::exp2(elementary::log2(velocity_scale(machine) / SQUARES).floor()) / f64::from(squares_per_degree);
     let omega = angular_velocities([rpm; 2]);
     let plane = Plane { map: ImpactMap::new(machine), omega, per_degree: squares_per_degree, height };
     let mut cover = Cover { known: HashMap::new(), pending: HashMap::new(), turn: 360 * i64::from(squares_per_degree) };

@@ -2,6 +2,7 @@
 
 use crate::covering::prove::Refused;
 use crate::covering::region::{Escape, Region};
+use crate::elementary;
 use crate::show::block::{Block, Column, Mark, Table, words};
 use crate::show::digits::Digits;
 use crate::show::{Paged, words};
@@ -98,7 +99,7 @@ fn trapped(found: &Trapped, rpm: f64) -> String {
              the largest Lyapunov exponent of no motion is below {} an impact.",
             at_least(growth, 4),
             // The logarithm is off by less than an ulp.
-            at_least(growth.ln().next_down().next_down(), 4)
+            at_least(elementary::ln(growth).next_down().next_down(), 4)
         )
     });
     let percent = 100.0 * part;

@@ -64,7 +64,7 @@ pub(super) fn trapping(model: &Model, rpm: f64, set: Option<&HSet>, watch: &dyn 
         const ACROSS: [f64; 3] = [32.0, 64.0, 128.0];
         const FINEST: f64 = 1_048_576.0;
         for across in ACROSS {
-            let squares = elementary::log2(across / (angles[1] - angles[0])).ceil().exp2();
+            let squares = elementary::exp2(elementary::log2(across / (angles[1] - angles[0])).ceil());
             if (1.0..=FINEST).contains(&squares)
                 && let Ok(trapped) = closed(&run, squares as u32, false)
             {

@@ -59,10 +59,10 @@ fn a_swing_reaches_its_highest_point_and_nothing_below_its_lowest() {
 /// `q = q0 (r2 exp(r1 t) - r1 exp(r2 t))/(r2 - r1)`, for the roots of `r^2 + 2 zeta r + w0^2`: it goes through its equilibrium once.
 #[test]
 fn a_follower_at_rest_comes_down_through_an_equilibrium_that_repels() {
-    for (r1, r2) in [(1.0, 5.0), (0.2, 0.3), (0.01, 7.0)] {
+    for (r1, r2) in [(1.0_f64, 5.0_f64), (0.2, 0.3), (0.01, 7.0)] {
         let flight = flight(-0.5 * (r1 + r2), r1 * r2, 0.0);
         let (time, state) = flight.fall_to(0.0, at(0.4, 0.0)).unwrap();
-        assert_relative_eq!(time, (r2 / r1 as f64).ln() / (r2 - r1), max_relative = 1e-12);
+        assert_relative_eq!(time, (r2 / r1).ln() / (r2 - r1), max_relative = 1e-12);
         assert_relative_eq!(
             state.velocity,
             0.4 * r1 * r2 * ((r1 * time).exp() - (r2 * time).exp()) / (r2 - r1),

@@ -297,7 +297,7 @@ fn ladder(
     sample: &impl Fn(f64) -> Result<Sample, JumpOrderError>,
     powers: Powers,
 ) -> Result<Vec<Sample>, JumpOrderError> {
-    let parts = (0..RUNGS).map(|rung| (-0.25 * f64::from(rung)).exp2());
+    let parts = (0..RUNGS).map(|rung| elementary::exp2(-0.25 * f64::from(rung)));
     let signs: &[f64] = if powers == Powers::Even { &[1.0, -1.0] } else { &[1.0] };
     parts.flat_map(|part| signs.iter().map(move |sign| sample(sign * part))).collect()
 }
