@@ -102,7 +102,7 @@ pub(crate) fn regula_falsi<P: Clone, E>(
     }
     let mut sure = |end: &Seen<P>, direction: f64| -> Result<Seen<P>, E> {
         let mut reach = 0.5 * width;
-        // The last two: one alone is twice the other by chance where both are an ulp or two.
+        // The last two points. Values of an ulp and of two have the ratio 2 by chance, so that one ratio alone tells nothing.
         let mut nearer: [Option<Seen<P>>; 2] = [None, None];
         loop {
             let at = best.at + direction * reach;
@@ -123,7 +123,8 @@ pub(crate) fn regula_falsi<P: Clone, E>(
 }
 
 /// Secants from two guesses and their values, at most `steps` of them: up to a root, or to a step of less than the part `width`
-/// of where it begins. The last two points, of which the second is the nearer, or what is a root twice; and whether it has come so far.
+/// of where it begins. The last two points, of which the second is the nearer, and whether it has come so far; a root
+/// that is met exactly stands for both.
 pub(crate) fn secants<E>(
     [mut last, mut here]: [(f64, f64); 2],
     steps: usize,

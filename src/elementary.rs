@@ -1,11 +1,13 @@
 //! Sine, exponential and their kind, with the same bits on every processor.
 //!
-//! Those of the standard library are the C library's, and glibc's round differently with and without fused multiply-add. These are
-//! compiled from plain Rust, by the crate `libm`: sums, products and quotients of doubles, which IEEE 754 rounds in one way. Chaos
-//! would make another motion of another last bit. A lint (`clippy.toml`) keeps the others out of `src`; square roots, remainders
-//! and powers of whole numbers are the standard library's, since there is one way to round them.
+//! The standard library calls the C library, and glibc's sine rounds differently with and without fused multiply-add. In a chaotic
+//! motion one different bit soon makes another motion. The crate `libm` is plain Rust: it takes sums, products and quotients of
+//! doubles, which IEEE 754 rounds in one way. A lint (`clippy.toml`) keeps the standard library's functions out of `src`. Square
+//! roots and remainders are left to it, since IEEE 754 rounds them in one way, and so are whole powers, which are products.
+//!
+//! Each result is within an ulp of the true one, or within two where the function says so.
 
-/// Sine and cosine of an angle, rad, each within an ulp, as all that say no more.
+/// Sine and cosine of an angle, rad.
 #[inline]
 pub fn sin_cos(angle: f64) -> (f64, f64) {
     libm::sincos(angle)
@@ -47,7 +49,7 @@ pub fn exp2(x: f64) -> f64 {
     libm::exp2(x)
 }
 
-/// `e^x - 1`, of which nothing is lost near 0.
+/// `e^x - 1`, accurate near 0.
 #[inline]
 pub fn exp_m1(x: f64) -> f64 {
     libm::expm1(x)
@@ -71,7 +73,7 @@ pub fn ln(x: f64) -> f64 {
     libm::log(x)
 }
 
-/// The natural logarithm of `1 + x`, of which nothing is lost near 0.
+/// The natural logarithm of `1 + x`, accurate near 0.
 #[inline]
 pub fn ln_1p(x: f64) -> f64 {
     libm::log1p(x)

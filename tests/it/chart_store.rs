@@ -283,7 +283,7 @@ fn seconds_of_threads_are_those_of_processors() {
     assert!(processor > 0.0 && processor < 1.2 * processors as f64 * clock, "{processor} {clock}");
 }
 
-/// What a chart says that its runs were followed for is the sum over its points.
+/// The revolutions that a chart tells are the sum over its points.
 #[test]
 fn runs_of_a_chart_are_followed_for_the_sum_of_its_points() {
     let found = chart(&common::osorio(), 8).run(Some(1), &Unwatched).unwrap();

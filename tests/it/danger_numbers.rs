@@ -119,7 +119,7 @@ fn a_divergence_that_is_slow_is_computed() {
     assert_eq!((turned(1.0), turned(0.99)), (None, None));
 }
 
-/// What motions end on is an attractor whether or not its orbit is among those that are listed, whose words are short.
+/// An orbit that motions end on is an attractor, even where its word is longer than those that are listed.
 #[test]
 fn an_orbit_that_motions_end_on_is_an_attractor_without_being_listed() {
     let map = common::normal_form([0.19, -1.28], [0.64, 0.87]);

@@ -1,13 +1,11 @@
-//! Are sine, exponential and their kind within an ulp, with the same bits on every processor, and whatever is simulated with them?
-
-use std::f64::consts::FRAC_PI_4;
+//! Are sine and exponential accurate, and are their bits, and those of a simulation, the same on every processor?
 
 use corner_impact::elementary;
 
-use crate::common::{program, text};
-use crate::interval::{held, parts};
+use crate::common::{PROGRAM, program, text};
+use crate::interval::{a_million_angles, held, parts};
 
-/// Of lines `function x y result ulp`, how many results are less than an ulp from what 200 bits say, and of how many lines.
+/// Reads lines `function x y result bound`; prints how many results are within the bound of the one of 200 bits, and how many lines there are.
 const BY_200_BITS: &str = "
 import sys
 from flint import arb, ctx
@@ -51,13 +49,13 @@ const OF_ONE: [(&str, OfOne, f64); 13] = [
 const OF_TWO: [(&str, OfTwo, f64); 3] =
     [("atan2", elementary::atan2, 2.0), ("powf", elementary::powf, 1.0), ("hypot", elementary::hypot, 1.0)];
 
-/// A line of what is asked of 200 bits, if the result is a normal double.
+/// A line for `BY_200_BITS`, with a bound of so many ulps; none where the result is no normal double.
 fn line(name: &str, x: f64, y: f64, result: f64, ulps: f64) -> Option<String> {
     let ulp = result.abs().next_up() - result.abs();
     result.is_normal().then(|| format!("{name} {x:?} {y:?} {result:?} {:?}\n", ulps * ulp))
 }
 
-/// Numbers of a domain, from 0 to 1 of it, over many sizes.
+/// A point of the function's domain, by two numbers from 0 to 1; points are spread over many sizes.
 fn within(name: &str, part: f64, other: f64) -> (f64, f64) {
     let sized = |most: f64| (2.0 * part - 1.0) * 2.0_f64.powf(most * (2.0 * other - 1.0));
     match name {
@@ -75,16 +73,7 @@ fn within(name: &str, part: f64, other: f64) -> (f64, f64) {
 #[test]
 #[ignore = "slow"]
 fn sine_and_cosine_are_within_an_ulp_at_a_million_angles() {
-    let spread = parts(400_000)
-        .zip(parts(900_000).skip(500_000))
-        .map(|(part, power)| (2.0 * part - 1.0) * 2.0_f64.powf(40.0 * power - 20.0));
-    let ends = (0..20_000).flat_map(|step: i32| {
-        let middle = f64::from(if step < 10_000 { step } else { 97 * step }) * FRAC_PI_4;
-        [middle.next_down().next_down(), middle.next_down(), middle, middle.next_up(), -middle.next_up().next_up()]
-    });
-    let nasty = [f64::MIN_POSITIVE, 1e-300, 1e-9, 1e6, 1_570_796.0, 1e15, 1e300, f64::MAX];
-    let angles = spread.chain(ends).chain(nasty);
-    let lines: String = angles
+    let lines: String = a_million_angles()
         .flat_map(|angle| {
             let (sin, cos) = elementary::sin_cos(angle);
             assert_eq!((sin, cos), (elementary::sin(angle), elementary::cos(angle)), "{angle:?}");
@@ -92,11 +81,11 @@ fn sine_and_cosine_are_within_an_ulp_at_a_million_angles() {
         })
         .flatten()
         .collect();
-    assert!(lines.lines().count() > 990_000);
+    assert!(lines.lines().count() > 1_990_000);
     held(BY_200_BITS, &lines);
 }
 
-/// All others at as many numbers as tell a wrong table or a wrong domain.
+/// The other functions, at 4000 points each: enough to see a wrong table or a wrong domain.
 #[test]
 fn elementary_functions_are_within_an_ulp() {
     const EACH: usize = 4000;
@@ -115,7 +104,7 @@ fn elementary_functions_are_within_an_ulp() {
     held(BY_200_BITS, &lines);
 }
 
-/// The bits of every function, in one number: that of x86-64, which every processor must come to.
+/// One number made of the bits of every function. It was computed on x86-64, and every processor must come to it.
 #[test]
 fn bits_are_those_of_every_processor() {
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
@@ -138,9 +127,9 @@ fn bits_are_those_of_every_processor() {
     assert_eq!(format!("{hash:016x}"), "8c1a2b2dcda30fbd");
 }
 
-/// The flights of a day: with and without fused multiply-add in the C library, tables and pages are the same to the last byte.
+/// With and without fused multiply-add in the C library, tables and pages are the same to the last byte.
 ///
-/// Where the C library does not ask the processor, or is another than glibc, both runs are one.
+/// The test says nothing where the C library is not glibc, or the processor has no fused multiply-add: both runs are then the same.
 #[test]
 fn fused_multiply_add_changes_no_byte() {
     const WITHOUT: &str = "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX512F,-FMA_Usable,-FMA4_Usable,-AVX2_Usable";
@@ -150,7 +139,7 @@ fn fused_multiply_add_changes_no_byte() {
         "diagram models/ballistic.toml --rpm 400:700:4 --record 40 --out -",
         "diagram models/damped-heavy.toml --rpm 600:700:3 --one-row --out -",
         "chart models/damped-heavy.toml --x rpm=600:760:4 --y restitution=0.5:0.9:4 --out -",
-        "speeds models/damped-light.toml --rpm 650:660 --step 10 --starts 2 --json",
+        "speeds models/osorio-2008.toml --rpm 660:670 --step 10 --starts 2 --json",
     ] {
         let words: Vec<&str> = words.split_whitespace().collect();
         let [with, without] = [None, Some(WITHOUT)].map(|tunables| {
@@ -171,4 +160,22 @@ fn fused_multiply_add_changes_no_byte() {
         assert!(with == without, "{words:?}");
         assert!(!with.is_empty());
     }
+}
+
+/// Powers of two by whole numbers are exact: sizes of boxes are rounded to them.
+#[test]
+fn whole_powers_of_two_are_exact() {
+    for power in -1022..1024 {
+        assert_eq!(elementary::exp2(f64::from(power)), 2.0_f64.powi(power), "{power}");
+    }
+}
+
+/// nalgebra would multiply large matrices by kernels of the crate `matrixmultiply`, which asks the processor. No part of that crate is in the
+/// program, whose symbols would name it as they name nalgebra.
+#[test]
+fn no_product_of_matrices_asks_the_processor() {
+    let program = std::fs::read(PROGRAM).unwrap();
+    let program = String::from_utf8_lossy(&program);
+    assert!(program.contains("8nalgebra"));
+    assert!(!program.contains("14matrixmultiply"));
 }

@@ -597,7 +597,7 @@ fn what_cannot_be_drawn_is_said() {
     assert!(document["figure"].is_null() && document["absent"].as_str().unwrap().contains("[study]"));
 }
 
-/// Of a run whose impacts recur each place is drawn once; one that recurs less than twice is told as any other run.
+/// A run whose impacts recur is drawn with each place once. One that recurs less than twice is drawn in full.
 #[test]
 fn impacts_that_recur_are_drawn_once() {
     let repeats: &[(f64, &[f64], usize)] = &[

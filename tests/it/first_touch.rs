@@ -583,8 +583,8 @@ fn touches(model: &Model, name: &str, range: [f64; 2], rpm: [f64; 2]) -> Curves 
     curves(model, rpm, &wanted, &[Bifurcation::Graze], &following, &Unwatched).unwrap()
 }
 
-/// With so many tops that are alike the cam passes as many times as often, and a follower that is slower by a factor meets the same at speeds that
-/// are lower by it.
+/// A cam with k equal tops passes k times as often, so its borders are at a k-th of the speed. A slower follower has them at speeds that are lower
+/// by the same factor.
 #[test]
 fn the_borders_of_a_graze_go_by_passages_and_by_the_followers_time() {
     let at = |halves: f64| (1.0 - 0.0025_f64).sqrt() * 60.0 / (halves * PI);
@@ -638,7 +638,7 @@ fn each_touch_in_a_range_has_a_curve_and_no_other() {
     assert_eq!(touches(&wall(0.1, 0.0, -1.02), "offset", [-0.05, 0.95], [20.0, 22.0]).curves.len(), 0);
 }
 
-/// What loses its only impact is at rest from there on up to where the wall reaches it the other way round, whatever the unit of length.
+/// A follower that loses its only impact is at rest until the wall reaches it from the other side, in any unit of length.
 #[test]
 fn a_branch_goes_on_at_rest_from_one_touch_to_the_other() {
     for size in [1.0, 2.0_f64.powi(-13), 2.0_f64.powi(20)] {

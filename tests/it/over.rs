@@ -123,6 +123,7 @@ fn a_design_goes_over_a_mass() {
 /// The orbit of one impact at 700 rpm loses its stability at the restitution that `continue` finds, and shares of all attractors sum to 1 at
 /// every value; a part of the range has the answer of that part.
 #[test]
+#[ignore = "slow"]
 fn attractors_are_matched_over_a_restitution() {
     let paper = common::osorio();
     let whole = over(&paper, "restitution", [0.3, 0.5], common::step(0.05), 6);
@@ -152,19 +153,13 @@ fn attractors_are_matched_over_a_restitution() {
     }
 }
 
-/// Two halves of a range have what the whole has: the kinds of motion and their shares at each value, and the located events. So it is over
-/// every number: one of the spring, the damper, gravity, the rest position or the cam.
+/// Two halves of a range have what the whole has: the kinds of motion and their shares at each value, and the located events. It is asked over
+/// the damper and the spring; over the rest position by the test of its offset, and over a restitution by one of its own.
 #[test]
 #[ignore = "slow"]
 fn parts_of_a_range_of_any_number_have_their_part_of_the_answer() {
     let wall = wall();
-    for (name, low, middle, high, step) in [
-        ("damping", 0.2, 0.6, 1.0, 0.2),
-        ("stiffness", 60.0, 100.0, 140.0, 20.0),
-        ("gravity", 0.0, 1.0, 2.0, 0.5),
-        ("rest_position", -0.006, -0.002, 0.002, 0.002),
-        ("offset", -0.002, 0.002, 0.006, 0.002),
-    ] {
+    for (name, low, middle, high, step) in [("damping", 0.2, 0.6, 1.0, 0.2), ("stiffness", 60.0, 100.0, 140.0, 20.0)] {
         let over = Over::new(&wall, Parameter::named(&wall, name).unwrap(), Some(250.0)).unwrap();
         let found = |range| speeds(&over, range, &Resolution::new(common::step(step), 2), &Unwatched).unwrap();
         let [whole, lower, upper] = [[low, high], [low, middle], [middle, high]].map(found);
@@ -200,14 +195,15 @@ fn parts_of_a_range_of_any_number_have_their_part_of_the_answer() {
 /// A table of amplitude a lets go of a ball that lies on it where gravity falls below `a w^2`.
 #[test]
 fn a_follower_leaves_the_cam_at_a_gravity() {
-    let ball = crate::attractors::ball();
+    // Of little restitution: what is thrown off rests in each revolution.
+    let ball = crate::attractors::ball().with_number("follower.restitution", 0.1).unwrap();
     let over = Over::new(&ball, Parameter::named(&ball, "gravity").unwrap(), Some(900.0)).unwrap();
     let omega = corner_impact::simulate::angular_velocity(900.0);
     let amplitude = (corner_impact::simulate::angular_velocity(1.0), common::cam(&ball));
     let lift = amplitude.1.highest().value - amplitude.1.lowest().value;
     let leaves = 0.5 * lift * omega * omega;
     let range = [0.9 * leaves, 1.1 * leaves];
-    let found = speeds(&over, range, &Resolution::new(common::step(0.1 * leaves), 2), &Unwatched).unwrap();
+    let found = speeds(&over, range, &Resolution::new(common::step(0.02 * leaves), 2), &Unwatched).unwrap();
     assert_relative_eq!(found.detachment().unwrap()[0], leaves, max_relative = 1e-9);
     assert!(found.detachment().unwrap()[1] <= 1e-9 * leaves);
     assert!(found.separation.is_none());
@@ -236,28 +232,6 @@ fn impacts_begin_where_the_clearance_is_taken_up() {
     let near = Survey::new(&wall, Some(300.0), near, None).unwrap();
     let near = one_row(&near, REST, Budget::CHART, None, &Unwatched).unwrap();
     assert_eq!(near.iter().map(|point| point.as_ref().unwrap().impact_rate > 0.0).collect::<Vec<_>>(), [true, false]);
-}
-
-/// A logarithmic grid has powers of ten whose exponents are multiples of the step, whatever the range.
-#[test]
-fn a_logarithmic_grid_is_the_same_for_every_range() {
-    let wall = wall();
-    let over = Over::new(&wall, Parameter::named(&wall, "rest_position").unwrap(), Some(300.0)).unwrap();
-    let step = Step::at_most(0.25, Spacing::Logarithmic);
-    assert_eq!((step.width(), Step::for_values([1e-3, 1e-1], 10, Spacing::Logarithmic).width()), (0.2, 0.2));
-    let values = |range: [f64; 2]| -> Vec<f64> {
-        let found = speeds(&over, range, &Resolution::new(step, 2), &Unwatched).unwrap();
-        let mut all: Vec<f64> = found.attractors.iter().flat_map(|row| row.at.iter().map(|at| at.value())).collect();
-        all.sort_by(f64::total_cmp);
-        all.dedup();
-        all
-    };
-    let (whole, part) = (values([0.005, 0.05]), values([0.01, 0.04]));
-    assert_eq!(
-        part,
-        [10.0_f64.powf(-2.0), 10.0_f64.powf(-1.8), 10.0_f64.powf(-1.6), 10.0_f64.powf(-1.4)][..part.len()]
-    );
-    assert!(part.len() >= 3 && part.iter().all(|value| whole.contains(value)), "{whole:?} {part:?}");
 }
 
 /// A run from rest on the cam at each value, which stays there at a low speed.
@@ -295,21 +269,27 @@ fn a_grid_of_any_number_is_the_range_and_its_margin() {
     assert_eq!(told, expected);
 }
 
-/// So does one of powers of ten, of any number above 0, and of a speed below 1 rpm, too.
+/// A logarithmic grid has powers of ten whose exponents are multiples of the step, over any number above 0 and over speeds below 1 rpm.
 #[test]
 fn a_grid_of_powers_of_ten_is_the_range_and_its_margin() {
     let pressed = wall().with_number("follower.rest_position", -0.02).unwrap();
     let stiffness = Over::new(&pressed, Parameter::named(&pressed, "stiffness").unwrap(), Some(1.0)).unwrap();
     let speed = Over::speed(&pressed).unwrap();
+    let step = Step::at_most(0.2, Spacing::Logarithmic);
     for over in [&stiffness, &speed] {
-        let found = grid(over, [0.1, 0.4], Step::at_most(0.2, Spacing::Logarithmic)).unwrap();
+        let found = grid(over, [0.1, 0.4], step).unwrap();
         let expected: Vec<f64> = (-13..=7).map(|fifth| 10.0_f64.powf(f64::from(fifth) / 5.0)).collect();
         assert_eq!(found.len(), expected.len(), "{found:?}");
         for ((value, is_machine), expected) in found.into_iter().zip(expected) {
             assert_relative_eq!(value, expected, max_relative = 1e-12);
             assert!(is_machine);
         }
+        // Of a part of the range they are the same, to the last bit.
+        let [whole, part] = [[0.1, 0.4], [0.2, 0.3]].map(|range| grid(over, range, step).unwrap());
+        assert!(part.len() < whole.len() && part.iter().all(|value| whole.contains(value)), "{part:?}");
     }
+    let widths = [Step::at_most(0.25, Spacing::Logarithmic), Step::for_values([1e-3, 1e-1], 10, Spacing::Logarithmic)];
+    assert_eq!(widths.map(|step| step.width()), [0.2, 0.2]);
 }
 
 /// A range goes up, as far as a double does, and has logarithms where these are asked for.
@@ -351,6 +331,7 @@ fn moved_up(by: f64) -> Model {
 
 /// Attractors over a rest position, their periods, what they begin and end with and where: all that moves with the offset of the cam is that.
 #[test]
+#[ignore = "slow"]
 fn attractors_over_a_rest_position_move_with_the_offset() {
     let rows = |by: f64| -> Vec<_> {
         let table = moved_up(by);

@@ -368,7 +368,7 @@ impl AttractorFamily {
         }
     }
 
-    /// Where it ends, if it is the follower's rest on the cam for good: as runs alone tell.
+    /// Brackets, found by runs, of the ends of an attractor on which the follower stays on the cam; none for any other attractor.
     pub(super) fn contact_ends(&self) -> impl Iterator<Item = [f64; 2]> {
         let ends = self.ends.iter().flatten().filter(|_| self.class == Class::Stays);
         ends.map(|end| end.bracket)
