@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::jet::Jet;
 use super::lift::Lift;
 use super::{Cam, Joint, Segment};
+use crate::elementary;
 use crate::tolerance;
 
 /// The side of a corner: the segment before it or the one after.
@@ -146,13 +147,32 @@ impl Cam {
 }
 
 impl Segment {
-    /// The lowest order of a derivative that is not 0 at an angle, rad, where the slope is; none where the lift stays, as far as can be told.
+    /// The lowest order of a derivative that is not 0 at an extremum of the lift, rad; none where the lift stays, as far as can be told.
+    ///
+    /// Where derivatives up to n - 1 vanish, the extremum is found to about the nth root of the lift's rounding. That far beside it
+    /// lower derivatives are not 0. So an order counts only if its term of the Taylor series decides the lift where it exceeds rounding:
+    ///
+    /// ```text
+    /// d = (rounding / |c_n|)^(1/n),    |c_m| d^(m-n) <= |c_n| for m > n,    c_n = c^(n) / n!
+    /// ```
     pub(crate) fn order_at(&self, angle: f64) -> Option<usize> {
         let (jet, sizes, terms) = (self.law.jet(angle), sizes(self), self.law.terms(angle));
-        (2..=Jet::HIGHEST_JUMP).find(|order| {
+        let mut factorial = 1.0;
+        let taylor = jet.0.iter().enumerate().map(|(order, derivative)| {
+            factorial *= order.max(1) as f64;
+            derivative.abs() / factorial
+        });
+        let taylor: Vec<f64> = taylor.collect();
+        let decides = |order: &usize| {
+            let here = taylor[*order];
+            let seen = elementary::powf(tolerance::RANGE_ROUNDING.value * sizes[0] / here, 1.0 / *order as f64);
+            (order + 1..Jet::ORDERS).all(|higher| taylor[higher] * seen.powi((higher - order) as i32) <= here)
+        };
+        let is_there = |order: &usize| {
             let rounding = tolerance::JET_ROUNDING.value * (sizes[order + 1] + terms.0[*order].abs());
             jet.0[*order].abs() > tolerance::CAM_JUMP.value * sizes[*order] + rounding
-        })
+        };
+        (2..=Jet::HIGHEST_JUMP).find(|order| is_there(order) && decides(order))
     }
 }
 

@@ -182,12 +182,16 @@ impl<'a> LongRuns<'a> {
             && self.machine.flight().fall_to(self.top, motion.state).is_none()
     }
 
-    /// The long-run motion of a run that has come to a release.
-    pub fn ending_after(&self, after: &AfterRelease) -> Result<LongRun, SimulateError> {
+    /// The long-run motion of a run that has come to a release; with what is `known` to follow other releases.
+    pub fn ending_after(
+        &self,
+        after: &AfterRelease,
+        known: &dyn Fn(f64) -> Option<AfterRelease>,
+    ) -> Result<LongRun, SimulateError> {
         Ok(match after {
             AfterRelease::Recurs(orbit) => LongRun::Sticking(orbit.clone()),
             AfterRelease::Arrives(orbit, _) => LongRun::Orbit(orbit.clone()),
-            AfterRelease::Wanders { end, .. } => self.by_growth(*end, Budget::RECORDS)?.having_rested(),
+            AfterRelease::Wanders { end, .. } => self.by_growth(*end, Budget::RECORDS, known)?.having_rested(),
         })
     }
 
@@ -231,7 +235,7 @@ impl<'a> LongRuns<'a> {
     }
 
     /// What follows a release at `cam_angle`, rad, where the next rest is waited for as long as `rest` revolutions, as far as that is not `known`
-    /// of a release that comes later; and the revolutions that it was followed for.
+    /// of it or of a release that comes later; and the revolutions that it was followed for.
     pub fn after_release(
         &self,
         cam_angle: f64,
@@ -242,6 +246,9 @@ impl<'a> LongRuns<'a> {
         let mut releases: Vec<(f64, u64, Met)> = Vec::new();
         let (mut release, mut followed) = (cam_angle, 0);
         loop {
+            if let Some(after) = known(release) {
+                return Ok((after, followed));
+            }
             let begun = self.released(release)?;
             let (mut motion, mut met) = (begun, Met::default());
             let run = self.counted(&mut motion, rest, &mut met)?;
@@ -266,9 +273,6 @@ impl<'a> LongRuns<'a> {
                 let resting = StickingOrbit { releases, revolutions, impacts, impact_speed, growth };
                 let other = if resting.is_long() { self.by_chance(release)? } else { None };
                 return Ok((other.unwrap_or(AfterRelease::Recurs(resting)), followed));
-            }
-            if let Some(after) = known(next) {
-                return Ok((after, followed));
             }
             release = next;
         }
@@ -317,10 +321,18 @@ impl<'a> LongRuns<'a> {
     }
 
     /// What a motion comes to that has settled on nothing: chaotic or undecided by the growth of a small deviation, over up to so many
-    /// records; or what it settles on before that is known.
-    pub fn by_growth(&self, mut motion: Motion, records: u64) -> Result<LongRun, SimulateError> {
+    /// records; or what it settles on before that is known. What is `known` to follow a release is not followed again.
+    pub fn by_growth(
+        &self,
+        mut motion: Motion,
+        records: u64,
+        known: &dyn Fn(f64) -> Option<AfterRelease>,
+    ) -> Result<LongRun, SimulateError> {
         /// Revolutions from one record to the next, with a look for an orbit.
         const LOOK: u64 = 8;
+        let (rest, later_rest) = (self.budget.rest(), self.budget.later_rest());
+        // That no rest came in fewer revolutions does not answer for more.
+        let answers = |after: &AfterRelease| later_rest == rest || !matches!(after, AfterRelease::Wanders { .. });
         let fresh = || Record::over(self.budget.block());
         let mut record = fresh();
         let mut told = LongRun::by_growth(Recorded::of(&record));
@@ -336,15 +348,15 @@ impl<'a> LongRuns<'a> {
             }
             // The cam may have let go of it already; else the record goes on from where it is.
             let mut onward = motion;
-            match self.run(&mut onward, if rests { self.budget.later_rest() } else { LOOK })? {
+            match self.run(&mut onward, if rests { later_rest } else { LOOK })? {
                 RunOutcome::Arrives(orbit) => return Ok(LongRun::Orbit(orbit)),
                 RunOutcome::PermanentContact => return Ok(LongRun::PermanentContact),
                 RunOutcome::Released(cam_angle) => {
-                    match self.after_release(cam_angle, self.budget.later_rest(), |_| None)?.0 {
+                    match self.after_release(cam_angle, later_rest, |angle| known(angle).filter(answers))?.0 {
                         // What rests that seldom may do so any number of times.
                         AfterRelease::Wanders { .. } if released => break,
                         AfterRelease::Wanders { end, .. } => (record, motion, released) = (fresh(), end, true),
-                        settled => return self.ending_after(&settled),
+                        settled => return self.ending_after(&settled, known),
                     }
                 }
                 RunOutcome::Wanders if rests => (record, motion) = (fresh(), onward),

@@ -12,7 +12,7 @@ use crate::model::Model;
 use crate::orbit::long_run::{Budget, Kind, LongRun};
 use crate::progress::Watch;
 use crate::simulate::{Event, EventKind, Goal, Machine, Motion};
-use crate::study::survey::{Attractor, Start, long_run};
+use crate::study::survey::{Judged, Start, long_run};
 
 /// A machine at a speed, and the motion that begins there.
 #[derive(Clone, Debug)]
@@ -110,8 +110,8 @@ pub struct Lyapunov {
 }
 
 impl Lyapunov {
-    fn of(attractor: Attractor, budget: Budget) -> Self {
-        let (followed, ending) = (attractor.followed(), attractor.ending);
+    fn of(judged: Judged, budget: Budget) -> Self {
+        let Judged { ending, followed, .. } = judged;
         let (growth, kind) = (ending.growth(), ending.kind());
         let lyapunov_standard_error = ending.of_growth().map(|_| growth.error).filter(|error| error.is_finite());
         let (lyapunov_per_revolution, known) = (growth.value, Known::Sampled);

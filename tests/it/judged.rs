@@ -120,7 +120,7 @@ fn a_run_that_rests_is_followed_to_its_release_and_on() {
         later.revolution = 1000;
         for start in [start, later] {
             let found = long_run(&machine, start, budget).unwrap();
-            assert_eq!((found.ending.kind(), found.followed()), (Kind::Resting, before + onward), "{rpm} rpm");
+            assert_eq!((found.ending.kind(), found.followed), (Kind::Resting, before + onward), "{rpm} rpm");
         }
     }
 }

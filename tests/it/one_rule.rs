@@ -143,7 +143,7 @@ fn the_commands_say_it_too() {
         let machine = machine(&common::osorio(), rpm);
         let part = long_run(&machine, machine.start(0.0, state).unwrap(), BUDGET).unwrap();
         let growth = Some(part.ending.growth().value).filter(|growth| growth.is_finite());
-        let expected = (part.ending.kind().to_string(), growth, Some(part.followed()));
+        let expected = (part.ending.kind().to_string(), growth, Some(part.followed));
         let at = rpm.to_string();
         let model = "models/osorio-2008.toml";
         let basins = document(&["basins", model, "--rpm", &at, "--summary"]);
@@ -183,8 +183,8 @@ fn a_longer_budget_turns_chaos_into_rests() {
         let machine = machine(&common::osorio(), rpm);
         let motion = machine.start_on_cam(0.0, 0.0).unwrap();
         let [short, long] = [Budget::CHART, Budget::SURVEY].map(|budget| long_run(&machine, motion, budget).unwrap());
-        assert!(matches!(short.ending, LongRun::Chaotic(_)) && short.followed() < 2000, "{rpm}: {short:?}");
-        assert!(long.ending.is_long() && long.followed() > short.followed(), "{rpm}: {long:?}");
+        assert!(matches!(short.ending, LongRun::Chaotic(_)) && short.followed < 2000, "{rpm}: {short:?}");
+        assert!(long.ending.is_long() && long.followed > short.followed, "{rpm}: {long:?}");
     }
     let page = text(corner_impact(["basins", "--rpm", "670", "--state", "0.8,0"]).stdout);
     assert!(page.contains("chaotic (no rest in 10") && page.contains(" revolutions)"), "{page}");

@@ -7,6 +7,7 @@ use corner_impact::orbit::long_run::{Budget, Kind};
 use corner_impact::progress::Unwatched;
 use corner_impact::study::attractors::{AttractorsError, Cause, Resolution, Step, attractors};
 use corner_impact::study::basins::{Basin, BasinsOver, Begun};
+use corner_impact::study::design::contact::Contact;
 use corner_impact::study::design::{Asked, design};
 use corner_impact::study::diagram::one_row;
 use corner_impact::study::speeds::{SpeedSurvey, speeds};
@@ -209,6 +210,31 @@ fn a_follower_leaves_the_cam_at_a_gravity() {
     assert!(found.separation.is_none());
     let stays = found.attractors.iter().find(|row| row.kind == Kind::Stays).unwrap();
     assert_eq!(stays.birth.as_ref().unwrap().cause, Cause::Detachment);
+}
+
+/// On an eccentric `c = a (1 + cos)` at `m w^2 = 0.9 k` the inertia presses on a follower that the spring would lift off a cam at rest:
+/// `N = k a - k rest_position + 0.1 k a cos` is nowhere negative up to `rest_position = 0.9 a`.
+#[test]
+fn a_follower_that_inertia_presses_on_leaves_at_a_rest_position() {
+    let [amplitude, stiffness, mass] = [0.02_f64, 100.0, 1.0];
+    let text = format!(
+        "[follower]\nmass = {mass:?}\nrestitution = 0.1\ndamping = 0.0\nstiffness = {stiffness:?}\ngravity = 0.0\nrest_position = 0.018\n\
+         [cam]\nlaw = \"harmonic\"\noffset = {amplitude:?}\namplitudes = [{amplitude:?}]\nphases_deg = [0.0]\n"
+    );
+    let model = Model::parse("eccentric.toml", &text).unwrap();
+    let rpm = (0.9 * stiffness / mass).sqrt() * 60.0 / std::f64::consts::TAU;
+    let over = Over::new(&model, Parameter::named(&model, "rest_position").unwrap(), Some(rpm)).unwrap();
+    let range = [0.8 * amplitude, 0.99 * amplitude];
+    let found = speeds(&over, range, &Resolution::new(common::step(0.02 * amplitude), 2), &Unwatched).unwrap();
+    assert_relative_eq!(found.detachment().unwrap()[0], 0.9 * amplitude, max_relative = 1e-9);
+    let stays = found.attractors.iter().find(|row| row.kind == Kind::Stays).unwrap();
+    assert_eq!(stays.death.as_ref().unwrap().cause, Cause::Detachment);
+    // A force that is 0, as a spring leaves it that is just slack on the highest lift, is no detachment.
+    let slack = Model::parse("slack.toml", &text.replace("0.018", "0.0")).unwrap();
+    let cam = common::cam(&slack);
+    let rpm = |part: f64| (part * stiffness / mass).sqrt() * 60.0 / std::f64::consts::TAU;
+    let leaves = [0.0, 1.9, 2.1].map(|part| Contact::new(&cam, slack.follower).leaves(rpm(part)));
+    assert_eq!(leaves, [false, false, true]);
 }
 
 /// Nordmark's diagram over the clearance of a wall, on a logarithmic axis: no impact where the clearance is more than the wall moves, and some

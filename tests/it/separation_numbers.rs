@@ -191,6 +191,17 @@ fn a_damper_holds_back_by_the_order_of_the_bottom() {
         let cam = format!("law = \"harmonic\"\noffset = {size:?}\namplitudes = [{size:?}]\nphases_deg = [25.0]\n");
         assert_eq!([0.99, 1.01].map(|part| is_held(&cam, part * 2.0)), [false, true], "{size}");
     }
+    // (1 + cos)^p comes down as x^(2 p).
+    let [squared, cubed] = ["2.0, 0.5", "3.75, 1.5, 0.25"];
+    for (amplitudes, offset, critical) in [(squared, 1.5, 3.0), (cubed, 2.5, 10.0 / 3.0)] {
+        for phase in [0.0, 25.0, 140.0] {
+            let phases: Vec<f64> = (1..=amplitudes.split(',').count()).map(|wave| wave as f64 * phase).collect();
+            let cam = format!(
+                "law = \"harmonic\"\noffset = {offset:?}\namplitudes = [{amplitudes}]\nphases_deg = {phases:?}\n"
+            );
+            assert_eq!([0.98, 1.02].map(|part| is_held(&cam, part * critical)), [false, true], "{critical} {phase}");
+        }
+    }
     // A cycloid comes down as x^3.
     let segment =
         |motion: &str, rise: f64| format!("[[cam.segment]]\nmotion = \"{motion}\"\nspan_deg = 90.0\nrise = {rise:?}\n");

@@ -176,7 +176,8 @@ fn motions(grid: &[f64], power: i32, unseen: Option<usize>) -> Motions {
         here.attractors.retain(|it| !matches!(it.ending, LongRun::Orbit(_)));
     }
     let apart = grid.windows(2).map(|pair| pair[1].value - pair[0].value).fold(0.0, f64::max);
-    let rows = families(&over, &grid, &|_| apart, (&Sample::Spread(2), Budget::SURVEY));
+    let rows =
+        families(&over, (&grid, [f64::NEG_INFINITY, f64::INFINITY]), &|_| apart, (&Sample::Spread(2), Budget::SURVEY));
     let cause = |end: &Option<Transition>| end.as_ref().map(|end| end.cause);
     rows.iter().map(|row| (row.period(), row.range.map(|rpm| rpm / scale), row.ends.each_ref().map(cause))).collect()
 }

@@ -68,10 +68,11 @@ pub struct GridValue {
 /// The values that were looked at, from the lowest up.
 pub type Grid = [GridValue];
 
-/// Matches what was found over a grid of values, which are a `step` apart next to a value.
+/// Matches what was found over a grid of values, which are a `step` apart next to a value; what begins or ends beyond a range does so
+/// somewhere between two values of the grid.
 pub fn families(
     over: &Over<'_>,
-    grid: &Grid,
+    (grid, range): (&Grid, [f64; 2]),
     step: &(dyn Fn(f64) -> f64 + Sync),
     runs: Asked<'_>,
 ) -> Vec<AttractorFamily> {
@@ -81,7 +82,7 @@ pub fn families(
     let mut families = joined(over, families);
     beyond(over, &mut families, &step);
     let mut families = joined(over, families);
-    families.par_iter_mut().for_each(|family| family.narrow(over, grid, runs));
+    families.par_iter_mut().for_each(|family| family.narrow(over, (grid, range), runs));
     families.iter_mut().for_each(|family| family.reach(over, grid));
     families.sort_by(|one, two| one.range[0].total_cmp(&two.range[0]).then(one.range[1].total_cmp(&two.range[1])));
     families
@@ -255,8 +256,8 @@ impl AttractorFamily {
         }
     }
 
-    /// Narrows down where a motion that is no orbit begins and ends, between two values of the grid.
-    fn narrow(&mut self, over: &Over<'_>, grid: &Grid, runs: Asked<'_>) {
+    /// Narrows down where a motion that is no orbit begins and ends in a range, between two values of the grid.
+    fn narrow(&mut self, over: &Over<'_>, (grid, range): (&Grid, [f64; 2]), runs: Asked<'_>) {
         if self.stable.is_some() {
             return;
         }
@@ -265,7 +266,9 @@ impl AttractorFamily {
         };
         let changed = |(side, index): (usize, usize)| {
             let next = if side == 0 { index.checked_sub(1) } else { Some(index + 1) };
-            Some(self.ended((over, runs), grid, index, grid.get(next?)?.value))
+            let ends = [grid[index].value, grid.get(next?)?.value];
+            let is_asked_for = ends[0].min(ends[1]) < range[1] && range[0] < ends[0].max(ends[1]);
+            Some(if is_asked_for { self.ended((over, runs), grid, index, ends) } else { by_runs(over, ends) })
         };
         let (lower, upper) = rayon::join(|| changed((0, first)), || changed((1, last)));
         for ((end, own), change) in self.ends.iter_mut().zip(&mut self.range).zip([lower, upper]) {
@@ -276,11 +279,10 @@ impl AttractorFamily {
         }
     }
 
-    /// Between the value of an index, at which it is there, and `gone`.
-    fn ended(&self, (over, runs): (&Over<'_>, Asked<'_>), grid: &Grid, index: usize, gone: f64) -> Transition {
+    /// Between the value of an index, at which it is there, and the next.
+    fn ended(&self, (over, runs): (&Over<'_>, Asked<'_>), grid: &Grid, index: usize, ends: [f64; 2]) -> Transition {
         /// Halvings of a step of the grid.
         const HALVINGS: u32 = 8;
-        let ends = [grid[index].value, gone];
         let found = self.wanted(grid, index, runs).map(|(wanted, attractor)| {
             let mut motion = Some(attractor.motion);
             halve(ends, Width::Halvings(HALVINGS), |value| Ok(!wanted.is_there(&over.machine(value)?, &mut motion)?))

@@ -48,7 +48,7 @@ fn by_runs(over: &Over<'_>, [one, two]: [f64; 2]) -> Transition {
 fn leaves(over: &Over<'_>, bracket: [f64; 2]) -> Option<[f64; 2]> {
     let parts = |value: f64| -> Result<bool, FamilyError> {
         let (model, cam) = over.model(value)?;
-        Ok(Contact::new(&cam, model.follower).separation().speed() < over.rpm)
+        Ok(Contact::new(&cam, model.follower).leaves(over.rpm))
     };
     let [low, high] = bracket;
     let at_low = parts(low).ok()?;
@@ -171,7 +171,7 @@ pub fn attractors(
     }
     watch.at("where each begins and ends", 0, 0);
     let mut families =
-        families(over, &grid, &|value| resolution.step.near(value), (&resolution.sample, resolution.budget));
+        families(over, (&grid, range), &|value| resolution.step.near(value), (&resolution.sample, resolution.budget));
     let separation = over.is_speed().then(|| {
         let machine = over.machine(range[0])?;
         Ok::<_, FamilyError>(Contact::new(machine.cam(), over.model.follower).separation_above(range[0]))

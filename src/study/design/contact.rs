@@ -113,6 +113,11 @@ impl<'a> Contact<'a> {
         Least { value: if is_rounding { 0.0 } else { value }, ..least }
     }
 
+    /// Whether the follower leaves the cam at a speed, rpm: N is negative somewhere, or the velocity of the cam jumps.
+    pub fn leaves(&self, rpm: f64) -> bool {
+        self.kink.is_some() || self.least(rpm).value < 0.0
+    }
+
     /// The rounding of c, c' and c'' on a segment, in their units: as their ranges are widened.
     fn of_lift(&self, segment: usize) -> [f64; 3] {
         let Bounds { lift, slope, curvature, third } = self.cam.segments()[segment].bounds;

@@ -97,12 +97,27 @@ struct End {
     failed: Option<SimulateError>,
 }
 
+/// A start, judged.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Judged {
+    /// The motion that it ends on.
+    pub ending: LongRun,
+    /// Revolutions that its run was followed for until that was told.
+    pub followed: u64,
+    /// Which start.
+    start: usize,
+    /// Where the run was then; of one that wanders from a release, where the cam let go of it.
+    motion: Motion,
+    /// Whether it has to forget that release.
+    released: bool,
+}
+
 /// The long-run motion of one start, judged within a budget, without a look at any other run.
-pub fn long_run(machine: &Machine, motion: Motion, budget: Budget) -> Result<Attractor, SimulateError> {
-    let found = attractors_of(&LongRuns::unaided(machine, budget), 1, |_| Ok(Some(motion)), &Unwatched);
-    let mut parts = found.map_err(|(_, error)| error)?.attractors;
+pub fn long_run(machine: &Machine, motion: Motion, budget: Budget) -> Result<Judged, SimulateError> {
+    let found = judged(&LongRuns::unaided(machine, budget), 1, |_| Ok(Some(motion)), &Unwatched);
+    let (mut judged, ..) = found.map_err(|(_, error)| error)?;
     // One start ends on one motion.
-    Ok(parts.swap_remove(0))
+    Ok(judged.swap_remove(0))
 }
 
 /// The long-run motions of `count` starts: the one way to judge several. They run side by side, told to `watch` one by one; `start` gives
@@ -117,6 +132,21 @@ pub fn attractors_of(
     start: impl Fn(usize) -> Result<Option<Motion>, SimulateError> + Sync,
     watch: &dyn Watch,
 ) -> Result<Ensemble, Failed> {
+    let (judged, mut ensemble, outlast) = judged(runs, count, start, watch)?;
+    for one in judged {
+        let index = one.start;
+        ensemble.add(runs, one, outlast).map_err(|error| (index, error))?;
+    }
+    Ok(ensemble)
+}
+
+/// Each start judged, with an ensemble that has no attractors yet, and whether chaos outlasts the rests.
+fn judged(
+    runs: &LongRuns<'_>,
+    count: usize,
+    start: impl Fn(usize) -> Result<Option<Motion>, SimulateError> + Sync,
+    watch: &dyn Watch,
+) -> Result<(Vec<Judged>, Ensemble, bool), Failed> {
     let told = each(watch, "runs", count);
     let first = |index: usize| {
         told();
@@ -156,12 +186,13 @@ pub fn attractors_of(
     let wanders_on = |ending: &LongRun| wandering.left > 0 && ending.wanders();
     let mut ensemble = Ensemble { wandering, failed, ..Ensemble::default() };
     let mut wanderers = wanders.iter().cycle();
-    for (index, end) in ends.into_iter().enumerate() {
+    let mut judged = Vec::new();
+    for (start, end) in ends.into_iter().enumerate() {
         let Some(End { run, mut motion, begun, .. }) = end else { continue };
         if runs.is_off_for_good(&motion) {
-            ensemble.off_for_good.push(index);
+            ensemble.off_for_good.push(start);
         }
-        let (mut wandering_from, mut followed) = (None, motion.revolution - begun);
+        let (mut released, mut followed) = (false, motion.revolution - begun);
         let ending = match run {
             RunOutcome::Arrives(orbit) => Some(LongRun::Orbit(orbit)),
             RunOutcome::PermanentContact => Some(LongRun::PermanentContact),
@@ -173,7 +204,7 @@ pub fn attractors_of(
                     match &release.after {
                         AfterRelease::Recurs(_) => {}
                         AfterRelease::Arrives(_, end) => motion = *end,
-                        AfterRelease::Wanders { released, .. } => wandering_from = Some(*released),
+                        AfterRelease::Wanders { released: begun, .. } => (motion, released) = (*begun, true),
                     }
                     Some(release.ending.clone())
                 }
@@ -182,22 +213,16 @@ pub fn attractors_of(
         };
         if let Some(ending) = ending {
             followed += ending.of_growth().map_or(0, Recorded::each);
-            let settled = || wandering_from.map_or(Ok(motion), |released| runs.settled(released));
-            ensemble.add((ending, followed), index, outlast, settled).map_err(|error| (index, error))?;
+            judged.push(Judged { ending, followed, start, motion, released });
         }
     }
-    Ok(ensemble)
+    Ok((judged, ensemble, outlast))
 }
 
 impl Ensemble {
-    /// Counts a start that ends on `ending`, and for how long its run was followed; the first that does gives the motion.
-    fn add(
-        &mut self,
-        (ending, followed): (LongRun, u64),
-        index: usize,
-        outlast: bool,
-        motion: impl FnOnce() -> Result<Motion, SimulateError>,
-    ) -> Result<(), SimulateError> {
+    /// Counts a start by what it ends on; the first that does gives the motion.
+    fn add(&mut self, runs: &LongRuns<'_>, one: Judged, outlast: bool) -> Result<(), SimulateError> {
+        let Judged { ending, followed, start, motion, released } = one;
         // Chaos is not what rests where it outlasts that.
         let is_same =
             |part: &&mut Attractor| part.ending.is_same(&ending) && (part.ending.kind() == ending.kind() || !outlast);
@@ -207,15 +232,13 @@ impl Ensemble {
                 if matches!((&part.ending, &ending), (LongRun::Chaotic(_), LongRun::Sticking(_))) {
                     part.ending = ending;
                 }
-                part.starts.push(index);
+                part.starts.push(start);
                 part.followed.push(followed);
             }
-            None => self.attractors.push(Attractor {
-                ending,
-                starts: vec![index],
-                followed: vec![followed],
-                motion: motion()?,
-            }),
+            None => {
+                let motion = if released { runs.settled(motion)? } else { motion };
+                self.attractors.push(Attractor { ending, starts: vec![start], followed: vec![followed], motion });
+            }
         }
         Ok(())
     }
@@ -297,10 +320,10 @@ fn follow(runs: &LongRuns<'_>, ends: &[Option<End>], releases: &mut Releases) ->
         if let Some(End { run: RunOutcome::Released(cam_angle), .. }) = end
             && find(releases, *cam_angle).is_none()
         {
-            let known = |other: f64| find(releases, other).map(|release| release.after.clone());
+            let known = |other: f64| known(releases, other);
             let (after, followed) =
                 runs.after_release(*cam_angle, runs.budget.rest(), known).map_err(|error| (index, error))?;
-            let ending = runs.ending_after(&after).map_err(|error| (index, error))?;
+            let ending = runs.ending_after(&after, &known).map_err(|error| (index, error))?;
             releases.push(Release { cam_angle: *cam_angle, after, ending, followed });
         }
     }
@@ -337,7 +360,7 @@ fn told_wandering(
         .filter_map(|(index, end)| end.as_ref().filter(wanders).map(|end| (index, end.motion)))
         .collect();
     let measured = |(index, motion): &(usize, Motion), records: u64| {
-        runs.by_growth(*motion, records).map_err(|error| (*index, error))
+        runs.by_growth(*motion, records, &|other| known(releases, other)).map_err(|error| (*index, error))
     };
     let first = wanderers.par_iter().take(MEASURED as usize);
     let told: Vec<LongRun> = first.map(|run| measured(run, Budget::RECORDS)).collect::<Result<_, _>>()?;
@@ -374,4 +397,9 @@ fn each<'a>(watch: &'a dyn Watch, what: &'a str, total: usize) -> impl Fn() + Sy
 /// What follows a release at an angle, rad.
 fn find(releases: &Releases, cam_angle: f64) -> Option<&Release> {
     releases.iter().find(|known| is_same_release(known.cam_angle, cam_angle))
+}
+
+/// What is known to follow a release at an angle, rad.
+fn known(releases: &Releases, cam_angle: f64) -> Option<AfterRelease> {
+    find(releases, cam_angle).map(|release| release.after.clone())
 }

@@ -29,7 +29,7 @@ mod sweep;
 mod threads;
 
 pub use axis::{Axis, Place, Spacing, Values, Varied};
-pub use ensemble::{Attractor, Ensemble, Failed, Wandering, attractors_of, long_run};
+pub use ensemble::{Attractor, Ensemble, Failed, Judged, Wandering, attractors_of, long_run};
 pub use grid::{Found, RunError, Survey, SurveyError};
 pub use over::{Over, OverError};
 pub use pipeline::{Block, Counted, Tally};

@@ -4,7 +4,7 @@ use crate::estimate::Estimate;
 use crate::orbit::long_run::{Budget, Kind, LongRun};
 use crate::simulate::{Machine, Met, Motion, SimulateError};
 
-use super::ensemble::long_run;
+use super::ensemble::{Judged, long_run};
 use super::starts::Start;
 
 /// What a run comes to.
@@ -36,8 +36,7 @@ impl Point {
 
     /// What `motion` comes to within a budget.
     pub fn of(machine: &Machine, motion: Motion, budget: Budget) -> Result<Self, SimulateError> {
-        let part = long_run(machine, motion, budget)?;
-        let (followed, ending) = (part.followed(), part.ending);
+        let Judged { ending, followed, .. } = long_run(machine, motion, budget)?;
         let (revolutions, impacts) = ending.period().unwrap_or_default();
         // Of so many revolutions.
         let (met, of) = match &ending {
