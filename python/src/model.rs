@@ -518,19 +518,22 @@ impl Model {
 
     /// What an engineer asks: the contact force and the speed of the first separation, loads beyond it, and for each of `needs`, such
     /// as "no separation to 700 rpm", what the preload, the stiffness, the damping and the mass would have to be. At `speeds`
-    /// speeds over `rpm`, (lowest, highest), or around the separation: the document of `corner-impact design --json`.
+    /// speeds over `rpm`, (lowest, highest), or around the separation, or at one speed and values of another number, `over` (name, lowest,
+    /// highest, how many), with `log` on a logarithmic axis: the document of `corner-impact design --json`.
     ///
     /// >>> found = Model.paper().design(needs=["no separation to 130 rpm"])
     /// >>> round(found["separation"]["speed_rpm"], 4)
     /// 114.9793
     /// >>> {need["parameter"]: need["value"] is not None for need in found["needs"]}
     /// {'preload': True, 'stiffness': True, 'damping': False, 'mass': True}
-    #[pyo3(signature = (rpm=None, *, speeds=21, needs=Vec::new()),
-        text_signature = "($self, rpm=None, *, speeds=21, needs=())")]
+    #[pyo3(signature = (rpm=None, *, over=None, log=false, speeds=21, needs=Vec::new()),
+        text_signature = "($self, rpm=None, *, over=None, log=False, speeds=21, needs=())")]
     fn design<'py>(
         &self,
         py: Python<'py>,
-        rpm: Option<(f64, f64)>,
+        rpm: Option<Rpm<(f64, f64)>>,
+        over: Option<(String, f64, f64, usize)>,
+        log: bool,
         #[pyo3(from_py_with = count)] speeds: u64,
         needs: Vec<String>,
     ) -> PyResult<Bound<'py, PyDict>> {
@@ -538,8 +541,18 @@ impl Model {
             Ok(need) => Ok((text, need)),
             Err(words) => refused(words),
         };
+        let (rpm, over) = match (rpm, over) {
+            (None, None) => (None, None),
+            (Some(Rpm::Range(range)), None) => (Some(values::speed_range(range)?), None),
+            (Some(Rpm::One(rpm)), None) => (Some([values::speed(rpm)?; 2]), None),
+            (Some(Rpm::One(rpm)), over) => {
+                (Some([values::speed(rpm)?; 2]), Some(values::axis(&self.model, Rpm::One(rpm), over, log)?.1))
+            }
+            (_, Some((name, ..))) => return refused(format!("over {name}, rpm is one speed")),
+        };
         let asked = Asked {
-            rpm: rpm.map(values::speed_range).transpose()?,
+            rpm,
+            over,
             speeds: within("speeds", speeds, [2, 10_000])? as u32,
             needs: needs.into_iter().map(need).collect::<PyResult<_>>()?,
             ..Asked::default()

@@ -28,6 +28,11 @@ from corner_impact import Model
             lambda it: it.design((100, 130), speeds=3, needs=["no separation to 130 rpm"]),
             ["design", "--rpm", "100:130", "--speeds", "3", "--need", "no separation to 130 rpm"],
         ),
+        (
+            lambda it: it.design(200, over=("mass", 1, 4, 3), log=True),
+            ["design", "--rpm", "200", "--over", "mass=1:4:3:log"],
+        ),
+        (lambda it: it.design(200), ["design", "--rpm", "200"]),
         (lambda it: it.compare(it.with_number("restitution", 0.7)), ["compare", "--set", "restitution=0.7"]),
         (lambda it: it.certify((670, 680)), ["certify", "--rpm", "670:680"]),
         (lambda it: it.certify((690, 700), orbits=True), ["certify", "--rpm", "690:700", "--orbits"]),
@@ -98,6 +103,8 @@ def test_surveys_go_over_any_number(paper: Model) -> None:
         lambda: paper.diagram(700, over=("mass", 2, 1, 2)),
         lambda: paper.diagram(700, over=("restitution", 0, 1, 2), log=True),
         lambda: paper.speeds((600, 700), over=("mass", 1, 2)),
+        lambda: paper.design((600, 700), over=("mass", 1, 2, 2)),
+        lambda: paper.design(over=("mass", 1, 2, 2)),
         lambda: paper.speeds(700),
     ):
         with pytest.raises(ValueError):

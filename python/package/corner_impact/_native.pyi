@@ -109,7 +109,13 @@ class Model:
         patience: int = 100_000,
     ) -> _Document: ...
     def design(
-        self, rpm: tuple[float, float] | None = None, *, speeds: int = 21, needs: Sequence[str] = ()
+        self,
+        rpm: float | tuple[float, float] | None = None,
+        *,
+        over: tuple[str, float, float, int] | None = None,
+        log: bool = False,
+        speeds: int = 21,
+        needs: Sequence[str] = (),
     ) -> _Document: ...
     def verify(self, external: bool = True) -> _Document: ...
     def compare(self, other: Model, *, external: bool = False) -> _Document: ...
