@@ -283,9 +283,12 @@ impl AttractorFamily {
     fn ended(&self, (over, runs): (&Over<'_>, Asked<'_>), grid: &Grid, index: usize, ends: [f64; 2]) -> Transition {
         /// Halvings of a step of the grid.
         const HALVINGS: u32 = 8;
+        /// The same, of what could not be told: a longer budget would move its ends, and each look takes as long as that budget.
+        const OF_UNDECIDED: u32 = 4;
+        let halvings = if self.class == Class::Undecided { OF_UNDECIDED } else { HALVINGS };
         let found = self.wanted(grid, index, runs).map(|(wanted, attractor)| {
             let mut motion = Some(attractor.motion);
-            halve(ends, Width::Halvings(HALVINGS), |value| Ok(!wanted.is_there(&over.machine(value)?, &mut motion)?))
+            halve(ends, Width::Halvings(halvings), |value| Ok(!wanted.is_there(&over.machine(value)?, &mut motion)?))
         });
         by_runs(over, found.and_then(Result::<_, RunError>::ok).unwrap_or(ends))
     }
